@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -32,6 +33,10 @@ public:
     sheet_(sheet),
     obstacles_(scratch.obstacles),
     leaves_(scratch.leaves),
+    flat_(scratch.flat),
+    maybe_(scratch.maybe_nearest),
+    of_triangles_(query.pairs.ofTriangles()),
+    laid_flat_(query.b.hierarchy().view().triangles && !query.a.hierarchy().view().radii),
     stamp_(scratch.stamp),
     work_(work),
     view_a_(query.a.hierarchy().view()),
@@ -55,13 +60,20 @@ public:
     leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
     ++stamp_;
     std::uint32_t undecided = firstBits(leaf_.count);
-    const bool by_float = query_.pairs.ofTriangles() ? false
-                          : largest_radius_ > 0.0    ? findNearest<true>(visit, lane, near, undecided)
-                                                     : findNearest<false>(visit, lane, near, undecided);
-    if (by_float && query_.exceeds(limit_, unit_)) return;
-    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
-      Found& found = found_[i];
-      found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
+    if (laid_flat_) {
+      if (!findNearestTriangles(visit, lane, near)) return;
+    }
+    else {
+      const bool by_float = of_triangles_           ? false
+                            : largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
+                                                    : findNearest<false>(visit, lane, near, undecided);
+      if (by_float && query_.exceeds(limit_, unit_)) return;
+      if (of_triangles_)
+        std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
+      for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+        Found& found = found_[i];
+        found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
+      }
     }
     if (lengths_only_) measureLengths();
     for (std::uint32_t i = 0; i < leaf_.count; ++i)
@@ -187,6 +199,74 @@ private:
     return own;
   }
 
+  /// The nearest triangle of b to each point of the leaf: floats leave those that may be, exact arithmetic decides.
+  /// @return false where all points are known to be nearer than what was measured
+  bool findNearestTriangles(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
+  {
+    std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
+    const LaneTag d;
+    alignas(64) float squared[kLeafPoints], most[kLeafPoints];
+    for (std::uint32_t i = 0; i < kLeafPoints; ++i)
+      most[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
+    maybe_.clear();
+    for (const NearSphere& candidate : near) {
+      const float limit = largestOf(most, kLeafPoints);
+      if (candidate.lower > limit) break;
+      ++work_.leaf_pairs;
+      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
+      const CarriedLeaf& own = carried(candidate.sphere.obstacle);
+      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
+      for (std::uint32_t j = 0; j < other.count; ++j) {
+        const FlatRecord& triangle = flat_.of(view_b_, obstacle.voxel->frame, other.record(j));
+        squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, squared);
+        const float error =
+            roundUp((triangle.error(obstacle.frame) + obstacle.frame.error) * (1.0 + 2 * kSphereMargin));
+        MaybeNearest& entry = maybe_.emplace_back();
+        entry.voxel = other.voxel;
+        entry.point = other.begin + j;
+        bool any = false;
+        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+          LaneVector low, high;
+          boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
+          const LaneVector before = hn::Load(d, most + i);
+          hn::StoreU(low, d, entry.low + i);
+          hn::StoreU(high, d, entry.high + i);
+          any = any || !hn::AllTrue(d, hn::Gt(low, before));
+          hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most + i);
+        }
+        if (!any) maybe_.pop_back();
+      }
+    }
+    if (query_.exceeds(largestOf(most, kLeafPoints), unit_)) return false;
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) found_[i] = decideAmong(i, most[i]);
+    return true;
+  }
+
+  /// Of the triangles that may be the nearest to point i. @param most that it is away from its nearest
+  Found decideAmong(std::uint32_t i, float most)
+  {
+    Found best;
+    std::optional<RecordDistance::Pair> best_pair;
+    for (const MaybeNearest& entry : maybe_) {
+      if (entry.low[i] > most) continue;
+      Found found{entry.voxel, entry.point};
+      if (!best.voxel) {
+        best = found;
+        best.least = double{orNone(entry.low[i])} * unit_;
+        best.most = std::isnan(entry.high[i]) ? kInfinity : double{entry.high[i]} * unit_;
+        continue;
+      }
+      if (!best_pair) best_pair = posed(i, best);
+      ++work_.exact_decisions;
+      const RecordDistance::Pair pair = posed(i, found);
+      const int sign = query_.pairs.distance.compareGaps(pair, *best_pair);
+      if (sign > 0 || (sign == 0 && recordOf(best) < recordOf(found))) continue;
+      best = found;
+      best_pair = pair;
+    }
+    return best;
+  }
+
   Found named(std::uint32_t i, const std::vector<NearSphere>& near) const
   {
     if (two_.name[i] < 0) return {};
@@ -206,7 +286,7 @@ private:
 
   RecordDistance::Pair posed(std::uint32_t i, const Found& found) const
   {
-    if (query_.pairs.ofTriangles()) return query_.pairs.posed({leaf_.record(i), recordOf(found)});
+    if (of_triangles_) return query_.pairs.posed({leaf_.record(i), recordOf(found)});
     return {ExactDistance::Pair{given(i), found.voxel->point(view_b_, found.point), leaf_.radius(i),
                                 found.voxel->radii ? double{found.voxel->radii[found.point]} : 0.0},
             {}};
@@ -247,6 +327,7 @@ private:
         const Found found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
         if (found.voxel == best.voxel && found.point == best.point) continue;
         const RecordDistance::Pair pair = posed(i, found);
+        if (of_triangles_ && query_.pairs.distance.enclose(pair).low > most + pair.radius_p + pair.radius_q) continue;
         if (best.voxel) {
           ++work_.exact_decisions;
           const int sign = query_.pairs.distance.compareGaps(pair, best_pair);
@@ -315,6 +396,10 @@ private:
   const DistanceSheet& sheet_;
   const std::vector<DistanceObstacle>& obstacles_;
   std::vector<CarriedLeaf>& leaves_;
+  FlatRecords& flat_;
+  std::vector<MaybeNearest>& maybe_;
+  const bool of_triangles_; ///< whether a cloud is
+  const bool laid_flat_;    ///< whether b alone is, and points of a have no radii
   std::uint64_t& stamp_;
   Work& work_;
   const PointsView& view_a_;

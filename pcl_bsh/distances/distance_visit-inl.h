@@ -10,6 +10,7 @@
 #endif
 
 #include <pcl_bsh/distances/bound_margin.h>
+#include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
 #include <algorithm>
@@ -205,21 +206,71 @@ HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& 
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
 }
 
+/// The squared distances of eight values from a triangle as lengths in the walk's unit: at least, and at most.
+/// @param error of the triangle and of what is carried, in the obstacle's unit
+template <class Tag>
+HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, float error,
+                             const DistanceObstacle& obstacle, hn::Vec<Tag>& low, hn::Vec<Tag>& high)
+{
+  const auto length = hn::Sqrt(squared);
+  const auto doubt = hn::Mul(hn::Add(hn::Add(length, radius), hn::Set(d, error)), hn::Set(d, kFlatMargin));
+  const auto more = hn::Add(hn::Add(doubt, radius), hn::Set(d, error));
+  const auto near = hn::Sub(hn::Min(length, hn::Set(d, 0x1p63f)), more);
+  low = hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+  high = hn::Mul(hn::Add(length, more), hn::Set(d, obstacle.most));
+}
+
+/// The same as boundByPoints() of a leaf of triangles. @param triangle(j) laid flat
+template <class Triangles>
+HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
+                                   std::uint32_t count, bool outdoing, float* lower, const Triangles& triangle)
+{
+  const LaneTag d;
+  alignas(64) float squared[kLanes], of_triangle[kLanes], least[kLanes], upper[kLanes];
+  std::fill(std::begin(least), std::end(least), std::numeric_limits<float>::infinity());
+  std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
+  for (std::uint32_t j = 0; j < count; ++j) {
+    const FlatRecord& record = triangle(j);
+    squaredToTriangle(record.flat, own.x, own.y, own.z, kLanes, squared);
+    const float error = roundUp(record.error(obstacle.frame)) + obstacle.slack;
+    for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      LaneVector low, high;
+      boundsOfFlat(d, hn::Load(d, squared + i), hn::LoadU(d, own.r + i), error, obstacle, low, high);
+      hn::Store(low, d, of_triangle + i);
+      hn::Store(hn::IfThenElse(hn::Lt(high, hn::Load(d, upper + i)), high, hn::Load(d, upper + i)), d, upper + i);
+    }
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) least[lane] = std::min(least[lane], orNone(of_triangle[lane]));
+  }
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
+  if (outdoing) return lowerCuts(visit, upper);
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.cut[lane] = std::min(visit.cut[lane], upper[lane]);
+}
+
+/// A triangle of b that may be the nearest to some points of a leaf, and how far it is from each, in the walk's unit.
+struct MaybeNearest {
+  const Voxel* voxel;
+  std::uint32_t point; ///< in the voxel
+  float low[kLeafPoints], high[kLeafPoints];
+};
+
 /// Memory of one walk after another, to be had by a ScratchLease.
 struct DistanceScratch {
   std::uint64_t stamp = 0;          ///< the last one given
   std::deque<DistanceVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
   std::vector<DistanceObstacle> obstacles;
-  std::vector<NearSphere> roots;          ///< what the walk begins with
-  std::vector<CarriedLeaf> leaves;        ///< by obstacle
-  std::vector<std::uint32_t> obstacle_of; ///< by voxel of b: its obstacle, 0 where it has none yet
-  std::vector<std::uint32_t> entered;     ///< the voxels that have one
+  std::vector<NearSphere> roots;           ///< what the walk begins with
+  std::vector<CarriedLeaf> leaves;         ///< by obstacle
+  std::vector<std::uint32_t> obstacle_of;  ///< by voxel of b: its obstacle, 0 where it has none yet
+  std::vector<std::uint32_t> entered;      ///< the voxels that have one
+  FlatRecords flat;                        ///< where b is of triangles
+  std::vector<MaybeNearest> maybe_nearest; ///< likewise
 
   std::size_t bytes() const noexcept
   {
     std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
                       roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
-                      (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t);
+                      (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t) + flat.bytes() +
+                      maybe_nearest.capacity() * sizeof(MaybeNearest);
     for (const DistanceVisit& visit : visits) {
       sum += (visit.rows.capacity() + visit.kept.capacity()) * sizeof(DistanceRow) +
              visit.carried.capacity() * sizeof(CarriedNode);

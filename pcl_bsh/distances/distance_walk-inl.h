@@ -42,6 +42,7 @@ public:
     leaf_(query, sheet, scratch, found.work)
   {
     forgetObstacles();
+    if (b_.storage.view.triangles) scratch_.flat.clear();
     if (scratch_.obstacle_of.size() < b_.storage.voxel_count) scratch_.obstacle_of.resize(b_.storage.voxel_count);
   }
   ~DistanceWalk() { forgetObstacles(); }
@@ -176,8 +177,24 @@ private:
       boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
+    if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
+      const LeafRange leaf = sphere.leaf(*obstacle.voxel);
+      boundByTriangles(visit, own, obstacle, leaf.count, outdoing_.isPossible(), row.lower,
+                       [&](std::uint32_t j) -> const FlatRecord& {
+                         return scratch_.flat.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
+                       });
+      found.work.node_pairs += leaf.count;
+    }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
+  }
+
+  /// Whether a leaf of triangles has a ball that is large beside the smallest child.
+  bool isLargeBall(const DistanceVisit& visit, const ObstacleSphere& sphere) const
+  {
+    const Voxel& voxel = *obstacles_[sphere.obstacle].voxel;
+    const double smallest = double{*std::min_element(visit.node->r, visit.node->r + visit.node->count)};
+    return sphere.leaf(voxel).largestRadius() > kLargeBall * smallest * a_voxel_->frame.unit;
   }
 
   /// Sharpens the bounds of children which float arithmetic cannot tell from the row's sphere by the points as given.

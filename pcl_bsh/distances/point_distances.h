@@ -7,6 +7,9 @@
 //   PointDistances change = pointDistances({after}, {before}, request);
 //   // change.distance[i]: from record i of `after` to the nearest point of `before`, NaN where that is farther than 2
 //
+// Of triangles the distance is that of the nearest places: so those of a triangle of a are to its nearest place, and
+// Hausdorff distances ask how far records are, not how far the farthest place of a triangle is.
+//
 // The distance of points p and q is |T_a p - T_b q|, less the points' radii where given: then it may be negative. The
 // nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. The same
 // input gives the same answer, bit for bit, for any number of threads and any processor.

@@ -27,6 +27,9 @@ void check(const Placed& a, const Placed& b, const FlagsRequest& request)
   checkClearance(request.clearance);
   checkAccuracy(request.accuracy);
   checkPoses(a.pose, b.pose);
+  if (request.spacings_of_b && b.hierarchy().view().triangles)
+    throw InvalidInput(Input::density, "density guard", "b is of triangles, which have no holes between them",
+                       "give spacings of points alone");
   checkSpacings(request.spacings_of_b, b.hierarchy().view().count);
 }
 

@@ -135,6 +135,56 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   return hit;
 }
 
+/// The triangles of a leaf whose balls are near to a child.
+inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                                 const LeafRange& other)
+{
+  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+  std::uint32_t facing = 0;
+  for (std::uint32_t j = 0; j < other.count; ++j) {
+    const float x = other.x()[j] - visit.x[lane], y = other.y()[j] - visit.y[lane], z = other.z()[j] - visit.z[lane];
+    const float within =
+        (visit.r[lane] + obstacle.reach + static_cast<float>(other.radius(j) * stretched)) * (1.0f + kSphereMargin);
+    const bool is_apart = x * x + y * y + z * z > within * within * (1.0f + kSphereMargin) + kVanishingSquare;
+    facing |= (is_apart ? 0u : 1u) << j; // not so for NaN
+  }
+  return facing;
+}
+
+/// Where b is of triangles, and a's points have no radii: by float band of the triangle, and exactly within the band.
+inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
+                                  const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
+                                  FlatRecords& flat, Work& work)
+{
+  const std::uint32_t open = visit.open_points[lane];
+  const PointsView& view = query.b.hierarchy().view();
+  alignas(64) float squared[kLeafPoints];
+  std::uint32_t hit = 0;
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    ++work.leaf_pairs;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    for (std::uint32_t facing = facingBalls(obstacle, visit, lane, other); facing != 0; facing &= facing - 1) {
+      const std::uint32_t record = other.record(static_cast<std::uint32_t>(std::countr_zero(facing)));
+      const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
+      squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
+      const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
+      const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
+        std::uint32_t decided = among & atMost(squared, band.hit);
+        for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0; bits &= bits - 1) {
+          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+          if (pairs.collide({leaf.record(i), record}, work)) decided |= 1u << i;
+        }
+        return decided;
+      };
+      hit |= decide(query.surely.band(bandOf), query.surePairs(), open & ~hit);
+      if (hit == open) return hit;
+      if (query.certain)
+        visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, open & ~hit & ~visit.perhaps[lane]);
+    }
+  }
+  return hit;
+}
+
 /// The same where points have radii.
 inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                               const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work)

@@ -12,6 +12,7 @@
 #include <pcl_bsh/flags/sink.h>
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
+#include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 #include <pcl_bsh/traversal/uncertain_reach.h>
 
@@ -128,12 +129,13 @@ struct FlagScratch {
   std::vector<ObstacleSphere> spheres;   ///< of the obstacles' roots
   std::vector<std::uint32_t> reached;    ///< voxels of b
   std::vector<UncertainReach> uncertain; ///< of the obstacles, where points are uncertain
+  FlatRecords flat;                      ///< where b is of triangles
 
   std::size_t bytes() const noexcept
   {
     std::size_t sum = visits.size() * sizeof(FlagVisit) + obstacles.capacity() * sizeof(ObstacleVoxel) +
                       spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t) +
-                      uncertain.capacity() * sizeof(UncertainReach);
+                      uncertain.capacity() * sizeof(UncertainReach) + flat.bytes();
     for (const FlagVisit& visit : visits)
       for (const auto& list : visit.near) sum += list.capacity() * sizeof(ObstacleSphere);
     return sum;

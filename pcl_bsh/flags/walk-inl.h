@@ -34,12 +34,14 @@ public:
     obstacles_(scratch.obstacles),
     spheres_(scratch.spheres),
     reached_(scratch.reached),
+    flat_(scratch.flat),
     uncertain_(query, scratch.uncertain),
-    separation_(pairs_.distance.ofPoints(), a_, b_, found.work)
+    separation_(pairs_.distance, a_, b_, found.work)
   {
     obstacles_.clear();
     spheres_.clear();
     reached_.clear();
+    if (b_.storage.view.triangles) flat_.clear();
   }
 
   /// Flags the points of one voxel of a.
@@ -63,6 +65,7 @@ public:
                             frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
                             query_.acceptance.band(frame)});
     }
+    if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
         flagRuns(a_.storage, voxel, obstacles_, query_, sink_, found.work))
@@ -115,6 +118,48 @@ private:
         return false;
     }
     return true;
+  }
+
+  /// Whether a triangle may be near the sphere of a voxel of a, which need not be built if not.
+  HWY_NOINLINE bool isNearTriangles(std::uint32_t voxel)
+  {
+    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const ObstacleVoxel& obstacle) {
+      const Point center{obstacle.frame.g[0], obstacle.frame.g[1], obstacle.frame.g[2]};
+      const float radius = a_.storage.voxels[voxel].radius * obstacle.frame.stretch_a;
+      return isNearTriangles(obstacle, obstacle.voxel->nodes[0], center, radius);
+    });
+  }
+
+  /// The same of a sphere, carried, and the triangles below a node.
+  bool isNearTriangles(const ObstacleVoxel& obstacle, const Node& node, const Point& center, float radius)
+  {
+    const SphereLanes spheres{node.x, node.y, node.z, node.r, obstacle.frame.stretch_b};
+    const QueryBall ball{center.x, center.y, center.z, radius + obstacle.reach, 0.0f};
+    found.work.node_pairs += node.count;
+    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
+         near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      if (!node.isLeaf(lane)) {
+        if (isNearTriangles(obstacle, obstacle.voxel->nodes[node.child[lane]], center, radius)) return true;
+        continue;
+      }
+      const LeafRange leaf{obstacle.voxel, node.begin[lane], node.comparedPoints(lane)};
+      alignas(64) float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
+      for (std::uint32_t i = 0; i < kLanes; ++i) x[i] = center.x, y[i] = center.y, z[i] = center.z, r[i] = radius;
+      found.work.node_pairs += leaf.count;
+      if (nearTo(leaf, obstacle, x, y, z, r, 1, -1.0f).near != 0) return true;
+    }
+    return false;
+  }
+
+  /// Of spheres in an obstacle's frame, eight lanes.
+  LanesNear nearTo(const LeafRange& leaf, const ObstacleVoxel& obstacle, const float* x, const float* y, const float* z,
+                   const float* r, std::uint32_t lanes, float sure_reach)
+  {
+    return trianglesNear(x, y, z, r, lanes, obstacle.frame, obstacle.reach, sure_reach, leaf.count,
+                         [&](std::uint32_t j) -> const FlatRecord& {
+                           return flat_.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
+                         });
   }
 
   /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
@@ -223,7 +268,8 @@ private:
     const bool has_large_leaf =
         candidate.isLeaf() ? radius > kLargeLeaf * visit.smallest : visit.largest_leaf > kLargeLeaf * radius;
     const bool may_be_far = visit.has_several && mayBeFar(obstacle.reach, radius);
-    if (HWY_LIKELY(!is_blunt && !has_large_leaf && !may_be_far)) return 0;
+    const bool of_triangles = a_.storage.view.triangles && (near & visit.leaves) != 0;
+    if (HWY_LIKELY(!is_blunt && !has_large_leaf && !may_be_far && !of_triangles)) return 0;
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
     const Point center{node.x[k], node.y[k], node.z[k]};
@@ -234,10 +280,26 @@ private:
         radius,         reach_};
     std::uint32_t apart = is_blunt ? separation_.asGiven(facing, near) : 0;
     if (has_large_leaf) apart |= separation_.byLeafPoints(facing, near & ~apart);
+    if (of_triangles) apart |= separation_.byTriangles(facing, near & ~apart & visit.leaves);
     if (!may_be_far || (near & ~apart) == 0) return apart;
     alignas(32) float gap[kLanes];
     spheresNear(children, {center.x, center.y, center.z, 0.0f, 0.0f}, gap);
     return apart | separation_.byExtent(facing, gap, near & ~apart);
+  }
+
+  /// Of the children in `near`, those that triangles of a leaf may be near to, where a ball of these tells little. It
+  /// settles what all is near enough to one.
+  HWY_NOINLINE std::uint32_t nearTriangles(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const LocalFrame& frame = obstacle.voxel->frame;
+    const LeafRange leaf = candidate.leaf(*obstacle.voxel);
+    if (!(leaf.largestRadius() > kLargeBall * static_cast<double>(visit.smallest) * frame.unit)) return near;
+    found.work.node_pairs += leaf.count;
+    const LanesNear lanes = nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
+    for (std::uint32_t bits = lanes.inside; bits != 0; bits &= bits - 1)
+      settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
+    return lanes.near & visit.open;
   }
 
   /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
@@ -263,6 +325,7 @@ private:
       if (near == 0) return;
     }
     if ((near &= ~separated(visit, candidate, radius, near)) == 0) return;
+    if (b_.storage.view.triangles && candidate.isLeaf() && (near = nearTriangles(visit, candidate, near)) == 0) return;
     if (ball.inside_reach > visit.smallest) {
       for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
         settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
@@ -339,6 +402,8 @@ private:
   std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    if (b_.storage.view.triangles && !a_.storage.view.radii)
+      return hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work);
     if (pairs_.haveRadii()) return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work);
     if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
     return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),
@@ -380,6 +445,7 @@ private:
   std::vector<ObstacleVoxel>& obstacles_;
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
+  FlatRecords& flat_;
   UncertainWalk uncertain_; ///< where points are
   const Separation separation_;
 };

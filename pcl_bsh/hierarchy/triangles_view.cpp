@@ -164,6 +164,7 @@ PointsView middlesOf(const PointsView& view)
   PointsView middles = view;
   middles.triangles = nullptr;
   middles.radii = nullptr;
+  middles.off_middle = 0.0;
   return middles;
 }
 

@@ -2,11 +2,13 @@
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/build/morton.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
@@ -61,6 +63,8 @@ private:
       }
       ++seen_[record];
       const Point3 p = s_.view.point(record);
+      if (s_.view.triangles && !holdsTriangle(record))
+        defect("triangle " + std::to_string(record) + " reaches out of its ball");
       if (!(s_.strayOf(voxel.key, p, p) <= most_stray))
         defect("point " + std::to_string(record) + " farther outside its voxel's cell than is known");
       const float stored[3] = {voxel.x()[i], voxel.y()[i], voxel.z()[i]};
@@ -76,6 +80,15 @@ private:
           defect("point " + std::to_string(record) + " not stored as given in a lossless frame");
       }
     }
+  }
+
+  bool holdsTriangle(std::uint32_t record) const
+  {
+    const ExactDistance distance(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
+    const Triangle3 corners = s_.view.triangles->triangle(record);
+    return std::all_of(corners.begin(), corners.end(), [&](const Point3& corner) {
+      return distance.compare(s_.view.point(record), corner, s_.view.radius(record)) <= 0;
+    });
   }
 
   void checkNode(const std::vector<Node>& nodes, std::uint32_t index, std::uint32_t begin, std::uint32_t end,

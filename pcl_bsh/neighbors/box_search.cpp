@@ -149,6 +149,7 @@ private:
 std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high,
                       std::vector<std::int32_t>& indices, Work* work)
 {
+  checkOfPoints(cloud.view());
   for (std::size_t k = 0; k < 3; ++k)
     if (std::isnan(low[k]) || std::isnan(high[k]))
       throw InvalidInput(Input::box, "box", "a bound is NaN", "give numbers, infinite ones for a side that is open");

@@ -45,6 +45,13 @@ void settleTies(const PointsView& view, const Point3& query, NeighborScratch& sc
 
 } // namespace
 
+void checkOfPoints(const PointsView& cloud)
+{
+  if (cloud.triangles)
+    throw InvalidInput(Input::surface, "neighbours", "the cloud is of triangles",
+                       "search among points, or ask for the distances from points to it");
+}
+
 void checkRadius(double radius)
 {
   if (!(radius >= 0.0))

@@ -73,6 +73,9 @@ struct NeighborScratch {
 
 void checkRadius(double radius);
 
+/// Throws InvalidInput for a cloud of triangles: neighbours are points.
+void checkOfPoints(const PointsView& cloud);
+
 /// Exact: |p - q| <= radius.
 bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
 

@@ -59,6 +59,7 @@ constexpr auto kUnasked = [](std::size_t, bool) {};
 std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, Neighbors& found,
                          const RadiusOptions& options, Work* work)
 {
+  checkOfPoints(cloud.view());
   checkRadius(radius);
   const DefaultFloatEnvironment environment;
   Work unasked;
@@ -69,6 +70,7 @@ std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, doub
 std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found,
                            Work* work)
 {
+  checkOfPoints(cloud.view());
   const DefaultFloatEnvironment environment;
   Work unasked;
   answer(cloud, query, k, {found.indices, found.squared_distances}, work ? *work : unasked);
@@ -77,6 +79,7 @@ std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, st
 
 bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radius, Work* work)
 {
+  checkOfPoints(cloud.view());
   checkRadius(radius);
   const DefaultFloatEnvironment environment;
   Work unasked;
@@ -86,6 +89,7 @@ bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radiu
 void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
                   const RadiusOptions& options, unsigned threads)
 {
+  checkOfPoints(cloud.view());
   checkRadius(radius);
   checkView("queries", queries);
   makeRoom(found, queries.size());
@@ -99,6 +103,7 @@ void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, doubl
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
                     unsigned threads)
 {
+  checkOfPoints(cloud.view());
   checkView("queries", queries);
   makeRoom(found, queries.size());
   const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
@@ -111,6 +116,7 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
 std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
                                           unsigned threads)
 {
+  checkOfPoints(cloud.view());
   checkRadius(radius);
   checkView("queries", queries);
   std::vector<std::uint8_t> flags(queries.size());
@@ -123,6 +129,7 @@ std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const Po
 
 std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads)
 {
+  checkOfPoints(cloud.view());
   checkView("balls", balls);
   if (!balls.radii) throw InvalidInput(Input::radius, "balls", "the view has no radii", "give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));

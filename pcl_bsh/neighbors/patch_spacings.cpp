@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/neighbors/neighbor_scratch.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 
 #include <pcl_bsh/base/float_environment.h>
@@ -129,6 +130,7 @@ double usualGap(const SphereHierarchy& cloud)
 
 std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, unsigned threads)
 {
+  checkOfPoints(cloud.view());
   if (!(widest_gap > 0.0))
     throw InvalidInput(Input::density, "widest gap", plainText(widest_gap), "give a length > 0").withValue(widest_gap);
   const DefaultFloatEnvironment environment;

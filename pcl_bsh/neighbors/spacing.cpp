@@ -57,6 +57,7 @@ Spacing spacingOf(const SphereHierarchy& cloud)
 {
   const DefaultFloatEnvironment environment;
   const SphereHierarchy::Storage& storage = cloud.storage();
+  if (storage.view.triangles) return {}; // has no holes between points
   const std::size_t wanted = kGroups * kGroupPoints;
   const std::size_t groups = storage.size <= wanted ? storage.voxel_count : kGroups;
   NearestElsewhere nearest(cloud);

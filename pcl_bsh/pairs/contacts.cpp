@@ -211,8 +211,9 @@ public:
     result.contacts.reserve(kept_.size());
     for (const PairGap& entry : kept_) {
       const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
-      const Eigen::Vector3d apart =
-          a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+      const Eigen::Vector3d apart = pairs_.ofTriangles() ? pairs_.distance.between(entry.pair)
+                                                         : a.pose * Eigen::Vector3d(p[0], p[1], p[2]) -
+                                                               b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
       result.contacts.push_back({entry.pair, entry.gap, apart.stableNormalized()});
     }
   }

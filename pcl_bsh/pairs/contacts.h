@@ -19,12 +19,12 @@ struct ContactsRequest {
   std::size_t most = std::numeric_limits<std::size_t>::max(); ///< pairs in the result; they may be as many as a x b
 };
 
-/// A colliding pair of points.
+/// A colliding pair of points, or of triangles.
 struct Contact {
   PointPair pair;
   double distance = 0.0; ///< |T_a p - T_b q| less both radii, rounded to the nearest double
   Eigen::Vector3d normal =
-      Eigen::Vector3d::Zero(); ///< from b's point to a's, unit length, in the world; 0 where they coincide
+      Eigen::Vector3d::Zero(); ///< from b's nearest place to a's, unit length, in the world; 0 where they meet
 };
 
 /// What nearestContacts() found.

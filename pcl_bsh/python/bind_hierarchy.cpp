@@ -227,8 +227,8 @@ std::shared_ptr<Cloud> make(const ArrayLike& xyz, const OptionalArray& radii, co
   return unlocked([&] { return std::make_shared<Cloud>(view, options); });
 }
 
-std::shared_ptr<Cloud> makeOfTriangles(const ArrayLike& vertices, const ArrayLike& triangles,
-                                                 double uncertainty, bool copy, double voxel_edge, unsigned threads)
+std::shared_ptr<Cloud> makeOfTriangles(const ArrayLike& vertices, const ArrayLike& triangles, double uncertainty,
+                                       bool copy, double voxel_edge, unsigned threads)
 {
   const std::vector<std::uint32_t> corners = recordsOf("triangles", triangles, 3);
   std::vector<Triangle> list;

@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
+#include <type_traits>
+
 namespace pcl_bsh {
 
 /// Calls visit() with the records as TriangleDistance takes them: two triangles, or a point and a triangle.
@@ -18,22 +20,28 @@ auto RecordDistance::withTriangles(PointPair records, const Visit& visit) const
   return visit(TriangleDistance::TrianglePair{a_->triangles->triangle(records.a), b_->triangles->triangle(records.b)});
 }
 
+/// That of withTriangles().
+const TriangleDistance& RecordDistance::distanceOfPair() const
+{
+  return to_b_ ? *to_b_ : *to_a_;
+}
+
 int RecordDistance::compareTriangles(PointPair records, double clearance) const
 {
-  return withTriangles(records, [&](const auto& pair) { return triangles_->compare(pair, {clearance}); });
+  return withTriangles(records, [&](const auto& pair) { return distanceOfPair().compare(pair, {clearance}); });
 }
 
 int RecordDistance::compareTriangles(PointPair records, const Sum& reach) const
 {
   return withTriangles(records, [&](auto pair) {
     pair.radius = 0.0; // `reach` has it
-    return triangles_->compare(pair, reach);
+    return distanceOfPair().compare(pair, reach);
   });
 }
 
 RecordDistance::Enclosure RecordDistance::encloseTriangles(PointPair records) const
 {
-  return withTriangles(records, [&](const auto& pair) { return triangles_->enclose(pair.a, pair.b); });
+  return withTriangles(records, [&](const auto& pair) { return distanceOfPair().enclose(pair.a, pair.b); });
 }
 
 int RecordDistance::compareTriangleGaps(const Pair& first, const RecordDistance& other, const Pair& second) const
@@ -41,7 +49,7 @@ int RecordDistance::compareTriangleGaps(const Pair& first, const RecordDistance&
   return withTriangles(first.records, [&](const auto& x) {
     return other.withTriangles(second.records, [&](const auto& y) -> int {
       if constexpr (std::is_same_v<decltype(x), decltype(y)>)
-        return triangles_->compareGaps(x, *other.triangles_, y);
+        return distanceOfPair().compareGaps(x, other.distanceOfPair(), y);
       else
         return 0; // not of the same clouds
     });
@@ -50,7 +58,27 @@ int RecordDistance::compareTriangleGaps(const Pair& first, const RecordDistance&
 
 double RecordDistance::gapOfTriangles(PointPair records) const
 {
-  return withTriangles(records, [&](const auto& pair) { return triangles_->gap(pair); });
+  return withTriangles(records, [&](const auto& pair) { return distanceOfPair().gap(pair); });
+}
+
+RecordDistance::Enclosure RecordDistance::enclose(const Point3& place_of_a, std::uint32_t triangle_of_b) const
+{
+  return to_b_->enclose(place_of_a, b_->triangles->triangle(triangle_of_b));
+}
+
+RecordDistance::Enclosure RecordDistance::enclose(std::uint32_t triangle_of_a, const Point3& place_of_b) const
+{
+  return to_a_->enclose(place_of_b, a_->triangles->triangle(triangle_of_a));
+}
+
+Eigen::Vector3d RecordDistance::between(PointPair records) const
+{
+  if (!ofTriangles()) {
+    const Point3 z = points_.approximate(a_->point(records.a), b_->point(records.b)).vector;
+    return {z[0], z[1], z[2]};
+  }
+  const Point3 z = withTriangles(records, [&](const auto& pair) { return distanceOfPair().between(pair); });
+  return (b_->triangles ? 1.0 : -1.0) * Eigen::Vector3d(z[0], z[1], z[2]);
 }
 
 } // namespace pcl_bsh

@@ -40,11 +40,8 @@ public:
     b_(&b),
     points_(pose_a, pose_b)
   {
-    if (!a.triangles && !b.triangles) return;
-    if (b.triangles)
-      triangles_.emplace(pose_a, pose_b);
-    else
-      triangles_.emplace(pose_b, pose_a); // the point is named first
+    if (a.triangles) to_a_.emplace(pose_b, pose_a); // what is a point comes first
+    if (b.triangles) to_b_.emplace(pose_a, pose_b);
   }
 
   Pair pair(PointPair records) const
@@ -55,7 +52,7 @@ public:
   }
 
   /// Whether one of the clouds is of triangles.
-  bool ofTriangles() const { return triangles_.has_value(); }
+  bool ofTriangles() const { return to_a_ || to_b_; }
 
   /// Of places: centres of nodes, say.
   const ExactDistance& ofPoints() const { return points_; }
@@ -63,28 +60,35 @@ public:
   /// Sign of the pair's gap less the clearance: it collides when the answer is <= 0.
   int compare(PointPair records, double clearance) const
   {
-    if (triangles_) return compareTriangles(records, clearance);
+    if (ofTriangles()) return compareTriangles(records, clearance);
     return points_.compare(a_->point(records.a), b_->point(records.b), clearance, a_->radius(records.a),
                            b_->radius(records.b));
   }
   int compare(const Pair& pair, double clearance) const
   {
-    if (triangles_) return compareTriangles(pair.records, clearance);
+    if (ofTriangles()) return compareTriangles(pair.records, clearance);
     return points_.compare(pair.p, pair.q, clearance, pair.radius_p, pair.radius_q);
   }
 
   /// Sign of the distance, radii not subtracted, less the sum of the terms of `reach`. @pre finite terms
   int compare(PointPair records, const Sum& reach) const
   {
-    if (triangles_) return compareTriangles(records, reach);
+    if (ofTriangles()) return compareTriangles(records, reach);
     return points_.compare(a_->point(records.a), b_->point(records.b), reach);
   }
 
   /// Bounds of the distance, radii not subtracted, as far as double arithmetic can tell; both infinite where it cannot.
   Enclosure enclose(const Pair& pair) const
   {
-    return triangles_ ? encloseTriangles(pair.records) : points_.enclose(pair.p, pair.q);
+    return ofTriangles() ? encloseTriangles(pair.records) : points_.enclose(pair.p, pair.q);
   }
+
+  /// The same of a place of one cloud and a triangle of the other.
+  Enclosure enclose(const Point3& place_of_a, std::uint32_t triangle_of_b) const;
+  Enclosure enclose(std::uint32_t triangle_of_a, const Point3& place_of_b) const;
+
+  /// From b's nearest place to a's, in the world, within rounding; 0 where they meet. Of balls, between their centres.
+  Eigen::Vector3d between(PointPair records) const;
 
   /// Sign of gap(first) - gap(second), before rounding.
   int compareGaps(const Pair& first, const Pair& second) const { return compareGaps(first, *this, second); }
@@ -92,7 +96,7 @@ public:
   /// Sign of gap(first) - other.gap(second), before rounding. @param other of the same clouds, at other poses
   int compareGaps(const Pair& first, const RecordDistance& other, const Pair& second) const
   {
-    if (triangles_) return compareTriangleGaps(first, other, second);
+    if (ofTriangles()) return compareTriangleGaps(first, other, second);
     return points_.compareGaps(first, other.points_, second);
   }
 
@@ -103,12 +107,13 @@ public:
   }
 
   /// Rounded to the nearest double (ties to even; infinity beyond the largest).
-  double gap(const Pair& pair) const { return triangles_ ? gapOfTriangles(pair.records) : points_.gap(pair); }
+  double gap(const Pair& pair) const { return ofTriangles() ? gapOfTriangles(pair.records) : points_.gap(pair); }
   double gap(PointPair records) const { return gap(pair(records)); }
 
 private:
   template <class Visit>
   auto withTriangles(PointPair records, const Visit& visit) const;
+  const TriangleDistance& distanceOfPair() const;
   int compareTriangles(PointPair records, double clearance) const;
   int compareTriangles(PointPair records, const Sum& reach) const;
   Enclosure encloseTriangles(PointPair records) const;
@@ -118,7 +123,7 @@ private:
   const PointsView* a_;
   const PointsView* b_;
   ExactDistance points_;
-  std::optional<TriangleDistance> triangles_; ///< where a cloud is of triangles; a point comes first
+  std::optional<TriangleDistance> to_a_, to_b_; ///< from the other cloud, where one is of triangles
 };
 
 } // namespace pcl_bsh

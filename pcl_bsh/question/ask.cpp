@@ -23,9 +23,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 class MeasuredDistances {
 public:
   MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
-  : obstacle_(obstacle.hierarchy().view()),
-    found_(found),
-    exact_(input.hierarchy().view(), input.pose, obstacle_, obstacle.pose)
+  : found_(found),
+    exact_(input.hierarchy().view(), input.pose, obstacle.hierarchy().view(), obstacle.pose)
   {
   }
 
@@ -41,7 +40,6 @@ public:
 
 private:
   const DefaultFloatEnvironment environment_;
-  const PointsView& obstacle_;
   const PointDistances& found_;
   const RecordDistance exact_;
 };

@@ -26,14 +26,14 @@ struct Answer {
   /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
   /// too.
   TrajectoryResult collisions;
-  std::size_t sparse = 0;                 ///< points that are undecided for want of density, not among `undecided`
-  DistanceResult closest;                 ///< its pair: records of the input and of the obstacle
-  SymmetricDistances distances;           ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
-  std::vector<Verdict> obstacle_flags;    ///< where wanted, of the obstacle's records
-  std::vector<std::uint8_t> within;       ///< 1: within the limits
-  double widest_gap = 0.0;                ///< of the density guard; 0: it guarded nothing
-  Density density;                        ///< where spacings are wanted
-  Work work;                              ///< of all queries
+  std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
+  DistanceResult closest;              ///< its pair: records of the input and of the obstacle
+  SymmetricDistances distances;        ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
+  std::vector<Verdict> obstacle_flags; ///< where wanted, of the obstacle's records
+  std::vector<std::uint8_t> within;    ///< 1: within the limits
+  double widest_gap = 0.0;             ///< of the density guard; 0: it guarded nothing
+  Density density;                     ///< where spacings are wanted
+  Work work;                           ///< of all queries
   std::vector<Warning> warnings;
 };
 

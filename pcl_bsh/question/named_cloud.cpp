@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/named_cloud.h>
 
+#include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
@@ -8,15 +9,34 @@
 
 namespace pcl_bsh {
 
+namespace {
+
+Eigen::AlignedBox3d boxOf(const TrianglesView& triangles)
+{
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < triangles.count; ++i) {
+    const Triangle3 corners = triangles.triangle(static_cast<std::uint32_t>(i));
+    if (!isFinite(corners)) continue;
+    for (const Point3& corner : corners) box.extend(Eigen::Vector3d(corner.data()));
+  }
+  return box;
+}
+
+} // namespace
+
 NamedCloud namedCloud(std::string name, const SphereHierarchy& points)
 {
   NamedCloud cloud;
   cloud.name = std::move(name);
   cloud.points = points.view().size();
   cloud.finite = points.size();
-  cloud.is_surface = points.view().triangles != nullptr;
-  if (cloud.is_surface) cloud.loose = looseVertices(*points.view().triangles);
   cloud.coordinate_spacing = points.coordinateSpacing();
+  if (const TrianglesView* const triangles = points.view().triangles) {
+    cloud.is_surface = true;
+    cloud.loose = looseVertices(*triangles);
+    cloud.box = boxOf(*triangles);
+    return cloud;
+  }
   if (points.empty()) return cloud;
   const LocalFrame& frame = points.storage().frame;
   const Eigen::Vector3d middle = Eigen::Map<const Eigen::Vector3d>(frame.origin.data());

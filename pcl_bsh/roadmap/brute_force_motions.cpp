@@ -4,20 +4,23 @@
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/roadmap/motions_query.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
+#include <pcl_bsh/trajectory/leaf/record_course.h>
 
 #include <algorithm>
 
 namespace pcl_bsh::brute_force {
 namespace {
 
-/// Whether a point of the scan comes near enough to one of the model in the part of the path after pose k of it.
+/// Whether a record of the scan comes near enough to one of the model in the part of the path after pose k of it.
 bool comeNear(const TrajectoryQuery& query, std::uint32_t k, const FinitePoint& p, const FinitePoint& q)
 {
   PathInterval part;
   part.first = k;
   part.last = k + 1;
   const double near_enough = query.nearEnough({p.record, q.record});
-  return near_enough >= 0.0 && PointSegment(query, p.record, part).approachTo(query, q.record, near_enough).contact;
+  if (near_enough < 0.0) return false;
+  if (query.of_points) return PointSegment(query, p.record, part).approachTo(query, q.record, near_enough).contact;
+  return RecordCourse(query, p.record, part).approachTo(query, q.record, part, near_enough, false).contact;
 }
 
 /// Whether any pair, of points that are where `places` says, collides on the motion.

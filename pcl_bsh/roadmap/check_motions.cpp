@@ -80,9 +80,8 @@ void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMoti
 void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vector<std::uint32_t>& used,
                 const std::vector<PoseMotion>& motions)
 {
-  const double reach = reachOf(
-      query.scan, query.model, query.swept,
-      reachBetween(query.scan, {query.model}, query.request.clearance, possiblePlaces(query.scan, {query.model})));
+  const double reach = reachOf(query.swept, reachBetween(query.scan, {query.model}, query.request.clearance,
+                                                         possiblePlaces(query.scan, {query.model})));
   double far = 0.0;
   for (const std::uint32_t k : used) far = std::max(far, farthestPlace(poses[k], query.boxes, query.request.pivot));
   checkTolerance(query.scan, query.swept, query.boxes, reach, far);

@@ -86,8 +86,8 @@ public:
     const Point3 p = query_.scan.hierarchy().view().point(pair.a), q = query_.model.view().point(pair.b);
     const Eigen::Vector3d world = query_.scan.pose * Eigen::Vector3d(p[0], p[1], p[2]);
     const Eigen::Vector3d start = seen(motion.from(), world), way = seen(motion.to(), world) - start;
-    const ClosestApproach approach = closestApproach({start[0] - q[0], start[1] - q[1], start[2] - q[2]},
-                                                     {way[0], way[1], way[2]}, std::numeric_limits<double>::infinity());
+    const Approach approach = closestApproach({start[0] - q[0], start[1] - q[1], start[2] - q[2]},
+                                              {way[0], way[1], way[2]}, std::numeric_limits<double>::infinity());
     const Placed model{query_.model, motion.at(approach.at)};
     return PointPairs(query_.scan, model, query_.request.clearance, places_).collide(pair, work);
   }

@@ -130,8 +130,9 @@ struct Box {
   Eigen::AlignedBox3d box;
   explicit Box(const PointsView& view)
   {
-    for (std::size_t i = 0; i < view.count; ++i) {
-      const Point3 p = view.point(static_cast<std::uint32_t>(i));
+    const PointsView& points = view.triangles ? view.triangles->vertices : view;
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const Point3 p = points.point(static_cast<std::uint32_t>(i));
       const Eigen::Vector3d v(p[0], p[1], p[2]);
       if (v.allFinite()) box.extend(v);
     }

@@ -78,7 +78,7 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
   cli::Step step("Writing " + options.output.string());
   const TrajectoryResult& found = answer.collisions;
   if (input.shape.isSurface()) {
-    seconds += step.done(counted(cli::writeSurface(options, input, found), "triangle"));
+    seconds += step.done(counted(cli::writeSurface(options, input, answer), "triangle"));
     return;
   }
   const std::vector<double>& measured = answer.distances.a.distance;
@@ -122,8 +122,10 @@ void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
   if (!all.measures()) return;
   wanted = {};
   wanted.distances = wanted.both_ways = wanted.spacings = true;
-  Answer measured = askInStep("Measuring distances", question, input, obstacle, report.seconds.distances,
-                              [](const Answer& found) { return counted(found.distances.a.measured, "point"); });
+  Answer measured =
+      askInStep("Measuring distances", question, input, obstacle, report.seconds.distances, [&](const Answer& found) {
+        return counted(found.distances.a.measured, input.isSurface() ? "triangle" : "point");
+      });
   report.answer.distances = std::move(measured.distances);
   report.answer.density = measured.density;
   for (Warning& warning : measured.warnings) report.answer.warnings.push_back(std::move(warning));

@@ -2,6 +2,9 @@
 #include <pcl_bsh/trajectory/box_tree.h>
 
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/trajectory/boxed_part.h>
 
 #include <Eigen/Core>
 
@@ -46,13 +49,15 @@ struct PlacedPoint {
 /// A tree of boxes over a voxel's points, which come to stand in the order of its leaves.
 class PointGrouping {
 public:
-  /// @param fit called as fit(node, lane, low, high) for each leaf: sets its box around the points between these places
+  /// @param most points of a leaf. @param fit called as fit(node, lane, low, high, first) for each leaf: sets its box
+  /// around the points between these places, of which this is one
   template <class Fit>
-  PointGrouping(std::vector<PlacedPoint>& points, const float* stretch, const Fit& fit)
+  PointGrouping(std::vector<PlacedPoint>& points, const float* stretch, std::size_t most, const Fit& fit)
   : points_(points),
-    stretch_(stretch)
+    stretch_(stretch),
+    most_(most)
   {
-    begins.reserve(points.size() / (kMaxLeafPoints / 2) + 2);
+    begins.reserve(2 * points.size() / most + 2);
     group(measured(points_.begin(), points_.end()), fit);
     begins.push_back(static_cast<std::uint32_t>(points_.size()));
   }
@@ -79,7 +84,7 @@ private:
       group.low = group.low.min(point->at);
       group.high = group.high.max(point->at);
     }
-    if (static_cast<std::size_t>(end - begin) <= kMaxLeafPoints) return group;
+    if (static_cast<std::size_t>(end - begin) <= most_) return group;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const float size = (group.high[axis] - group.low[axis]) / stretch_[axis];
       if (size <= group.size) continue;
@@ -127,7 +132,7 @@ private:
       if (part.size < 0.0f) {
         boxes[index].child[lane] = BoxNode::kLeaf | static_cast<std::uint32_t>(begins.size());
         begins.push_back(static_cast<std::uint32_t>(part.begin - points_.begin()));
-        fit(boxes[index], lane, part.low, part.high);
+        fit(boxes[index], lane, part.low, part.high, *part.begin);
         continue;
       }
       const std::uint32_t below = group(part, fit);
@@ -139,7 +144,14 @@ private:
 
   std::vector<PlacedPoint>& points_;
   const float* stretch_;
+  const std::size_t most_;
 };
+
+/// Of places of halved triangles, relative to the largest coordinate: each halving rounds once.
+constexpr double kPartRoundings = 128 * kDoubleUnit;
+
+/// Of the whole model: thinner boxes of triangles are not divided.
+constexpr double kThinShare = 0x1p-8;
 
 } // namespace
 
@@ -191,12 +203,7 @@ void BoxTree::fitTop()
         continue;
       }
       top_[n].child[lane] = BoxNode::kLeaf | node.begin[lane];
-      const LocalFrame& frame = storage.voxels[node.begin[lane]].frame;
-      const Point3 at = offset(node.begin[lane]);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double reach = frame.reach[axis] * frame.unit;
-        place(top_[n], lane, axis, -reach, reach, at[axis], frame.slack(static_cast<int>(axis)) * frame.unit);
-      }
+      placeVoxel(top_[n], lane, node.begin[lane]);
     }
   }
   double squared = 0.0;
@@ -209,12 +216,38 @@ void BoxTree::fitTop()
   radius = std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
+void BoxTree::placeVoxel(BoxNode& node, std::uint32_t lane, std::uint32_t index) const
+{
+  const Voxel& voxel = storage.voxels[index];
+  const LocalFrame& frame = voxel.frame;
+  const Point3 at = offset(index);
+  Point3 low_end, high_end;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    high_end[axis] = frame.reach[axis] * frame.unit + voxel.largest_radius;
+    low_end[axis] = -high_end[axis];
+  }
+  if (const TrianglesView* const triangles = storage.view.triangles) { // much smaller than their balls, perhaps
+    low_end.fill(kNone), high_end.fill(-kNone);
+    storage.forEachRecord(index, [&](std::uint32_t record) {
+      for (const Point3& corner : triangles->triangle(record))
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low_end[axis] = std::min(low_end[axis], corner[axis] - frame.origin[axis]);
+          high_end[axis] = std::max(high_end[axis], corner[axis] - frame.origin[axis]);
+        }
+    });
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    place(node, lane, axis, low_end[axis], high_end[axis], at[axis],
+          frame.slack(static_cast<int>(axis)) * frame.unit + kFewDoubleRoundings * std::abs(frame.origin[axis]));
+}
+
 const BoxedVoxel& BoxTree::voxel(std::uint32_t index, Work& work) const
 {
   Entry& entry = voxels_[index];
   std::call_once(entry.once, [&] {
     const Voxel& built = storage.built(index, work);
-    entry.boxed = BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties);
+    entry.boxed = arePoints(storage.view) ? BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties)
+                                          : BoxedVoxel(built, storage.view, origin, stretch, kThinShare * radius);
     for (const BoxNode& node : entry.boxed.boxes()) work.volumes_built += node.count;
   });
   return entry.boxed;
@@ -232,8 +265,9 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
         points.emplace_back(voxel.x()[i], voxel.y()[i], voxel.z()[i], i);
     }
   const double unit = voxel.frame.unit;
-  PointGrouping grouping(points, stretch,
-                         [&](BoxNode& node, std::uint32_t lane, const Eigen::Array4f& low, const Eigen::Array4f& high) {
+  PointGrouping grouping(points, stretch, kMaxLeafPoints,
+                         [&](BoxNode& node, std::uint32_t lane, const Eigen::Array4f& low, const Eigen::Array4f& high,
+                             const PlacedPoint&) {
                            for (std::size_t axis = 0; axis < 3; ++axis)
                              place(node, lane, axis, low[static_cast<Eigen::Index>(axis)] * unit,
                                    high[static_cast<Eigen::Index>(axis)] * unit, offset[axis],
@@ -250,6 +284,57 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
     if (uncertainties) lengths_.push_back(uncertainties[records_[i]]);
   }
   if (uncertainties) lengths_.resize(lengths_.size() + kNodeChildren);
+}
+
+BoxedVoxel::BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch,
+                       double thin)
+{
+  std::vector<BoxedPart> parts;
+  for (const Node& node : voxel.nodes)
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      if (!node.isLeaf(lane)) continue;
+      const std::uint32_t end = node.begin[lane] + node.comparedPoints(lane);
+      for (std::uint32_t i = node.begin[lane]; i < end; ++i) {
+        const std::uint32_t record = voxel.records()[i];
+        if (view.triangles) {
+          Triangle3 corners = view.triangles->triangle(record);
+          for (Point3& corner : corners) corner = corner - origin;
+          parts.emplace_back(corners, record);
+          continue;
+        }
+        const double radius = view.radius(record);
+        const Point3 center = view.point(record) - origin, reach = {radius, radius, radius};
+        parts.emplace_back(Triangle3{center - reach, center + reach, center}, record);
+      }
+    }
+  if (view.triangles) divideThick(parts, thin);
+
+  std::vector<PlacedPoint> middles;
+  middles.reserve(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    float middle[3];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      middle[axis] = roundToFloat(0.5 * (parts[i].low()[axis] + parts[i].high()[axis]));
+    middles.emplace_back(middle[0], middle[1], middle[2], static_cast<std::uint32_t>(i));
+  }
+  double largest = 0.0; // coordinate of a corner, and of what was taken off
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, std::abs(origin[axis]));
+    for (const BoxedPart& part : parts)
+      for (const Point3& corner : part.corners) largest = std::max(largest, std::abs(corner[axis]));
+  }
+  PointGrouping grouping(
+      middles, stretch, 1,
+      [&](BoxNode& node, std::uint32_t lane, const Eigen::Array4f&, const Eigen::Array4f&, const PlacedPoint& middle) {
+        const BoxedPart& part = parts[middle.place()];
+        const Point3 low = part.low(), high = part.high();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          place(node, lane, axis, low[axis], high[axis], 0.0, kPartRoundings * largest);
+      });
+  boxes_ = std::move(grouping.boxes);
+  begins_ = std::move(grouping.begins);
+  records_.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) records_[i] = parts[middles[i].place()].record;
 }
 
 } // namespace pcl_bsh

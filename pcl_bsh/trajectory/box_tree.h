@@ -13,8 +13,8 @@
 
 namespace pcl_bsh {
 
-/// The boxes of a node's children, in the clouds' unit and relative to the tree's origin, rounded outward. Points only,
-/// without their radii.
+/// The boxes of a node's children, in the clouds' unit and relative to the tree's origin, rounded outward. They hold
+/// points with their radii, and triangles.
 struct alignas(32) BoxNode {
   static constexpr std::uint32_t kLeaf = 0x80000000u;
 
@@ -28,7 +28,8 @@ struct alignas(32) BoxNode {
   std::uint32_t leaf(std::size_t lane) const noexcept { return child[lane] & ~kLeaf; }
 };
 
-/// Points of a voxel that share a box, sixteen at most. Readable for whole vectors.
+/// Points of a voxel that share a box, sixteen at most. Readable for whole vectors. Where they have radii or are
+/// triangles, a ball or a part of a triangle by itself, without coordinates.
 struct BoxLeaf {
   const float *at_x, *at_y, *at_z; ///< as the voxel stores them
   const std::uint32_t* records;
@@ -46,15 +47,20 @@ class BoxedVoxel {
 public:
   BoxedVoxel() = default;
 
-  /// @param offset from the tree's origin to the voxel's. @param stretch see BoxTree. @param uncertainties of the
-  /// cloud's records; may be null
+  /// Of points. @param offset from the tree's origin to the voxel's. @param stretch see BoxTree. @param uncertainties
+  /// of the cloud's records; may be null
   BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch, const float* uncertainties);
+
+  /// Of balls, or of triangles: those that fill little of their boxes in parts. @param thin boxes no thicker than this
+  /// are not divided
+  BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch, double thin);
 
   const std::vector<BoxNode>& boxes() const { return boxes_; }
 
   BoxLeaf leaf(std::uint32_t number) const
   {
     const std::uint32_t begin = begins_[number];
+    if (coordinates_.empty()) return {nullptr, nullptr, nullptr, records_.data() + begin, nullptr, 1};
     const float* x = coordinates_.data() + begin;
     return {x,
             x + records_.size(),
@@ -79,6 +85,12 @@ struct Travel {
   double turned = 0.0;
 };
 
+/// Whether records are points alone: no balls, no triangles.
+inline bool arePoints(const PointsView& view)
+{
+  return !view.radii && !view.triangles;
+}
+
 /// A cloud's points in boxes that are longer along the way that the cloud travels: what passes a long body beside it is
 /// tested against metres of its side at once, and beside a rough or noisy side only against what stands out. A box is
 /// divided where it is widest, and its length along the way counts for less, by `stretch`: as often as the cloud
@@ -89,9 +101,9 @@ public:
 
   const SphereHierarchy::Storage& storage;
   const Point3 origin;      ///< of the boxes, in the cloud's frame
-  float low[3], high[3];    ///< around all points
+  float low[3], high[3];    ///< around all points, with their radii
   float stretch[3];         ///< at least 1: a box may be so many times as long along this axis
-  double radius = 0.0;      ///< no point is farther from the origin than this
+  double radius = 0.0;      ///< no point, with its radius, is farther from the origin than this
   double voxel_slack = 0.0; ///< of all voxels: how far a stored point may be from the given one
   double voxel_reach = 0.0; ///< of all voxels: the largest coordinate of a stored point, in the clouds' unit
 
@@ -125,6 +137,7 @@ private:
   static constexpr double kMostStretch = 32; ///< more gained nothing: boxes are as long as their voxels by then
 
   void fitTop();
+  void placeVoxel(BoxNode& node, std::uint32_t lane, std::uint32_t voxel) const;
   void setStretch(const Travel& travel);
 
   std::vector<BoxNode> top_;

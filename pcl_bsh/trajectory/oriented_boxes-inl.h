@@ -41,7 +41,8 @@ public:
         if (node.isLeaf(lane)) {
           const std::uint32_t end = node.begin[lane] + node.comparedPoints(lane);
           for (std::uint32_t i = node.begin[lane]; i < end; ++i)
-            include(half, lane, center, {voxel.x()[i], voxel.y()[i], voxel.z()[i]}, nullptr, 0);
+            include(half, lane, center, {voxel.x()[i], voxel.y()[i], voxel.z()[i]}, nullptr, 0,
+                    voxel.radii ? roundUp(voxel.radii[i] / voxel_frame_.frame.unit) : 0.0f);
           continue;
         }
         const Node& below = voxel.nodes[node.child[lane]];
@@ -87,13 +88,13 @@ private:
   static constexpr float kRounding = 0x1p-17f; ///< some 20 u of the voxel's radius, and of turns
 
   void include(Half& half, std::uint32_t lane, const Point& center, const Point& at, const Half* around,
-               std::uint32_t its_lane) const
+               std::uint32_t its_lane, float radius = 0.0f) const
   {
     const float x = at.x - center.x, y = at.y - center.y, z = at.z - center.z;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float* along = axes_ + 3 * axis;
       const float away = std::abs(along[0] * x + along[1] * y + along[2] * z);
-      half[axis][lane] = std::max(half[axis][lane], away + (around ? (*around)[axis][its_lane] : 0.0f));
+      half[axis][lane] = std::max(half[axis][lane], away + (around ? (*around)[axis][its_lane] : radius));
     }
   }
 

@@ -32,11 +32,6 @@ double farthest(const BoxTree& boxes, const Point3& from)
   return std::sqrt(squared) * (1.0 + kDoubleMargin);
 }
 
-double largestRadii(const Placed& scan, const SphereHierarchy& model)
-{
-  return scan.hierarchy().storage().largest_radius + model.storage().largest_radius;
-}
-
 PosePath pathOf(const Placed& scan, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& request,
                 const BoxTree& boxes, double reach, Progress& progress)
 {
@@ -60,7 +55,7 @@ double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const 
 void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
                     double far)
 {
-  double size = 4 * boxes.radius + reach;
+  double size = 4 * boxes.radius + reach + 2 * scan.hierarchy().storage().largest_radius;
   const LocalFrame& frame = scan.hierarchy().storage().frame;
   const Point3 origin = carried(scan.pose, frame.origin);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -81,9 +76,9 @@ void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const 
       .withValue(*request.swept);
 }
 
-double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request, const Reach& between)
+double reachOf(const TrajectoryRequest& request, const Reach& between)
 {
-  return std::max(0.0, between.most) + request.swept.value_or(0.0) / 2 + largestRadii(scan, model);
+  return std::max(0.0, between.most) + request.swept.value_or(0.0) / 2;
 }
 
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach)
@@ -118,8 +113,8 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
   boxes(model_boxes),
   between(asked.clearance, scan_at.hierarchy().storage().uncertainty, model_of.storage().uncertainty, where),
   of_pairs(scan_at.hierarchy().view(), model_of.view(), asked.clearance, where),
-  radii(largestRadii(scan_at, model_of)),
-  reach(reachOf(scan_at, model_of, asked, between)),
+  of_points(arePoints(scan_at.hierarchy().view()) && arePoints(model_of.view())),
+  reach(reachOf(asked, between)),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
   certain(where == Places::certain),
   witness(what == Wanted::witness),
@@ -131,7 +126,7 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
 double TrajectoryQuery::nearEnough(PointPair pair) const
 {
   const RecordDistance::Sum terms = of_pairs.of(pair);
-  if (of_pairs.areMeasured()) return reach - radii + (terms[1] + terms[2]);
+  if (of_pairs.areMeasured()) return reach + (terms[1] + terms[2]);
   const double within = std::accumulate(terms.begin(), terms.end(), 0.0);
   return within < 0.0 ? within : within + *request.swept / 2;
 }
@@ -139,13 +134,14 @@ double TrajectoryQuery::nearEnough(PointPair pair) const
 double TrajectoryQuery::error(const Point3& origin) const
 {
   const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]) + 3 * path.far + boxes.radius;
-  return kPlacing * size + path.skew * (boxes.radius + reach);
+  const double ball = scan.hierarchy().storage().largest_radius;
+  return kPlacing * (size + 3 * ball) + path.skew * (boxes.radius + reach + 2 * ball);
 }
 
 bool TrajectoryQuery::inFloatRange() const
 {
   const LocalFrame& frame = scan.hierarchy().storage().frame;
-  double largest = std::max({path.far, boxes.radius, reach});
+  double largest = std::max({path.far, boxes.radius, reach, scan.hierarchy().storage().largest_radius});
   const Point3 center = carried(scan.pose, frame.origin);
   for (std::size_t axis = 0; axis < 3; ++axis)
     largest = std::max({largest, std::abs(center[axis]), frame.reach[axis] * frame.unit});

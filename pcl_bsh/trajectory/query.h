@@ -49,8 +49,8 @@ struct TrajectoryQuery {
   const BoxTree& boxes;
   const Reach between;      ///< of all pairs, less their radii
   const PairReach of_pairs; ///< of each, radii included
-  const double radii;       ///< the largest of the scan and of the model, summed
-  const double reach;       ///< of points: the clearance, half of the tolerance, the radii; the greatest of all
+  const bool of_points;     ///< of both clouds: neither balls nor triangles
+  const double reach;       ///< of records: the clearance, half of the tolerance; the greatest of all
   const PosePath path;
   const bool certain;        ///< uncertain points are asked about for what collides wherever they are
   const bool witness;        ///< the walk ends at the first pair that collides
@@ -62,7 +62,7 @@ struct TrajectoryQuery {
     return closest && !request.pose_summaries && (!first || first_contact <= from);
   }
   /// Whether of the pairs of a point the nearest one collides where any does.
-  bool nearestDecides() const { return radii == 0.0 && of_pairs.isOne(); }
+  bool nearestDecides() const { return of_pairs.isOne(); }
 
   /// Swept: how near a pair of points counts as a contact; below 0 where it does at no distance.
   double nearEnough(PointPair pair) const;
@@ -110,9 +110,8 @@ double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const 
 void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
                     double far);
 
-/// How far from a point of the scan a point of the model matters.
-double reachOf(const Placed& scan, const SphereHierarchy& model, const TrajectoryRequest& request,
-               const Reach& between);
+/// How far from a record of the scan a record of the model matters.
+double reachOf(const TrajectoryRequest& request, const Reach& between);
 
 /// Of a request with `swept`. @param reach as TrajectoryQuery has it
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);

@@ -234,7 +234,9 @@ public:
         to += std::abs(static_cast<double>(motion.to.m[3 * axis + k])) * frame.reach[k];
         bow += std::abs(static_cast<double>(motion.bow.m[3 * axis + k])) * frame.reach[k];
       }
-      const double extent = (std::max(from, to) + bow) * (1.0 + kRadiusMargin) + motion.interval->turn * radius;
+      const double extent =
+          (std::max(from, to) + bow + voxel.largest_radius * (1.0 + path.skew)) * (1.0 + kRadiusMargin) +
+          motion.interval->turn * radius;
       const auto sphere = static_cast<double>(seenRadius(voxel.radius));
       segment.reach[axis] = roundUp((motion.reach + std::min(sphere, extent)) * (1.0 + kRadiusMargin));
     }
@@ -260,20 +262,22 @@ public:
   }
 
   /// Squared: farther from a box than the root of this, in floats at one pose, nothing in it collides, or is as near as
-  /// the best one. @param best no less than that distance
-  float nearSquared(const VoxelMotion& motion, float best) const
+  /// the best one. @param best no less than that distance. @param own radius of what is compared with the box
+  float nearSquared(const VoxelMotion& motion, float best, float own = 0.0f) const
   {
     const auto reach = static_cast<float>(query_.reach);
-    if (!(best < reach)) return motion.near_squared;
-    const float near = (motion.near + (best - reach)) * (1.0f + kReachRounding);
+    if (!(best < reach) && own == 0.0f) return motion.near_squared;
+    const float near = (motion.near + (std::min(best, reach) - reach) + own) * (1.0f + kReachRounding);
     return near * near * (1.0f + kReachRounding) + kVanishingSquare;
   }
 
-  /// How far from a line a point may be that is as near as the best one.
-  float reachOf(const VoxelMotion& motion, float best) const
+  /// How far from a line a point may be that is as near as the best one. @param own radius of what is on the line
+  float reachOf(const VoxelMotion& motion, float best, float own = 0.0f) const
   {
-    return best < motion.reach ? (motion.reach + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
-                               : motion.reach;
+    const float reach = best < motion.reach
+                            ? (motion.reach + (best - static_cast<float>(query_.reach))) * (1.0f + kReachRounding)
+                            : motion.reach;
+    return own > 0.0f ? (reach + own) * (1.0f + kReachRounding) : reach;
   }
 
 private:

@@ -118,6 +118,12 @@ bool VoxelResults::collide(PointPair at, std::uint32_t k)
   return query_.of_pairs.holds(exactAt(k), at);
 }
 
+bool VoxelResults::meet(PointPair pair, std::uint32_t k)
+{
+  ++work.exact_decisions;
+  return exactAt(k).compare(pair, 0.0) <= 0;
+}
+
 void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
 {
   ++work.exact_decisions;

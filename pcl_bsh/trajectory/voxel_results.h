@@ -11,7 +11,8 @@ namespace pcl_bsh {
 /// The nearest point of the model, so far.
 struct NearestPoint {
   double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
-  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance
+  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of triangles: no less than that
+  bool meets = false;                                   ///< it is 0: nothing is nearer
   std::uint32_t record = kNothing;
   float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
   float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance
@@ -46,6 +47,9 @@ public:
 
   /// Whether the pair collides at a pose, in exact arithmetic.
   bool collide(PointPair pair, std::uint32_t k);
+
+  /// Whether the distance of a pair is 0 at a pose.
+  bool meet(PointPair pair, std::uint32_t k);
 
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
   void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);

@@ -56,7 +56,7 @@ public:
     leaves_(query, voxel_frame_, model_, stop_check_, results_),
     probing_(query, voxel_frame_, model_, results_.work),
     settled_reach_(settledReach()),
-    settling_(!query.everything() && !query.first && query.radii == 0.0 && voxel_frame_.frame.unit == 1.0 &&
+    settling_(!query.everything() && !query.first && query.of_points && voxel_frame_.frame.unit == 1.0 &&
               settled_reach_ > 0.0f),
     visits_(visits)
   {
@@ -240,8 +240,8 @@ private:
       }
   }
 
-  /// At one pose: every box holds a point of the model, so that no point of a child is farther from the model than from
-  /// the farthest corner of any box. What is farther than that is none's nearest.
+  /// At one pose: every box holds a point of the model, or of a part of it, so that no point of a child is farther from
+  /// the model than from the farthest corner of any box. What is farther than that is none's nearest.
   void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const std::uint32_t count = voxel_->nodes[index].count;

@@ -60,14 +60,14 @@ public:
   : a(placed_a),
     b(placed_b),
     frames(a, b),
-    distance(placed_a.pose, placed_b.pose),
+    distance(placed_a.hierarchy().view(), placed_a.pose, placed_b.hierarchy().view(), placed_b.pose),
     separation_(distance, a, b, work)
   {
   }
 
   Spaces a, b;
   FrameTable frames;
-  ExactDistance distance;
+  RecordDistance distance;
   Work work;
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
@@ -135,7 +135,8 @@ public:
       testChildrenOfB(pair.a, enter(b, pair.b), reach, out);
     const bool is_larger = out.radius > kLargeLeaf * out.children.r[0] * out.children.stretch;
     const bool is_blunt = out.radius <= out.frame->bluntRadius();
-    if (HWY_UNLIKELY(is_larger || is_blunt || mayBeFar(out.reach, out.radius)) && out.near != 0)
+    if (HWY_UNLIKELY(is_larger || is_blunt || mayBeFar(out.reach, out.radius) || distance.ofTriangles()) &&
+        out.near != 0)
       lookAgain(pair, opened, reach, out);
   }
 
@@ -180,7 +181,7 @@ public:
                           pair.a.space != kAboveVoxels && pair.b.space != kAboveVoxels;
     if (!is_blunt) return stored;
     const GivenSphere given_a = givenSphere(a, pair.a), given_b = givenSphere(b, pair.b);
-    const double given = distance.enclose(given_a.center, given_b.center).low -
+    const double given = distance.ofPoints().enclose(given_a.center, given_b.center).low -
                          (given_a.radius + given_b.radius) * (1.0 + 2 * kPoseStretch);
     return std::isfinite(given) ? std::max(stored, given) : stored;
   }
@@ -285,6 +286,8 @@ private:
     if (out.near != 0 && out.radius > kLargeLeaf * facing.radiusOf(0) && isLeafApart(pair, opened, reach)) out.near = 0;
     if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b))
       out.near &= ~separation_.byExtent(facing, out.gap, out.near);
+    if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
+      out.near &= ~separation_.byTriangles(facing, out.near);
   }
 
   /// Whether the other side of a pair is a leaf much larger than what was opened, and none of its points is near that.

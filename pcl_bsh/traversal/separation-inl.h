@@ -12,6 +12,7 @@
 
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/traversal/far_nodes.h>
+#include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -55,7 +56,7 @@ struct Facing {
 /// Each function returns those of the children in `near` that are proven to be apart from the other sphere's points.
 class Separation {
 public:
-  Separation(const ExactDistance& distance, const Spaces& a, const Spaces& b, Work& work)
+  Separation(const RecordDistance& distance, const Spaces& a, const Spaces& b, Work& work)
   : distance_(distance),
     a_(a),
     b_(b),
@@ -80,7 +81,8 @@ public:
       if (!other.isKnown())
         other = givenSphereOf(others(facing).storage.view, *facing.other_voxel, facing.other_node, facing.other_lane);
       const GivenSphere own = givenSphereOf(owners(facing).storage.view, *facing.voxel, facing.node, lane);
-      if (facing.of_a ? areApart(distance_, own, other, facing.reach) : areApart(distance_, other, own, facing.reach))
+      if (facing.of_a ? areApart(distance_.ofPoints(), own, other, facing.reach)
+                      : areApart(distance_.ofPoints(), other, own, facing.reach))
         apart |= 1u << lane;
     }
     return apart;
@@ -130,6 +132,28 @@ public:
     return apart;
   }
 
+  /// Of leaves of triangles with balls larger than the other node: by the triangles.
+  HWY_NOINLINE std::uint32_t byTriangles(const Facing& facing, std::uint32_t near) const
+  {
+    const bool leaf_is_other = others(facing).storage.view.triangles && facing.otherIsLeaf();
+    const bool leaf_is_own = owners(facing).storage.view.triangles != nullptr;
+    std::uint32_t apart = 0;
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      bool is_apart =
+          leaf_is_other &&
+          areTrianglesApart(facing.otherLeaf(), !facing.of_a,
+                            storedSphere(frameOf(owners(facing), facing.voxel), facing.node, lane), facing.reach);
+      if (!is_apart && leaf_is_own && facing.isLeaf(lane))
+        is_apart = areTrianglesApart(
+            facing.leaf(lane), facing.of_a,
+            storedSphere(frameOf(others(facing), facing.other_voxel), facing.other_node, facing.other_lane),
+            facing.reach);
+      if (is_apart) apart |= 1u << lane;
+    }
+    return apart;
+  }
+
   /// Whether none of a leaf's points is near a sphere of the other cloud, in the frame of b's space.
   /// @param radius stretched. @param reach as Facing has it
   bool isLeafApart(const RelativeFrame& frame, const LeafRange& leaf, bool leaf_is_a, const Point& center, float radius,
@@ -145,12 +169,32 @@ public:
   }
 
 private:
+  static const LocalFrame& frameOf(const Spaces& side, const Voxel* voxel)
+  {
+    return voxel ? voxel->frame : side.storage.frame;
+  }
+
+  /// Whether none of a leaf's triangles is near a sphere of the other cloud, which is smaller than their largest ball.
+  bool areTrianglesApart(const LeafRange& leaf, bool leaf_is_a, const GivenSphere& sphere, double reach) const
+  {
+    if (!(leaf.largestRadius() > kLargeBall * sphere.radius)) return false;
+    const double within = (sphere.radius * (1.0 + kPoseStretch) + reach) * (1.0 + kDoubleMargin);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t record = leaf.record(i);
+      ++work_.node_pairs;
+      const double low =
+          leaf_is_a ? distance_.enclose(record, sphere.center).low : distance_.enclose(sphere.center, record).low;
+      if (!(low > within)) return false;
+    }
+    return true;
+  }
+
   const Spaces& owners(const Facing& facing) const { return facing.of_a ? a_ : b_; }
   const Spaces& others(const Facing& facing) const { return facing.of_a ? b_ : a_; }
 
   bool areFarApart(const Facing& facing, const NodeSupport& a, const NodeSupport& b) const
   {
-    return areFarNodesApart(distance_, a_.pose, a, b_.pose, b, facing.reach, work_.exact_decisions);
+    return areFarNodesApart(distance_.ofPoints(), a_.pose, a, b_.pose, b, facing.reach, work_.exact_decisions);
   }
 
   /// Whether a node is apart from each point of a leaf of the other cloud: a leaf of a cylinder bends by more than the
@@ -166,7 +210,7 @@ private:
     return true;
   }
 
-  const ExactDistance& distance_;
+  const RecordDistance& distance_;
   const Spaces &a_, &b_;
   Work& work_;
 };

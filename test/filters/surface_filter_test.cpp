@@ -322,7 +322,9 @@ TEST(SurfaceFilter, HasNoHolesToGuard)
   filter.computeFlags(guarded);
   for (std::size_t i = 0; i < plain.size(); ++i) {
     const double distance = distanceToCrate((*scan)[i]);
-    const Verdict expected = distance <= 0.09   ? Verdict::colliding : distance <= 0.11 ? Verdict::undecided : Verdict::free;
+    const Verdict expected = distance <= 0.09   ? Verdict::colliding
+                             : distance <= 0.11 ? Verdict::undecided
+                                                : Verdict::free;
     if (std::abs(distance - 0.09) > 1e-12 && std::abs(distance - 0.11) > 1e-12) {
       ASSERT_EQ(guarded[i], expected) << i;
     }

@@ -110,6 +110,50 @@ TEST(CollisionFlags, SameAsBruteForceOfTriangles)
   for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
 }
 
+/// Floats decide next to the clearance: of points, and of nodes as small as they are, beside triangles much larger.
+TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
+{
+  Random random(61);
+  std::size_t hits = 0, all = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double size = std::pow(10.0, random.uniform(-1, 3)), clearance = size * std::pow(10.0, random.uniform(-3, 0));
+    const double far = random.chance(0.5) ? 0.0 : 1e5;
+    test::Mesh mesh;
+    std::vector<Point3> near;
+    for (int t = 0; t < 3; ++t) {
+      const auto corner = [&] {
+        const Point3 p = random.point([&] { return size * random.uniform(-1, 1); });
+        return Point3{p[0] + far, p[1], p[2] - far};
+      };
+      const Point3 a = corner(), b = corner();
+      Point3 c = corner();
+      if (t == 1)
+        for (std::size_t k = 0; k < 3; ++k) c[k] = a[k] + 1e-4 * (c[k] - a[k]);
+      mesh.add(a, b, c);
+      const auto vector = [](const Point3& p) { return Eigen::Vector3d(p[0], p[1], p[2]); };
+      const Eigen::Vector3d normal = (vector(b) - vector(a)).cross(vector(c) - vector(a)).normalized();
+      for (int k = 0; k < 100; ++k) {
+        const double u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+        const Eigen::Vector3d p = vector(a) + u * (vector(b) - vector(a)) + v * (vector(c) - vector(a)) +
+                                  clearance * (1.0 + 1e-7 * random.integer(-9, 9)) * normal;
+        near.push_back({p[0], p[1], p[2]});
+      }
+    }
+    const test::Layout layout{random.chance(0.5) ? Scalar::float32 : Scalar::float64};
+    Cloud triangles(mesh.vertices, layout), points(near, layout);
+    triangles.setTriangles(mesh.corners);
+    const SphereHierarchy a(points.view()), b(triangles.view());
+    const Eigen::Isometry3d pose = random.chance(0.5) ? identity : random.pose(far);
+    const FlagsResult expected = brute_force::collisionFlags({a, pose}, {b, pose}, within(clearance, Side::both));
+    const FlagsResult found = collisionFlags({a, pose}, {b, pose}, within(clearance, Side::both));
+    ASSERT_EQ(found.a, expected.a) << i;
+    ASSERT_EQ(found.b, expected.b) << i;
+    hits += ones(found.a), all += found.a.size();
+  }
+  EXPECT_GT(hits, all / 5);
+  EXPECT_LT(hits, all - all / 5);
+}
+
 TEST(CollisionFlags, SameAsBruteForceOnGridsWithTies) // H5, H5b, H5c
 {
   struct Grid {

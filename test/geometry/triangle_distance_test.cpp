@@ -21,7 +21,7 @@ using Eigen::Isometry3d;
 using test::posed;
 using test::Random;
 using test::Rational;
-using test::Shape;
+using test::TriangleShape;
 using Stages = TriangleDistance::Stages;
 
 const Isometry3d identity = Isometry3d::Identity();
@@ -103,7 +103,7 @@ TEST(TriangleDistance, OfPointsEqualsTheDefinition)
 {
   Random random(301);
   Stages decisions, roundings;
-  for (const Shape shape : test::kShapes)
+  for (const TriangleShape shape : test::kTriangleShapes)
     for (int kind = 0; kind < 5; ++kind)
       for (int i = 0; i < 60; ++i) {
         const double size = std::ldexp(random.uniform(1, 2), random.integer(-6, 6));
@@ -142,12 +142,12 @@ TEST(TriangleDistance, OfTrianglesEqualsTheDefinition)
 {
   Random random(302);
   Stages decisions, roundings;
-  for (const Shape shape : test::kShapes)
-    for (const Shape other_shape : test::kShapes)
+  for (const TriangleShape shape : test::kTriangleShapes)
+    for (const TriangleShape other_shape : test::kTriangleShapes)
       for (int kind = 0; kind < 5; ++kind)
         for (int i = 0; i < 6; ++i) {
           const double size =
-              shape == Shape::lattice ? 0x1p-8 : std::ldexp(random.uniform(1, 2), random.integer(-3, 3));
+              shape == TriangleShape::lattice ? 0x1p-8 : std::ldexp(random.uniform(1, 2), random.integer(-3, 3));
           const Isometry3d pose = poseOf(kind, random), other = random.chance(0.5) ? pose : identity;
           Triangle3 a = test::triangleOf(shape, size, random), b = test::triangleOf(other_shape, size, random);
           if (random.chance(0.4)) { // near each other, and with a corner in common
@@ -208,7 +208,8 @@ TEST(TriangleDistance, ComparesDistancesAsTheDefinitionDoes)
   Random random(304);
   Stages stages;
   int ties = 0;
-  for (const Shape shape : {Shape::any, Shape::lattice, Shape::needle, Shape::flat})
+  for (const TriangleShape shape :
+       {TriangleShape::any, TriangleShape::lattice, TriangleShape::needle, TriangleShape::flat})
     for (int i = 0; i < 120; ++i) {
       const Isometry3d pose = poseOf(i % 5, random), other = poseOf(i % 3, random);
       const TriangleDistance first(pose, pose), second(other, other);
@@ -244,7 +245,7 @@ TEST(TriangleDistance, TakesBallsAndSumsAsTheDefinitionDoes)
 {
   Random random(305);
   int ties = 0, below = 0;
-  for (const Shape shape : test::kShapes)
+  for (const TriangleShape shape : test::kTriangleShapes)
     for (int i = 0; i < 60; ++i) {
       const Isometry3d pose = poseOf(i % 3, random), other = poseOf(i % 2, random);
       const TriangleDistance first(pose, pose), second(other, other);
@@ -293,7 +294,7 @@ TEST(TriangleDistance, DoublesDecideOrdinaryPairs)
     const TriangleDistance distance(pose, pose);
     Stages points, triangles, lengths;
     for (int i = 0; i < 4000; ++i) {
-      const Shape shape = i % 2 == 0 ? Shape::any : Shape::needle;
+      const TriangleShape shape = i % 2 == 0 ? TriangleShape::any : TriangleShape::needle;
       const Triangle3 b = test::triangleOf(shape, 0.1, random), a = test::triangleOf(shape, 0.1, random);
       distance.compare(nearTo(b, 0.02, random), b, 0.01, 0.0, &points);
       distance.compare(a, b, 0.01, &triangles);

@@ -96,25 +96,27 @@ inline Rational squaredDistance(const RationalTriangle& x, const RationalTriangl
 }
 
 /// How triangles of the tests look; the last has corners that coincide or lie on one line.
-enum class Shape { any, lattice, needle, tiny, flat };
-inline constexpr Shape kShapes[] = {Shape::any, Shape::lattice, Shape::needle, Shape::tiny, Shape::flat};
+enum class TriangleShape { any, lattice, needle, tiny, flat };
+inline constexpr TriangleShape kTriangleShapes[] = {TriangleShape::any, TriangleShape::lattice, TriangleShape::needle,
+                                                    TriangleShape::tiny, TriangleShape::flat};
 
-inline Point3 cornerOf(Shape shape, double size, Random& random)
+inline Point3 cornerOf(TriangleShape shape, double size, Random& random)
 {
   return random.point([&] {
-    return shape == Shape::lattice || shape == Shape::flat ? std::ldexp(random.integer(-8, 8), -10)
-                                                           : size * random.uniform(-1, 1);
+    return shape == TriangleShape::lattice || shape == TriangleShape::flat ? std::ldexp(random.integer(-8, 8), -10)
+                                                                           : size * random.uniform(-1, 1);
   });
 }
 
-inline Triangle3 triangleOf(Shape shape, double size, Random& random)
+inline Triangle3 triangleOf(TriangleShape shape, double size, Random& random)
 {
   Triangle3 t = {cornerOf(shape, size, random), cornerOf(shape, size, random), cornerOf(shape, size, random)};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (shape == Shape::tiny) t[1][k] = t[0][k] + 1e-7 * (t[1][k] - t[0][k]), t[2][k] = t[0][k] + 1e-7 * t[2][k];
-    if (shape == Shape::needle) t[2][k] = t[random.integer(0, 1) == 0 ? 0u : 1u][k] + 1e-5 * t[2][k];
+    if (shape == TriangleShape::tiny)
+      t[1][k] = t[0][k] + 1e-7 * (t[1][k] - t[0][k]), t[2][k] = t[0][k] + 1e-7 * t[2][k];
+    if (shape == TriangleShape::needle) t[2][k] = t[random.integer(0, 1) == 0 ? 0u : 1u][k] + 1e-5 * t[2][k];
   }
-  if (shape != Shape::flat) return t;
+  if (shape != TriangleShape::flat) return t;
   const int kind = random.integer(0, 3); // a point, two segments, three corners on one line
   if (kind == 0) t[1] = t[2] = t[0];
   if (kind == 1) t[2] = t[0];

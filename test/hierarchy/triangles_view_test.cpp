@@ -3,13 +3,16 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -152,6 +155,62 @@ TEST(TrianglesView, RefusesWhatCannotBeRead)
   EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
   const std::vector<double> huge = {-1e300, 0, 0, 1e300, 0, 0, 0, 1e300, 0};
   EXPECT_NE(messageOf(trianglesOf(huge, two)).find("triangle 0 is too large for a float32 radius"), std::string::npos);
+}
+
+TEST(TrianglesView, OfAListIsKeptAlive)
+{
+  PointsView view;
+  std::weak_ptr<const void> vertices_left, list_left;
+  {
+    const auto vertices = std::make_shared<const std::vector<double>>(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 2, 0});
+    const auto list = std::make_shared<const std::vector<Triangle>>(std::vector<Triangle>{{0, 1, 2}});
+    PointsView corners = viewOf(vertices->data(), 3);
+    corners.owner = vertices;
+    view = viewOf(pcl_bsh::trianglesOf(corners, list));
+    vertices_left = vertices;
+    list_left = list;
+  }
+  EXPECT_FALSE(vertices_left.expired() || list_left.expired());
+  EXPECT_EQ(view.triangles->triangle(0)[2], (Point3{0, 2, 0}));
+  view = PointsView();
+  EXPECT_TRUE(vertices_left.expired() && list_left.expired());
+}
+
+TEST(TrianglesView, CountsVerticesThatNoTriangleHas)
+{
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, nan, 0, 0, 6, 6, 6};
+  const Corners one = {0, 1, 2}, two = {0, 1, 2, 3, 3, 5};
+  EXPECT_EQ(looseVertices(trianglesOf(xyz, one)), 2u) << "but for the one that is no place";
+  EXPECT_EQ(looseVertices(trianglesOf(xyz, two)), 0u);
+  EXPECT_EQ(looseVertices(TrianglesView()), 0u);
+}
+
+TEST(TrianglesView, MiddlesArePointsOnTheTriangles)
+{
+  const std::vector<double> xyz = {0, 0, 0, 4, 0, 0, 0, 3, 0};
+  const Corners corners = {0, 1, 2, 1, 1, 1};
+  const PointsView view = viewOf(trianglesOf(xyz, corners)), middles = middlesOf(view);
+  EXPECT_EQ(middles.triangles, nullptr);
+  EXPECT_EQ(middles.radii, nullptr);
+  EXPECT_EQ(middles.count, 2u);
+  EXPECT_EQ(middles.point(0), (Point3{2, 1.5, 0})) << "of the longest side";
+  EXPECT_EQ(middles.point(1), (Point3{4, 0, 0}));
+}
+
+/// A vertex that moves and a corner that is another vertex change it, bytes that no triangle reads do not.
+TEST(TrianglesView, HasAChecksum)
+{
+  std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};
+  Corners corners = {0, 1, 2};
+  const PointsView view = viewOf(trianglesOf(xyz, corners));
+  const std::uint64_t before = checksumOf(view);
+  xyz[1] = 0.5f;
+  EXPECT_NE(checksumOf(view), before);
+  xyz[1] = 0.0f;
+  EXPECT_EQ(checksumOf(view), before);
+  std::swap(corners[0], corners[1]);
+  EXPECT_NE(checksumOf(view), before);
 }
 
 } // namespace

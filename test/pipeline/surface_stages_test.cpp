@@ -234,18 +234,34 @@ TEST_F(SurfaceInput, KeepsTrianglesAndTheirVertices)
   EXPECT_THAT(faceFlags(*twice.clouds.at("k")), ElementsAre(1));
 }
 
+TEST_F(SurfaceInput, TellsDistancesOfTriangles)
+{
+  const std::string file = (folder_ / "distances.json").string();
+  const PipelineResult result = runStrip(R"({"type": "writers.distances", "obstacle": "scan", "filename": ")" + file +
+                                         R"("}, {"type": "filters.bsh_distance", "tag": "d", "obstacle": "scan",
+      "filter_limits": [null, 1]})");
+  const StageCloud& mesh = *result.clouds.at("d");
+  EXPECT_EQ(mesh.face_properties.at(0).name, "distance");
+  const auto& distances = std::get<std::vector<float>>(mesh.face_properties[0].values);
+  ASSERT_EQ(distances.size(), 3u) << "the last is farther";
+  EXPECT_EQ(distances[0], 0.05f);
+  EXPECT_NEAR(distances[1], std::hypot(0.6 / std::sqrt(2.0), 0.05), 1e-6) << "from the diagonal x + y = 1";
+  EXPECT_EQ(mesh.triangles->size(), 3u);
+  const auto json = nlohmann::json::parse(files::contentOf(file));
+  EXPECT_EQ(json["input_to_obstacle"]["count"], 4);
+  EXPECT_TRUE(json["input_to_obstacle"]["places"][0].contains("triangle"));
+  EXPECT_TRUE(json["obstacle_to_input"]["places"].empty() || json["obstacle_to_input"]["places"][0].contains("point"));
+}
+
 TEST_F(SurfaceInput, IsRefusedWherePointsAreAsked)
 {
   const auto refusal = [&](const std::string& stage) {
     return errorOf([&] { runStrip(R"({"tag": "s", "obstacle": "scan", )" + stage + "}"); });
   };
   const std::string file = (folder_ / "list.json").string();
-  for (const std::string& stage : {R"("type": "writers.clashes", "clearance": 0.1, "filename": ")" + file + '"',
-                                   R"("type": "writers.distances", "filename": ")" + file + '"',
-                                   std::string(R"("type": "filters.bsh_distance")")}) {
-    EXPECT_THAT(refusal(stage), HasSubstr("the input has faces: the stage knows points alone")) << stage;
-    EXPECT_NO_THROW(runStrip(R"({"tag": "s", "obstacle": "scan", "vertices_only": true, )" + stage + "}")) << stage;
-  }
+  const std::string list = R"("type": "writers.clashes", "clearance": 0.1, "filename": ")" + file + '"';
+  EXPECT_THAT(refusal(list), HasSubstr("the input has faces: the stage knows points alone"));
+  EXPECT_NO_THROW(runStrip(R"({"tag": "s", "obstacle": "scan", "vertices_only": true, )" + list + "}"));
   const std::string collide = R"("type": "filters.bsh_collision", "clearance": 0.1, )";
   EXPECT_THAT(refusal(collide + R"("keep_organized": true)"), HasSubstr("keep_organized"));
   EXPECT_THAT(refusal(collide + R"("density": true)"), HasSubstr("density"));

@@ -33,7 +33,7 @@ struct Records {
   std::vector<std::uint32_t> corners;
   PointsView view;
 
-  Records(Kind of, test::Shape shape, Random& random) : kind(of)
+  Records(Kind of, test::TriangleShape shape, Random& random) : kind(of)
   {
     for (int i = 0; i < 8; ++i) {
       given.push_back(test::triangleOf(shape, 1.0, random));
@@ -74,7 +74,7 @@ TEST(RecordDistance, OfEveryKindEqualsTheDefinition)
   int ties = 0;
   for (const Kind kind_a : kKinds)
     for (const Kind kind_b : kKinds)
-      for (const test::Shape shape : test::kShapes) {
+      for (const test::TriangleShape shape : test::kTriangleShapes) {
         const Records a(kind_a, shape, random), b(kind_b, shape, random);
         const Eigen::Isometry3d pose_a = random.chance(0.5) ? Eigen::Isometry3d::Identity() : random.pose(1.0);
         const Eigen::Isometry3d pose_b = random.chance(0.5) ? pose_a : random.pose(0.1);
@@ -115,7 +115,7 @@ TEST(RecordDistance, OfEveryKindEqualsTheDefinition)
             EXPECT_EQ(distance.compareGaps(pair, pair), 0);
           }
       }
-  EXPECT_GT(ties, 100);
+  EXPECT_GT(ties, 20);
 }
 
 } // namespace

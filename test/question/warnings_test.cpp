@@ -125,6 +125,18 @@ TEST(Warnings, SurfacesHaveCornersAndNoHoles)
   EXPECT_THAT(warningsOf(question({at(0)}, 0.5), surface, surface), testing::SizeIs(1)) << "of the loose vertex";
 }
 
+/// A large floor of two triangles, whose middles are one place.
+TEST(Warnings, SurfacesAreAsLargeAsTheirCorners)
+{
+  const std::vector<float> corners = {0, 0, 0, 100, 0, 0, 100, 100, 0, 0, 100, 0};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}};
+  const TrianglesView view{viewOf(corners.data(), 4), triangles[0].data(), 2};
+  const NamedCloud floor = namedCloud("floor", SphereHierarchy(viewOf(view)));
+  EXPECT_EQ(floor.box.max(), Eigen::Vector3d(100, 100, 0));
+  const Cloud robot(plane(2, 5));
+  EXPECT_THAT(warningsOf({robot.named("robot"), floor, {at(0)}, 0.5}), IsEmpty());
+}
+
 TEST(Warnings, TrianglesThatAreNotFinite)
 {
   const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0};

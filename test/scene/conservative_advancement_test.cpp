@@ -15,6 +15,11 @@
 namespace pcl_bsh {
 namespace {
 
+Corners pointAt(const Eigen::Vector3d& p)
+{
+  return Corners::of(Point3{p[0], p[1], p[2]});
+}
+
 using test::Random;
 using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
 
@@ -129,8 +134,8 @@ TEST(ConservativeAdvancement, StraightWaysAreJudgedExactly)
       const StraightPair exact = passing.exact();
       const double reach = setting.clearance;
       if (!exact.staysBeyond(reach, 0.0)) continue;
-      const auto s = timeOfContact(ObjectMotion(passing.a, Box3()), passing.p, ObjectMotion(passing.b, Box3()),
-                                   passing.q, passing.zone, 0, 1);
+      const auto s = timeOfContact(ObjectMotion(passing.a, Box3()), pointAt(passing.p), ObjectMotion(passing.b, Box3()),
+                                   pointAt(passing.q), passing.zone, 0, 1);
       ASSERT_TRUE(exact.staysBeyond(reach, s.value_or(1.0))) << i << " at " << setting.length;
       if (s) {
         ++met;
@@ -198,7 +203,7 @@ TEST(ConservativeAdvancement, TurningWaysAreWatchedDensely)
     a.to.translation() += moved;
     const auto distance = [&](Real s) { return (placeOn(a, p, s) - placeOn(b, q, s)).norm(); };
     if (distance(0) <= reach + tolerance) continue;
-    const auto s = timeOfContact(ObjectMotion(a, Box3()), p, ObjectMotion(b, Box3()), q, zone, 0, 1);
+    const auto s = timeOfContact(ObjectMotion(a, Box3()), pointAt(p), ObjectMotion(b, Box3()), pointAt(q), zone, 0, 1);
     const double last = s.value_or(1.0);
     for (int i = 0; i < 300; ++i) ASSERT_GT(distance(last * i / Real(300)), reach) << i;
     for (int i = -300; i <= 300; ++i) { // around the nearest instant

@@ -3,7 +3,6 @@
 // here, and the motion is replayed by brute force over points and instants.
 #pragma once
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -277,7 +276,7 @@ private:
     const bool uncertain = view_a.isUncertain() || view_b.isUncertain();
     const PairReach possible(view_a, view_b, clearance, uncertain ? Places::possible : Places::measured),
         surely(view_a, view_b, clearance, uncertain ? Places::certain : Places::measured);
-    const ExactDistance exact(at_a.world, at_b.world);
+    const RecordDistance exact(view_a, at_a.world, view_b, at_b.world);
     const auto told = [&](const std::vector<PartFirstContact>& list) {
       const PartFirstContact* contact = contactOf(list, a.first, b.first);
       return contact && contact->fraction <= s;

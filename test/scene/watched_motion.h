@@ -3,7 +3,6 @@
 // point with everything it may not touch. Legs are interpolated here by their definition, not by the library.
 #pragma once
 
-#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -28,7 +27,7 @@ inline Eigen::Isometry3d poseOn(const Leg& leg, double s)
   return pose;
 }
 
-/// All points of an object, under one pose, and the box around them.
+/// All points of an object, or its triangles' balls, under one pose, and the box around them.
 class StandingPoints {
 public:
   StandingPoints(const SceneObject& object, const Eigen::Isometry3d& pose)
@@ -64,11 +63,14 @@ public:
           for (std::size_t j = 0; j < b.view->size(); ++j) {
             const double gap =
                 (p - other.points_[b.first + j]).norm() - radii_[a.first + i] - other.radii_[b.first + j] - clearance;
-            near = std::min(near, gap);
+            const bool of_triangles = a.view->triangles || b.view->triangles;
+            if (!of_triangles) near = std::min(near, gap);
             if (!(gap <= rounding)) continue;
             const bool uncertain = a.view->isUncertain() || b.view->isUncertain();
             const PairReach of_pairs(*a.view, *b.view, clearance, uncertain ? Places::possible : Places::measured);
-            if (of_pairs.holds(ExactDistance(a.pose, b.pose), {a.view->record(i), b.view->record(j)})) return true;
+            if (of_pairs.holds(RecordDistance(*a.view, a.pose, *b.view, b.pose),
+                               {a.view->record(i), b.view->record(j)}))
+              return true;
           }
       }
     return false;
@@ -180,17 +182,15 @@ public:
     }
     const auto extent = [&](ObjectId id, std::uint32_t part, std::uint32_t record) {
       const PointsView& view = scene_[id].parts[part].hierarchy->view();
-      return view.radius(record) + view.uncertainty + view.ownUncertainty(record);
+      return view.ownRadius(record) + view.uncertainty + view.ownUncertainty(record);
     };
     for (const PartFirstContact& contact : result.first_contact) {
-      const auto point = [&](ObjectId id, std::uint32_t part, std::uint32_t record) {
-        const Point3 p = scene_[id].parts[part].hierarchy->view().point(record);
-        return Eigen::Vector3d(poseAt(id, contact.fraction) * scene_[id].parts[part].pose *
-                               Eigen::Vector3d(p[0], p[1], p[2]));
-      };
-      const double gap =
-          (point(contact.a, contact.part_a, contact.pair.a) - point(contact.b, contact.part_b, contact.pair.b)).norm() -
-          extent(contact.a, contact.part_a, contact.pair.a) - extent(contact.b, contact.part_b, contact.pair.b);
+      const ScenePart &a = scene_[contact.a].parts[contact.part_a], &b = scene_[contact.b].parts[contact.part_b];
+      const RecordDistance distance(a.hierarchy->view(), poseAt(contact.a, contact.fraction) * a.pose,
+                                    b.hierarchy->view(), poseAt(contact.b, contact.fraction) * b.pose);
+      const double gap = distance.enclose(distance.pair(contact.pair)).high -
+                         extent(contact.a, contact.part_a, contact.pair.a) -
+                         extent(contact.b, contact.part_b, contact.pair.b);
       if (gap > *clearances_[contact.a][contact.b] + scene_.options().tolerance)
         return "objects " + std::to_string(contact.a) + " and " + std::to_string(contact.b) + " are " +
                std::to_string(gap) + " apart at their contact";

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "support/meshes.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 
@@ -118,10 +119,10 @@ struct Journey {
   std::string name;
 };
 
-inline Journey anyJourney(std::uint64_t seed, int max_points, int max_poses)
+/// The model of a scene on its way.
+inline Journey journeyOf(Scene scene, std::uint64_t seed, int max_poses)
 {
   Random random(seed + 77);
-  Scene scene = anyScene(seed, max_points);
   const PointsView view = scene.b.view();
   Point3 center = {0, 0, 0};
   double scale = 1.0;
@@ -139,6 +140,17 @@ inline Journey anyJourney(std::uint64_t seed, int max_points, int max_poses)
   Poses poses = anyPath(scene.pose_b, center, scale, count, random);
   const std::string name = scene.name + ", " + std::to_string(poses.size()) + " poses";
   return {std::move(scene), std::move(poses), name};
+}
+
+inline Journey anyJourney(std::uint64_t seed, int max_points, int max_poses)
+{
+  return journeyOf(anyScene(seed, max_points), seed, max_poses);
+}
+
+/// Triangles along a path, past triangles or past points; or points past triangles.
+inline Journey anyMeshJourney(std::uint64_t seed, int most, int max_poses)
+{
+  return journeyOf(anyMeshScene(seed, most), seed, max_poses);
 }
 
 } // namespace pcl_bsh::test

@@ -190,7 +190,7 @@ TEST(StraightWay, RightWithinSixteenRoundings)
     if (random.chance(0.3)) motion[1] = motion[2] = 0.0;
     const double back = random.uniform(-0.2, 1.2);
     for (std::size_t k = 0; k < 3; ++k) away[k] -= back * motion[k];
-    const ClosestApproach found = closestApproach(away, motion, near);
+    const Approach found = closestApproach(away, motion, near);
     ExactWay way;
     double largest = near;
     for (std::size_t k = 0; k < 3; ++k) {

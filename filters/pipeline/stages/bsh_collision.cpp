@@ -72,12 +72,7 @@ struct BshCollision : SelectingStage, QuestionStage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     if (!asksAboutFaces(*inputs[0])) return SelectingStage::run(std::move(inputs));
-    if (keep_organized)
-      throw OptionError("keep_organized", "is about points, and the input is a surface: leave it out, or give "
-                                          "`vertices_only`: true");
-    std::vector<std::uint8_t> kept = passing(inputs[0]);
-    for (std::uint8_t& passes : kept) passes = (passes != 0) != negative;
-    return keptFaces(*inputs[0], kept);
+    return keepFaces(*inputs[0], passing(inputs[0]));
   }
 
 protected:

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far each point is from another cloud.
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/gathered_result.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/faces.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
+#include <pcl_bsh/search/cloud_view.h>
 
 #include <limits>
 #include <type_traits>
@@ -28,8 +31,8 @@ struct BshDistance : SelectingStage, QuestionStage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    requirePoints(*inputs[0]);
     Answer answer = ask(inputs[0], *this).answer;
+    if (asksAboutFaces(*inputs[0])) return measuredFaces(std::move(inputs[0]), std::move(answer));
     auto measured = std::make_shared<StageCloud>();
     measured->cloud = withDistances(inputs[0]->cloud, answer.distances.a.distance);
     measured->viewpoint = inputs[0]->viewpoint;
@@ -43,6 +46,22 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& /*cloud*/) override { return std::move(within_); }
 
 private:
+  /// The distances of triangles become a property of theirs; vertices get the smallest of what their triangles have.
+  StageCloudPtr measuredFaces(StageCloudPtr&& input, Answer answer) const
+  {
+    const std::vector<Triangle>& triangles = *input->triangles;
+    TrajectoryResult found;
+    found.distance.assign(answer.distances.a.distance.begin(), answer.distances.a.distance.end());
+    const std::vector<float> of_vertices =
+        gatheredResult(found, viewOf(input->cloud).count, [&](std::size_t t) -> const Triangle& {
+          return triangles[t];
+        }).distance;
+    const auto measured = ownCloud(std::move(input));
+    measured->cloud = withDistances(measured->cloud, {of_vertices.begin(), of_vertices.end()});
+    setFaceProperty(*measured, distance_field_name, std::move(found.distance));
+    return keepFaces(*measured, std::move(answer.within));
+  }
+
   static pcl::PCLPointCloud2 withDistances(const pcl::PCLPointCloud2& cloud, const std::vector<double>& distances)
   {
     const std::vector<float> told(distances.begin(), distances.end());
@@ -75,7 +94,8 @@ StageType bshDistance()
       "filters.bsh_distance",
       "Adds a field `distance` (float32): from each point to the nearest point of another cloud; keeps the points "
       "whose "
-      "distance is within limits. Exact unless `accuracy` says otherwise, for float64 coordinates too.");
+      "distance is within limits. Exact unless `accuracy` says otherwise, for float64 coordinates too. Of an input "
+      "with faces, triangles are measured, as a property of its faces, and kept.");
   withQuestionOptions(description.alias("pcl_bsh::DistanceFilter"), QuestionKind::distances)
       .option(
           &BshDistance::filter_limits, "filter_limits",

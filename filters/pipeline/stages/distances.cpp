@@ -29,7 +29,6 @@ struct DistanceWriter : Stage, QuestionStage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    requirePoints(*inputs[0]);
     Asked asked = ask(inputs[0], *this);
     const Placed input(asked.inputHierarchy(question)), other(asked.obstacleHierarchy(question), question.pose);
     PointDistancesRequest request;

@@ -84,6 +84,16 @@ int compareShiftedRoots(const Fraction<Dyadic>& x, const Dyadic& shift, const Fr
                               : (irrational_squared - rational * rational).sign();
 }
 
+/// Whether both features lie on one corner or one edge of the second triangles: those of a mesh share theirs.
+bool areOne(const Features& x, const Triangle3& of_x, const Features& y, const Triangle3& of_y)
+{
+  if (x.kind != y.kind || x.i != y.i) return false;
+  if (x.kind == Features::corners || x.kind == Features::edge_corner) return of_x[x.j] == of_y[y.j];
+  if (x.kind != Features::corner_edge && x.kind != Features::edges) return false;
+  const Point3 &from_x = of_x[x.j], &to_x = of_x[(x.j + 1) % 3u], &from_y = of_y[y.j], &to_y = of_y[(y.j + 1) % 3u];
+  return (from_x == from_y && to_x == to_y) || (from_x == to_y && to_x == from_y);
+}
+
 } // namespace
 
 TriangleDistance::TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
@@ -291,6 +301,8 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
   const Features of_first = nearestFeatures(first, by_integers);
   const Features of_second = other.nearestFeatures(second, by_integers);
   if (first.radius == second.radius) {
+    if (this == &other && first.a == second.a && areOne(of_first, first.b, of_second, second.b))
+      return ++stages.doubles, 0;
     const int side =
         compareFractions(squared<LongNumber>(first, of_first), other.squared<LongNumber>(second, of_second), sure);
     if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
@@ -352,6 +364,48 @@ double TriangleDistance::gap(const TrianglePair& pair, Stages* stages) const
 {
   Stages none;
   return rounded(pair, orNone(stages, none));
+}
+
+template <class Pair>
+Point3 TriangleDistance::betweenNearest(const Pair& pair) const
+{
+  bool by_integers = false;
+  const Features features = nearestFeatures(pair, by_integers);
+  const Seen at = seen(pair.a, pair.b);
+  const std::size_t i = features.i, j = features.j, next_i = (i + 1) % 3, next_j = (j + 1) % 3;
+  const auto across = [](const Point3& from, const Point3& edge) { // from a line through 0
+    return from - (dot(from, edge) / dot(edge, edge)) * edge;
+  };
+  const auto along = [](const Point3& from, const Point3& normal) { // from a plane through 0
+    return (dot(from, normal) / dot(normal, normal)) * normal;
+  };
+  switch (features.kind) {
+  case Features::meeting:
+    return {0.0, 0.0, 0.0};
+  case Features::corners:
+    return at.a[i] - at.b[j];
+  case Features::corner_edge:
+    return across(at.a[i] - at.b[j], at.b[next_j] - at.b[j]);
+  case Features::edge_corner:
+    return -1.0 * across(at.b[j] - at.a[i], at.a[next_i] - at.a[i]);
+  case Features::edges:
+    return along(at.a[i] - at.b[j], cross(at.a[next_i] - at.a[i], at.b[next_j] - at.b[j]));
+  case Features::corner_face:
+    return along(at.a[i] - at.b[0], cross(at.b[1] - at.b[0], at.b[2] - at.b[0]));
+  case Features::face_corner:
+    break;
+  }
+  return -1.0 * along(at.b[j] - at.a[0], cross(at.a[1] - at.a[0], at.a[2] - at.a[0]));
+}
+
+Point3 TriangleDistance::between(const PointPair& pair) const
+{
+  return betweenNearest(pair);
+}
+
+Point3 TriangleDistance::between(const TrianglePair& pair) const
+{
+  return betweenNearest(pair);
 }
 
 } // namespace pcl_bsh

@@ -78,6 +78,10 @@ public:
   double gap(const PointPair& pair, Stages* stages = nullptr) const;
   double gap(const TrianglePair& pair, Stages* stages = nullptr) const;
 
+  /// From the place of b that is nearest to a to the place of a, in the world, within rounding; 0 where they meet.
+  Point3 between(const PointPair& pair) const;
+  Point3 between(const TrianglePair& pair) const;
+
 private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
   using Pose = std::array<Row, 3>;
@@ -106,6 +110,8 @@ private:
   int settleOrder(const Pair& first, const TriangleDistance& other, const Pair& second, Stages& stages) const;
   template <class Pair>
   double rounded(const Pair& pair, Stages& stages) const;
+  template <class Pair>
+  Point3 betweenNearest(const Pair& pair) const;
 
   ExactDistance points_;
   Pose a_, b_;

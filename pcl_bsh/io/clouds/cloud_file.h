@@ -8,9 +8,9 @@
 // row as success. Here a damaged, truncated or lying file is an error, and is noticed before its memory is asked for.
 #pragma once
 
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/column_names.h>
-#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <pcl/PCLPointCloud2.h>
 

@@ -61,7 +61,8 @@ private:
          {"hausdorff", length(report_.hausdorff)},
          {"pair", false},
          {"max_distance", numberOrNone(question.request.max_distance)},
-         {"part", question.partName()},
+         {"input_part", report_.input.part},
+         {"part", report_.obstacle.part},
          {"farther", countedIfAny(farther, "point has", "points have")},
          {"statistics", statistics()},
          {"sides", List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)}}});
@@ -79,9 +80,10 @@ private:
     };
     const auto addLength = [&](const std::string& name, double x, double y) { add(name, unit_, length(x), length(y)); };
     const DistanceStatistics &s = a.statistics, &t = b.statistics;
-    const std::string points = report_.question.surface != nullptr ? "points, triangles" : "points";
-    add(points, "", std::to_string(a.points), std::to_string(b.points));
-    add(points + " with a distance", "", std::to_string(s.count), std::to_string(t.count));
+    const std::string parts =
+        std::string(a.part) + (a.part == std::string(b.part) ? "s" : std::string("s, ") + b.part + 's');
+    add(parts, "", std::to_string(a.points), std::to_string(b.points));
+    add(parts + " with a distance", "", std::to_string(s.count), std::to_string(t.count));
     addLength("mean", s.mean, t.mean);
     addLength("RMS", s.rms, t.rms);
     addLength("median", s.median, t.median);
@@ -95,7 +97,7 @@ private:
   {
     Object side = {{"from", plain(from.name)},
                    {"to", plain(to)},
-                   {"points", counted(from.points, "point")},
+                   {"points", counted(from.points, from.part)},
                    {"beyond", length(from.beyond)},
                    {"view", from.points > 0 ? view(from) : Data(false)},
                    {"places", places(from)}};

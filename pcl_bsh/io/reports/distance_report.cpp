@@ -26,7 +26,9 @@ DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDis
                     const std::optional<double>& beyond)
 {
   const PointsView points = middlesOf(cloud.hierarchy().view());
-  DistanceSide side{name, points, cloud.pose, found, cloud.hierarchy().size(), {}, 0.0, {}};
+  DistanceSide side{name,       points, cloud.hierarchy().view().triangles ? "triangle" : "point",
+                    cloud.pose, found,  cloud.hierarchy().size(),
+                    {},         0.0,    {}};
   side.statistics = statisticsOf(found.distance);
   side.beyond = beyond.value_or(side.statistics.percentiles[3]);
   const double far = std::isnan(side.beyond) ? 0.0 : side.beyond; // then every point is farther than all that was asked
@@ -34,7 +36,7 @@ DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDis
   return side;
 }
 
-Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_input)
+Json toJson(const DistanceSide& side, bool is_input)
 {
   const DistanceStatistics& statistics = side.statistics;
   Json percentiles;
@@ -59,7 +61,7 @@ Json toJson(const DistanceQuestion& question, const DistanceSide& side, bool is_
     const bool known = place.nearest != kNothing;
     json["places"].push_back({{"points", place.records.size()},
                               {"distance", lengthJson(place.distance)},
-                              {is_input ? "point" : question.partName(), place.point},
+                              {side.part, place.point},
                               {"nearest", known ? Json(place.nearest) : Json()},
                               {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
   }
@@ -95,8 +97,8 @@ Json distanceJson(const DistanceReport& report)
           {"unit", question.unit.empty() ? Json() : Json(question.unit)},
           {"max_distance", lengthJson(question.request.max_distance)},
           {"accuracy", question.request.accuracy.text()},
-          {"input_to_obstacle", toJson(question, report.input, true)},
-          {"obstacle_to_input", toJson(question, report.obstacle, false)},
+          {"input_to_obstacle", toJson(report.input, true)},
+          {"obstacle_to_input", toJson(report.obstacle, false)},
           {"hausdorff", lengthJson(report.hausdorff)},
           {"hausdorff_pair", pairJson(report.hausdorff_pair)}};
 }

@@ -27,14 +27,13 @@ struct DistanceQuestion {
 
   /// What the numbers mean where the obstacle is a surface: null unless it is one.
   Json surfaceToTell() const;
-  /// Of the obstacle: a point, or a triangle.
-  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 };
 
 /// From each record of one cloud to the nearest of the other. Cloud and distances are borrowed.
 struct DistanceSide {
   std::string name;       ///< file name of the cloud
   PointsView cloud;       ///< its points; of triangles, their middles
+  const char* part;       ///< what a record is: a point or a triangle
   Eigen::Isometry3d pose; ///< of the cloud in the input's frame
   const PointDistances& found;
   std::size_t points = 0; ///< finite ones

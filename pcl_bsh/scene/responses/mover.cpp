@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/hierarchy/record_corners.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
@@ -57,17 +58,10 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
     }
     if (!few) return halt();
   }
-  const RigidMotion still(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), Eigen::Vector3d::Zero(),
-                          Eigen::Vector3d::Zero());
   double last = end;
   const Encounter* met = nullptr;
   for (const Encounter& e : encounters_) {
-    const ScenePart& part = body_.object.parts[e.part];
-    const Point3 p = part.hierarchy->view().point(e.pair.a);
-    const Point3 q = hierarchyOf(e).view().point(e.pair.b);
-    const Eigen::Vector3d local = part.pose * Eigen::Vector3d(p[0], p[1], p[2]);
-    const Eigen::Vector3d other = worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]);
-    const auto s = timeOfContact(motion, local, still, other, {e.reach, tolerance_}, begin, last);
+    const auto s = contactOn(motion, e, begin, last);
     if (!s) continue;
     last = *s;
     met = &e;
@@ -136,8 +130,12 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
     const Eigen::Vector3d part = last ? left : Eigen::Vector3d(left * (most_travel / length));
     const Encounter* met = nullptr;
     double end = 1.0;
+    Eigen::Isometry3d ahead = pose();
+    ahead.translation() += part;
+    const RigidMotion motion(pose(), ahead, body_.center(), Eigen::Vector3d::Zero());
     for (const Encounter& e : encounters_) {
-      const auto s = timeOfContact(e.apart + gone, part, {e.reach, tolerance_});
+      const auto s =
+          e.of_points ? timeOfContact(e.apart + gone, part, {e.reach, tolerance_}) : contactOn(motion, e, 0.0, end);
       if (!s || (met && *s >= end)) continue;
       end = *s;
       met = &e;
@@ -156,7 +154,8 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
     if (!met) return bounce == 0 ? Walked::free : Walked::met;
     touch(*met);
     if (distance > tolerance_) planes.forget();
-    left = planes.add((met->apart + gone).stableNormalized(), left);
+    const Point3 normal = separationOf(*met).direction;
+    left = planes.add(Eigen::Vector3d(normal[0], normal[1], normal[2]), left);
     if (!slide) return Walked::met;
     if (bounce > 0) continue;
     // Only what is beside the straight path has been collected. From here on it may lead anywhere within what is
@@ -218,12 +217,13 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
       const PointsView &a = mine.hierarchy().view(), &b = others.hierarchy().view();
       const RecordDistance exact(a, mine.pose, b, others.pose);
       const PairReach reach_of_pairs(a, b, clearance, places);
+      const bool of_points = !a.triangles && !b.triangles;
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
         const RecordDistance::Sum terms = reach_of_pairs.of(pair);
-        Encounter e{pair, i, other, j, std::accumulate(terms.begin(), terms.end(), 0.0), clearance, {}};
+        Encounter e{pair, i, other, j, std::accumulate(terms.begin(), terms.end(), 0.0), clearance, of_points, {}};
         e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
-        if (e.apart.norm() <= e.reach + 0.125 * tolerance_) {
+        if ((of_points ? e.apart.norm() : separationOf(e).high) <= e.reach + 0.125 * tolerance_) {
           ++cost_.work.exact_decisions;
           if (reach_of_pairs.holds(exact, pair)) {
             outcome.stuck = true;
@@ -250,7 +250,7 @@ bool Mover::accept(const Eigen::Isometry3d& target)
     for (; i < encounters_.size(); ++i) {
       const Encounter& e = encounters_[i];
       if (e.part != first.part || e.other != first.other || e.other_part != first.other_part) break;
-      if (distanceOf(e) > e.reach + 0.125 * tolerance_) continue; // far above what rounding takes
+      if (separationOf(e).high > e.reach + 0.125 * tolerance_) continue; // far above what rounding takes
       ++cost_.work.exact_decisions;
       if (!reach_of_pairs.holds(exact, e.pair)) continue;
       state_.setPose(object_, before);
@@ -270,12 +270,23 @@ bool Mover::go(const Eigen::Isometry3d& target)
   return true;
 }
 
-double Mover::distanceOf(const Encounter& e) const
+/// When a pair meets while the object moves, and the other one stands still.
+std::optional<double> Mover::contactOn(const RigidMotion& motion, const Encounter& e, double begin, double end) const
 {
-  const Point3 p = body_.object.parts[e.part].hierarchy->view().point(e.pair.a);
-  const Point3 q = hierarchyOf(e).view().point(e.pair.b);
-  return (body_.world[e.part] * Eigen::Vector3d(p[0], p[1], p[2]) - worldOf(e) * Eigen::Vector3d(q[0], q[1], q[2]))
-      .norm();
+  static const RigidMotion still(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), Eigen::Vector3d::Zero(),
+                                 Eigen::Vector3d::Zero());
+  const ScenePart& part = body_.object.parts[e.part];
+  return timeOfContact(motion, placedBy(part.pose, cornersOf(part.hierarchy->view(), e.pair.a)), still,
+                       placedBy(worldOf(e), cornersOf(hierarchyOf(e).view(), e.pair.b)), {e.reach, tolerance_}, begin,
+                       end);
+}
+
+/// At the object's pose.
+Separation Mover::separationOf(const Encounter& e) const
+{
+  return pcl_bsh::separationOf(
+      placedBy(body_.world[e.part], cornersOf(body_.object.parts[e.part].hierarchy->view(), e.pair.a)),
+      placedBy(worldOf(e), cornersOf(hierarchyOf(e).view(), e.pair.b)));
 }
 
 bool Mover::halt()

@@ -6,6 +6,7 @@
 #include <pcl_bsh/scene/state.h>
 #include <pcl_bsh/scene/swept/conservative_advancement.h>
 
+#include <optional>
 #include <vector>
 
 namespace pcl_bsh {
@@ -31,14 +32,15 @@ public:
   bool translate(const Eigen::Isometry3d& target, bool slide);
 
 private:
-  /// Two points that may meet: one of the mover, one of another object.
+  /// Two records that may meet: one of the mover, one of another object.
   struct Encounter {
     PointPair pair; ///< a: the mover's
     std::uint32_t part = 0;
     ObjectId other = 0;
     std::uint32_t other_part = 0;
-    double reach = 0.0;     ///< at most so far apart, the points may collide
+    double reach = 0.0;     ///< at most so far apart, they may collide
     double clearance = 0.0; ///< of the objects
+    bool of_points = true;  ///< of both; else one is a triangle
     Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
   };
 
@@ -52,7 +54,9 @@ private:
   bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);
   bool accept(const Eigen::Isometry3d& target);
   bool go(const Eigen::Isometry3d& target);
-  double distanceOf(const Encounter& encounter) const;
+  std::optional<double> contactOn(const RigidMotion& motion, const Encounter& encounter, double begin,
+                                  double end) const;
+  Separation separationOf(const Encounter& encounter) const;
   bool halt();
   void touch(const Encounter& encounter);
   const SphereHierarchy& hierarchyOf(const Encounter& encounter) const;

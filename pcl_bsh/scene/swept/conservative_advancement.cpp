@@ -107,35 +107,127 @@ private:
   Eigen::Vector3d spoke_a_, spoke_b_, middle_, apart_, rim_;
 };
 
-} // namespace
-
-std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone)
+Eigen::Vector3d vectorOf(const Point3& p)
 {
-  const double along = apart.dot(shift), length2 = shift.squaredNorm();
-  if (!(along < 0.0) || length2 == 0.0) return std::nullopt; // no nearer than now
-  const double now = apart.norm();
-  const bool inside = now <= zone.outer();
-  const double pass = inside ? zone.floor(now) : zone.inner(), halt = inside ? pass : zone.outer();
-  const double closest = -along / length2;
-  if ((apart + std::min(1.0, closest) * shift).squaredNorm() >= pass * pass) return std::nullopt;
-  // Back from the closest approach by half a chord. The usual root of |apart + s shift| = halt takes a difference of
-  // squares of the whole length, which is mostly rounding where that is long and the zone thin.
-  const double across = (apart + closest * shift).norm();
-  const double half = std::sqrt(std::max(0.0, (halt - across) * (halt + across) / length2));
-  return std::clamp(closest - half, 0.0, 1.0);
+  return {p[0], p[1], p[2]};
 }
 
-std::optional<double> timeOfContact(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
-                                    const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end)
-{
-  if (!motion_a.turns() && !motion_b.turns()) {
-    const Eigen::Vector3d apart = motion_a.at(begin) * p - motion_b.at(begin) * q;
-    const auto s = timeOfContact(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
-    if (!s) return std::nullopt;
-    return begin + *s * (end - begin);
+/// Corners of a body on their courses. All of them share the centre, the shift and the turn.
+class CornersMotion {
+public:
+  CornersMotion(const RigidMotion& motion, const Corners& corners) : count_(corners.count)
+  {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      courses_[i] = motion.motionOf(vectorOf(corners.at[i]));
+      const double drift = courses_[i].drift.norm();
+      const double rim =
+          (courses_[i].angle * courses_[i].axis).cross(courses_[i].spoke).norm() + courses_[i].angle * drift;
+      drift_ = std::max(drift_, drift);
+      rim_ = std::max(rim_, rim);
+      bend_ = std::max(bend_, courses_[i].angle * (rim + 2.0 * drift));
+    }
+    turn_ = courses_[0].angle * courses_[0].axis;
   }
-  const PointMotion a = motion_a.motionOf(p), b = motion_b.motionOf(q);
-  MovingPointPair moving(a, b, end);
+
+  const Eigen::Vector3d& center() const { return courses_[0].center; }
+  const Eigen::Vector3d& shift() const { return courses_[0].shift; }
+  double drift() const { return drift_; }      ///< of any corner, per unit of s
+  double turningSpeed() const { return rim_; } ///< of any corner at most
+  double bend() const { return bend_; }        ///< no acceleration is larger
+  std::uint32_t count() const { return count_; }
+
+  /// At an instant, seen from a place.
+  Corners at(double s, const Eigen::Vector3d& from) const
+  {
+    Corners corners{{}, count_};
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3d place = from + courses_[i].spokeAt(s);
+      corners.at[i] = {place[0], place[1], place[2]};
+    }
+    return corners;
+  }
+
+  /// By turning, of a place that is so far from the centre.
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& spoke) const { return turn_.cross(spoke); }
+
+private:
+  std::uint32_t count_;
+  PointMotion courses_[3];
+  Eigen::Vector3d turn_;
+  double drift_ = 0.0, rim_ = 0.0, bend_ = 0.0;
+};
+
+/// Two of them, of which one at least is a triangle, seen from the second's centre.
+class MovingCornersPair {
+public:
+  MovingCornersPair(const CornersMotion& a, const CornersMotion& b)
+  : a_(a),
+    b_(b),
+    shift_(a.shift() - b.shift()),
+    center_(a.center() - b.center()),
+    drift_(a.drift() + b.drift()),
+    speed_((shift_.norm() + a.turningSpeed() + b.turningSpeed() + drift_) * kUp),
+    bend_((a.bend() + b.bend()) * kUp)
+  {
+  }
+
+  double distance = 0.0;
+  double closing = 0.0; ///< how fast it shrinks per unit of s; negative: how fast it grows
+  double speed() const { return speed_; }
+
+  void look(double s)
+  {
+    middle_ = center_ + s * shift_;
+    places_a_ = a_.at(s, middle_);
+    places_b_ = b_.at(s, Eigen::Vector3d::Zero());
+    apart_ = separationOf(places_a_, places_b_);
+    distance = apart_.high;
+    closing = -vectorOf(apart_.direction).dot(velocityOfA(apart_.place_a) - velocityOfB(apart_.place_b));
+  }
+
+  /// For this long they stay farther apart than `limit`, or than now: each pair of corners stays so along the direction
+  /// along which they are apart now, though the motion turns.
+  double safeStep(double limit) const
+  {
+    const double gap = distance - limit;
+    const Eigen::Vector3d direction = vectorOf(apart_.direction);
+    double step = infinity;
+    for (std::uint32_t i = 0; i < places_a_.count; ++i)
+      for (std::uint32_t j = 0; j < places_b_.count; ++j) {
+        const Eigen::Vector3d p = vectorOf(places_a_.at[i]), q = vectorOf(places_b_.at[j]);
+        const double between = direction.dot(p - q) - std::min(limit, apart_.low);
+        const double leaving = direction.dot(velocityOfA(places_a_.at[i]) - velocityOfB(places_b_.at[j])) - drift_;
+        step = std::min(step, stepOf(between, leaving));
+      }
+    return gap > 0.0 && speed_ > 0.0 ? std::max(step, gap / speed_) : step;
+  }
+
+private:
+  static constexpr double kUp = 1.0 + 0x1p-40;
+
+  double stepOf(double gap, double slope) const
+  {
+    if (gap > 0.0) return firstRoot(gap, slope, bend_);
+    if (bend_ > 0.0) return slope > 0.0 ? 2.0 * slope / bend_ : 0.0;
+    return slope >= 0.0 ? infinity : 0.0;
+  }
+
+  Eigen::Vector3d velocityOfA(const Point3& place) const { return shift_ + a_.velocityAt(vectorOf(place) - middle_); }
+  Eigen::Vector3d velocityOfB(const Point3& place) const { return b_.velocityAt(vectorOf(place)); }
+
+  const CornersMotion &a_, &b_;
+  Eigen::Vector3d shift_, center_;
+  double drift_;        // of both, per unit of s
+  double speed_, bend_; // no two places approach faster; nor is their acceleration larger
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Corners places_a_ = {}, places_b_ = {};
+  Separation apart_;
+};
+
+/// In steps that are safe.
+template <class MovingPair>
+std::optional<double> advance(MovingPair& moving, const ContactZone& zone, double begin, double end)
+{
   moving.look(begin);
   bool inside = moving.distance <= zone.outer(); // from the start
   // Steps lead to between this and outer, so that a halted pair still has some distance to inner.
@@ -159,6 +251,54 @@ std::optional<double> timeOfContact(const RigidMotion& motion_a, const Eigen::Ve
     }
     if (!inside && moving.distance <= zone.outer()) return s;
   }
+}
+
+} // namespace
+
+std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift, const ContactZone& zone)
+{
+  const double along = apart.dot(shift), length2 = shift.squaredNorm();
+  if (!(along < 0.0) || length2 == 0.0) return std::nullopt; // no nearer than now
+  const double now = apart.norm();
+  const bool inside = now <= zone.outer();
+  const double pass = inside ? zone.floor(now) : zone.inner(), halt = inside ? pass : zone.outer();
+  const double closest = -along / length2;
+  if ((apart + std::min(1.0, closest) * shift).squaredNorm() >= pass * pass) return std::nullopt;
+  // Back from the closest approach by half a chord. The usual root of |apart + s shift| = halt takes a difference of
+  // squares of the whole length, which is mostly rounding where that is long and the zone thin.
+  const double across = (apart + closest * shift).norm();
+  const double half = std::sqrt(std::max(0.0, (halt - across) * (halt + across) / length2));
+  return std::clamp(closest - half, 0.0, 1.0);
+}
+
+Corners placedBy(const Eigen::Isometry3d& pose, const Corners& corners)
+{
+  Corners placed{{}, corners.count};
+  for (std::uint32_t i = 0; i < corners.count; ++i) {
+    const Eigen::Vector3d place = pose * vectorOf(corners.at[i]);
+    placed.at[i] = {place[0], place[1], place[2]};
+  }
+  return placed;
+}
+
+std::optional<double> timeOfContact(const RigidMotion& motion_a, const Corners& a, const RigidMotion& motion_b,
+                                    const Corners& b, const ContactZone& zone, double begin, double end)
+{
+  if (a.count > 1 || b.count > 1) {
+    const CornersMotion moving_a(motion_a, a), moving_b(motion_b, b);
+    MovingCornersPair moving(moving_a, moving_b);
+    return advance(moving, zone, begin, end);
+  }
+  const Eigen::Vector3d p = vectorOf(a.at[0]), q = vectorOf(b.at[0]);
+  if (!motion_a.turns() && !motion_b.turns()) {
+    const Eigen::Vector3d apart = motion_a.at(begin) * p - motion_b.at(begin) * q;
+    const auto s = timeOfContact(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
+    if (!s) return std::nullopt;
+    return begin + *s * (end - begin);
+  }
+  const PointMotion course_a = motion_a.motionOf(p), course_b = motion_b.motionOf(q);
+  MovingPointPair moving(course_a, course_b, end);
+  return advance(moving, zone, begin, end);
 }
 
 } // namespace pcl_bsh

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/separation.h>
 
 #include <optional>
 
@@ -37,10 +38,13 @@ struct ContactZone {
 std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift,
                                     const ContactZone& zone);
 
-/// Points p and q, given in their objects' frames, on their motions, for s from `begin` to `end`. Conservative
+/// Points or triangles, given in their objects' frames, on their motions, for s from `begin` to `end`. Conservative
 /// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
-/// two points hardly come nearer, steps grow with the square root of what is left.
-std::optional<double> timeOfContact(const RigidMotion& motion_a, const Eigen::Vector3d& p, const RigidMotion& motion_b,
-                                    const Eigen::Vector3d& q, const ContactZone& zone, double begin, double end);
+/// two of them hardly come nearer, steps grow with the square root of what is left.
+std::optional<double> timeOfContact(const RigidMotion& motion_a, const Corners& a, const RigidMotion& motion_b,
+                                    const Corners& b, const ContactZone& zone, double begin, double end);
+
+/// Corners as a pose places them.
+Corners placedBy(const Eigen::Isometry3d& pose, const Corners& corners);
 
 } // namespace pcl_bsh

@@ -98,7 +98,7 @@ private:
     for (const PointPair pair : found.pairs) {
       const std::optional<ContactZone> near = zone(pair);
       if (!near) continue;
-      const auto s = timeOfContact(a_.motion, a_.point(pair.a), b_.motion, b_.point(pair.b), *near, begin,
+      const auto s = timeOfContact(a_.motion, a_.corners(pair.a), b_.motion, b_.corners(pair.b), *near, begin,
                                    earliest ? earliest->s : end);
       if (s && (!earliest || *s < earliest->s || (*s == earliest->s && pair < earliest->pair)))
         earliest = PairContact{*s, pair};
@@ -140,9 +140,9 @@ private:
       if (flag_a != Verdict::free && flag_b != Verdict::free) continue;
       const std::optional<ContactZone> near = zone(pair);
       if (!near) continue;
-      const Eigen::Vector3d p = a_.point(pair.a), q = b_.point(pair.b);
-      const double now = (a_.motion.at(begin) * p - b_.motion.at(begin) * q).norm();
-      if (now <= near->inner() || timeOfContact(a_.motion, p, b_.motion, q, *near, begin, end))
+      const Corners a = a_.corners(pair.a), b = b_.corners(pair.b);
+      const double now = separationOf(placedBy(a_.motion.at(begin), a), placedBy(b_.motion.at(begin), b)).high;
+      if (now <= near->inner() || timeOfContact(a_.motion, a, b_.motion, b, *near, begin, end))
         flag_a = flag_b = Verdict::colliding;
     }
   }

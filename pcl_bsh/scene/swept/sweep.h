@@ -2,6 +2,7 @@
 // Two moving parts: when they first collide, and which of their points collide at all.
 #pragma once
 
+#include <pcl_bsh/hierarchy/record_corners.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/scene/swept/conservative_advancement.h>
@@ -19,12 +20,8 @@ struct SweptPart {
 
   Placed at(double s) const { return {hierarchy, motion.at(s) * pose}; }
 
-  /// A point in the object's frame.
-  Eigen::Vector3d point(std::uint32_t record) const
-  {
-    const Point3 p = hierarchy.view().point(record);
-    return pose * Eigen::Vector3d(p[0], p[1], p[2]);
-  }
+  /// A point, or a triangle, in the object's frame.
+  Corners corners(std::uint32_t record) const { return placedBy(pose, cornersOf(hierarchy.view(), record)); }
 };
 
 struct PairContact {

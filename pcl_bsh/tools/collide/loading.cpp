@@ -23,7 +23,6 @@ void requireForSurface(const CollideOptions& options)
                                 " is a surface: give --vertices-only to ask about its vertices");
   };
   if (!options.clashes.empty()) refuse("--clashes");
-  if (options.distances) refuse("--distances");
   io::requireWritableMesh(options.output);
 }
 
@@ -54,8 +53,9 @@ const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsig
   return hierarchy;
 }
 
-std::size_t writeSurface(const CollideOptions& options, const Scan& input, const TrajectoryResult& found)
+std::size_t writeSurface(const CollideOptions& options, const Scan& input, const Answer& answer)
 {
+  const TrajectoryResult& found = answer.collisions;
   io::Mesh mesh{input.cloud(), *input.shape.triangles()};
   std::vector<std::uint8_t> kept(mesh.triangles.size(), 1);
   if (options.keep != Keep::flagged) {
@@ -64,12 +64,14 @@ std::size_t writeSurface(const CollideOptions& options, const Scan& input, const
     mesh.vertices = selectedRecords(mesh.vertices, keepUsedVertices(viewOf(mesh.vertices).count, mesh.triangles));
   }
   const auto flags = keptValues(numbersOf(found.flags), kept);
-  const auto distance = keptValues(found.distance, kept);
+  const std::vector<double>& measured = answer.distances.a.distance;
+  const auto distance =
+      keptValues(options.distances ? std::vector<float>(measured.begin(), measured.end()) : found.distance, kept);
   const auto first = keptValues(found.first_pose, kept), closest = keptValues(found.closest_pose, kept);
   std::vector<io::FaceField> fields;
   if (options.keep == Keep::flagged || options.moves()) fields.push_back({collision_field_name, &flags});
+  if (!distance.empty()) fields.push_back({distance_field_name, &distance});
   if (options.moves() && !found.distance.empty()) {
-    fields.push_back({distance_field_name, &distance});
     fields.push_back({first_pose_field_name, &first});
     fields.push_back({closest_pose_field_name, &closest});
   }

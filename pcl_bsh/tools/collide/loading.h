@@ -5,7 +5,7 @@
 #include "options.h"
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/trajectory/trajectory.h>
+#include <pcl_bsh/question/ask.h>
 
 #include <memory>
 #include <vector>
@@ -28,6 +28,6 @@ const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsig
 
 /// The mesh with what was found as properties of its faces, or the triangles that are kept.
 /// @return how many triangles were written
-std::size_t writeSurface(const CollideOptions& options, const Scan& input, const TrajectoryResult& found);
+std::size_t writeSurface(const CollideOptions& options, const Scan& input, const Answer& answer);
 
 } // namespace pcl_bsh::cli

@@ -34,9 +34,9 @@ std::string distanceSummary(const io::DistanceReport& report)
     return text.str();
   };
   const DistanceStatistics& statistics = report.input.statistics;
-  return "; distances of " + counted(statistics.count, "point") + ": mean " + length(statistics.mean) + ", RMS " +
-         length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
-         "; Hausdorff distance " + length(report.hausdorff);
+  return "; distances of " + counted(statistics.count, report.input.part) + ": mean " + length(statistics.mean) +
+         ", RMS " + length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " +
+         length(statistics.maximum) + "; Hausdorff distance " + length(report.hausdorff);
 }
 
 } // namespace

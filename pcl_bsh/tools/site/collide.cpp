@@ -83,7 +83,8 @@ public:
         site::collisionFlags(asking.site, placed_, Side::both, asking.request, asking.out.flags());
     putCounts(asking.report, "", found.colliding, found.undecided);
     file_.write(found.b, asking.options);
-    putCounts(asking.report, "_of_obstacle", countOf(found.b, Verdict::colliding), countOf(found.b, Verdict::undecided));
+    putCounts(asking.report, "_of_obstacle", countOf(found.b, Verdict::colliding),
+              countOf(found.b, Verdict::undecided));
     return found;
   }
 

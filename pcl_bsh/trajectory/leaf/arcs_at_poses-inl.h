@@ -28,7 +28,8 @@ public:
     tree_(query.boxes),
     results_(results),
     at_pose_(at_pose),
-    summing_(query.request.pose_summaries && query.nearestDecides() && voxel_frame.frame.unit == 1.0),
+    summing_(query.request.pose_summaries && query.of_points && query.nearestDecides() &&
+             voxel_frame.frame.unit == 1.0),
     surely_(std::sqrt(voxel_frame.band.hit) * (1.0f - kRadiusMargin))
   {
   }

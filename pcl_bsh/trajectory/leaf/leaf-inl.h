@@ -9,6 +9,7 @@
 #endif
 
 #include <pcl_bsh/trajectory/leaf/arcs_at_poses-inl.h>
+#include <pcl_bsh/trajectory/leaf/record_leaf-inl.h>
 #include <pcl_bsh/trajectory/leaf/swept_leaf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -34,7 +35,8 @@ public:
     results_(results),
     swept_(query, voxel_frame, results),
     at_pose_(query, voxel_frame, results),
-    on_arcs_(query, voxel_frame, results, at_pose_)
+    on_arcs_(query, voxel_frame, results, at_pose_),
+    records_(query, voxel_frame, results, at_pose_)
   {
   }
 
@@ -61,6 +63,7 @@ public:
         leaf.lowerReach(voxel_frame_, i, results_.best[points.begin + i].reach, motion);
     ++results_.work.volumes_carried;
     at_pose_.beginVisit(motion);
+    records_.beginVisit();
     if (motion.at_rest && query_.everything())
       nearestFirst(candidates, points, motion);
     else
@@ -117,9 +120,12 @@ private:
     const ModelBox box = boxes[static_cast<std::uint32_t>(std::countr_zero(boxes.lanes))];
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(leaf.open));
     const auto& at = leaf.segments.start;
-    const std::uint32_t points = leaf.open & leaf.nearBox(at[0], at[1], at[2], box);
+    std::uint32_t points = leaf.open & leaf.nearBox(at[0], at[1], at[2], box);
+    if (!query_.of_points) points = records_.mayMeet(leaf, points, box, motion);
     if (points == 0) return;
-    if (box.isLeaf())
+    if (box.isLeaf() && !query_.of_points)
+      records_.compare(leaf, rangesAt(points, motion), box, motion);
+    else if (box.isLeaf())
       at_pose_.compare(leaf, points, box, motion.interval->first, motion);
     else if (model_.isBlunt(box, motion))
       at_pose_.meetInDoubles(leaf, points, box, motion.interval->first, motion);
@@ -170,6 +176,7 @@ private:
                        const VoxelMotion& motion)
   {
     lanes &= leaf.open;
+    if (!query_.of_points) lanes = records_.mayMeet(leaf, lanes, box, motion);
     if (lanes == 0) return;
     if (!box.isLeaf()) {
       if (!model_.mayOpen(box)) return leaveUndecided(leaf, lanes);
@@ -191,6 +198,7 @@ private:
   HWY_INLINE void comparePoses(LeafVisit& leaf, std::uint32_t lanes, ClippedSegments<kLeafPoints>& clipped,
                                const ModelBox& box, const VoxelMotion& motion)
   {
+    if (!query_.of_points) return records_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
     const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
     if (narrows && on_arcs_.areFor(motion))
       return on_arcs_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
@@ -236,6 +244,7 @@ private:
   SweptLeaf swept_;
   LeafAtPose at_pose_;
   ArcsAtPoses on_arcs_;
+  RecordLeaf records_;
   std::vector<Siblings> near_; // what the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with

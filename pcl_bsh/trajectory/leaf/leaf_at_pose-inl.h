@@ -46,7 +46,7 @@ public:
   /// Of pairs of points with uncertainties of their own.
   const UncertainReach& reach() const { return reach_; }
 
-  /// Two leaves at pose k: by float bands, and exactly within the bands.
+  /// Two leaves of points at pose k: by float bands, and exactly within the bands.
   void compare(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k, const VoxelMotion& motion)
   {
     if (!met_.empty() && (lanes &= ~metBefore(box.voxel, k, motion)) == 0) return;
@@ -56,8 +56,7 @@ public:
     const BoxLeaf other = box.points(tree_);
     const double unit = tree_.unit(box.voxel);
     const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
-    bool certain = (query_.everything() ? query_.nearestDecides() : query_.radii == 0.0) && unit == 1.0 &&
-                   voxel_frame_.frame.unit == 1.0;
+    bool certain = (!query_.everything() || query_.nearestDecides()) && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
@@ -117,7 +116,8 @@ public:
       if (!met.collides) continue;
       noteHits(leaf, 1u << i, k, motion);
       if (!query_.everything() || !query_.nearestDecides()) continue;
-      const float reach = roundUp(std::nextafter(met.gap, std::numeric_limits<double>::infinity()));
+      // Boxes hold balls: none is nearer than at 0, however deep these reach into each other.
+      const float reach = std::max(0.0f, roundUp(std::nextafter(met.gap, std::numeric_limits<double>::infinity())));
       if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
       if (point.for_pose) results_.lowerPoseLimit(k, std::numeric_limits<float>::infinity(), reach);
       if (!best) continue;
@@ -136,6 +136,21 @@ public:
       if (hits != 0)
         results_.countPose(motion.interval->first + static_cast<std::uint32_t>(i),
                            points > leaf.points.count ? points : hits);
+    }
+  }
+
+  /// The points in `hit` collide at pose k.
+  void noteHits(LeafVisit& leaf, std::uint32_t hit, std::uint32_t k, const VoxelMotion& motion)
+  {
+    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
+    if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
+    if (query_.request.pose_summaries) {
+      std::uint16_t& at = pose_hits_[k - motion.interval->first];
+      at = static_cast<std::uint16_t>(at | hit);
+    }
+    for (std::uint32_t bits = query_.first ? hit : 0; bits != 0; bits &= bits - 1) {
+      double& first = results_.first[leaf.points.begin + static_cast<std::uint32_t>(std::countr_zero(bits))];
+      first = std::min(first, static_cast<double>(k));
     }
   }
 
@@ -166,21 +181,6 @@ private:
     const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, at.x, at.y, at.z);
     return leaf.nearBox(at.x, at.y, at.z, box);
-  }
-
-  /// The points in `hit` collide at pose k.
-  void noteHits(LeafVisit& leaf, std::uint32_t hit, std::uint32_t k, const VoxelMotion& motion)
-  {
-    results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | hit);
-    if (!query_.everything() && (!query_.first || k == motion.interval->first)) leaf.open &= ~hit;
-    if (query_.request.pose_summaries) {
-      std::uint16_t& at = pose_hits_[k - motion.interval->first];
-      at = static_cast<std::uint16_t>(at | hit);
-    }
-    for (std::uint32_t bits = query_.first ? hit : 0; bits != 0; bits &= bits - 1) {
-      double& first = results_.first[leaf.points.begin + static_cast<std::uint32_t>(std::countr_zero(bits))];
-      first = std::min(first, static_cast<double>(k));
-    }
   }
 
   /// Which of the points met all of a voxel of the model at pose k before, as far as is remembered: its boxes hold

@@ -24,6 +24,7 @@ struct LeafVisit {
   Segments<kLeafPoints> segments;
   Segment around;
   alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
+  alignas(64) float own[kLeafPoints] = {};     ///< radii, of balls or of what holds triangles
 
   /// Sets the arcs of its points, and what is around them. @param bound as LeafWalk::compare() has it
   void begin(const VoxelInModelFrame& voxel_frame, const VoxelMotion& motion, float bound)
@@ -35,15 +36,21 @@ struct LeafVisit {
     segments.set(from, to, bow, motion.smallest);
     std::fill(segments.reach[0], segments.reach[0] + kLeafPoints, motion.reach);
     std::fill(near_squared, near_squared + kLeafPoints, voxel_frame.nearSquared(motion, bound));
-    alignas(64) const float no_extent[3][kLeafPoints] = {};
-    around = voxel_frame.aroundSegments(motion, from, to, bow, no_extent, points.count);
+    alignas(64) float extent[3][kLeafPoints] = {};
+    for (std::uint32_t i = 0; points.voxel->radii && i < points.count; ++i) {
+      own[i] = roundUp(points.radius(i) * (1.0 + voxel_frame.path.skew) * (1.0 + kDoubleMargin));
+      for (float(&along)[kLeafPoints] : extent) along[i] = own[i];
+      segments.reach[0][i] = voxel_frame.reachOf(motion, motion.reach, own[i]);
+      near_squared[i] = voxel_frame.nearSquared(motion, bound, own[i]);
+    }
+    around = voxel_frame.aroundSegments(motion, from, to, bow, extent, points.count);
   }
 
   /// From now on, what is farther from a point than the best does not matter, during the motion.
   void lowerReach(const VoxelInModelFrame& voxel_frame, std::uint32_t i, float best, const VoxelMotion& motion)
   {
-    segments.reach[0][i] = std::min(segments.reach[0][i], voxel_frame.reachOf(motion, best));
-    if (motion.at_rest) near_squared[i] = std::min(near_squared[i], voxel_frame.nearSquared(motion, best));
+    segments.reach[0][i] = std::min(segments.reach[0][i], voxel_frame.reachOf(motion, best, own[i]));
+    if (motion.at_rest) near_squared[i] = std::min(near_squared[i], voxel_frame.nearSquared(motion, best, own[i]));
   }
 
   /// Bits of the points, seen at these places at one pose, to which something in a box may matter.

@@ -22,7 +22,7 @@ struct PointSegment {
   }
 
   /// Of the point to one of the model.
-  ClosestApproach approachTo(const TrajectoryQuery& query, std::uint32_t record, double near_enough) const
+  Approach approachTo(const TrajectoryQuery& query, std::uint32_t record, double near_enough) const
   {
     Point3 at = query.model.view().point(record);
     for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= query.boxes.origin[axis];

@@ -53,6 +53,18 @@ inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoint
   return ranges;
 }
 
+/// Of points in `lanes`, at one pose.
+inline PoseRanges rangesAt(std::uint32_t lanes, const VoxelMotion& motion)
+{
+  PoseRanges ranges;
+  ranges.lanes = lanes;
+  std::fill(ranges.first, ranges.first + kLeafPoints, motion.interval->first);
+  std::fill(ranges.last, ranges.last + kLeafPoints, motion.interval->first);
+  ranges.begin = motion.interval->first;
+  ranges.end = ranges.begin + 1;
+  return ranges;
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();

@@ -10,6 +10,7 @@
 
 #include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
+#include <pcl_bsh/trajectory/leaf/record_course.h>
 #include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 
@@ -30,8 +31,8 @@ public:
   {
   }
 
-  /// Points that move in straight lines against points at rest, in double. What that gets wrong is small against the
-  /// tolerance (checkTolerance()). Floats say first which of the pairs can change an answer.
+  /// Points, or triangles, that move in straight lines against those at rest, in double. What that gets wrong is small
+  /// against the tolerance (checkTolerance()). Floats say first which of the pairs can change an answer.
   /// @param clipped during which part of the interval each may be near
   void compare(LeafVisit& leaf, std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
                const VoxelMotion& motion)
@@ -44,15 +45,19 @@ public:
       if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
       pass(leaf, i, other, box, motion);
       std::optional<PointSegment> segment;
+      std::optional<RecordCourse> course; // of what is not points
       for (std::uint32_t left = mattering(leaf, i, passages_.near, motion); left != 0;) {
         const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
         left &= left - 1;
-        if (!segment) segment.emplace(query_, leaf.points.record(i), *motion.interval);
         const PointPair pair{leaf.points.record(i), other.record(j)};
+        if (query_.of_points && !segment) segment.emplace(query_, pair.a, *motion.interval);
+        if (!query_.of_points && !course) course.emplace(query_, pair.a, *motion.interval);
         ++results_.work.exact_decisions;
         const double near_enough = query_.nearEnough(pair);
         if (near_enough < 0.0) continue;
-        const ClosestApproach approach = segment->approachTo(query_, pair.b, near_enough);
+        const Approach approach =
+            segment ? segment->approachTo(query_, pair.b, near_enough)
+                    : course->approachTo(query_, pair.b, *motion.interval, near_enough, query_.closest);
         if (!approach.contact) continue;
         if (query_.witness) return keepWitness(leaf, pair);
         keep(leaf, i, pair, approach, begin, steps);
@@ -77,7 +82,7 @@ private:
   void pass(const LeafVisit& leaf, std::uint32_t i, const BoxLeaf& other, const ModelBox& box,
             const VoxelMotion& motion)
   {
-    if (!motion.squares || tree_.unit(box.voxel) != 1.0) {
+    if (!query_.of_points || !motion.squares || tree_.unit(box.voxel) != 1.0) {
       passages_ = {firstBits(other.count), {}, {}};
       return;
     }
@@ -105,8 +110,8 @@ private:
   }
 
   /// A pair that comes near enough.
-  void keep(const LeafVisit& leaf, std::uint32_t i, const PointPair& pair, const ClosestApproach& approach,
-            double begin, double steps)
+  void keep(const LeafVisit& leaf, std::uint32_t i, const PointPair& pair, const Approach& approach, double begin,
+            double steps)
   {
     const std::uint32_t point = leaf.points.begin + i;
     results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
@@ -114,10 +119,10 @@ private:
     first = std::min(first, begin + steps * approach.enter);
     results_.earliest = std::min(results_.earliest, first);
     if (!query_.closest) return;
-    const double radii = query_.scan.hierarchy().view().radius(pair.a) + query_.model.view().radius(pair.b);
+    const double radii = query_.scan.hierarchy().view().ownRadius(pair.a) + query_.model.view().ownRadius(pair.b);
     NearestPoint& best = results_.best[point];
     consider(best, approach.distance - radii, begin + steps * approach.at, pair.b);
-    if (query_.radii == 0.0) best.reach = std::min(best.reach, roundUp(best.gap));
+    best.reach = std::min(best.reach, roundUp(std::max(0.0, best.gap)));
   }
 
   void keepWitness(LeafVisit& leaf, const PointPair& pair)

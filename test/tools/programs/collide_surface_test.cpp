@@ -201,6 +201,20 @@ TEST_F(CollideSurface, AnInputWithFacesFlagsItsTriangles)
   EXPECT_THAT(before, HasSubstr("0 of 8 points collide"));
 }
 
+TEST_F(CollideSurface, ItsTrianglesHaveDistances)
+{
+  folder.write("point.xyz", "1.5 1 2.5\n");
+  EXPECT_THAT(collideOutput("crate.off point.xyz out.ply --distances --report report.json"),
+              HasSubstr("distances of 12 triangles: "));
+  const io::Mesh mesh = io::readMesh(folder / "out.ply");
+  ASSERT_EQ(mesh.face_values.back().name, "distance");
+  const std::vector<double>& distances = mesh.face_values.back().values;
+  ASSERT_EQ(distances.size(), 12u);
+  EXPECT_EQ(*std::min_element(distances.begin(), distances.end()), 0.5);
+  EXPECT_EQ(*std::max_element(distances.begin(), distances.end()), 2.5) << "of the bottom";
+  EXPECT_TRUE(json("report.json")["distances"]["input_to_obstacle"]["places"][0].contains("triangle"));
+}
+
 TEST_F(CollideSurface, ItsTrianglesAreFlaggedAlongAPath)
 {
   folder.write("point.xyz", "1.5 1 0\n");
@@ -215,7 +229,7 @@ TEST_F(CollideSurface, ItsTrianglesAreFlaggedAlongAPath)
 TEST_F(CollideSurface, AnInputWithFacesRefusesWhatIsAboutPoints)
 {
   for (const std::string job : {"out.pcd --clearance 0.1", "out.ply --clearance 0.1 --clashes list.json",
-                                "out.ply --distances", "out.ply --clearance 0.1 --uncertainty sigma"}) {
+                                "out.ply --clearance 0.1 --uncertainty sigma"}) {
     const Outcome done = collide("crate.off scan.xyz " + job);
     EXPECT_EQ(done.exit_code, 1) << job;
     EXPECT_THAT(done.err, testing::AnyOf(HasSubstr("--vertices-only"), HasSubstr("write a .ply file"))) << job;

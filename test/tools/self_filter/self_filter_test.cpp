@@ -184,7 +184,8 @@ TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfEachSolid)
   for (const Shape& shape : {Shape{Box{{2, 3, 4}}, pose}, Shape{Cylinder{1, 3}, pose}, Shape{Sphere{1.5}, pose}}) {
     std::vector<Vector3d> points;
     for (double along = -0.75; along <= 0.75; along += 0.125) points.push_back(pose * Vector3d(0.2, along, 0.3));
-    for (const Verdict flag : flags(shape, {0.02, 1}, points)) EXPECT_EQ(flag, Verdict::colliding) << shape.form.index();
+    for (const Verdict flag : flags(shape, {0.02, 1}, points))
+      EXPECT_EQ(flag, Verdict::colliding) << shape.form.index();
   }
 }
 

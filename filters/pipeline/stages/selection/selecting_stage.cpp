@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/filters/pipeline/stages/faces.h>
 #include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
 #include <pcl_bsh/filters/removed_points.h>
 #include <pcl_bsh/filters/selected_records.h>
@@ -36,6 +37,15 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
   output->face_properties.clear();
   overwritePoints(output->cloud, removed, filterValue());
   return output;
+}
+
+StageCloudPtr SelectingStage::keepFaces(const StageCloud& mesh, std::vector<std::uint8_t> passes) const
+{
+  if (keep_organized)
+    throw OptionError("keep_organized", "is about points, and the input is a surface: leave it out, or give "
+                                        "`vertices_only`: true");
+  for (std::uint8_t& kept : passes) kept = (kept != 0) != negative;
+  return keptFaces(mesh, passes);
 }
 
 } // namespace pcl_bsh::pipeline

@@ -26,6 +26,9 @@ struct SelectingStage : Stage, SelectionOptions {
   StageCloudPtr run(StageClouds&& inputs) override;
 
 protected:
+  /// The triangles that pass, and the vertices that they use. @throws OptionError for `keep_organized`
+  StageCloudPtr keepFaces(const StageCloud& mesh, std::vector<std::uint8_t> passes) const;
+
   /// One per record: 1 for what the stage lets pass when `negative` is false. What it says of points that are not
   /// finite does not count.
   virtual std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) = 0;

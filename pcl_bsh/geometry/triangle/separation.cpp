@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/triangle/separation.h>
+
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
+
+/// Of a distance, or of a span along a direction, relative to the largest coordinate: some thirty roundings.
+constexpr double kSeparationError = 64 * kDoubleUnit;
+
+double clampedShare(double part, double whole)
+{
+  return whole > 0.0 ? std::min(std::max(part / whole, 0.0), 1.0) : 0.0; // not std::clamp: of NaN, it makes NaN
+}
+
+/// Keeps the nearest of the pairs of places it is offered.
+class NearestPlaces {
+public:
+  explicit NearestPlaces(Separation& into) : into_(into) {}
+
+  void offer(const Point3& a, const Point3& b)
+  {
+    const Point3 between = a - b;
+    const double squared = dot(between, between);
+    if (!(squared < squared_)) return;
+    squared_ = squared;
+    into_.place_a = a;
+    into_.place_b = b;
+  }
+
+  double squared() const { return squared_; }
+
+private:
+  Separation& into_;
+  double squared_ = kInfinitelyFar;
+};
+
+Point3 onEdge(const Point3& p, const Point3& start, const Point3& end)
+{
+  const Point3 way = end - start;
+  return start + clampedShare(dot(p - start, way), dot(way, way)) * way;
+}
+
+/// The place of a triangle's inside that is below or above a point; nothing where there is none.
+/// @param offer called with the place
+template <class Offer>
+void onFace(const Point3& p, const Triangle3& t, const Offer& offer)
+{
+  const Point3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
+  const Point3 normal = cross(u, v);
+  const double square = dot(normal, normal);
+  if (!(square > 0.0)) return;
+  const double on_v = dot(normal, cross(u, w)) / square, on_u = dot(normal, cross(w, v)) / square;
+  if (!(on_u > 0.0 && on_v > 0.0 && on_u + on_v < 1.0)) return;
+  offer(t[0] + on_u * u + on_v * v);
+}
+
+void offerEdges(const Point3& a, const Point3& end_a, const Point3& b, const Point3& end_b, NearestPlaces& nearest)
+{
+  const Point3 way_a = end_a - a, way_b = end_b - b, between = a - b;
+  const double aa = dot(way_a, way_a), bb = dot(way_b, way_b), ab = dot(way_a, way_b);
+  const double on_a = dot(way_a, between), on_b = dot(way_b, between);
+  double s = clampedShare(ab * on_b - on_a * bb, aa * bb - ab * ab);
+  const double t = clampedShare(ab * s + on_b, bb);
+  s = clampedShare(ab * t - on_a, aa);
+  nearest.offer(a + s * way_a, b + t * way_b);
+}
+
+/// The place where an edge of one triangle passes through the other.
+/// @param offer called with the place
+template <class Offer>
+void wherePierced(const Triangle3& edges, const Triangle3& t, const Offer& offer)
+{
+  const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  double heights[3];
+  for (std::size_t i = 0; i < 3; ++i) heights[i] = dot(normal, edges[i] - t[0]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if (!(heights[i] > 0.0 && heights[next] < 0.0) && !(heights[i] < 0.0 && heights[next] > 0.0)) continue;
+    const double share = heights[i] / (heights[i] - heights[next]);
+    const Point3 at = edges[i] + share * (edges[next] - edges[i]);
+    onFace(at, t, [&](const Point3& place) { offer(at, place); });
+  }
+}
+
+void findNearest(const Corners& a, const Corners& b, NearestPlaces& nearest)
+{
+  if (a.count == 1 && b.count == 1) return nearest.offer(a.at[0], b.at[0]);
+  if (b.count == 3)
+    for (std::size_t i = 0; i < a.count; ++i)
+      onFace(a.at[i], b.at, [&](const Point3& place) { nearest.offer(a.at[i], place); });
+  if (a.count == 3)
+    for (std::size_t j = 0; j < b.count; ++j)
+      onFace(b.at[j], a.at, [&](const Point3& place) { nearest.offer(place, b.at[j]); });
+  if (a.count == 1)
+    for (std::size_t j = 0; j < 3; ++j) nearest.offer(a.at[0], onEdge(a.at[0], b.at[j], b.at[(j + 1) % 3]));
+  else if (b.count == 1)
+    for (std::size_t i = 0; i < 3; ++i) nearest.offer(onEdge(b.at[0], a.at[i], a.at[(i + 1) % 3]), b.at[0]);
+  else {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) offerEdges(a.at[i], a.at[(i + 1) % 3], b.at[j], b.at[(j + 1) % 3], nearest);
+    wherePierced(a.at, b.at, [&](const Point3& on_a, const Point3& on_b) { nearest.offer(on_a, on_b); });
+    wherePierced(b.at, a.at, [&](const Point3& on_b, const Point3& on_a) { nearest.offer(on_a, on_b); });
+  }
+}
+
+/// A number of a corner's motion: at s, from + s way + 4 s (1 - s) bow.
+struct Course {
+  double from, way, bow;
+
+  double at(double s) const { return from + s * way + 4.0 * s * (1.0 - s) * bow; }
+
+  double least(double begin, double end) const
+  {
+    double value = std::min(at(begin), at(end));
+    if (bow < 0.0) { // it has a least place of its own
+      const double foot = 0.5 + way / (8.0 * bow);
+      if (foot > begin && foot < end) value = std::min(value, at(foot));
+    }
+    return value;
+  }
+};
+
+Course along(const Point3& direction, const MovingCorners& corners, std::size_t i)
+{
+  return {dot(direction, corners.from[i]), dot(direction, corners.way[i]), dot(direction, corners.bow[i])};
+}
+
+double lengthOf(const Point3& v)
+{
+  return std::sqrt(dot(v, v));
+}
+
+/// No corner, nor anything between corners, goes faster.
+double speedOf(const MovingCorners& corners)
+{
+  double speed = 0.0;
+  for (std::size_t i = 0; i < corners.count; ++i)
+    speed = std::max(speed, lengthOf(corners.way[i]) + 4.0 * lengthOf(corners.bow[i]));
+  return speed;
+}
+
+/// Halves an interval until directions show that no instant in it matters, or it is so short that none differ.
+class ApproachSearch {
+public:
+  ApproachSearch(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest)
+  : a_(a),
+    b_(b),
+    near_enough_(near_enough),
+    resolution_(resolution),
+    shortest_(resolution / (speedOf(a) + speedOf(b))),
+    nearest_(nearest)
+  {
+  }
+
+  Approach run()
+  {
+    const Point3 direction = look(0.0);
+    if (nearest_ || !found_.contact) look(1.0);
+    if (matters(direction, 0.0, 1.0)) halve(0.0, 1.0);
+    return found_;
+  }
+
+private:
+  /// @return the direction along which both are apart at this instant
+  Point3 look(double s)
+  {
+    const Separation apart = separationOf(a_.at(s), b_.at(s));
+    if (apart.high <= near_enough_) {
+      if (!found_.contact || s < found_.enter) found_.enter = s;
+      if (!found_.contact || apart.high < found_.distance) {
+        found_.distance = apart.high;
+        found_.at = s;
+      }
+      found_.contact = true;
+    }
+    return apart.direction;
+  }
+
+  bool matters(const Point3& direction, double begin, double end) const
+  {
+    const double least = leastApart(direction, a_, b_, begin, end);
+    if (least > near_enough_) return false;
+    if (!found_.contact || begin < found_.enter) return true;
+    return nearest_ && least < found_.distance - resolution_;
+  }
+
+  void halve(double begin, double end)
+  {
+    if (!(end - begin > shortest_)) return;
+    const double middle = 0.5 * (begin + end);
+    if (!(middle > begin && middle < end)) return;
+    const Point3 direction = look(middle);
+    if (matters(direction, begin, middle)) halve(begin, middle);
+    if (matters(direction, middle, end)) halve(middle, end);
+  }
+
+  const MovingCorners &a_, &b_;
+  const double near_enough_, resolution_, shortest_;
+  const bool nearest_;
+  Approach found_;
+};
+
+} // namespace
+
+Separation separationOf(const Corners& a, const Corners& b)
+{
+  Separation apart;
+  NearestPlaces nearest(apart);
+  findNearest(a, b, nearest);
+  double largest = 0.0;
+  for (const Corners* corners : {&a, &b})
+    for (std::size_t i = 0; i < corners->count; ++i)
+      for (const double x : corners->at[i]) largest = std::max(largest, std::abs(x));
+  const double error = kSeparationError * largest, length = std::sqrt(nearest.squared());
+  apart.high = length * (1.0 + kFewDoubleRoundings) + error;
+  if (!(length > 0.0)) return apart;
+  apart.direction = (1.0 / length) * (apart.place_a - apart.place_b);
+  double low_a = kInfinitelyFar, high_b = -kInfinitelyFar;
+  for (std::size_t i = 0; i < a.count; ++i) low_a = std::min(low_a, dot(apart.direction, a.at[i]));
+  for (std::size_t j = 0; j < b.count; ++j) high_b = std::max(high_b, dot(apart.direction, b.at[j]));
+  apart.low = std::max(0.0, (low_a - high_b) * (1.0 - kFewDoubleRoundings) - error);
+  return apart;
+}
+
+Corners MovingCorners::at(double s) const
+{
+  Corners corners{{}, count};
+  const double bent = 4.0 * s * (1.0 - s);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      corners.at[i][axis] = from[i][axis] + s * way[i][axis] + bent * bow[i][axis];
+  return corners;
+}
+
+double leastApart(const Point3& direction, const MovingCorners& a, const MovingCorners& b, double begin, double end)
+{
+  double low_a = kInfinitelyFar, high_b = -kInfinitelyFar, largest = 0.0;
+  for (std::size_t i = 0; i < a.count; ++i) low_a = std::min(low_a, along(direction, a, i).least(begin, end));
+  for (std::size_t j = 0; j < b.count; ++j) high_b = std::max(high_b, -along(-1.0 * direction, b, j).least(begin, end));
+  for (const MovingCorners* corners : {&a, &b})
+    for (std::size_t i = 0; i < corners->count; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        largest = std::max(largest, std::abs(corners->from[i][axis]) + std::abs(corners->way[i][axis]) +
+                                        std::abs(corners->bow[i][axis]));
+  return low_a - high_b - kSeparationError * largest;
+}
+
+Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest)
+{
+  return ApproachSearch(a, b, near_enough, resolution, nearest).run();
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far apart two points, or triangles, are in double arithmetic, and along which direction: what motion is bounded
+// by. Answers at poses are those of RecordDistance.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/geometry/triangle/triangle3.h>
+
+#include <cstdint>
+
+namespace pcl_bsh {
+
+/// What stands for a point, or for a closed triangle: all that lies between its corners.
+struct Corners {
+  Triangle3 at;
+  std::uint32_t count; ///< 1 or 3
+
+  static Corners of(const Point3& p) { return {{p, p, p}, 1}; }
+  static Corners of(const Triangle3& t) { return {t, 3}; }
+};
+
+struct Separation {
+  Point3 place_a, place_b;      ///< about nearest to each other; where both meet, about the same
+  Point3 direction = {0, 0, 0}; ///< of length 1, from b to a; 0 where they meet
+  double low = 0.0, high = 0.0; ///< the distance is between these, whatever rounding takes
+};
+
+/// Of corners in one frame, finite and below 2^300. `low` and `high` are as near to each other as rounding lets them,
+/// but for triangles so thin that their sides lie closer together than that.
+PCL_BSH_EXPORT_INTERNAL Separation separationOf(const Corners& a, const Corners& b);
+
+/// Corners that move, each on a parabola: at s in [0, 1] at from + s way + 4 s (1 - s) bow.
+struct MovingCorners {
+  Triangle3 from, way, bow;
+  std::uint32_t count;
+
+  Corners at(double s) const;
+};
+
+/// No less than this are both apart between two instants, along a direction of length 1; may be negative.
+PCL_BSH_EXPORT_INTERNAL double leastApart(const Point3& direction, const MovingCorners& a, const MovingCorners& b,
+                                          double begin, double end);
+
+/// When two of them come near.
+struct Approach {
+  bool contact = false;                         ///< whether they come near enough; the others are set only then
+  double distance = 0.0, at = 0.0, enter = 0.0; ///< the smallest one, when that is, and the first instant near enough
+};
+
+/// The distances at the instants are near enough, or the smallest, within `resolution`, which bounds the work, too.
+/// @param nearest whether the smallest distance counts; if not, only the first instant does
+PCL_BSH_EXPORT_INTERNAL Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough,
+                                            double resolution, bool nearest);
+
+} // namespace pcl_bsh

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Records of a leaf of the scan against records of the model where either are triangles, or have radii: at which poses
+// a pair collides, and when it is nearest.
+
+#if defined(PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_
+#undef PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_
+#else
+#define PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_
+#endif
+
+#include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
+#include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
+#include <pcl_bsh/trajectory/leaf/record_course.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// A pair is looked at at a pose in the middle. The direction along which it is apart there says of the poses before
+/// and after how near it may be; those that can matter are halved again. So a pair that passes takes a few looks,
+/// however many poses there are, and one that stays at a distance takes one for each pose at which that distance
+/// matters.
+class RecordLeaf {
+public:
+  RecordLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
+             LeafAtPose& at_pose)
+  : query_(query),
+    voxel_frame_(voxel_frame),
+    placing_(query.error(voxel_frame.origin)),
+    may_overlap_(areBalls(query.scan.hierarchy().view()) || areBalls(query.model.view())),
+    results_(results),
+    at_pose_(at_pose)
+  {
+  }
+
+  /// Before a leaf is compared during a motion.
+  void beginVisit() { known_ = 0; }
+
+  /// A leaf of the model, at the poses that bring it near.
+  void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
+  {
+    const BoxLeaf other = box.points(query_.boxes);
+    for (std::uint32_t j = 0; j < other.count; ++j) {
+      const MovingCorners model = restingAt(query_, other.record(j));
+      for (std::uint32_t bits = ranges.lanes & leaf.open; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        const PointPair pair{leaf.points.record(i), other.record(j)};
+        const auto [least, most] = query_.of_pairs.around(pair);
+        if (most < 0.0) continue;
+        const double radii = query_.scan.hierarchy().view().ownRadius(pair.a) + query_.model.view().ownRadius(pair.b);
+        ++results_.work.leaf_pairs;
+        halve({leaf, motion, courseOf(leaf, i, motion), model, pair, i, radii, least, most}, ranges.first[i],
+              ranges.last[i]);
+      }
+    }
+  }
+
+  /// Those of the points whose records may meet something in a box during the motion: of large ones, that their balls
+  /// reach it says little.
+  std::uint32_t mayMeet(const LeafVisit& leaf, std::uint32_t points, const ModelBox& box, const VoxelMotion& motion)
+  {
+    if (!query_.scan.hierarchy().view().triangles) return points;
+    const BoxEnds ends(box);
+    float half = 0.0f;
+    Point3 middle;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float side = 0.5f * (ends.high[axis] - ends.low[axis]);
+      middle[axis] = 0.5 * (static_cast<double>(ends.low[axis]) + ends.high[axis]);
+      half += side * side;
+    }
+    const double radius = std::sqrt(static_cast<double>(half)) * (1.0 + kRadiusMargin);
+    std::uint32_t met = points;
+    for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (leaf.own[i] < radius) continue;
+      const RecordCourse& course = courseOf(leaf, i, motion);
+      const Separation apart = separationOf(course.arcs.at(0.5), Corners::of(middle));
+      const double least = leastApart(apart.direction, course.arcs, restingAt(middle), 0.0, 1.0);
+      ++results_.work.node_pairs;
+      if (least - radius - motion.stray > seenOf(query_.reach)) met &= ~(1u << i);
+    }
+    return met;
+  }
+
+private:
+  /// A record of the scan and one of the model.
+  struct Pair {
+    LeafVisit& leaf;
+    const VoxelMotion& motion;
+    const RecordCourse& course;
+    const MovingCorners& model;
+    PointPair records;
+    std::uint32_t i;           ///< of the scan's
+    double radii, least, most; ///< their own; distances up to `least` collide, above `most` they do not
+
+    std::uint32_t point() const { return leaf.points.begin + i; }
+  };
+
+  const RecordCourse& courseOf(const LeafVisit& leaf, std::uint32_t i, const VoxelMotion& motion)
+  {
+    if ((known_ >> i & 1) == 0) courses_[i] = RecordCourse(query_, leaf.points.record(i), *motion.interval);
+    known_ |= 1u << i;
+    return courses_[i];
+  }
+
+  /// A distance seen by the model that is longer is longer than this.
+  double seenOf(double length) const { return length * (1.0 + query_.path.skew) * (1.0 + kDoubleMargin) + placing_; }
+  /// One that is seen is no longer than this.
+  double highOf(double seen) const { return (seen + placing_) * (1.0 + query_.path.skew) * (1.0 + kDoubleMargin); }
+
+  /// Up to which distance the pair matters from a pose on.
+  double mattering(const Pair& pair, std::uint32_t from) const
+  {
+    if (!results_.bestBounds(pair.point(), from) || !isHit(pair)) return pair.most;
+    return std::min(pair.most, results_.best[pair.point()].gap + pair.radii);
+  }
+
+  bool isHit(const Pair& pair) const { return (results_.hit[pair.leaf.slot] >> pair.i & 1) != 0; }
+
+  /// Whether nothing at these poses changes an answer. Contacts later than a known one do not, where only the first is
+  /// asked for. @param last is lowered to before that
+  bool isSettled(const Pair& pair, std::uint32_t first, std::uint32_t& last) const
+  {
+    if (query_.everything() || !isHit(pair)) return false;
+    if (!query_.first) return true;
+    const double known = results_.first[pair.point()];
+    if (known <= first) return true;
+    if (known <= last) last = static_cast<std::uint32_t>(known) - 1;
+    return false;
+  }
+
+  void halve(const Pair& pair, std::uint32_t first, std::uint32_t last)
+  {
+    if (isSettled(pair, first, last)) return;
+    const std::uint32_t middle = first + (last - first) / 2;
+    ++results_.work.node_pairs;
+    const Separation apart = separationOf(pair.course.seenAt(query_.path.poses[middle]), pair.model.at(0.0));
+    if (apart.low <= seenOf(pair.most)) look(pair, middle, apart);
+    if (middle > first && mayMatter(pair, apart.direction, first, middle - 1)) halve(pair, first, middle - 1);
+    if (middle < last && mayMatter(pair, apart.direction, middle + 1, last)) halve(pair, middle + 1, last);
+  }
+
+  bool mayMatter(const Pair& pair, const Point3& direction, std::uint32_t first, std::uint32_t last) const
+  {
+    const double begin = pair.motion.interval->first, steps = pair.motion.interval->last - begin;
+    const double least =
+        leastApart(direction, pair.course.arcs, pair.model, (first - begin) / steps, (last - begin) / steps);
+    return least - pair.motion.stray <= seenOf(mattering(pair, first));
+  }
+
+  /// At a pose at which the pair may collide.
+  void look(const Pair& pair, std::uint32_t k, const Separation& apart)
+  {
+    const bool for_pose = query_.request.pose_summaries && (may_overlap_ || results_.poseReach(k) > 0.0f);
+    const double low = (apart.low - placing_) * (1.0 - query_.path.skew) * (1.0 - kDoubleMargin) - pair.radii;
+    const double high = highOf(apart.high) - pair.radii;
+    const std::uint32_t step = k - pair.motion.interval->first;
+    const bool hit_before = query_.request.pose_summaries
+                                ? (at_pose_.hits()[step] >> pair.i & 1) != 0
+                                : isHit(pair) && (!query_.first || results_.first[pair.point()] <= k);
+    const bool for_point = query_.closest && isNearer(pair, k, low);
+    const bool matters_for_pose = for_pose && low <= static_cast<double>(results_.poseReach(k));
+    if (hit_before && !for_point && !matters_for_pose) return;
+    if (high + pair.radii > pair.least && !results_.collide(pair.records, k)) return;
+    at_pose_.noteHits(pair.leaf, 1u << pair.i, k, pair.motion);
+    if (for_point) considerForPoint(pair, k, high);
+    if (matters_for_pose) {
+      results_.considerPose(pair.records, k);
+      const bool least = isLeast(pair, k, high);
+      results_.lowerPoseLimit(k, std::numeric_limits<float>::infinity(), least ? 0.0f : roundUp(std::max(0.0, high)));
+    }
+  }
+
+  /// Whether the pair may be the nearest of its record.
+  bool isNearer(const Pair& pair, std::uint32_t k, double low) const
+  {
+    const NearestPoint& best = results_.best[pair.point()];
+    if (best.record == TrajectoryResult::kNoPoint) return true;
+    if (!best.meets) return low <= best.gap;
+    const auto best_pose = static_cast<std::uint32_t>(best.time); // nothing is nearer
+    return k < best_pose || (k == best_pose && pair.records.b < best.record);
+  }
+
+  void considerForPoint(const Pair& pair, std::uint32_t k, double high)
+  {
+    NearestPoint& best = results_.best[pair.point()];
+    results_.consider(best, pair.records, k);
+    best.gap = std::min(best.gap, high);
+    best.reach = std::min(best.reach, roundUp(std::max(0.0, high)));
+    const bool is_best = best.record == pair.records.b && best.time == k;
+    best.meets = best.meets || (is_best && isLeast(pair, k, high));
+    if (results_.bestBounds(pair.point(), pair.motion.interval->first))
+      pair.leaf.lowerReach(voxel_frame_, pair.i, best.reach, pair.motion);
+  }
+
+  static bool areBalls(const PointsView& view) { return view.radii && !view.triangles; }
+
+  /// Whether the pair meets, so that nothing is nearer.
+  bool isLeast(const Pair& pair, std::uint32_t k, double high) const
+  {
+    return !may_overlap_ && high <= 4 * placing_ && results_.meet(pair.records, k);
+  }
+
+  const TrajectoryQuery& query_;
+  const VoxelInModelFrame& voxel_frame_;
+  const double placing_;   ///< of a record as the model sees it, in double
+  const bool may_overlap_; ///< balls may, so that gaps are below 0
+  VoxelResults& results_;
+  LeafAtPose& at_pose_;
+  RecordCourse courses_[kLeafPoints];
+  std::uint32_t known_ = 0; ///< bits of those that are set
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

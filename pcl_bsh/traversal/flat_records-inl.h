@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Triangles of b laid flat in the frames of their voxels as a walk comes near to them, and nodes of a against them: a
+// thin triangle is not its ball.
+
+#if defined(PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_
+#undef PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_
+#else
+#define PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_
+#endif
+
+#include <pcl_bsh/geometry/triangle/flat_triangle.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/simd/triangle_lanes-inl.h>
+#include <pcl_bsh/traversal/leaf_pair-inl.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// Leaves whose largest ball is so many times as large as a node are asked for their triangles.
+inline constexpr double kLargeBall = 2.0;
+
+/// A triangle of a voxel in its frame.
+struct FlatRecord {
+  std::uint32_t record = kNoRecord;
+  double reach = 0.0; ///< of its corners, which may be beyond that of the frame
+  FlatTriangle<float> flat;
+
+  static constexpr std::uint32_t kNoRecord = 0xffffffffu;
+
+  /// By how much more than stored points it may be off, in the voxel's unit: what a frame says of its own reach does
+  /// not hold where poses turn what is beyond.
+  double error(const RelativeFrame& frame) const { return double{flat.error} + 2 * frame.skew() * reach; }
+
+  /// What its squared distances tell of a length, in the clouds' unit.
+  DistanceBand band(const RelativeFrame& frame, double length) const
+  {
+    return frame.band(length, error(frame), kFlatShare);
+  }
+};
+
+/// Those of one cloud that were asked for of late.
+class FlatRecords {
+public:
+  /// Before a walk.
+  void clear()
+  {
+    slots_.resize(kSlots);
+    for (FlatRecord& slot : slots_) slot.record = FlatRecord::kNoRecord;
+  }
+
+  /// @param frame of the voxel that holds the record. Valid until the next call
+  const FlatRecord& of(const PointsView& view, const LocalFrame& frame, std::uint32_t record)
+  {
+    FlatRecord& slot = slots_[record * 0x9e3779b1u >> (32 - kSlotBits)];
+    if (slot.record == record) return slot;
+    const Triangle3 corners = view.triangles->triangle(record);
+    slot.record = record;
+    slot.flat = flatten(frame, corners);
+    slot.reach = 0.0;
+    for (const Point3& corner : corners) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) sum += std::abs(corner[k] - frame.origin[k]) / frame.unit;
+      slot.reach = std::max(slot.reach, sum);
+    }
+    return slot;
+  }
+
+  std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(FlatRecord); }
+
+private:
+  static constexpr std::uint32_t kSlotBits = 10, kSlots = 1u << kSlotBits;
+
+  std::vector<FlatRecord> slots_;
+};
+
+/// Spheres of a's nodes in the frame of a voxel of b, eight lanes, and which of them lie within or beyond a length of
+/// triangles.
+struct LanesNear {
+  std::uint32_t near = 0;   ///< bits of those that one of the triangles may be near to
+  std::uint32_t inside = 0; ///< of those all of which is within the length of one triangle, for certain
+};
+
+/// Rounding of what follows: the shares of squaredToTriangle() and of its square, 20 u, and four products and sums.
+inline constexpr float kFlatMargin = 0x1p-18f;
+
+/// @param x, y, z, r of the spheres, r stretched. @param lanes those asked for. @param reach beyond which nothing is
+/// near, with the frame's error. @param sure_reach within which it is, less that; negative: nobody asks
+/// @param balls of the leaf: its triangles'. @param inverse of its voxel's unit
+template <class Triangles>
+HWY_NOINLINE LanesNear trianglesNear(const float* x, const float* y, const float* z, const float* r,
+                                     std::uint32_t lanes, const RelativeFrame& frame, float reach, float sure_reach,
+                                     std::uint32_t count, const Triangles& triangle)
+{
+  const LaneTag d;
+  LanesNear found;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    const FlatRecord& record = triangle(j);
+    alignas(64) float squared[kLanes];
+    squaredToTriangle(record.flat, x, y, z, kLanes, squared);
+    const float error = roundUp(record.error(frame));
+    const LaneVector more = hn::Set(d, 1.0f + kFlatMargin), less = hn::Set(d, 1.0f - kFlatMargin);
+    for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      const LaneVector s = hn::Load(d, squared + i), radius = hn::LoadU(d, r + i);
+      const LaneVector limit = hn::Mul(hn::Add(hn::Add(radius, hn::Set(d, reach)), hn::Set(d, error)), more);
+      const auto apart = hn::Gt(s, hn::Add(hn::Mul(limit, limit), hn::Set(d, kVanishingSquare)));
+      found.near |= (bitsOf(d, hn::Not(apart)) & ((1u << hn::Lanes(d)) - 1)) << i;
+      const LaneVector room =
+          hn::Mul(hn::Sub(hn::Set(d, sure_reach), hn::Mul(hn::Add(radius, hn::Set(d, error)), more)), less);
+      const auto within = hn::And(hn::Gt(room, hn::Zero(d)),
+                                  hn::Le(hn::Add(s, hn::Set(d, kVanishingSquare)), hn::Mul(hn::Mul(room, room), less)));
+      found.inside |= bitsOf(d, within) << i;
+    }
+    if ((lanes & ~(sure_reach > 0.0f ? found.inside : found.near)) == 0) break;
+  }
+  found.near &= lanes;
+  found.inside &= lanes;
+  return found;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
