@@ -43,6 +43,7 @@ enum class Input : std::uint8_t {
   max_distance, ///< of points' distances
   surface,      ///< its triangles, or the tolerance of its cover
   beyond,       ///< which distance points are far
+  seen,         ///< scans, their origins, the angle of their beams
 };
 
 /// Thrown by the core wherever its declarations say std::invalid_argument.

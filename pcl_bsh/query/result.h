@@ -15,8 +15,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Sparse: undecided, because the other cloud is not scanned densely enough there; only where a request asks for that.
-enum class Verdict : std::uint8_t { free, colliding, undecided, sparse };
+/// Sparse: undecided, because the other cloud is not scanned densely enough there. Unseen: it would be free, but no
+/// scanner saw that there is nothing. Both only where a request asks for that.
+enum class Verdict : std::uint8_t { free, colliding, undecided, sparse, unseen };
 
 /// Of two verdicts: colliding before undecided before sparse before free.
 constexpr Verdict graver(Verdict one, Verdict other) noexcept

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/seen/unseen_points.h>
+
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/seen/direction_cells.h>
+#include <pcl_bsh/seen/model_ball.h>
+#include <pcl_bsh/seen/storage.h>
+
+#include <algorithm>
+#include <string>
+
+namespace pcl_bsh {
+
+void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts)
+{
+  checkClearance(request.clearance);
+  checkPose("pose of the model", model.pose);
+  const std::size_t records = model.hierarchy().view().count;
+  if (verdicts == records) return;
+  throw InvalidInput(Input::result, "verdicts",
+                     "are " + std::to_string(verdicts) + " of " + std::to_string(records) + " points",
+                     "give one per record of the model");
+}
+
+namespace brute_force {
+namespace {
+
+std::vector<DirectionCell> holesOf(const Scan& scan, double angle)
+{
+  const double cosine = std::cos(cellAngle(angle));
+  std::vector<Eigen::Vector3d> beams;
+  eachBeam(scan, [&](std::uint32_t, const BeamEnd& beam) { beams.push_back(beam.way.normalized()); });
+  std::vector<DirectionCell> holes;
+  const unsigned level = cellLevels(angle);
+  for (std::size_t face = 0; face < kCubeFaces; ++face) {
+    for (std::uint32_t u = 0; u < 1u << level; ++u) {
+      for (std::uint32_t w = 0; w < 1u << level; ++w) {
+        const DirectionCell cell{face, level, u, w};
+        std::array<Eigen::Vector3d, 4> corners = cell.corners();
+        for (Eigen::Vector3d& corner : corners) corner.normalize();
+        const auto covers = [&](const Eigen::Vector3d& beam) {
+          return beam.dot(corners[0]) >= cosine && beam.dot(corners[1]) >= cosine && beam.dot(corners[2]) >= cosine &&
+                 beam.dot(corners[3]) >= cosine;
+        };
+        if (std::none_of(beams.begin(), beams.end(), covers)) holes.push_back(cell);
+      }
+    }
+  }
+  return holes;
+}
+
+bool sees(const Scan& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& ball)
+{
+  if (ball.is_around && !holes.empty()) return false;
+  if (!ball.is_around) {
+    const Cone cone(ball.direction, ball.coneAngle());
+    if (std::any_of(holes.begin(), holes.end(), [&](const DirectionCell& cell) { return cone.meets(cell); }))
+      return false;
+  }
+  bool open = false;
+  std::size_t beams = 0;
+  const BeamAngle speaks(angle);
+  eachBeam(scan, [&](std::uint32_t, const BeamEnd& beam) {
+    ++beams;
+    open = open || leavesOpen(ball, beam.way, beam.empty, speaks);
+  });
+  return beams >= 2 && !open;
+}
+
+} // namespace
+
+UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Placed& model, const UnseenRequest& request,
+                        std::vector<std::uint8_t>& verdicts)
+{
+  checkUnseen(model, request, verdicts.size());
+  checkBeamAngle(angle);
+  const DefaultFloatEnvironment environment;
+  std::vector<std::vector<DirectionCell>> holes;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    checkScan(scans[i], i);
+    holes.push_back(holesOf(scans[i], angle));
+  }
+  const PointsView& view = model.hierarchy().view();
+  UnseenResult result;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::uint32_t record = view.record(i);
+    if (!isFinite(view.point(record)) || verdicts[record] != flagOf(Verdict::free)) continue;
+    const ModelBall ball(model, record, request.clearance);
+    bool seen = false;
+    for (std::size_t s = 0; s < scans.size(); ++s)
+      seen = seen || sees(scans[s], holes[s], angle, ball.from(scans[s].origin));
+    if (seen) continue;
+    verdicts[record] = flagOf(Verdict::unseen);
+    ++result.unseen;
+  }
+  return result;
+}
+
+} // namespace brute_force
+} // namespace pcl_bsh

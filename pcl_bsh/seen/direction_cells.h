@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Directions in cells: the faces of a cube about the scanner, each cut into squares whose edges are great circles.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace pcl_bsh {
+
+inline constexpr std::size_t kCubeFaces = 6;
+
+/// Where a direction meets the cube [-1, 1]^3.
+struct FacePlace {
+  std::size_t face; ///< twice the axis, and 1 where it is negative
+  double u, w;      ///< along the two axes after it
+};
+
+/// @param direction not 0
+inline FacePlace facePlaceOf(const Eigen::Vector3d& direction)
+{
+  Eigen::Index axis = 0;
+  const double size = direction.cwiseAbs().maxCoeff(&axis);
+  return {2 * static_cast<std::size_t>(axis) + (direction[axis] < 0.0 ? 1 : 0), direction[(axis + 1) % 3] / size,
+          direction[(axis + 2) % 3] / size};
+}
+
+/// The direction of a place of a face, of length 1 to 1.8.
+inline Eigen::Vector3d directionOf(const FacePlace& place)
+{
+  const auto axis = static_cast<Eigen::Index>(place.face / 2);
+  Eigen::Vector3d direction;
+  direction[axis] = place.face % 2 == 0 ? 1.0 : -1.0;
+  direction[(axis + 1) % 3] = place.u;
+  direction[(axis + 2) % 3] = place.w;
+  return direction;
+}
+
+/// A square of a face that is cut into 2^level squares an edge.
+struct DirectionCell {
+  std::size_t face;
+  unsigned level;
+  std::uint32_t u, w; ///< < 2^level
+
+  DirectionCell quarter(std::uint32_t q) const { return {face, level + 1, 2 * u + (q & 1), 2 * w + (q >> 1)}; }
+
+  /// One after the other around it.
+  std::array<Eigen::Vector3d, 4> corners() const
+  {
+    const double edge = std::ldexp(2.0, -static_cast<int>(level));
+    const double u0 = -1.0 + edge * u, w0 = -1.0 + edge * w;
+    return {directionOf({face, u0, w0}), directionOf({face, u0 + edge, w0}), directionOf({face, u0 + edge, w0 + edge}),
+            directionOf({face, u0, w0 + edge})};
+  }
+};
+
+/// A sphere about a unit vector that holds all directions of a cell.
+struct CellSphere {
+  CellSphere() = default;
+  explicit CellSphere(const DirectionCell& cell)
+  {
+    const std::array<Eigen::Vector3d, 4> corners = cell.corners();
+    center = (corners[0] + corners[2]).normalized();
+    for (const Eigen::Vector3d& corner : corners) chord = std::max(chord, (corner.normalized() - center).norm());
+    chord *= 1.0 + 0x1p-40;
+  }
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double chord = 0.0;
+};
+
+/// The directions about a unit vector up to an angle of at most a quarter turn.
+struct Cone {
+  Cone(const Eigen::Vector3d& axis, double half_angle)
+  : direction(axis),
+    sine(std::sin(half_angle)),
+    cosine(std::cos(half_angle)),
+    chord(2.0 * std::sin(0.5 * half_angle))
+  {
+  }
+  Eigen::Vector3d direction;
+  double sine, cosine, chord;
+
+  bool isApartFrom(const CellSphere& cell) const
+  {
+    const double both = chord + cell.chord;
+    return (direction - cell.center).squaredNorm() > both * both + 0x1p-40;
+  }
+
+  /// Whether they share a direction; rounded towards true.
+  bool meets(const DirectionCell& cell) const;
+};
+
+/// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most a quarter of the angle.
+unsigned cellLevels(double angle);
+
+/// Up to this angle a beam speaks for a cell: less than its own by rounding and by what directions are off as stored.
+inline double cellAngle(double angle)
+{
+  return angle * (1.0 - 0x1p-10) - 0x1p-22;
+}
+
+} // namespace pcl_bsh

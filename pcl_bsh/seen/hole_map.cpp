@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/seen/hole_map.h>
+
+#include <pcl_bsh/base/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+/// Corners of a row of cells that are within a beam's angle: [first, last], none where first > last.
+struct CornerRange {
+  int first = 1, last = 0;
+};
+
+/// The corners of a tile: 65 x 65 places of a face.
+class TileCorners {
+public:
+  TileCorners(const DirectionCell& tile, unsigned cell_level)
+  : face_(tile.face),
+    edge_(std::ldexp(2.0, -static_cast<int>(cell_level))),
+    u0_(-1.0 + 64.0 * edge_ * tile.u),
+    w0_(-1.0 + 64.0 * edge_ * tile.w)
+  {
+  }
+
+  /// Rows that the beam's cone may touch.
+  CornerRange rows(const Eigen::Vector3d& beam, const BeamAngle& speaks) const
+  {
+    const Place d = placeOf(beam);
+    return within(d.w, d.up, 1.0, 1.0 - speaks.sine * speaks.sine - d.u * d.u, w0_, true);
+  }
+
+  /// Of one row.
+  CornerRange row(int row, const Eigen::Vector3d& beam, const BeamAngle& speaks) const
+  {
+    const Place d = placeOf(beam);
+    const double w = w0_ + edge_ * row;
+    return within(d.u, d.w * w + d.up, w * w + 1.0, 1.0 - speaks.sine * speaks.sine, u0_, false);
+  }
+
+private:
+  struct Place {
+    double u, w, up;
+  };
+
+  Place placeOf(const Eigen::Vector3d& d) const
+  {
+    const auto axis = static_cast<Eigen::Index>(face_ / 2);
+    return {d[(axis + 1) % 3], d[(axis + 2) % 3], face_ % 2 == 0 ? d[axis] : -d[axis]};
+  }
+
+  /// Places x with du x + k >= sqrt(share (x^2 + m)): all between two roots. With `outward` one place more on either
+  /// side.
+  CornerRange within(double du, double k, double m, double share, double x0, bool outward) const
+  {
+    const double q = share - du * du; // > 0 of each beam that speaks for a place of the face
+    const double under = k * k - m * q;
+    if (!(q > 0.0 && under >= 0.0)) return {};
+    const double middle = du * k / q, half = std::sqrt(share * under) / q;
+    if (du * middle + k <= 0.0) return {};
+    const double from = (middle - half - x0) / edge_, to = (middle + half - x0) / edge_;
+    if (!(to >= -1.0 && from <= 65.0)) return {};
+    const double first = outward ? std::floor(from) - 1.0 : std::ceil(from), last = outward ? to + 1.0 : std::floor(to);
+    return {static_cast<int>(std::clamp(first, 0.0, 65.0)), static_cast<int>(std::clamp(last, -1.0, 64.0))};
+  }
+
+  std::size_t face_;
+  double edge_, u0_, w0_;
+};
+
+/// Bits [first, last), 0 <= first, last <= 64.
+std::uint64_t bitsBetween(int first, int last)
+{
+  if (first >= last) return 0;
+  const std::uint64_t up_to = last == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << last) - 1;
+  return up_to & ~((std::uint64_t{1} << first) - 1);
+}
+
+} // namespace
+
+HoleMap::HoleMap(const BeamTree& beams, double angle, unsigned threads)
+: beams_(&beams),
+  speaks_(cellAngle(angle)),
+  levels_(angle == 0.0 ? kTileLevels : cellLevels(angle)),
+  root_level_(std::min(2u, levels_ - kTileLevels))
+{
+  if (angle == 0.0) return;
+  const std::size_t edge = std::size_t{1} << root_level_;
+  trees_.resize(kCubeFaces * edge * edge);
+  parallelFor(trees_.size(), threads, [&](std::size_t i) {
+    trees_[i].cell = {i / (edge * edge), root_level_, static_cast<std::uint32_t>(i % edge),
+                      static_cast<std::uint32_t>(i / edge % edge)};
+    trees_[i].sphere = CellSphere(trees_[i].cell);
+    trees_[i].root = make(trees_[i], trees_[i].cell);
+  });
+  trees_.erase(std::remove_if(trees_.begin(), trees_.end(), [](const Tree& tree) { return tree.root == kCovered; }),
+               trees_.end());
+  beams_ = nullptr;
+}
+
+std::uint32_t HoleMap::make(Tree& tree, const DirectionCell& cell) const
+{
+  const CellSphere sphere(cell);
+  const double chord = sphere.chord + chordOf(speaks_.angle) + kDirectionError;
+  const bool has_beam = beams_->any([&](const BeamNode& node) { return !areDisjoint(sphere.center, chord, node); },
+                                    [&](const Beam& beam) { return !isBeyond(sphere.center, chord, beam); });
+  if (!has_beam) return kHole;
+  if (cell.level + kTileLevels == levels_) return makeTile(tree, cell, sphere);
+  std::array<std::uint32_t, 4> quarters;
+  for (std::uint32_t q = 0; q < 4; ++q) quarters[q] = make(tree, cell.quarter(q));
+  const bool alike = std::all_of(quarters.begin(), quarters.end(), [&](std::uint32_t q) { return q == quarters[0]; });
+  if (alike && quarters[0] >= kCovered) return quarters[0];
+  tree.nodes.push_back(quarters);
+  return static_cast<std::uint32_t>(tree.nodes.size() - 1);
+}
+
+std::uint32_t HoleMap::makeTile(Tree& tree, const DirectionCell& cell, const CellSphere& sphere) const
+{
+  Tile covered{};
+  const TileCorners corners(cell, levels_);
+  const double chord = sphere.chord + chordOf(speaks_.angle) + kDirectionError;
+  beams_->any([&](const BeamNode& node) { return !areDisjoint(sphere.center, chord, node); },
+              [&](const Beam& beam) {
+                if (isBeyond(sphere.center, chord, beam)) return false;
+                const Eigen::Vector3d direction = beam.direction();
+                const CornerRange rows = corners.rows(direction, speaks_);
+                CornerRange before;
+                for (int row = rows.first; row <= rows.last; ++row) {
+                  const CornerRange here = corners.row(row, direction, speaks_);
+                  if (row > rows.first) // a cell's four corners, and so the cell, are within the angle
+                    covered[static_cast<std::size_t>(row - 1)] |=
+                        bitsBetween(std::max(before.first, here.first), std::min(before.last, here.last));
+                  before = here;
+                }
+                return false;
+              });
+  std::uint64_t any = 0, all = ~std::uint64_t{0};
+  for (std::uint64_t& row : covered) {
+    any |= row;
+    all &= row;
+    row = ~row;
+  }
+  if (any == 0) return kHole;
+  if (all == ~std::uint64_t{0}) return kCovered;
+  tree.tiles.push_back(covered);
+  return static_cast<std::uint32_t>(tree.tiles.size() - 1);
+}
+
+bool HoleMap::meets(const Cone& cone, std::uint64_t& tested) const
+{
+  return std::any_of(trees_.begin(), trees_.end(), [&](const Tree& tree) {
+    ++tested;
+    return !cone.isApartFrom(tree.sphere) && meets(tree, tree.root, tree.cell, cone, tested);
+  });
+}
+
+bool HoleMap::meets(const Tree& tree, std::uint32_t what, const DirectionCell& cell, const Cone& cone,
+                    std::uint64_t& tested) const
+{
+  if (what == kCovered) return false;
+  if (cell.level > root_level_) {
+    ++tested;
+    if (cone.isApartFrom(CellSphere(cell))) return false;
+  }
+  if (what == kHole) return cone.meets(cell);
+  if (cell.level + kTileLevels == levels_) return meetsTile(tree.tiles[what], cell, cone, tested);
+  for (std::uint32_t q = 0; q < 4; ++q)
+    if (meets(tree, tree.nodes[what][q], cell.quarter(q), cone, tested)) return true;
+  return false;
+}
+
+bool HoleMap::meetsTile(const Tile& tile, const DirectionCell& part, const Cone& cone, std::uint64_t& tested) const
+{
+  const unsigned below = levels_ - part.level;
+  const std::uint32_t size = 1u << below, u = (part.u << below) & 63, w = (part.w << below) & 63;
+  const std::uint64_t columns = bitsBetween(static_cast<int>(u), static_cast<int>(u + size));
+  std::uint64_t any = 0, all = columns;
+  for (std::uint32_t row = w; row < w + size; ++row) {
+    any |= tile[row] & columns;
+    all &= tile[row];
+  }
+  if (any == 0) return false;
+  ++tested;
+  if (cone.isApartFrom(CellSphere(part))) return false;
+  if (all == columns) return cone.meets(part);
+  for (std::uint32_t q = 0; q < 4; ++q)
+    if (meetsTile(tile, part.quarter(q), cone, tested)) return true;
+  return false;
+}
+
+} // namespace pcl_bsh

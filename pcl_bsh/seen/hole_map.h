@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The directions of a scan that no beam speaks for, in cells.
+#pragma once
+
+#include <pcl_bsh/seen/beam_tree.h>
+#include <pcl_bsh/seen/direction_cells.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+class HoleMap {
+public:
+  /// @param angle that beams speak for; 0: for none, and nothing is looked at
+  HoleMap(const BeamTree& beams, double angle, unsigned threads);
+
+  /// Whether a hole shares a direction with the cone. @param tested counts the cells looked at
+  bool meets(const Cone& cone, std::uint64_t& tested) const;
+
+  bool hasAny() const { return !trees_.empty(); } ///< whether there is a hole in any direction
+
+private:
+  static constexpr unsigned kTileLevels = 6; ///< a tile has 64 x 64 cells
+
+  /// What a cell is, instead of the number of a node or a tile.
+  static constexpr std::uint32_t kCovered = 0xfffffffeu, kHole = 0xffffffffu;
+
+  using Tile = std::array<std::uint64_t, 64>; ///< rows along u; 1: a hole
+  struct Tree {
+    DirectionCell cell{};
+    CellSphere sphere{};
+    std::uint32_t root = kHole;
+    std::vector<std::array<std::uint32_t, 4>> nodes;
+    std::vector<Tile> tiles;
+  };
+
+  std::uint32_t make(Tree& tree, const DirectionCell& cell) const;
+  std::uint32_t makeTile(Tree& tree, const DirectionCell& cell, const CellSphere& sphere) const;
+  bool meets(const Tree& tree, std::uint32_t what, const DirectionCell& cell, const Cone& cone,
+             std::uint64_t& tested) const;
+  bool meetsTile(const Tile& tile, const DirectionCell& part, const Cone& cone, std::uint64_t& tested) const;
+
+  const BeamTree* beams_ = nullptr; ///< while it is built
+  BeamAngle speaks_;
+  unsigned levels_;
+  unsigned root_level_;     ///< trees are built side by side
+  std::vector<Tree> trees_; ///< of its cells that have holes
+};
+
+} // namespace pcl_bsh

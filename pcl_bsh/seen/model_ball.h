@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ball about a point of the model, where the model is placed among the scans.
+#pragma once
+
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/seen/sight.h>
+#include <pcl_bsh/seen/unseen_points.h>
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+
+namespace pcl_bsh {
+
+/// A place of the model's frame in that of the scans, and how large the terms were that it was computed of.
+struct PosedPlace {
+  PosedPlace(const Eigen::Isometry3d& pose, const Point3& place)
+  {
+    const Eigen::Vector3d p(place.data());
+    at = pose * p;
+    magnitude = (pose.linear().cwiseAbs() * p.cwiseAbs() + pose.translation().cwiseAbs()).sum();
+  }
+  Eigen::Vector3d at;
+  double magnitude = 0.0;
+};
+
+/// Where the point may be, and the clearance about that.
+struct ModelBall {
+  ModelBall(const Placed& model, std::uint32_t record, double clearance)
+  : place(model.pose, model.hierarchy().view().point(record))
+  {
+    const PointsView& view = model.hierarchy().view();
+    radius = clearance + view.radius(record) + view.uncertainty + view.ownUncertainty(record);
+  }
+
+  Sight from(const Point3& origin) const { return {origin, place.at, place.magnitude, radius}; }
+
+  PosedPlace place;
+  double radius;
+};
+
+/// What both forms of markUnseen() refuse. @throws InvalidInput
+void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts);
+
+} // namespace pcl_bsh

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/seen/seen_space.h>
+
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/hierarchy/view_check.h>
+#include <pcl_bsh/seen/beam_spacing.h>
+#include <pcl_bsh/seen/storage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kLeastAngle = 1e-4, kMostAngle = 0.25;
+
+double angleOf(const BeamTree& beams, double asked)
+{
+  if (beams.beams().size() < 2) return 0.0;
+  if (asked > 0.0) return asked;
+  const double spacing = beamSpacing(beams);
+  return spacing > 0.0 ? std::clamp(1.5 * spacing, kLeastAngle, kMostAngle) : 0.0;
+}
+
+} // namespace
+
+void checkBeamAngle(double angle)
+{
+  if (angle >= kLeastAngle && angle <= kMostAngle) return;
+  throw InvalidInput(Input::seen, "angle that a beam speaks for", plainText(angle, " radians"),
+                     plainText("give one in [", kLeastAngle, ", ", kMostAngle, "], such as 0.002"))
+      .withValue(angle);
+}
+
+void checkScan(const Scan& scan, std::size_t index)
+{
+  const std::string name = "scan " + std::to_string(index);
+  const auto refuse = [&](const std::string& what, const std::string& wrong, const char* remedy) {
+    throw InvalidInput(Input::seen, name + ": " + what, wrong, remedy).withIndex(index);
+  };
+  if (!isFinite(scan.origin))
+    refuse("origin", plainText(scan.origin[0], ' ', scan.origin[1], ' ', scan.origin[2]), "give finite coordinates");
+  if (!(std::isfinite(scan.misses_beyond) && scan.misses_beyond >= 0.0))
+    refuse("range of no return", plainText(scan.misses_beyond), "give a finite length >= 0");
+  for (const PointsView* view : {&scan.returns, &scan.misses}) {
+    checkView(name, *view);
+    checkLengths(name, *view);
+  }
+  if (scan.returns.count + scan.misses.count > 0xffffffffu) refuse("beams", "are too many", "divide the scan");
+}
+
+SeenScan::SeenScan(const Scan& scan, double angle, unsigned threads)
+: beams_(scan),
+  angle_(angleOf(beams_, angle)),
+  speaks_(angle_),
+  holes_(beams_, angle_, threads)
+{
+}
+
+bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
+{
+  if (angle_ == 0.0) return false;
+  double chord = 2.0;
+  if (!ball.is_around) {
+    const double cone = ball.coneAngle();
+    if (holes_.meets(Cone(ball.direction, cone), tested)) return false;
+    chord = chordOf(cone + angle_) + 2.0 * kDirectionError;
+  }
+  else if (holes_.hasAny()) {
+    return false;
+  }
+  const double farthest = ball.farthest / speaks_.sure * (1.0 + kSightSlack);
+  return !beams_.any(
+      [&](const BeamNode& node) {
+        ++tested;
+        return static_cast<double>(node.least) <= farthest && !areDisjoint(ball.direction, chord, node);
+      },
+      [&](const Beam& beam) {
+        if (static_cast<double>(beam.empty) > farthest || isBeyond(ball.direction, chord, beam)) return false;
+        const BeamEnd given = beamOf(beams_.scan(), beam.record);
+        return leavesOpen(ball, given.way, given.empty, speaks_);
+      });
+}
+
+bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const
+{
+  if (angle_ == 0.0) return true;
+  if (ball.is_around) return false;
+  // Each direction to a place in it is in a hole, or has a beam within the angle that ends before the nearest one.
+  const double nearest = (ball.distance - ball.radius + least) * (1.0 - 0x1p-20);
+  const double chord = chordOf(ball.coneAngle() + angle_) + 2.0 * kDirectionError;
+  return !beams_.any(
+      [&](const BeamNode& node) {
+        ++tested;
+        return static_cast<double>(node.greatest) > nearest && !areDisjoint(ball.direction, chord, node);
+      },
+      [&](const Beam& beam) {
+        return static_cast<double>(beam.empty) > nearest && !isBeyond(ball.direction, chord, beam);
+      });
+}
+
+SeenSpace::SeenSpace(const std::vector<Scan>& scans, const SeenOptions& options) : storage_(new Storage)
+{
+  const DefaultFloatEnvironment environment;
+  if (options.angle) checkBeamAngle(*options.angle);
+  if (scans.empty()) throw InvalidInput(Input::seen, "scans", "there are none", "give one at least, with its origin");
+  for (std::size_t i = 0; i < scans.size(); ++i) checkScan(scans[i], i);
+  const unsigned threads = threadCount(options.threads);
+  for (const Scan& scan : scans) storage_->scans.emplace_back(scan, options.angle.value_or(0.0), threads);
+}
+
+SeenSpace::~SeenSpace() = default;
+SeenSpace::SeenSpace(SeenSpace&&) noexcept = default;
+SeenSpace& SeenSpace::operator=(SeenSpace&&) noexcept = default;
+
+std::size_t SeenSpace::size() const noexcept
+{
+  return storage_->scans.size();
+}
+
+double SeenSpace::angle(std::size_t scan) const noexcept
+{
+  return storage_->scans[scan].angle();
+}
+
+std::size_t SeenSpace::beams(std::size_t scan) const noexcept
+{
+  return storage_->scans[scan].size();
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A ball as a scanner sees it, and whether a beam leaves it open that something is in it.
+#pragma once
+
+#include <pcl_bsh/geometry/point3.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh {
+
+/// The directions that a beam speaks for, and the share of its range that it is sure of.
+struct BeamAngle {
+  explicit BeamAngle(double radians)
+  : angle(radians),
+    sine(std::sin(radians)),
+    cosine(std::cos(radians)),
+    sure(1.0 - radians)
+  {
+  }
+  double angle, sine, cosine, sure;
+};
+
+/// Lengths are enlarged by this share of all coordinates that they were computed of: more than the some thirty
+/// roundings of a pose, of Sight and of leavesOpen() err by together.
+inline constexpr double kSightSlack = 0x1p-46;
+
+/// Of a ball, from the origin of a scan. Where a length is rounded, the ball grows.
+struct Sight {
+  /// @param center rounded from terms of at most `magnitude`. @param guard slacks on top of the radius: with 8, what is
+  ///   not left open of this ball is not of those in it
+  Sight(const Point3& origin, const Eigen::Vector3d& center, double magnitude, double ball, double guard = 0.0)
+  : way(center - Eigen::Vector3d(origin.data())),
+    distance(way.norm()),
+    slack(kSightSlack * (magnitude + Eigen::Vector3d(origin.data()).lpNorm<1>() + distance + ball)),
+    radius(ball + (1.0 + guard) * slack),
+    is_around(distance <= radius),
+    direction(is_around ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(way / distance)),
+    farthest(distance + radius + 4.0 * slack)
+  {
+  }
+
+  Eigen::Vector3d way; ///< from the origin to the centre
+  double distance, slack, radius;
+  bool is_around; ///< the origin is in the ball
+  Eigen::Vector3d direction;
+  double farthest; ///< a beam that is empty up to here leaves nothing open
+
+  /// Half the angle of its cone, at least. @pre not around
+  double coneAngle() const { return std::asin(std::min(1.0, (radius + 4.0 * slack) / distance)); }
+};
+
+/// How far apart unit vectors are whose angle is this, at least.
+inline double chordOf(double angle)
+{
+  return 2.0 * std::sin(0.5 * angle) * (1.0 + 0x1p-40);
+}
+
+/// Whether a beam speaks for a direction in which something may be in the ball: the nearest such direction to the
+/// ball's centre is the beam's own, turned towards it by at most the angle, and it leaves the ball last.
+/// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
+inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
+{
+  const double length = beam.norm();
+  double along = ball.distance, off = 0.0; // of the centre, seen in that direction
+  if (ball.distance > 0.0) {
+    const double cosine = ball.way.dot(beam) / (ball.distance * length);
+    const double sine = ball.way.cross(beam).norm() / (ball.distance * length);
+    const double sine_left = sine * speaks.cosine - cosine * speaks.sine;
+    if (sine_left > 0.0 || cosine < 0.0) {
+      along = ball.distance * (cosine * speaks.cosine + sine * speaks.sine);
+      off = std::max(0.0, ball.distance * sine_left - ball.slack);
+    }
+  }
+  if (off > ball.radius || (along < -ball.slack && !ball.is_around)) return false;
+  return along + ball.slack + std::sqrt(ball.radius * ball.radius - off * off) >=
+         empty * speaks.sure * (1.0 - kSightSlack);
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a SeenSpace holds of each scan.
+#pragma once
+
+#include <pcl_bsh/seen/beam_tree.h>
+#include <pcl_bsh/seen/hole_map.h>
+#include <pcl_bsh/seen/seen_space.h>
+
+#include <vector>
+
+namespace pcl_bsh {
+
+/// A scan whose beams speak for an angle.
+class SeenScan {
+public:
+  /// @param angle 0: measured
+  SeenScan(const Scan& scan, double angle, unsigned threads);
+
+  const Point3& origin() const { return beams_.scan().origin; }
+  double angle() const { return angle_; }
+  std::size_t size() const { return beams_.beams().size(); }
+
+  /// Whether nothing is open in the ball: it is seen.
+  bool sees(const Sight& ball, std::uint64_t& tested) const;
+
+  /// Whether it sees no ball about a place in this one. @param ball of places. @param least radius of balls about them
+  bool seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const;
+
+private:
+  BeamTree beams_;
+  double angle_;
+  BeamAngle speaks_;
+  HoleMap holes_;
+};
+
+class SeenSpace::Storage {
+public:
+  std::vector<SeenScan> scans;
+};
+
+/// What SeenSpace refuses. @throws InvalidInput
+void checkScan(const Scan& scan, std::size_t index);
+void checkBeamAngle(double angle);
+
+} // namespace pcl_bsh

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/seen/unseen_points.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/query/result.h>
+
+#include "support/made_scans.h"
+#include "support/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using test::hallOfPillars;
+using test::kPi;
+using test::MadeRoom;
+using test::MadeScan;
+using test::MadeScanner;
+using test::makeScan;
+using test::Random;
+using Verdicts = std::vector<std::uint8_t>;
+
+constexpr std::uint8_t kUnseen = flagOf(Verdict::unseen);
+
+UnseenRequest within(double clearance, unsigned threads = 1)
+{
+  UnseenRequest request;
+  request.clearance = clearance;
+  request.threads = threads;
+  return request;
+}
+
+/// Verdicts of a model at a pose, all free before.
+Verdicts verdictsOf(const SeenSpace& seen, const Placed& model, double clearance, unsigned threads = 1)
+{
+  Verdicts verdicts(model.hierarchy().view().count, flagOf(Verdict::free));
+  const UnseenResult found = markUnseen(seen, model, within(clearance, threads), verdicts);
+  EXPECT_EQ(found.unseen, static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), kUnseen)));
+  return verdicts;
+}
+
+Verdicts bruteForce(const std::vector<Scan>& scans, double angle, const Placed& model, double clearance)
+{
+  Verdicts verdicts(model.hierarchy().view().count, flagOf(Verdict::free));
+  brute_force::markUnseen(scans, angle, model, within(clearance), verdicts);
+  return verdicts;
+}
+
+SeenSpace spaceOf(const std::vector<Scan>& scans, double angle, unsigned threads = 1)
+{
+  SeenOptions options;
+  options.angle = angle;
+  options.threads = threads;
+  return SeenSpace(scans, options);
+}
+
+/// One place, as a model.
+bool isSeen(const std::vector<Scan>& scans, double angle, const Point3& place, double clearance)
+{
+  const SphereHierarchy model(viewOf(place.data(), 1));
+  const Verdicts verdicts = verdictsOf(spaceOf(scans, angle), {model}, clearance);
+  EXPECT_EQ(verdicts, bruteForce(scans, angle, {model}, clearance));
+  return verdicts[0] != kUnseen;
+}
+
+/// Beams from the origin all around, each of them so long: at an angle of 0.2, sure of 0.8 of that.
+std::vector<double> allAround(double step, double range)
+{
+  MadeRoom ball{{Eigen::Vector3d::Constant(-1e6), Eigen::Vector3d::Constant(1e6)}, {}};
+  Random random(1);
+  MadeScanner scanner{Eigen::Vector3d::Zero(), step, -kPi / 2, kPi / 2};
+  MadeScan made = makeScan(ball, scanner, random);
+  for (std::size_t i = 0; i < made.returns.size(); i += 3) {
+    Eigen::Map<Eigen::Vector3d> end(made.returns.data() + i);
+    end *= range / end.norm();
+  }
+  return made.returns;
+}
+
+Scan scanOf(const std::vector<double>& xyz)
+{
+  Scan scan;
+  scan.returns = viewOf(xyz.data(), xyz.size() / 3);
+  return scan;
+}
+
+TEST(MarkUnseen, AgreesWithBruteForce)
+{
+  std::size_t seen_points = 0, unseen_points = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    Random random(seed);
+    const MadeRoom room = hallOfPillars();
+    std::vector<MadeScan> made;
+    std::vector<Eigen::Vector3d> origins;
+    for (int s = 0; s <= static_cast<int>(seed % 3); ++s) {
+      MadeScanner scanner{{random.uniform(1, 3) + 8 * s, random.uniform(1, 3), random.uniform(1, 2)},
+                          random.uniform(0.06, 0.12),
+                          random.uniform(-1.5, -0.5),
+                          random.uniform(0.3, 1.5),
+                          seed % 2 == 0 ? 0.0 : 0.02,
+                          seed % 4 == 3 ? 6.0 : 1e9};
+      made.push_back(makeScan(room, scanner, random));
+      origins.push_back(scanner.origin);
+    }
+    std::vector<Scan> scans;
+    for (std::size_t s = 0; s < made.size(); ++s) {
+      scans.push_back(made[s].scan(origins[s]));
+      if (seed % 4 == 3 && s == 0) scans.back().misses_beyond = 5.0;
+      if (seed % 5 == 1) scans.back().returns.uncertainty = 0.05;
+    }
+    const double angle = random.uniform(0.16, 0.25);
+    test::Cloud cloud = test::anyCloud(400, seed % 2 == 0 ? 1.0 : 4.0, {0, 0, 0}, random);
+    if (seed % 3 == 0) test::makeUncertain(cloud, 0.05, random);
+    const SphereHierarchy model(cloud.view());
+    Eigen::Isometry3d pose(Eigen::Quaterniond::UnitRandom());
+    pose.translation() = Eigen::Vector3d(random.uniform(2, 18), random.uniform(2, 10), random.uniform(1, 3));
+    const double clearance = seed % 6 == 5 ? 0.0 : random.uniform(0.01, 0.3);
+    const Verdicts truth = bruteForce(scans, angle, {model, pose}, clearance);
+    const SeenSpace space = spaceOf(scans, angle);
+    EXPECT_EQ(verdictsOf(space, {model, pose}, clearance), truth) << seed;
+    EXPECT_EQ(verdictsOf(spaceOf(scans, angle, 2), {model, pose}, clearance, 2), truth) << seed;
+    const auto unseen = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), kUnseen));
+    unseen_points += unseen;
+    seen_points += truth.size() - unseen;
+  }
+  EXPECT_GT(seen_points, 400u);
+  EXPECT_GT(unseen_points, 400u);
+}
+
+/// What the contract says of a ball that is seen, tried in directions of its cone.
+void expectSeenByOne(const std::vector<Scan>& scans, double angle, const Eigen::Vector3d& center, double radius)
+{
+  bool seen_by_one = false;
+  for (const Scan& scan : scans) {
+    const Eigen::Vector3d origin(scan.origin.data()), way = center - origin, axis = way.normalized();
+    const double distance = way.norm();
+    bool seen = distance > radius;
+    for (int i = 0; i <= 40 && seen; ++i) {
+      const double off = std::asin(radius / distance) * std::sqrt(i / 40.0);
+      const Eigen::Vector3d side = axis.unitOrthogonal(), up = axis.cross(side);
+      const Eigen::Vector3d d =
+          std::cos(off) * axis + std::sin(off) * (std::cos(2.4 * i) * side + std::sin(2.4 * i) * up);
+      const double chord = radius * radius - std::pow(distance * std::sin(off), 2);
+      const double leaves = distance * std::cos(off) + std::sqrt(std::max(0.0, chord));
+      bool spoken_for = false;
+      for (std::size_t k = 0; k < scan.returns.count; ++k) {
+        const Point3 end = scan.returns.point(static_cast<std::uint32_t>(k));
+        const Eigen::Vector3d beam = Eigen::Vector3d(end.data()) - origin;
+        if (beam.dot(d) < beam.norm() * std::cos(angle) * (1 + 1e-14)) continue;
+        spoken_for = true;
+        seen = seen && beam.norm() - scan.returns.uncertainty > leaves * (1 - 1e-12);
+      }
+      seen = seen && spoken_for;
+    }
+    seen_by_one = seen_by_one || seen;
+  }
+  EXPECT_TRUE(seen_by_one) << center.transpose() << ", radius " << radius;
+}
+
+TEST(MarkUnseen, KeepsItsPromiseInARoomOfPillars)
+{
+  const MadeRoom room = hallOfPillars();
+  const double step = 0.03, clearance = 0.1;
+  std::vector<MadeScan> made;
+  std::vector<Scan> scans;
+  const Eigen::Vector3d origins[] = {{2, 2, 1.5}, {18, 10, 1.5}};
+  Random random(7);
+  for (const Eigen::Vector3d& origin : origins) made.push_back(makeScan(room, {origin, step, -1.57, 1.57}, random));
+  for (std::size_t s = 0; s < made.size(); ++s) scans.push_back(made[s].scan(origins[s]));
+  std::vector<double> places;
+  for (int i = 0; i < 1500; ++i)
+    for (const double most : {20.0, 12.0, 5.0}) places.push_back(random.uniform(0, most));
+  const SphereHierarchy model(viewOf(places.data(), places.size() / 3));
+  const SeenSpace space(scans);
+  const Verdicts verdicts = verdictsOf(space, {model}, clearance);
+  std::size_t visible = 0, recognised = 0;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const Eigen::Vector3d place(places[3 * i], places[3 * i + 1], places[3 * i + 2]);
+    const bool seen = verdicts[i] != kUnseen;
+    if (seen) {
+      EXPECT_GT(room.distance(place), clearance) << place.transpose();
+    }
+    if (seen && i % 64 == 0) expectSeenByOne(scans, space.angle(0), place, clearance);
+    if (!room.shows(origins[0], place, clearance, 40) && !room.shows(origins[1], place, clearance, 40)) continue;
+    ++visible;
+    recognised += seen;
+  }
+  EXPECT_GT(visible, 700u);
+  EXPECT_GT(recognised, visible / 2); // beams of 30 mrad, half a metre apart at the far wall
+}
+
+TEST(MarkUnseen, SettlesWholeSpheres)
+{
+  std::vector<double> ends = allAround(0.1, 12.5);
+  Random random(3);
+  std::vector<float> places(3 * 20000);
+  for (float& x : places) x = static_cast<float>(random.uniform(-1, 1));
+  const SphereHierarchy model(viewOf(places.data(), places.size() / 3));
+  const SeenSpace space = spaceOf({scanOf(ends)}, 0.2);
+  for (const double far : {5.0, 20.0}) {
+    Verdicts verdicts(20000, 0);
+    const Eigen::Isometry3d pose(Eigen::Translation3d(far, 0, 0));
+    const UnseenResult found = markUnseen(space, {model, pose}, within(0.05), verdicts);
+    EXPECT_EQ(found.unseen, far > 10.0 ? 20000u : 0u);
+    EXPECT_LT(found.work.node_pairs, 5000u); // a test for each point would be more
+  }
+}
+
+TEST(MarkUnseen, LeavesOtherVerdictsAlone)
+{
+  const std::vector<double> ends = allAround(0.1, 1.0);
+  const float places[] = {5, 0, 0, 5, 1, 0, 5, 2, 0, 5, 3, 0, std::nanf(""), 0, 0};
+  const SphereHierarchy model(viewOf(places, 5));
+  Verdicts verdicts = {0, 1, 2, 3, 0};
+  EXPECT_EQ(markUnseen(spaceOf({scanOf(ends)}, 0.2), {model}, within(0.1), verdicts).unseen, 1u);
+  EXPECT_EQ(verdicts, (Verdicts{kUnseen, 1, 2, 3, 0}));
+}
+
+TEST(MarkUnseenHardCases, BeamThatGrazes)
+{
+  std::vector<double> ends = allAround(0.1, 12.5);
+  const double angle = 0.2, off = 0.4; // a short beam, off the ball's direction
+  ends.insert(ends.end(), {std::cos(off), std::sin(off), 0.0});
+  const double touching = 5.0 * std::sin(off - angle);
+  EXPECT_TRUE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 - 1e-9)));
+  EXPECT_FALSE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 + 1e-9)));
+}
+
+TEST(MarkUnseenHardCases, BeamThatEndsAtTheBall)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  EXPECT_TRUE(isSeen({scanOf(ends)}, 0.2, {5, 0, 0}, 5 - 1e-9));
+  EXPECT_FALSE(isSeen({scanOf(ends)}, 0.2, {5, 0, 0}, 5 + 1e-9));
+  EXPECT_TRUE(isSeen({scanOf(ends)}, 0.2, {9, 0, 0}, 1 - 1e-9));
+  EXPECT_FALSE(isSeen({scanOf(ends)}, 0.2, {9, 0, 0}, 1 + 1e-9));
+}
+
+TEST(MarkUnseenHardCases, BallAboutTheScanner)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  for (const Point3& place : {Point3{0, 0, 0}, Point3{0.5, 0, 0}, Point3{0, 0, -1}}) {
+    EXPECT_TRUE(isSeen({scanOf(ends)}, 0.2, place, 1.0));
+    EXPECT_FALSE(isSeen({scanOf(ends)}, 0.2, place, 10.5));
+  }
+  std::vector<double> without_below;
+  for (std::size_t i = 0; i < ends.size(); i += 3)
+    if (ends[i + 2] > -11.0) without_below.insert(without_below.end(), ends.begin() + i, ends.begin() + i + 3);
+  EXPECT_FALSE(isSeen({scanOf(without_below)}, 0.2, {0, 0, 0}, 0.1)); // where the scanner itself stands
+  EXPECT_FALSE(isSeen({scanOf(without_below)}, 0.2, {0, 0, -2}, 0.1));
+  EXPECT_TRUE(isSeen({scanOf(without_below)}, 0.2, {0, 0, 2}, 0.1));
+}
+
+TEST(MarkUnseenHardCases, TwoScannersThatSeeHalfEach)
+{
+  std::vector<double> left, right;
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  for (std::size_t i = 0; i < ends.size(); i += 3) {
+    std::vector<double>& side = ends[i + 1] < 0.0 ? left : right;
+    side.insert(side.end(), ends.begin() + i, ends.begin() + i + 3);
+  }
+  const Point3 middle{5, 0, 0}, aside{5, 2, 0};
+  EXPECT_FALSE(isSeen({scanOf(left), scanOf(right)}, 0.2, middle, 2.0));
+  EXPECT_FALSE(isSeen({scanOf(left)}, 0.2, aside, 0.6));
+  EXPECT_TRUE(isSeen({scanOf(left), scanOf(right)}, 0.2, aside, 0.6));
+  EXPECT_TRUE(isSeen({scanOf(left), scanOf(ends)}, 0.2, middle, 2.0));
+}
+
+TEST(MarkUnseenHardCases, AllBeamsWithoutReturn)
+{
+  const std::vector<double> ends = allAround(0.1, 1.0);
+  Scan scan;
+  scan.misses = viewOf(ends.data(), ends.size() / 3);
+  EXPECT_EQ(SeenSpace({scan}).beams(0), 0u);
+  EXPECT_EQ(SeenSpace({scan}).angle(0), 0.0);
+  EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 0.5)); // they say nothing
+  scan.misses_beyond = 3.75;
+  EXPECT_TRUE(isSeen({scan}, 0.2, {2, 0, 0}, 0.5));
+  EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 1.1));
+}
+
+TEST(MarkUnseenHardCases, Antipode)
+{
+  std::vector<double> ends = allAround(0.1, 12.5);
+  ends.insert(ends.end(), {-1e-3, 0.0, 0.0});
+  EXPECT_TRUE(isSeen({scanOf(ends)}, 0.2, {5, 0, 0}, 4.5));
+  EXPECT_FALSE(isSeen({scanOf(ends)}, 0.2, {-5, 0, 0}, 0.1));
+  EXPECT_FALSE(isSeen({scanOf({5, 0, 0, 6, 0, 0})}, 0.2, {-2, 0, 0}, 0.1)); // no beam there
+}
+
+TEST(MarkUnseenHardCases, BeamBetweenPlacesOfNoSize)
+{
+  std::vector<double> ends;
+  for (int i = -8; i <= 8; ++i)
+    for (int j = -8; j <= 8; ++j) ends.insert(ends.end(), {1.0, 0.1 * i, 0.1 * j});
+  EXPECT_FALSE(isSeen({scanOf(ends)}, 0.15, {2, 0.1, 0.1}, 0.0)); // between the beams, behind what they met
+  EXPECT_TRUE(isSeen({scanOf(ends)}, 0.15, {0.8, 0.04, 0.04}, 0.0));
+}
+
+TEST(MarkUnseenHardCases, FarFromTheWorldsOrigin)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  std::vector<double> moved = ends;
+  const double shift[3] = {431234.5, 5412345.25, 300.125};
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += shift[i % 3];
+  Scan scan = scanOf(moved);
+  scan.origin = {shift[0], shift[1], shift[2]};
+  EXPECT_TRUE(isSeen({scan}, 0.2, {shift[0] + 5, shift[1], shift[2]}, 4.999));
+  EXPECT_FALSE(isSeen({scan}, 0.2, {shift[0] + 5, shift[1], shift[2]}, 5.001));
+}
+
+TEST(MarkUnseen, ShortensBeamsByTheirUncertainty)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  Scan scan = scanOf(ends);
+  EXPECT_TRUE(isSeen({scan}, 0.2, {8, 0, 0}, 1.9));
+  scan.returns.uncertainty = 0.2;
+  EXPECT_FALSE(isSeen({scan}, 0.2, {8, 0, 0}, 1.9));
+  EXPECT_TRUE(isSeen({scan}, 0.2, {8, 0, 0}, 1.7));
+}
+
+TEST(MarkUnseen, TakesUncertainPlacesAsTheyAre)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  const SeenSpace space = spaceOf({scanOf(ends)}, 0.2);
+  const double place[] = {8, 0, 0};
+  PointsView view = viewOf(place, 1);
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], 0);
+  view.uncertainty = 0.2;
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
+}
+
+std::string refusalOf(const std::vector<Scan>& scans, const SeenOptions& options = {})
+{
+  try {
+    const SeenSpace space(scans, options);
+  }
+  catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(SeenSpace, RefusesWhatHasNoMeaning)
+{
+  Scan scan;
+  EXPECT_EQ(refusalOf({scan}), "taken");
+  EXPECT_EQ(refusalOf({}), "scans: there are none: give one at least, with its origin");
+  for (const double angle : {0.0, 3.14159, std::nan(""), 1e-5}) { // half a turn, too
+    SeenOptions options;
+    options.angle = angle;
+    EXPECT_NE(refusalOf({scan}, options).find("give one in [0.0001, 0.25]"), std::string::npos) << angle;
+  }
+  scan.origin = {0, std::nan(""), 0};
+  EXPECT_EQ(refusalOf({scan}), "scan 0: origin: 0 nan 0: give finite coordinates");
+  scan.origin = {0, 0, 0};
+  scan.misses_beyond = -1;
+  EXPECT_EQ(refusalOf({scan}), "scan 0: range of no return: -1: give a finite length >= 0");
+}
+
+TEST(SeenSpace, MeasuresTheAngleOfBeams)
+{
+  const MadeRoom room = hallOfPillars();
+  Random random(5);
+  const Eigen::Vector3d origin(2, 2, 1.5);
+  const MadeScan made = makeScan(room, {origin, 0.03, -0.8, 0.8}, random);
+  const SeenSpace space({made.scan(origin)});
+  EXPECT_NEAR(space.angle(0), 1.5 * 0.03, 0.003);
+  EXPECT_EQ(space.beams(0), made.returns.size() / 3);
+  std::vector<double> rows; // far apart, but each of them dense
+  for (int row = -10; row <= 10; ++row)
+    for (int i = 0; i < 1000; ++i) {
+      const double azimuth = 0.00628 * i, elevation = 0.04 * row;
+      rows.insert(rows.end(), {std::cos(azimuth), std::sin(azimuth), std::tan(elevation)});
+    }
+  EXPECT_NEAR(SeenSpace({scanOf(rows)}).angle(0), 1.5 * 0.04, 0.006);
+}
+
+} // namespace
+} // namespace pcl_bsh
