@@ -29,7 +29,7 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
   sizeAs(found.first_pose, gathered.first_pose, -1);
   sizeAs(found.certain_pose, gathered.certain_pose, -1);
   sizeAs(found.closest_pose, gathered.closest_pose, -1);
-  sizeAs(found.closest_point, gathered.closest_point, TrajectoryResult::kNoPoint);
+  sizeAs(found.closest_point, gathered.closest_point, kNothing);
   const auto isGraver = [](auto flag, auto than) { // 1, 2 and 3 from the gravest on; 0 is free
     return flag != flagOf(Verdict::free) && (than == flagOf(Verdict::free) || flag < than);
   };

@@ -64,22 +64,22 @@ void giveIds(std::vector<Clash>& clashes, double cluster_distance)
   for (Clash* clash : by_place) clash->id = taken.free(idAt(middleOf(*clash), cell));
 }
 
-void add(Clash& clash, std::uint32_t record, const Point3& point, const TrajectoryResult& found)
+void add(Clash& clash, std::uint32_t record, const PointsView& scan, const TrajectoryResult& found)
 {
   clash.records.push_back(record);
   ++clash.points;
   if (found.flags[record] == Verdict::colliding) ++clash.certain_points;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double coordinate = point[k] + 0.0; // of -0 and 0 the latter, so that boxes tell no order of points
-    clash.low[k] = std::min(clash.low[k], coordinate);
-    clash.high[k] = std::max(clash.high[k], coordinate);
+  const Extent extent = extentOf(scan, record);
+  for (std::size_t k = 0; k < 3; ++k) { // of -0 and 0 the latter, so that boxes tell no order of points
+    clash.low[k] = std::min(clash.low[k], extent.low[k] + 0.0);
+    clash.high[k] = std::max(clash.high[k], extent.high[k] + 0.0);
   }
   clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
   const double distance = static_cast<double>(found.distance[record]);
   if (!(distance < clash.distance)) return;
   clash.distance = distance;
   clash.scan_point = record;
-  clash.place = point;
+  clash.place = scan.point(record);
   clash.model_point = found.closest_point[record];
   clash.closest_pose = found.closest_pose[record];
 }
@@ -138,7 +138,7 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
   std::vector<Clash> clashes(clusters.sizes.size(), none);
   for (const std::int32_t i : colliding) {
     const auto record = static_cast<std::uint32_t>(i);
-    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan.point(record), found);
+    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan, found);
   }
   nameClashes(clashes, cluster_distance);
   return clashes;

@@ -37,7 +37,7 @@ struct Clash {
   std::size_t points = 0;
   std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
   Point3 low = {}, high = {};     ///< its bounding box
-  Point3 place = {};              ///< where its point of the closest pair is
+  Point3 place = {};              ///< where its point of the closest pair is; of a triangle, its middle
   double distance = 0.0;          ///< the smallest, less radii
   std::uint32_t scan_point = 0;   ///< the pair that realises it; of several, that of the smallest record of the scan
   std::uint32_t model_point = 0;  ///< at the closest pose

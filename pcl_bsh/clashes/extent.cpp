@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clashes/extent.h>
 
+#include <pcl_bsh/hierarchy/record_corners.h>
+
 #include <algorithm>
 
 namespace pcl_bsh {
@@ -13,14 +15,23 @@ void Extent::add(const Extent& other)
   }
 }
 
+Extent extentOf(const PointsView& points, std::uint32_t record)
+{
+  const Corners corners = cornersOf(points, record);
+  Extent extent{corners.at[0], corners.at[0]};
+  for (std::uint32_t i = 1; i < corners.count; ++i) extent.add({corners.at[i], corners.at[i]});
+  return extent;
+}
+
 std::optional<Extent> extentOf(const PointsView& points)
 {
   std::optional<Extent> extent;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point3 point = points.point(points.record(i));
-    if (!isFinite(point)) continue;
-    if (!extent) extent = Extent{point, point};
-    extent->add({point, point});
+    const std::uint32_t record = points.record(i);
+    if (!isFinite(points.point(record))) continue;
+    const Extent of_record = extentOf(points, record);
+    if (!extent) extent = of_record;
+    extent->add(of_record);
   }
   return extent;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The box about some points, along the axes of their frame.
+// The box about some points, or triangles, along the axes of their frame.
 #pragma once
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 PCL_BSH_EXPORT_BEGIN
@@ -28,7 +29,10 @@ struct Extent {
   }
 };
 
-/// Of all finite points; none where there is no such point.
+/// Of a point, without its radius, or of a triangle.
+Extent extentOf(const PointsView& points, std::uint32_t record);
+
+/// Of all finite points, or triangles; none where there is none.
 std::optional<Extent> extentOf(const PointsView& points);
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/clashes/extent.h>
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/geometry/counted.h>
 
@@ -35,12 +36,12 @@ double distanceOf(const PointDistances& found, std::uint32_t record)
   return std::isnan(found.distance[record]) ? std::numeric_limits<double>::infinity() : found.distance[record];
 }
 
-void add(FarPlace& place, std::uint32_t record, const Point3& point, const PointDistances& found)
+void add(FarPlace& place, std::uint32_t record, const Extent& extent, const PointDistances& found)
 {
-  if (place.records.empty()) place.low = place.high = point;
+  if (place.records.empty()) place.low = extent.low, place.high = extent.high;
   for (std::size_t k = 0; k < 3; ++k) {
-    place.low[k] = std::min(place.low[k], point[k]);
-    place.high[k] = std::max(place.high[k], point[k]);
+    place.low[k] = std::min(place.low[k], extent.low[k]);
+    place.high[k] = std::max(place.high[k], extent.high[k]);
   }
   const double distance = distanceOf(found, record);
   if (place.records.empty() || distance > place.distance) {
@@ -74,7 +75,7 @@ std::vector<FarPlace> findFarPlaces(const PointsView& cloud, const PointDistance
   std::vector<FarPlace> places(clusters.sizes.size());
   for (const std::int32_t i : far) {
     const auto record = static_cast<std::uint32_t>(i);
-    add(places[static_cast<std::size_t>(clusters.of[record])], record, cloud.point(record), found);
+    add(places[static_cast<std::size_t>(clusters.of[record])], record, extentOf(cloud, record), found);
   }
   std::sort(places.begin(), places.end(), [](const FarPlace& a, const FarPlace& b) {
     if (a.distance != b.distance) return a.distance > b.distance;

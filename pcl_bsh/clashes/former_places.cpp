@@ -117,9 +117,9 @@ bool FormerPlaces::mayVisit(const Extent& box, const std::vector<Eigen::Isometry
 void FormerPlaces::scan(const PointsView& points)
 {
   for (std::size_t i = 0; i < points.size() && places_->not_scanned.left() > 0; ++i) {
-    const Point3 point = points.point(points.record(i));
-    if (!isFinite(point)) continue;
-    places_->not_scanned.visitNear({point, point}, places_->reach, [&](std::size_t place) {
+    const std::uint32_t record = points.record(i);
+    if (!isFinite(points.point(record))) continue;
+    places_->not_scanned.visitNear(extentOf(points, record), places_->reach, [&](std::size_t place) {
       places_->is_scanned[place] = true;
       return true;
     });

@@ -5,6 +5,8 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +28,9 @@ namespace {
 
 class ClusterWalk : public PairVisitor {
 public:
-  ClusterWalk(const SphereHierarchy& cloud, double distance)
-  : placed_{cloud},
+  ClusterWalk(const SphereHierarchy& cloud, double distance, Progress& progress)
+  : PairVisitor(Watch{&progress, 1.0}),
+    placed_{cloud},
     walk_(placed_, placed_),
     pairs_(placed_, placed_, distance),
     sets_(cloud.view().count),
@@ -181,9 +184,9 @@ private:
 
 } // namespace
 
-DisjointSets clusterOnTarget(const SphereHierarchy& cloud, double distance, Work& work)
+DisjointSets clusterOnTarget(const SphereHierarchy& cloud, double distance, Progress& progress, Work& work)
 {
-  return ClusterWalk(cloud, distance).run(work);
+  return ClusterWalk(cloud, distance, progress).run(work);
 }
 
 } // namespace HWY_NAMESPACE
@@ -235,12 +238,15 @@ Clusters numbered(DisjointSets sets, const PointsView& view, const Work& work)
 
 } // namespace
 
-Clusters euclideanClusters(const SphereHierarchy& cloud, double distance)
+Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const Effort& effort)
 {
   requireDistance(distance);
+  checkExact(effort);
   const DefaultFloatEnvironment environment;
+  Progress progress(effort.progress);
   Work work;
-  DisjointSets sets = HWY_DYNAMIC_DISPATCH(clusterOnTarget)(cloud, distance, work);
+  DisjointSets sets = HWY_DYNAMIC_DISPATCH(clusterOnTarget)(cloud, distance, progress, work);
+  progress.finish();
   return numbered(std::move(sets), cloud.view(), work);
 }
 

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cstdint>
@@ -21,9 +22,10 @@ struct Clusters {
 };
 
 /// Two points belong to the same cluster iff a chain of the cloud's points leads from one to the other in steps of
-/// `distance` at most, decided exactly. Clusters are numbered by their smallest records. Radii play no part.
-/// @throws std::invalid_argument unless the distance is finite and >= 0
-Clusters euclideanClusters(const SphereHierarchy& cloud, double distance);
+/// `distance` at most, decided exactly, by one thread. Clusters are numbered by their smallest records. Radii play no
+/// part.
+/// @throws std::invalid_argument unless the distance is finite and >= 0, and the accuracy exact. Cancelled.
+Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const Effort& effort = {});
 
 namespace brute_force {
 

@@ -208,15 +208,40 @@ private:
     alignas(64) float squared[kLeafPoints], most[kLeafPoints];
     for (std::uint32_t i = 0; i < kLeafPoints; ++i)
       most[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
+    for (const NearSphere& candidate : near) { // the middles of balls are on triangles
+      if (candidate.lower > largestOf(most, kLeafPoints)) break;
+      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
+      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
+      std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
+      nearestSquared(carried(candidate.sphere.obstacle).points, other.x(), other.y(), other.z(), firstBits(other.count),
+                     squared);
+      const float error = errorOf(obstacle, view_b_.off_middle / other.voxel->frame.unit);
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+        LaneVector low, high;
+        boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
+        const LaneVector before = hn::Load(d, most + i);
+        hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most + i);
+      }
+    }
     maybe_.clear();
     for (const NearSphere& candidate : near) {
-      const float limit = largestOf(most, kLeafPoints);
-      if (candidate.lower > limit) break;
+      if (candidate.lower > largestOf(most, kLeafPoints)) break;
       ++work_.leaf_pairs;
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
       const CarriedLeaf& own = carried(candidate.sphere.obstacle);
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
+      const float error_of_points = errorOf(obstacle, 0.0);
+      const double stretched = static_cast<double>(obstacle.frame.stretch_b) / other.voxel->frame.unit;
       for (std::uint32_t j = 0; j < other.count; ++j) {
+        const LaneVector radius = hn::Set(d, roundUp(other.radius(j) * stretched));
+        squaredDistances(own.points, other.x()[j], other.y()[j], other.z()[j], squared);
+        bool any = false;
+        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+          LaneVector low, high;
+          boundsOfFlat(d, hn::Load(d, squared + i), radius, error_of_points, obstacle, low, high);
+          any = any || !hn::AllTrue(d, hn::Gt(low, hn::Load(d, most + i)));
+        }
+        if (!any) continue;
         const FlatRecord& triangle = flat_.of(view_b_, obstacle.voxel->frame, other.record(j));
         squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, squared);
         const float error =
@@ -224,7 +249,7 @@ private:
         MaybeNearest& entry = maybe_.emplace_back();
         entry.voxel = other.voxel;
         entry.point = other.begin + j;
-        bool any = false;
+        any = false;
         for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
           LaneVector low, high;
           boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
@@ -240,6 +265,12 @@ private:
     if (query_.exceeds(largestOf(most, kLeafPoints), unit_)) return false;
     for (std::uint32_t i = 0; i < leaf_.count; ++i) found_[i] = decideAmong(i, most[i]);
     return true;
+  }
+
+  /// Of points carried to an obstacle, and so much more, in its unit. NaN and infinity bound nothing.
+  static float errorOf(const DistanceObstacle& obstacle, double more)
+  {
+    return roundUp((obstacle.frame.error + more) * (1.0 + 2 * kMargin));
   }
 
   /// Of the triangles that may be the nearest to point i. @param most that it is away from its nearest
@@ -327,7 +358,7 @@ private:
         const Found found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
         if (found.voxel == best.voxel && found.point == best.point) continue;
         const RecordDistance::Pair pair = posed(i, found);
-        if (of_triangles_ && query_.pairs.distance.enclose(pair).low > most + pair.radius_p + pair.radius_q) continue;
+        if (of_triangles_ && query_.pairs.distance.isSurelyBeyond(pair, most)) continue;
         if (best.voxel) {
           ++work_.exact_decisions;
           const int sign = query_.pairs.distance.compareGaps(pair, best_pair);

@@ -42,7 +42,7 @@ public:
     leaf_(query, sheet, scratch, found.work)
   {
     forgetObstacles();
-    if (b_.storage.view.triangles) scratch_.flat.clear();
+    scratch_.flat.prepare(b_.storage);
     if (scratch_.obstacle_of.size() < b_.storage.voxel_count) scratch_.obstacle_of.resize(b_.storage.voxel_count);
   }
   ~DistanceWalk() { forgetObstacles(); }

@@ -3,6 +3,7 @@
 #include <pcl_bsh/distances/check_distances.h>
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/greatest_distance.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
 #include <algorithm>
@@ -83,7 +84,7 @@ public:
            reached},
     sheet_{result.distance.data(), result.nearest.data(), result.interval.empty() ? nullptr : result.interval.data()},
     progress_(progress),
-    voxels_(threadCount(request.threads), result.work)
+    voxels_(threadCount(request.threads), result.work, progress)
   {
     voxels_.places.resize(a.hierarchy().storage().voxel_count);
     std::iota(voxels_.places.begin(), voxels_.places.end(), 0u);
@@ -107,12 +108,8 @@ public:
   void passes(const StopRule& rule, std::uint64_t tests)
   {
     voxels_.run(rule, tests, [this](const StopRule& own, std::uint32_t voxel) {
-      if (progress_.stopped()) return MeasuredVoxel();
-      const MeasuredVoxel found = HWY_DYNAMIC_DISPATCH(measureVoxelOnTarget)(query_, own, voxel, sheet_, progress_);
-      progress_.step();
-      return found;
+      return HWY_DYNAMIC_DISPATCH(measureVoxelOnTarget)(query_, own, voxel, sheet_, progress_);
     });
-    progress_.throwIfStopped();
   }
 
 private:
@@ -201,9 +198,9 @@ SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const Po
 HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& hausdorff)
 {
   PointDistancesRequest request;
-  request.threads = hausdorff.threads;
-  request.progress = hausdorff.progress;
+  static_cast<Effort&>(request) = hausdorff;
   check(a, b, request);
+  checkExact(request);
   const DefaultFloatEnvironment environment;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);

@@ -17,12 +17,11 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -30,19 +29,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What pointDistances() and symmetricDistances() read.
-struct PointDistancesRequest {
+/// What pointDistances() and symmetricDistances() read. With a tolerance each distance is within it of the smallest;
+/// which points have one is exact all the same. Accuracies that stop early (level, pairs, time) give an interval for
+/// each point, and a distance where the search came to its end; pairs and time are shared by all points that one call
+/// asks about.
+struct PointDistancesRequest : Effort {
   /// Points of a that have no point of b within it get no distance; >= 0, inclusive, infinity for no limit.
   double max_distance = std::numeric_limits<double>::infinity();
-  /// A tolerance: each distance is within it of the smallest; which points have one is exact all the same. Those that
-  /// stop early (level, pairs, time) give an interval for each point, and a distance where the search came to its end;
-  /// pairs and time are shared by all points that one call asks about.
-  Accuracy accuracy;
-  unsigned threads = 1; ///< 0: all of the machine's
-  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, and at least once
-  /// where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes out of the
-  /// query.
-  std::function<bool(double)> progress;
 };
 
 /// Vectors have one entry per record of the view of a.
@@ -86,10 +79,9 @@ struct SymmetricDistances {
 /// @throws as pointDistances() does
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
-/// What hausdorffDistance() reads.
-struct HausdorffRequest {
-  unsigned threads = 1;                 ///< 0: all of the machine's
-  std::function<bool(double)> progress; ///< as that of PointDistancesRequest
+/// What hausdorffDistance() reads. It is exact.
+struct HausdorffRequest : Effort {
+  using Effort::Effort;
 };
 
 /// What hausdorffDistance() found.
@@ -104,7 +96,8 @@ struct HausdorffDistance {
 /// The symmetric Hausdorff distance alone: what symmetricDistances() says of it without a limit, bit for bit, for less.
 /// Points that are certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm
 /// for calculating the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
-/// @throws std::invalid_argument when a pose is not what its declaration asks for. Cancelled.
+/// @throws std::invalid_argument when a pose is not what its declaration asks for; an accuracy other than exact.
+///   Cancelled.
 HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& request = {});
 
 } // namespace pcl_bsh

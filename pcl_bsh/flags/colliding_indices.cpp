@@ -162,7 +162,10 @@ void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& requ
   std::swap(found, result); // should something throw, the result has no collision
   for (Indices* const indices : {&found.a, &found.b, &found.undecided_a, &found.undecided_b}) indices->clear();
   ListSheet sheet_a(found.a, found.undecided_a), sheet_b(found.b, found.undecided_b);
-  found.work = flagSides(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, sheet_a, sheet_b);
+  Progress progress(request.progress);
+  found.work = flagSides(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, sheet_a, sheet_b,
+                         progress, 0.0, 1.0);
+  progress.finish();
   result = std::move(found);
 }
 

@@ -98,11 +98,12 @@ private:
   bool marked_ = false;
 };
 
-/// The flags of points that are where `places` says.
-void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found)
+/// The flags of points that are where `places` says, which takes the progress from one share of the whole to another.
+void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found,
+                Progress& progress, double from, double to)
 {
   FlagSheet sheet_a(found.a), sheet_b(found.b);
-  found.work += flagSides(a, b, request, places, sheet_a, sheet_b);
+  found.work += flagSides(a, b, request, places, sheet_a, sheet_b, progress, from, to);
   found.colliding_a = sheet_a.colliding();
   found.colliding_b = sheet_b.colliding();
   if (!request.accuracy.stopsEarly() && places != Places::either) return;
@@ -110,12 +111,15 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
   found.undecided_b = sheet_b.undecided();
 }
 
+/// Of flags that a density guard looks at again, what the flags themselves are of the whole.
+constexpr double kUnguarded = 0.5;
+
 /// Free points that may be within the clearance of a patch of b's surface are sparse.
-void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found)
+void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found, Progress& progress)
 {
   request.flagged = Side::a;
   FlagsResult covered;
-  flagPlaces(a, b, request, Places::covered, covered);
+  flagPlaces(a, b, request, Places::covered, covered, progress, kUnguarded, 1.0);
   for (std::size_t i = 0; i < found.a.size(); ++i) {
     if (found.a[i] != Verdict::free || covered.a[i] == Verdict::free) continue;
     const bool sparse = covered.a[i] == Verdict::colliding;
@@ -137,8 +141,12 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
   result = FlagsResult(); // should something throw, it has neither colliding nor free points
   found.a.clear();
   found.b.clear();
-  flagPlaces(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, found);
-  if (request.spacings_of_b && request.flagged != Side::b) guardDensity(a, b, request, found);
+  Progress progress(request.progress);
+  const bool guarded = request.spacings_of_b && request.flagged != Side::b;
+  flagPlaces(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, found, progress, 0.0,
+             guarded ? kUnguarded : 1.0);
+  if (guarded) guardDensity(a, b, request, found, progress);
+  progress.finish();
   result = std::move(found);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
@@ -18,11 +18,17 @@ namespace pcl_bsh {
 enum class Side : std::uint8_t { a = 1, b = 2, both = 3 };
 
 /// What collisionFlags() reads.
-struct FlagsRequest {
+struct FlagsRequest : Effort {
+  FlagsRequest() = default;
+  FlagsRequest(double within, Side whose = Side::a, Effort effort = {})
+  : Effort(std::move(effort)),
+    clearance(within),
+    flagged(whose)
+  {
+  }
+
   double clearance = 0.0; ///< finite, >= 0; inclusive
   Side flagged = Side::a; ///< whose points are flagged
-  unsigned threads = 1;   ///< 0: all of the machine's
-  Accuracy accuracy;      ///< exact, unless the caller asks for less
 
   /// The density guard, for collisionFlags(): how far the samples of b's surface are apart at each record of its view
   /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, alike at the same place; null: no guard. A patch
@@ -55,7 +61,7 @@ struct FlagsResult {
 /// same, leave it undecided. One search tells them apart.
 /// A density guard is one search more.
 /// @throws std::invalid_argument when the clearance, the accuracy, a spacing or a pose is not what its declaration asks
-///   for.
+///   for. Cancelled.
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
 
 /// The same into a result whose memory is used again: for one pose after another.

@@ -135,36 +135,40 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   return hit;
 }
 
-/// The triangles of a leaf whose balls are near to a child.
-inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
-                                 const LeafRange& other)
-{
-  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
-  std::uint32_t facing = 0;
-  for (std::uint32_t j = 0; j < other.count; ++j) {
-    const float x = other.x()[j] - visit.x[lane], y = other.y()[j] - visit.y[lane], z = other.z()[j] - visit.z[lane];
-    const float within =
-        (visit.r[lane] + obstacle.reach + static_cast<float>(other.radius(j) * stretched)) * (1.0f + kSphereMargin);
-    const bool is_apart = x * x + y * y + z * z > within * within * (1.0f + kSphereMargin) + kVanishingSquare;
-    facing |= (is_apart ? 0u : 1u) << j; // not so for NaN
-  }
-  return facing;
-}
-
-/// Where b is of triangles, and a's points have no radii: by float band of the triangle, and exactly within the band.
+/// Where b is of triangles, and a's points have no radii: by the middles of their balls, which are on them, then by the
+/// float band of those whose balls come near enough, and exactly within the band.
 inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                                   const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
                                   FlatRecords& flat, Work& work)
 {
   const std::uint32_t open = visit.open_points[lane];
+  const std::vector<ObstacleSphere>& candidates = visit.near[lane];
   const PointsView& view = query.b.hierarchy().view();
   alignas(64) float squared[kLeafPoints];
   std::uint32_t hit = 0;
-  for (const ObstacleSphere& candidate : visit.near[lane]) {
+  if (obstacle.sure_reach > 0.0f) {
+    const float surely = obstacle.sure_reach * obstacle.sure_reach * (1.0f - kSphereMargin) - kVanishingSquare;
+    std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
+    for (const ObstacleSphere& candidate : candidates) {
+      const LeafRange other = candidate.leaf(*obstacle.voxel);
+      const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
+      if (facing == 0) continue;
+      nearestSquared(points, other.x(), other.y(), other.z(), facing, squared);
+      hit = open & atMost(squared, surely);
+      if (hit == open) return hit;
+    }
+  }
+  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+  for (const ObstacleSphere& candidate : candidates) {
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    for (std::uint32_t facing = facingBalls(obstacle, visit, lane, other); facing != 0; facing &= facing - 1) {
-      const std::uint32_t record = other.record(static_cast<std::uint32_t>(std::countr_zero(facing)));
+    for (std::uint32_t j = 0; j < other.count; ++j) {
+      const float within = obstacle.reach + static_cast<float>(other.radius(j) * stretched);
+      squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
+      const float beyond = within * within * (1.0f + 4 * kSphereMargin) + kVanishingSquare;
+      const std::uint32_t near = open & ~hit & ~above(squared, beyond);
+      if (near == 0) continue;
+      const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
       squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
       const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
@@ -176,10 +180,10 @@ inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visi
         }
         return decided;
       };
-      hit |= decide(query.surely.band(bandOf), query.surePairs(), open & ~hit);
+      hit |= decide(query.surely.band(bandOf), query.surePairs(), near);
       if (hit == open) return hit;
       if (query.certain)
-        visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, open & ~hit & ~visit.perhaps[lane]);
+        visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, near & ~hit & ~visit.perhaps[lane]);
     }
   }
   return hit;

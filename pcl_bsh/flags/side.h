@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/flags/query.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
 namespace pcl_bsh {
@@ -17,7 +18,7 @@ template <class Sheet>
 class FlagSide {
 public:
   FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
-           Sheet& sheet, Work& work, const PatchSpacings& patches_of_b = {})
+           Sheet& sheet, Work& work, Progress& progress, const PatchSpacings& patches_of_b = {})
   : sheet_(sheet),
     pairs_(a, b, request.clearance, places == Places::either ? Places::possible : places, patches_of_b),
     certain_(a, b, request.clearance, Places::certain),
@@ -28,7 +29,7 @@ public:
            Acceptance(pairs_.reach, request.accuracy),
            places == Places::either ? &certain_ : nullptr,
            Acceptance(places == Places::either ? certain_.reach : pairs_.reach, request.accuracy)},
-    voxels_(threadCount(request.threads), work)
+    voxels_(threadCount(request.threads), work, progress)
   {
     // A budget may end before a voxel is looked at. A level looks at all, and has to mark only those that come near.
     const bool marked = rule.mayStop() && rule.deepest == StopRule::kNever;
@@ -43,6 +44,7 @@ public:
 
   /// As VoxelPasses has them.
   bool done() const { return voxels_.done(); }
+  std::size_t steps(const StopRule& rule) const { return voxels_.steps(rule); }
   std::uint64_t spent() const { return voxels_.spent(); }
   void passes(const StopRule& rule, std::uint64_t tests)
   {
@@ -58,15 +60,18 @@ private:
   VoxelPasses<FlaggedPlace, FlaggedVoxel> voxels_; ///< with undecided points
 };
 
-/// Flags the points that the request asks for. @return the work
+/// Flags the points that the request asks for, which takes the progress from one share of the whole to another.
+/// @return the work. @throws Cancelled
 template <class Sheet>
 Work flagSides(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, Sheet& sheet_a,
-               Sheet& sheet_b)
+               Sheet& sheet_b, Progress& progress, double from, double to)
 {
   Work work;
   const StopRule rule(request.accuracy);
   if (request.flagged == Side::both && rule.mayStop()) {
-    FlagSide side_a(a, b, request, places, rule, sheet_a, work), side_b(b, a, request, places, rule, sheet_b, work);
+    FlagSide side_a(a, b, request, places, rule, sheet_a, work, progress),
+        side_b(b, a, request, places, rule, sheet_b, work, progress);
+    progress.begin(to, 2 * side_a.steps(rule) + side_b.steps(rule)); // a may come to its turn again
     passBothWithin(side_a, side_b, rule);
     sheet_a.end();
     sheet_b.end();
@@ -75,11 +80,15 @@ Work flagSides(const Placed& a, const Placed& b, const FlagsRequest& request, Pl
   if (request.flagged != Side::b) {
     const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
                                 b.hierarchy().view().count);
-    FlagSide(a, b, request, places, rule, sheet_a, work, patches).passes(rule, rule.node_pairs);
+    FlagSide side(a, b, request, places, rule, sheet_a, work, progress, patches);
+    progress.begin(request.flagged == Side::both ? 0.5 * (from + to) : to, side.steps(rule));
+    side.passes(rule, rule.node_pairs);
     sheet_a.end();
   }
   if (request.flagged != Side::a) {
-    FlagSide(b, a, request, places, rule, sheet_b, work).passes(rule, rule.node_pairs);
+    FlagSide side(b, a, request, places, rule, sheet_b, work, progress);
+    progress.begin(to, side.steps(rule));
+    side.passes(rule, rule.node_pairs);
     sheet_b.end();
   }
   return work;

@@ -41,7 +41,7 @@ public:
     obstacles_.clear();
     spheres_.clear();
     reached_.clear();
-    if (b_.storage.view.triangles) flat_.clear();
+    flat_.prepare(b_.storage);
   }
 
   /// Flags the points of one voxel of a.

@@ -87,54 +87,54 @@ bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radiu
 }
 
 void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
-                  const RadiusOptions& options, unsigned threads)
+                  const RadiusOptions& options, const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkRadius(radius);
   checkView("queries", queries);
   makeRoom(found, queries.size());
   const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
-  forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
+  forEachQuery(cloud.storage(), queries, effort, expect, [&](std::size_t i, const Point3& query) {
     Work work;
     answer(cloud, query, radius, options, {found.indices[i], found.squared_distances[i]}, work);
   });
 }
 
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
-                    unsigned threads)
+                    const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkView("queries", queries);
   makeRoom(found, queries.size());
   const auto expect = [&](std::size_t i, bool soon) { fetch(found, i, soon); };
-  forEachQuery(cloud.storage(), queries, threads, expect, [&](std::size_t i, const Point3& query) {
+  forEachQuery(cloud.storage(), queries, effort, expect, [&](std::size_t i, const Point3& query) {
     Work work;
     answer(cloud, query, k, {found.indices[i], found.squared_distances[i]}, work);
   });
 }
 
 std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
-                                          unsigned threads)
+                                          const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkRadius(radius);
   checkView("queries", queries);
   std::vector<std::uint8_t> flags(queries.size());
-  forEachQuery(cloud.storage(), queries, threads, kUnasked, [&](std::size_t i, const Point3& query) {
+  forEachQuery(cloud.storage(), queries, effort, kUnasked, [&](std::size_t i, const Point3& query) {
     Work work;
     flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
   });
   return flags;
 }
 
-std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads)
+std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkView("balls", balls);
   if (!balls.radii) throw InvalidInput(Input::radius, "balls", "the view has no radii", "give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
   std::vector<std::uint8_t> flags(balls.size());
-  forEachQuery(cloud.storage(), balls, threads, kUnasked, [&](std::size_t i, const Point3& center) {
+  forEachQuery(cloud.storage(), balls, effort, kUnasked, [&](std::size_t i, const Point3& center) {
     Work work;
     flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
   });

@@ -15,6 +15,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cstddef>
@@ -62,19 +63,20 @@ std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Poi
 
 /// The same for many queries at once, shared among threads and taken in an order that visits neighbouring places one
 /// after another. The i-th answer belongs to the i-th point that the view of queries names: bit for bit what the single
-/// query gives. @param threads 0: all of the machine's. @throws as the single query does.
+/// query gives. @throws as the single query does; std::invalid_argument for an accuracy other than exact. Cancelled.
 void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
-                  const RadiusOptions& options = {}, unsigned threads = 1);
+                  const RadiusOptions& options = {}, const Effort& effort = {});
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
-                    unsigned threads = 1);
+                    const Effort& effort = {});
 
-/// One flag per query, 1 = some point lies within the radius.
+/// One flag per query, 1 = some point lies within the radius. Throws as radiusSearch() of many does.
 std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
-                                          unsigned threads = 1);
+                                          const Effort& effort = {});
 
 /// One flag per ball, 1 = some point lies in it, its surface included. The view's radii are the balls'.
-/// @throws std::invalid_argument when the view has no radii, or one of them is negative or NaN.
-std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, unsigned threads = 1);
+/// @throws std::invalid_argument when the view has no radii, or one of them is negative or NaN; as
+///   radiusSearch() of many does.
+std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, const Effort& effort = {});
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -9,6 +9,8 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/request_check.h>
 
 #include <Eigen/Eigenvalues>
 
@@ -128,16 +130,21 @@ double usualGap(const SphereHierarchy& cloud)
   return 8 * spacingOf(cloud).median;
 }
 
-std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, unsigned threads)
+std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, const Effort& effort)
 {
   checkOfPoints(cloud.view());
   if (!(widest_gap > 0.0))
     throw InvalidInput(Input::density, "widest gap", plainText(widest_gap), "give a length > 0").withValue(widest_gap);
+  checkExact(effort);
   const DefaultFloatEnvironment environment;
+  Progress progress(effort.progress);
   const PointsView& view = cloud.view();
   std::vector<float> spacings(view.count, 0.0f);
   constexpr std::size_t block = 1024;
-  parallelFor((view.size() + block - 1) / block, threadCount(threads), [&](std::size_t number) {
+  const std::size_t blocks = (view.size() + block - 1) / block;
+  progress.begin(1.0, blocks);
+  parallelFor(blocks, threadCount(effort.threads), [&](std::size_t number) {
+    if (progress.stopped()) return;
     const DefaultFloatEnvironment of_thread;
     PatchSpacing spacing(cloud, widest_gap);
     const std::size_t end = std::min(view.size(), (number + 1) * block);
@@ -145,7 +152,9 @@ std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap
       const std::uint32_t record = view.record(i);
       if (isFinite(view.point(record))) spacings[record] = roundUp(spacing.at(record));
     }
+    progress.step();
   });
+  progress.end();
   return spacings;
 }
 

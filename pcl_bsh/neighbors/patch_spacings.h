@@ -9,6 +9,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/effort.h>
 
 #include <vector>
 
@@ -30,9 +31,8 @@ namespace pcl_bsh {
 /// spacing of one of its samples. Nothing is promised of wider holes, of edges, of surfaces nearer to each other than
 /// `widest_gap`, of wires.
 /// @param widest_gap > 0; what gapes wider is an opening, not a surface. Infinity: nothing is, and time is quadratic
-/// @param threads 0: all of the machine's
-/// @throws std::invalid_argument when widest_gap is not above 0
-std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, unsigned threads = 1);
+/// @throws std::invalid_argument when widest_gap is not above 0, or the accuracy not exact. Cancelled.
+std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, const Effort& effort = {});
 
 /// A widest gap for scans whose points lie about as far apart in all directions: eight times the median distance from a
 /// point to its nearest neighbour (spacingOf()). 0 where no two places have points. Too little for a spinning lidar,

@@ -5,6 +5,8 @@
 
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/request_check.h>
 
 #include <hwy/cache_control.h>
 
@@ -25,16 +27,23 @@ inline void prefetch(const PointsView& queries, std::uint32_t record)
 
 /// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment; and
 /// expect(i, soon) twice before that, for what the answer needs to be fetched: early, and again soon before.
+/// @throws InvalidInput for an accuracy other than exact. Cancelled
 template <class Expect, class Body>
-void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, unsigned threads,
+void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, const Effort& effort,
                   const Expect& expect, const Body& body)
 {
   constexpr std::size_t kAhead = 8; // queries between a record's being fetched and its use
   constexpr std::size_t kSoon = 4;
   constexpr std::size_t kShare = 256; // enough to make up for handing it to a thread, few enough to share out evenly
+  checkExact(effort);
   const DefaultFloatEnvironment environment;
-  const std::vector<std::uint32_t> order = queryOrder(cloud, queries, threadCount(threads));
-  parallelFor((order.size() + kShare - 1) / kShare, threadCount(threads), [&](std::size_t share) {
+  Progress progress(effort.progress);
+  const unsigned threads = threadCount(effort.threads);
+  const std::vector<std::uint32_t> order = queryOrder(cloud, queries, threads);
+  const std::size_t shares = (order.size() + kShare - 1) / kShare;
+  progress.begin(1.0, shares);
+  parallelFor(shares, threads, [&](std::size_t share) {
+    if (progress.stopped()) return;
     const std::size_t end = std::min(order.size(), (share + 1) * kShare);
     for (std::size_t k = share * kShare; k < end; ++k) {
       if (k + kAhead < end) {
@@ -44,7 +53,9 @@ void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queri
       if (k + kSoon < end) expect(order[k + kSoon], true);
       body(order[k], queries.point(queries.record(order[k])));
     }
+    progress.step();
   });
+  progress.end();
 }
 
 } // namespace pcl_bsh

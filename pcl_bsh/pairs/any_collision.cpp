@@ -57,8 +57,8 @@ private:
 /// What one of several threads does.
 class AnyShare {
 public:
-  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
-  : search_(a, b, request, Pausing(pause_), places)
+  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places, const Watch& watch)
+  : search_(a, b, request, Pausing(pause_), places, watch)
   {
   }
 
@@ -74,19 +74,20 @@ private:
 };
 
 /// By so many threads. A search that is soon over is that of one.
-AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, Places places, unsigned threads)
+AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, Places places, unsigned threads,
+                       const Watch& watch)
 {
   std::optional<SharedStack<LanePair>> shared;
   Work alone;
   {
     Pause pause;
-    AnySearch search(a, b, request, Pausing(pause), places);
+    AnySearch search(a, b, request, Pausing(pause), places, watch);
     const AnyResult result = search.run();
     if (result.verdict != Verdict::undecided) return result;
     alone = result.work;
     shared.emplace(search.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
+  shared->visit(threads, [&] { return AnyShare(a, b, request, places, Watch{watch.progress}); });
   return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
                   alone += shared->work());
 }
@@ -94,15 +95,16 @@ AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& reque
 } // namespace
 
 AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
-                               unsigned threads)
+                               unsigned threads, const Watch& watch)
 {
-  return threads > 1 ? searchShared(a, b, request, places, threads)
-                     : AnySearch(a, b, request, NoObserver(), places).run();
+  return threads > 1 ? searchShared(a, b, request, places, threads, watch)
+                     : AnySearch(a, b, request, NoObserver(), places, watch).run();
 }
 
-AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule)
+AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule,
+                                     const Watch& watch)
 {
-  return AnySearch(a, b, request, Hurried(rule)).run();
+  return AnySearch(a, b, request, Hurried(rule), Places::measured, watch).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -121,47 +123,52 @@ namespace {
 /// the rest for the interval that an undecided answer carries.
 constexpr double kWitnessShare = 15.0 / 16;
 
-AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyRequest& request)
+AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyRequest& request, Progress& progress)
 {
   const StopRule rule(request.accuracy);
   Work work;
   if (rule.isTimed()) {
-    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare));
+    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare),
+                                                                         {&progress, kWitnessShare});
     if (decided.verdict != Verdict::undecided) return decided;
     work = decided.work;
   }
-  IntervalFinding found = searchInterval(a, b, rule, request.clearance);
+  IntervalFinding found = searchInterval(a, b, rule, request.clearance, {&progress, 1.0});
   const bool colliding = found.verdict == Verdict::colliding;
   return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
 }
 
 /// Of points that may be elsewhere than they were measured.
-AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request)
+AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request, Progress& progress)
 {
   if (request.accuracy.stopsEarly()) {
-    IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
+    IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
     const bool certain = found.distance.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
     const bool possible = !(found.distance.lower > reachBetween(a, b, request.clearance, Places::possible).most);
     const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
     return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
   }
-  return anyOfUncertain([&](Places places) { return anyCollisionAt(a, b, request, places); });
+  return anyOfUncertain(
+      progress, [&](Places places, const Watch& watch) { return anyCollisionAt(a, b, request, places, watch); });
 }
 
 } // namespace
 
-AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places, const Watch& watch)
 {
-  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places, threadCount(request.threads));
+  return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places, threadCount(request.threads), watch);
 }
 
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  if (areUncertain(a, b)) return searchUncertain(a, b, request);
-  return request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request)
-                                       : anyCollisionAt(a, b, request, Places::measured);
+  Progress progress(request.progress);
+  AnyResult found = areUncertain(a, b)              ? searchUncertain(a, b, request, progress)
+                    : request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request, progress)
+                                                    : anyCollisionAt(a, b, request, Places::measured, {&progress, 1.0});
+  progress.finish();
+  return found;
 }
 
 } // namespace pcl_bsh

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
@@ -13,10 +13,11 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What anyCollision() reads.
-struct AnyRequest {
+struct AnyRequest : Effort {
+  AnyRequest() = default;
+  AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
+
   double clearance = 0.0; ///< finite, >= 0; inclusive
-  Accuracy accuracy;      ///< exact, unless the caller asks for less
-  unsigned threads = 1;   ///< 0: all of the machine's. Accuracies that stop early take one
 };
 
 /// What anyCollision() found.
@@ -32,8 +33,9 @@ struct AnyResult {
 /// Does any pair of points collide? Where points have uncertainties (PointsView): is some pair within the clearance
 /// wherever its points truly are, can none be (free), or neither (undecided)? Stops at the first witness. Several
 /// threads share a search that takes longer than about 0.05 ms. Its work is that of one thread, but for what is built:
-/// other threads may have entered, and so built, voxels behind the witness.
+/// other threads may have entered, and so built, voxels behind the witness. Accuracies that stop early take one thread.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
+///   Cancelled.
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});
 
 } // namespace pcl_bsh

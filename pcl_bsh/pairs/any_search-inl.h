@@ -48,8 +48,9 @@ template <class Observer>
 class AnySearch : public PairVisitor {
 public:
   AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer,
-            Places places = Places::measured)
-  : walk_(a, b),
+            Places places = Places::measured, const Watch& by = {})
+  : PairVisitor(by),
+    walk_(a, b),
     pairs_(a, b, request.clearance, places),
     acceptance_(pairs_.reach, request.accuracy),
     observer_(std::move(observer))

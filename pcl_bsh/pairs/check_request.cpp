@@ -21,6 +21,7 @@ void check(const Placed& a, const Placed& b, const DistanceRequest& request)
 void check(const Placed& a, const Placed& b, const ContactsRequest& request)
 {
   checkClearance(request.clearance);
+  checkExact(request);
   checkPoses(a.pose, b.pose);
 }
 

@@ -4,6 +4,7 @@
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/interval_search.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 
 #include <atomic>
@@ -87,20 +88,21 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy, unsigned threads)
+DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy, unsigned threads,
+                                   Progress& progress)
 {
-  if (threads == 1) return ClosestSearch(a, b, accuracy, NoOthers()).run();
+  if (threads == 1) return ClosestSearch(a, b, accuracy, NoOthers(), {&progress, 1.0}).run();
   SharedNearest nearest;
   std::optional<SharedStack<LanePair>> shared;
   Work work;
   {
-    ClosestSearch alone(a, b, accuracy, Sharing(nearest));
+    ClosestSearch alone(a, b, accuracy, Sharing(nearest), {&progress, 1.0});
     const DistanceResult result = alone.run();
     if (alone.left().empty()) return result;
     work = result.work;
     shared.emplace(alone.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return ClosestSearch(a, b, accuracy, Sharing(nearest)); });
+  shared->visit(threads, [&] { return ClosestSearch(a, b, accuracy, Sharing(nearest), Watch{&progress}); });
   return ClosestSearch(a, b, accuracy, Sharing(nearest)).result(work += shared->work());
 }
 
@@ -117,13 +119,17 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
+  Progress progress(request.progress);
   if (request.accuracy.stopsEarly()) {
-    const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt);
+    const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
+    progress.finish();
     const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();
     return {gap, found.pair, found.distance, found.work};
   }
   const unsigned threads = request.accuracy.isExact() ? threadCount(request.threads) : 1;
-  return HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy, threads);
+  DistanceResult found = HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy, threads, progress);
+  progress.finish();
+  return found;
 }
 
 } // namespace pcl_bsh

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
@@ -14,9 +14,10 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What closestPair() reads.
-struct DistanceRequest {
-  Accuracy accuracy;    ///< exact, unless the caller asks for less
-  unsigned threads = 1; ///< 0: all of the machine's. Accuracies other than exact take one
+struct DistanceRequest : Effort {
+  using Effort::Effort;
+  DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
+  DistanceRequest() = default;
 };
 
 /// What closestPair() found.
@@ -32,8 +33,9 @@ struct DistanceResult {
 };
 
 /// The smallest distance and the pair that realises it. Several threads share a search that takes longer than about
-/// 0.05 ms; its work then varies, for it depends on which of them finds a near pair when.
-/// @throws std::invalid_argument when the accuracy or a pose is not what its declaration asks for.
+/// 0.05 ms; its work then varies, for it depends on which of them finds a near pair when. Accuracies other
+/// than exact take one thread.
+/// @throws std::invalid_argument when the accuracy or a pose is not what its declaration asks for. Cancelled.
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
 
 } // namespace pcl_bsh

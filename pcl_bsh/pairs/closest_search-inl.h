@@ -41,8 +41,9 @@ class ClosestSearch : public PairVisitor {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 public:
-  ClosestSearch(const Placed& a, const Placed& b, const Accuracy& accuracy, Others others)
-  : walk_(a, b),
+  ClosestSearch(const Placed& a, const Placed& b, const Accuracy& accuracy, Others others, const Watch& by = {})
+  : PairVisitor(by),
+    walk_(a, b),
     pairs_(a, b, 0.0),
     others_(std::move(others)),
     tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
@@ -141,6 +142,7 @@ private:
   {
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
+    if (best_.pair && pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
     if (best_.pair) {
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
       if (sign > 0 || (sign == 0 && *best_.pair < candidate)) return;

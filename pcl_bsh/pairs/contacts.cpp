@@ -2,6 +2,7 @@
 // Contacts: depth first as any and closest pair, keeping the nearest pairs in a heap once there are enough of them.
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +28,9 @@ enum class Added { kept, dropped, stop };
 template <class Sink>
 class ReachWalk : public PairVisitor {
 public:
-  ReachWalk(const Placed& a, const Placed& b, double clearance, Sink& sink)
-  : walk_(a, b),
+  ReachWalk(const Placed& a, const Placed& b, double clearance, Sink& sink, Progress& progress)
+  : PairVisitor(Watch{&progress, 1.0}),
+    walk_(a, b),
     pairs_(a, b, clearance),
     sink_(sink)
   {
@@ -229,19 +231,19 @@ private:
 
 } // namespace
 
-void nearestContactsOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result)
+void nearestContactsOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
+                             ContactsResult& result)
 {
   NearestPairs sink(a, b, request.clearance, request.most);
-  result.work = ReachWalk(a, b, request.clearance, sink).run();
+  result.work = ReachWalk(a, b, request.clearance, sink, progress).run();
   sink.collect(a, b, result);
 }
 
-PairsWithin pairsWithinOnTarget(const Placed& a, const Placed& b, double clearance, std::size_t most)
+void pairsWithinOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
+                         PairsWithin& result)
 {
-  PairsWithin result;
-  AllPairs sink(clearance, most, result);
-  result.work = ReachWalk(a, b, clearance, sink).run();
-  return result;
+  AllPairs sink(request.clearance, request.most, result);
+  result.work = ReachWalk(a, b, request.clearance, sink, progress).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -258,9 +260,11 @@ void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& re
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
+  Progress progress(request.progress);
   result.contacts.clear();
   result.complete = false; // should something throw, the result does not claim that nothing collides
-  HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request, result);
+  HWY_DYNAMIC_DISPATCH(nearestContactsOnTarget)(a, b, request, progress, result);
+  progress.finish();
 }
 
 ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request)
@@ -270,11 +274,25 @@ ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsR
   return result;
 }
 
-PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request)
+void pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request, PairsWithin& result)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
-  return HWY_DYNAMIC_DISPATCH(pairsWithinOnTarget)(a, b, request.clearance, request.most);
+  Progress progress(request.progress);
+  result.pairs.clear();
+  result.complete = false; // as above
+  PairsWithin found;
+  found.pairs.swap(result.pairs);
+  HWY_DYNAMIC_DISPATCH(pairsWithinOnTarget)(a, b, request, progress, found);
+  progress.finish();
+  result = std::move(found);
+}
+
+PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request)
+{
+  PairsWithin result;
+  pairsWithin(a, b, request, result);
+  return result;
 }
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
@@ -13,10 +14,20 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What nearestContacts() and pairsWithin() read. Both are exact.
-struct ContactsRequest {
-  double clearance = 0.0;                                     ///< finite, >= 0; inclusive
-  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< pairs in the result; they may be as many as a x b
+/// What nearestContacts() and pairsWithin() read. Both are exact, and take one thread.
+struct ContactsRequest : Effort {
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+  ContactsRequest() = default;
+  ContactsRequest(double within, std::size_t at_most = kAll, Effort effort = {})
+  : Effort(std::move(effort)),
+    clearance(within),
+    most(at_most)
+  {
+  }
+
+  double clearance = 0.0;  ///< finite, >= 0; inclusive
+  std::size_t most = kAll; ///< pairs in the result; they may be as many as a x b
 };
 
 /// A colliding pair of points, or of triangles.
@@ -35,8 +46,9 @@ struct ContactsResult {
 };
 
 /// The `request.most` nearest of the colliding pairs, or all of them when they are fewer; of pairs at the same
-/// distance, the smallest (a, b) first. One thread.
-/// @throws std::invalid_argument when the clearance or a pose is not what its declaration asks for.
+/// distance, the smallest (a, b) first.
+/// @throws std::invalid_argument when the clearance or a pose is not what its declaration asks for; an
+///   accuracy other than exact. Cancelled.
 ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request);
 
 /// The same into a result whose memory is used again.
@@ -50,6 +62,9 @@ struct PairsWithin {
 };
 /// Throws as nearestContacts() does.
 PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request);
+
+/// The same into a result whose memory is used again.
+void pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request, PairsWithin& result);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -33,8 +33,10 @@ bool laterThan(const Open& x, const Open& y)
 
 class IntervalSearch : public PairVisitor {
 public:
-  IntervalSearch(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance)
-  : rule_(rule),
+  IntervalSearch(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance,
+                 const Watch& by)
+  : PairVisitor(by),
+    rule_(rule),
     clearance_(clearance),
     walk_(a, b),
     stop_check_(rule_, walk_.work.node_pairs),
@@ -111,7 +113,9 @@ private:
   {
     if (!open_.empty()) dive();
     std::make_heap(open_.begin(), open_.end(), laterThan);
+    SearchPulse pulse({watch.progress}, open_.size());
     while (!open_.empty() && matters(open_.front().lower) && !isSettled() && !stop_check_.isOver()) {
+      pulse.step(open_.size());
       std::pop_heap(open_.begin(), open_.end(), laterThan);
       const Open next = open_.back();
       open_.pop_back();
@@ -221,9 +225,9 @@ private:
 } // namespace
 
 IntervalFinding searchIntervalOnTarget(const Placed& a, const Placed& b, const StopRule& rule,
-                                       std::optional<double> clearance)
+                                       std::optional<double> clearance, const Watch& watch)
 {
-  return IntervalSearch(a, b, rule, clearance).run();
+  return IntervalSearch(a, b, rule, clearance, watch).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -235,9 +239,10 @@ namespace pcl_bsh {
 
 HWY_EXPORT(searchIntervalOnTarget);
 
-IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance)
+IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance,
+                               const Watch& watch)
 {
-  return HWY_DYNAMIC_DISPATCH(searchIntervalOnTarget)(a, b, rule, clearance);
+  return HWY_DYNAMIC_DISPATCH(searchIntervalOnTarget)(a, b, rule, clearance, watch);
 }
 
 } // namespace pcl_bsh

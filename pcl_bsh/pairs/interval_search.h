@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/stop_rule.h>
 
 namespace pcl_bsh {
@@ -18,6 +19,7 @@ struct IntervalFinding {
 /// narrows from both ends and may be had at any time (Klein, Zachmann: Point Cloud Collision Detection, 2004, order
 /// their traversal so). More levels or more budget never widen it.
 /// @param clearance the question is only whether the distance exceeds this; none: what it is
-IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance);
+IntervalFinding searchInterval(const Placed& a, const Placed& b, const StopRule& rule, std::optional<double> clearance,
+                               const Watch& watch);
 
 } // namespace pcl_bsh

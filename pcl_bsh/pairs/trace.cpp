@@ -111,10 +111,12 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
 {
   Met met_a(a), met_b(b);
   CollisionTrace trace;
-  const auto search = [&](Places places) {
-    return AnySearch(a, b, request, TraceObserver(met_a, met_b), places).run();
+  Progress progress(request.progress);
+  const auto search = [&](Places places, const Watch& watch) {
+    return AnySearch(a, b, request, TraceObserver(met_a, met_b), places, watch).run();
   };
-  trace.result = areUncertain(a, b) ? anyOfUncertain(search) : search(Places::measured);
+  trace.result = areUncertain(a, b) ? anyOfUncertain(progress, search) : search(Places::measured, {&progress, 1.0});
+  progress.finish();
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();
   if (trace.result.verdict == Verdict::free) { // nothing waits any more: what met it was opened, and is out of reach

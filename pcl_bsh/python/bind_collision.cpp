@@ -124,7 +124,7 @@ Examples
 >>> a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 30, 40], [0, 3, 4]]))
 >>> pair = pcl_bsh.closest_pair(a, b)
->>> pair.distance, asked.a, asked.b
+>>> pair.distance, pair.a, pair.b
 (5.0, 0, 1)
 )";
 

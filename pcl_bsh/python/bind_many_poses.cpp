@@ -95,8 +95,8 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
   asked.question.clearance = request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
-  const auto report = progressOf(progress);
-  AnyAtPoses found = asked.answer([&] { return anyCollisionAtPoses(asked.a, b, list, request, report); });
+  request.progress = progressOf(progress);
+  AnyAtPoses found = asked.answer([&] { return anyCollisionAtPoses(asked.a, b, list, request); });
   return arrayFrom(std::move(found.verdicts));
 }
 
@@ -107,10 +107,8 @@ std::pair<py::array_t<double>, py::array_t<std::uint32_t>> closestAtPosesOf(cons
 {
   Asked asked("a", a, pose_a, "b", b);
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
-  DistanceRequest request;
-  request.threads = threads;
-  const auto report = progressOf(progress);
-  DistancesAtPoses found = asked.answer([&] { return closestPairAtPoses(asked.a, b, list, request, report); });
+  const DistanceRequest request(threads, progressOf(progress));
+  DistancesAtPoses found = asked.answer([&] { return closestPairAtPoses(asked.a, b, list, request); });
   found.pairs.resize(list.size(), {kNothing, kNothing});
   return {arrayFrom(std::move(found.distances)), arrayFrom(found.pairs)};
 }

@@ -73,6 +73,21 @@ public:
 
   bool stopped() const { return stopped_; }
 
+  /// All is done. @throws Cancelled
+  void finish()
+  {
+    begin(1.0, 0);
+    end();
+  }
+
+  /// For a query that is one step of this work, or part of one, in any thread: it tells nothing of how far it is, and
+  /// is stopped with the whole.
+  std::function<bool(double)> nested()
+  {
+    if (!report_) return {};
+    return [this](double) { return !pulse(); };
+  }
+
   void throwIfStopped() const
   {
     if (stopped_) throw Cancelled();
@@ -92,6 +107,42 @@ private:
   double from_ = 0.0, to_ = 0.0; ///< of this part: what its first and its last step take the whole to
   std::atomic<std::size_t> done_{0};
   std::atomic<bool> stopped_{false};
+};
+
+/// Who watches a search.
+struct Watch {
+  Progress* progress = nullptr; ///< null: nobody
+  double end = 0.0;             ///< what the search takes the whole to; 0: it is part of a step
+};
+
+/// Tells how far a depth-first search is: how many of the entries that its stack began with are done.
+class SearchPulse {
+public:
+  /// @param size entries of the stack
+  SearchPulse(const Watch& watch, std::size_t size) : watch_(watch), whole_(size), left_(size)
+  {
+    if (watch_.progress && watch_.end > 0.0) watch_.progress->begin(watch_.end, size);
+  }
+
+  /// Before a step of the search. @throws Cancelled
+  void step(std::size_t size)
+  {
+    if (!watch_.progress) return;
+    left_ = std::min(left_, size);
+    if (++steps_ % 64 == 0) tell(); // a clock, which most callers look at, costs as much as a step
+  }
+
+private:
+  void tell()
+  {
+    if (watch_.end > 0.0) watch_.progress->skipTo(whole_ - left_);
+    if (watch_.progress->pulse()) throw Cancelled();
+  }
+
+  const Watch watch_;
+  const std::size_t whole_;
+  std::size_t left_;
+  unsigned steps_ = 0;
 };
 
 } // namespace pcl_bsh

@@ -39,9 +39,14 @@ int RecordDistance::compareTriangles(PointPair records, const Sum& reach) const
   });
 }
 
-RecordDistance::Enclosure RecordDistance::encloseTriangles(PointPair records) const
+RecordDistance::Enclosure RecordDistance::encloseTriangles(PointPair records, double reach) const
 {
-  return withTriangles(records, [&](const auto& pair) { return distanceOfPair().enclose(pair.a, pair.b); });
+  return withTriangles(records, [&](const auto& pair) {
+    if constexpr (std::is_same_v<decltype(pair), const TriangleDistance::TrianglePair&>)
+      return distanceOfPair().enclose(pair.a, pair.b, reach);
+    else
+      return distanceOfPair().enclose(pair.a, pair.b);
+  });
 }
 
 int RecordDistance::compareTriangleGaps(const Pair& first, const RecordDistance& other, const Pair& second) const

@@ -9,12 +9,14 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/query/result.h>
 
 #include <Eigen/Geometry>
 
+#include <limits>
 #include <optional>
 
 namespace pcl_bsh {
@@ -80,7 +82,15 @@ public:
   /// Bounds of the distance, radii not subtracted, as far as double arithmetic can tell; both infinite where it cannot.
   Enclosure enclose(const Pair& pair) const
   {
-    return ofTriangles() ? encloseTriangles(pair.records) : points_.enclose(pair.p, pair.q);
+    return ofTriangles() ? encloseTriangles(pair.records, std::numeric_limits<double>::infinity())
+                         : points_.enclose(pair.p, pair.q);
+  }
+
+  /// Whether doubles know a pair of triangles, or of a point and a triangle, to have a greater gap than this.
+  bool isSurelyBeyond(const Pair& pair, double gap) const
+  {
+    const double reach = (gap + pair.radius_p + pair.radius_q) * (1.0 + kDoubleMargin);
+    return encloseTriangles(pair.records, reach).low > reach;
   }
 
   /// The same of a place of one cloud and a triangle of the other.
@@ -116,7 +126,7 @@ private:
   const TriangleDistance& distanceOfPair() const;
   int compareTriangles(PointPair records, double clearance) const;
   int compareTriangles(PointPair records, const Sum& reach) const;
-  Enclosure encloseTriangles(PointPair records) const;
+  Enclosure encloseTriangles(PointPair records, double reach) const;
   int compareTriangleGaps(const Pair& first, const RecordDistance& other, const Pair& second) const;
   double gapOfTriangles(PointPair records) const;
 

@@ -39,6 +39,14 @@ void checkAccuracy(const Accuracy& accuracy)
       .withValue(accuracy.value);
 }
 
+void checkExact(const Effort& effort)
+{
+  if (effort.accuracy.isExact()) return;
+  throw InvalidInput(Input::accuracy, "accuracy", effort.accuracy.text() + " is less than this query gives",
+                     "give exact: it knows no other")
+      .withValue(effort.accuracy.value);
+}
+
 bool isRigid(const Eigen::Isometry3d& pose)
 {
   return pose.matrix().allFinite() && pose.matrix().row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) &&

@@ -4,7 +4,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 
 #include <Eigen/Geometry>
 
@@ -23,6 +23,9 @@ PCL_BSH_EXPORT_INTERNAL void checkClearance(double clearance);
 
 /// Refuses a value of the accuracy that is negative or not finite.
 PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
+
+/// Refuses an accuracy other than exact, for a query that knows no other.
+PCL_BSH_EXPORT_INTERNAL void checkExact(const Effort& effort);
 
 /// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
 PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);

@@ -85,12 +85,13 @@ public:
 private:
   void flag()
   {
-    FlagsRequest request;
-    request.clearance = question_.clearance.value_or(0.0);
-    request.threads = question_.threads;
-    request.accuracy = question_.accuracy;
-    request.flagged = !wanted_.flags ? Side::b : wanted_.obstacle_flags ? Side::both : Side::a;
-    if (question_.density) request.spacings_of_b = guard();
+    const float* const spacings = question_.density ? guard() : nullptr;
+    FlagsRequest request(question_.clearance.value_or(0.0),
+                         !wanted_.flags           ? Side::b
+                         : wanted_.obstacle_flags ? Side::both
+                                                  : Side::a,
+                         nextEffort());
+    request.spacings_of_b = spacings;
     FlagsResult found = collisionFlags(a_, b_, request);
     answer_.work += found.work;
     answer_.sparse = found.sparse_a;
@@ -98,6 +99,26 @@ private:
     answer_.collisions.flags = std::move(found.a);
     answer_.collisions.colliding = found.colliding_a;
     answer_.collisions.undecided = found.undecided_a;
+  }
+
+  /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
+  /// guard, collisions, the closest pair, distances. Some may turn out not to be needed.
+  int queries() const
+  {
+    const bool path = question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses;
+    const bool flags = wanted_.flags || wanted_.obstacle_flags;
+    return (question_.density && flags && !path) + (path || flags) + (wanted_.closest && !path) +
+           (wanted_.measures() && !question_.path);
+  }
+
+  /// Of the next query: how the question wants it, and its share of the progress.
+  Effort nextEffort()
+  {
+    const double begun = begun_++, all = queries();
+    Effort effort = question_;
+    if (question_.progress)
+      effort.progress = [this, begun, all](double done) { return question_.progress((begun + done) / all); };
+    return effort;
   }
 
   /// Null where nothing is guarded.
@@ -109,7 +130,7 @@ private:
                                                               "nothing"});
       return nullptr;
     }
-    const Shape::Patches& patches = obstacle_.patches(question_.widest_gap, question_.threads);
+    const Shape::Patches& patches = obstacle_.patches(question_.widest_gap, {question_.threads, nextEffort().progress});
     answer_.widest_gap = patches.gap;
     return patches.spacings.empty() ? nullptr : patches.spacings.data();
   }
@@ -118,15 +139,13 @@ private:
   {
     const bool measures = !wanted_.collisions(); // or nothing is wanted but the closest, which is one of these
     TrajectoryRequest request;
+    static_cast<Effort&>(request) = nextEffort();
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
-    request.accuracy = question_.accuracy;
     request.flags = wanted_.flags || wanted_.contacts || wanted_.poses;
     request.distances = request.closest_poses = wanted_.contacts || wanted_.distances;
     request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;
     request.swept = question_.sweptTolerance();
-    request.threads = question_.threads;
-    request.progress = question_.progress;
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
     if (wanted_.closest) {
@@ -139,7 +158,9 @@ private:
   /// However large it is.
   void findClosest()
   {
-    DistanceResult found = closestPair(a_, b_, {question_.accuracy});
+    Effort effort = nextEffort();
+    effort.threads = 1;
+    DistanceResult found = closestPair(a_, b_, effort);
     answer_.work += found.work;
     answer_.closest = std::move(found);
   }
@@ -157,10 +178,8 @@ private:
   void measure()
   {
     PointDistancesRequest request;
+    static_cast<Effort&>(request) = nextEffort();
     request.max_distance = reach();
-    request.accuracy = question_.accuracy;
-    request.threads = question_.threads;
-    request.progress = question_.progress;
     SymmetricDistances& found = answer_.distances;
     if (wanted_.both_ways)
       found = symmetricDistances(a_, b_, request);
@@ -203,6 +222,7 @@ private:
   Shape& obstacle_;
   Placed b_, a_; ///< in this order: what is wrong with the obstacle is told first
   bool closest_is_known_ = false;
+  int begun_ = 0; ///< queries that have
   Answer answer_;
 };
 

@@ -10,12 +10,11 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/question/uncertainty.h>
 
 #include <Eigen/Geometry>
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -50,15 +49,15 @@ struct DistanceLimits {
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// Lengths are in the clouds' own unit. Which values are allowed, options.h says.
-struct Question {
+/// Lengths are in the clouds' own unit. Which values are allowed, options.h says. Progress is that of all its queries
+/// together.
+struct Question : Effort {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle; rigid within 1e-6
   /// T_world_input, where `pose` and `path` are those of the obstacle in a world: no product of poses is rounded.
   Eigen::Isometry3d pose_of_input = Eigen::Isometry3d::Identity();
   std::optional<std::vector<Eigen::Isometry3d>> path = {}; ///< instead: such poses, one after another; not empty
   double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
   std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
-  Accuracy accuracy = {};
   Uncertainty uncertainty = {}, obstacle_uncertainty = {};
   double sigmas = 1.0;                     ///< times those of both uncertainties, where they are fields
   bool density = false;                    ///< the density guard (FlagsRequest::spacings_of_b)
@@ -66,12 +65,7 @@ struct Question {
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
   bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
-  unsigned threads = 1;       ///< 0: all of the machine's
   Wanted wanted = {};
-
-  /// Of distances, and along a path: called now and then, by the thread that asks, with the fraction done in [0, 1],
-  /// ascending. False: stop, ask() throws Cancelled. What it throws itself comes out of ask().
-  std::function<bool(double)> progress = {};
 
   /// Of the path, or the only one.
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }

@@ -65,11 +65,11 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
   return *hierarchy_;
 }
 
-const Shape::Patches& Shape::patches(const std::optional<double>& gap, unsigned threads)
+const Shape::Patches& Shape::patches(const std::optional<double>& gap, const Effort& effort)
 {
   if (patches_ && patches_->asked == gap) return *patches_;
   Patches measured{gap, gap ? *gap : usualGap(*hierarchy_), {}};
-  if (measured.gap > 0.0) measured.spacings = patchSpacings(*hierarchy_, measured.gap, threads);
+  if (measured.gap > 0.0) measured.spacings = patchSpacings(*hierarchy_, measured.gap, effort);
   patches_ = std::make_shared<const Patches>(std::move(measured));
   return *patches_;
 }
@@ -83,9 +83,14 @@ NamedCloud Shape::facts(bool spacing) const
 {
   NamedCloud facts = namedCloud(name_, *hierarchy_);
   if (!spacing || is_surface_ || hierarchy_->view().radii) return facts;
+  {
+    const std::lock_guard lock(measured_->one_at_a_time);
+    facts.spacing = measured_->spacing;
+  }
+  if (facts.spacing) return facts;
+  facts.spacing = spacingOf(*hierarchy_); // by two threads at once rather than by one while another waits
   const std::lock_guard lock(measured_->one_at_a_time);
-  if (!measured_->spacing) measured_->spacing = spacingOf(*hierarchy_);
-  facts.spacing = measured_->spacing;
+  measured_->spacing = facts.spacing;
   return facts;
 }
 

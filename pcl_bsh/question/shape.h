@@ -59,7 +59,7 @@ public:
   };
 
   /// Measured once for points and a gap. @pre hierarchy() was called. @param gap > 0; none: usualGap()
-  const Patches& patches(const std::optional<double>& gap, unsigned threads);
+  const Patches& patches(const std::optional<double>& gap, const Effort& effort);
 
   /// Patches that its owner has measured, for question without a gap. @param spacings one per record
   void setPatches(std::vector<float> spacings);

@@ -71,15 +71,15 @@ Work forEachBatch(std::size_t count, unsigned threads, Progress& progress, const
 /// @param find Work(some, places, progress, mark): of the entries `some` those that collide while points are where
 ///   `places` says, to be marked by their places in `some`, from several threads
 template <class Find>
-Work giveVerdicts(bool uncertain, const PosesProgress& report, double begin, std::vector<Verdict>& verdicts,
-                  const Find& find)
+Work giveVerdicts(bool uncertain, const std::function<bool(double)>& report, double begin,
+                  std::vector<Verdict>& verdicts, const Find& find)
 {
   Work work;
   const auto decide = [&](Verdict open, Verdict verdict, Places places, double from, double to) {
     std::vector<std::uint32_t> some;
     for (std::size_t i = 0; i < verdicts.size(); ++i)
       if (verdicts[i] == open) some.push_back(static_cast<std::uint32_t>(i));
-    const PosesProgress part = [&](double done) { return !report || report(from + (to - from) * done); };
+    const std::function<bool(double)> part = [&](double done) { return !report || report(from + (to - from) * done); };
     Progress progress(part);
     work += find(some, places, progress, [&](std::size_t i) { verdicts[some[i]] = verdict; });
   };

@@ -67,7 +67,7 @@ void checkPoses(const PoseList& poses, const char* whose, unsigned threads)
 }
 
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request, const PosesProgress& report)
+                               const AnyRequest& request)
 {
   checkClearance(request.clearance);
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
@@ -78,7 +78,8 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   if (!request.accuracy.isExact()) {
     AnyRequest single = request;
     single.threads = 1;
-    Progress progress(report);
+    Progress progress(request.progress);
+    single.progress = progress.nested();
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const AnyResult found = anyCollision(a, {b, pose}, single);
       result.verdicts[i] = found.verdict;
@@ -87,7 +88,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   }
   else {
     result.work =
-        giveVerdicts(areUncertain(a, {b}), report, 0.0, result.verdicts,
+        giveVerdicts(areUncertain(a, {b}), request.progress, 0.0, result.verdicts,
                      [&](const std::vector<std::uint32_t>& some, Places places, Progress& progress, const auto& mark) {
                        return forEachNeighborhood(a, b, SomePoses{T_world_b, some}, request.threads, progress,
                                                   [&](const PoseBatch& batch, const std::uint32_t* order) {
@@ -105,14 +106,14 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
 }
 
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request, const PosesProgress& report)
+                                    const DistanceRequest& request)
 {
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   DistancesAtPoses result;
   result.distances.assign(T_world_b.size(), std::numeric_limits<double>::infinity());
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
-  Progress progress(report);
+  Progress progress(request.progress);
   result.pairs.resize(T_world_b.size());
   if (request.accuracy.isExact())
     result.work = forEachNeighborhood(
@@ -120,7 +121,7 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
         [&](const PoseBatch& batch, const std::uint32_t* order) { return closestOfBatch(batch, order, result); });
   else
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
-      const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy});
+      const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy, 1, progress.nested()});
       result.distances[i] = found.distance;
       result.pairs[i] = *found.pair;
       return found.work;

@@ -18,7 +18,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -42,22 +41,17 @@ struct DistancesAtPoses {
   Work work;
 };
 
-/// Is called now and then, by the thread that calls the query, with the fraction done in [0, 1], which never falls, and
-/// at least once where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes
-/// out of the query.
-using PosesProgress = std::function<bool(double)>;
-
 /// Does any pair of points collide, b at each of the poses T_world_b (rigid within 1e-6)? Verdicts alone: witnesses
 /// would depend on what neighbouring poses have in common, which is used again; anyCollision() gives that of a pose.
 /// @throws std::invalid_argument naming the value: a clearance or a pose that is not what its declaration asks for (a
 ///   pose by its index), an accuracy that stops early. Cancelled.
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request = {}, const PosesProgress& progress = {});
+                               const AnyRequest& request = {});
 
 /// The smallest distance and the pair that realises it, b at each of the poses.
 /// @throws as anyCollisionAtPoses()
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request = {}, const PosesProgress& progress = {});
+                                    const DistanceRequest& request = {});
 
 namespace brute_force {
 

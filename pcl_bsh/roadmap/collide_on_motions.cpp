@@ -127,7 +127,7 @@ MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_o
 : scan(scan_at),
   model(model_of),
   request(asked),
-  boxes(model_of.storage(), Travel()), // of motions in all directions
+  boxes(model_of.storage(), Travel(), scan_at.hierarchy().storage().largest_radius), // of motions in all directions
   swept(requestOfOne(asked))
 {
 }
@@ -174,9 +174,8 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   AnyRequest at_poses;
   at_poses.clearance = request.clearance;
   at_poses.threads = request.threads;
-  const AnyAtPoses found = anyCollisionAtPoses(scan, model, SomePoses{poses, used}, at_poses, [&](double done) {
-    return !request.progress || request.progress(kAtPoses * done);
-  });
+  at_poses.progress = [&](double done) { return !request.progress || request.progress(kAtPoses * done); };
+  const AnyAtPoses found = anyCollisionAtPoses(scan, model, SomePoses{poses, used}, at_poses);
   result.work += found.work;
   for (std::size_t m = 0; m < motions.size(); ++m)
     result.verdicts[m] = graver(found.verdicts[place[motions[m].from]], found.verdicts[place[motions[m].to]]);

@@ -21,13 +21,13 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/pose_list.h>
 #include <pcl_bsh/query/result.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -38,16 +38,11 @@ struct PoseMotion {
   std::uint32_t from = 0, to = 0;
 };
 
-/// What anyCollisionOnMotions() reads.
-struct MotionsRequest {
+/// What anyCollisionOnMotions() reads. Its tolerance is that of the motion: no accuracy but exact.
+struct MotionsRequest : Effort {
   double clearance = 0.0;   ///< finite, >= 0; inclusive
   double tolerance = 0.0;   ///< of the motion, finite, > 0: has to be given
   Point3 pivot = {0, 0, 0}; ///< the point of the model that moves in straight lines
-  unsigned threads = 1;     ///< 0: all of the machine's
-  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, and at least once
-  /// where there is anything to do. False: stop, the query throws Cancelled. What it throws itself comes out of the
-  /// query.
-  std::function<bool(double)> progress = {};
 };
 
 /// What anyCollisionOnMotions() found.

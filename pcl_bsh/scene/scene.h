@@ -24,7 +24,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/scene/effects.h>
 #include <pcl_bsh/scene/motion.h>
 
@@ -83,17 +83,15 @@ struct PairRule {
   std::optional<double> clearance; ///< finite, >= 0
 };
 
-/// What a scene is asked for, and how exactly.
-struct SceneOptions {
+/// What a scene is asked for, and how exactly. The accuracy is that of any, flags, distance and self: those that stop
+/// early do so in each query of two parts, and leave pairs, points and distances undecided, or known within an
+/// interval; everything else is as exact as ever. Each query and each step reports its progress by itself.
+struct SceneOptions : Effort {
   Effects effects;
-  double clearance = 0.0; ///< of pairs without a rule; finite, >= 0; inclusive
-  bool test_pairs = true; ///< pairs without a rule are tested; false: only those a rule asks for
-  /// Of any, flags, distance and self. Those that stop early do so in each query of two parts, and leave pairs, points
-  /// and distances undecided, or known within an interval; everything else is as exact as ever.
-  Accuracy accuracy;
+  double clearance = 0.0;  ///< of pairs without a rule; finite, >= 0; inclusive
+  bool test_pairs = true;  ///< pairs without a rule are tested; false: only those a rule asks for
   double tolerance = 1e-4; ///< of first contacts, swept motion and responses, in the clouds' unit; > 0
   double voxel_edge = 0.0; ///< of the grid over the scene; 0: from the sizes of what moves
-  unsigned threads = 1;    ///< 0: all of the machine's
   bool remember = true;    ///< keep witnesses and distances from step to step; never changes an answer
 };
 
@@ -150,7 +148,7 @@ public:
   /// refit(), another scene's deform()) are seen by the next step or query without it.
   void pointsChanged(ObjectId object);
 
-  // A query or step that throws (std::bad_alloc) has changed nothing, and may be asked for again.
+  // A query or step that throws (std::bad_alloc, Cancelled) has changed nothing, and may be asked for again.
 
   /// The effects at the present poses. `first_contact` and `swept` look at the motion from the poses of the last query
   /// or step, with the points and rules of now (SceneResult::swept_motions): one leg, whatever legs a response took;

@@ -35,6 +35,7 @@ SceneResult Scene::State::query()
   if (of_near) findNear();
   const auto find = [&](Effect effect, void (State::*findIts)(EffectCost&)) {
     if (!effects.has(effect)) return;
+    share = (1.0 + static_cast<double>(effect)) / static_cast<double>(kEffects);
     const Timed timed(cost(effect).seconds);
     (this->*findIts)(cost(effect));
   };
@@ -45,6 +46,7 @@ SceneResult Scene::State::query()
   find(Effect::first_contact, &State::findFirstContacts);
   find(Effect::swept, &State::findSwept);
   find(Effect::self, &State::findSelf);
+  progress->finish();
   if (!of_near) grid.dropParted(); // no list holds them
   for (const ObjectId object : moved_before) bodies[object].last_motion = 0.0;
   for (const ObjectId object : moved) {

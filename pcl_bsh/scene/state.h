@@ -2,11 +2,13 @@
 // What a Scene holds between queries.
 #pragma once
 
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/scene/swept/object_motion.h>
 
 #include <chrono>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -107,7 +109,13 @@ public:
   void prepareGrid();      ///< the grid, and every object in it
   SceneResult query();     ///< at the end of a step, or by itself
 
+  /// For a query of two parts: what the scene's accuracy is, and who watches.
+  Effort ofParts() const { return {options.accuracy, 1, progress->nested()}; }
+  Effort exactOfParts() const { return {1, progress->nested()}; }
+
   SceneOptions options;
+  mutable std::optional<Progress> progress; ///< of the query or step in progress
+  double share = 0.0;                       ///< what the effect that is computed takes the whole to
   PairRules rules;
   std::vector<Body> bodies;
   std::unordered_map<std::string, ObjectId> names;

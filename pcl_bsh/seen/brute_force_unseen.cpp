@@ -73,7 +73,7 @@ bool sees(const Scan& scan, const std::vector<DirectionCell>& holes, double angl
 } // namespace
 
 UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Placed& model, const UnseenRequest& request,
-                        std::vector<std::uint8_t>& verdicts)
+                        std::vector<Verdict>& verdicts)
 {
   checkUnseen(model, request, verdicts.size());
   checkBeamAngle(angle);
@@ -87,13 +87,13 @@ UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Plac
   UnseenResult result;
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
-    if (!isFinite(view.point(record)) || verdicts[record] != flagOf(Verdict::free)) continue;
+    if (!isFinite(view.point(record)) || verdicts[record] != Verdict::free) continue;
     const ModelBall ball(model, record, request.clearance);
     bool seen = false;
     for (std::size_t s = 0; s < scans.size(); ++s)
       seen = seen || sees(scans[s], holes[s], angle, ball.from(scans[s].origin));
     if (seen) continue;
-    verdicts[record] = flagOf(Verdict::unseen);
+    verdicts[record] = Verdict::unseen;
     ++result.unseen;
   }
   return result;

@@ -2,7 +2,7 @@
 // What scanners saw to be empty: the space that their beams passed through. Is a ball in it, or did nobody look there?
 //
 //   SeenSpace seen({{origin_1, viewOf(scan_1, n)}, {origin_2, viewOf(scan_2, m)}});
-//   std::vector<std::uint8_t> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Side::b}).b;
+//   std::vector<Verdict> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Side::b}).b;
 //   UnseenResult found = markUnseen(seen, {robot, T_scans_robot}, {0.05}, verdicts); // what is free, but was not seen
 //
 // A beam speaks for the directions within an angle of its own: it says that they are empty up to its return, less the

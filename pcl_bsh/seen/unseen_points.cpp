@@ -21,7 +21,7 @@ using Scans = std::vector<const SeenScan*>;
 /// One model at one pose, or the part of it that one thread looks at.
 class UnseenWalk {
 public:
-  UnseenWalk(const SeenSpace::Storage& seen, const Placed& model, double clearance, std::vector<std::uint8_t>& verdicts)
+  UnseenWalk(const SeenSpace::Storage& seen, const Placed& model, double clearance, std::vector<Verdict>& verdicts)
   : model_(model),
     storage_(model.hierarchy().storage()),
     clearance_(clearance),
@@ -101,7 +101,7 @@ private:
 
   void point(std::uint32_t record, bool unseen, const Scans& scans)
   {
-    if (verdicts_[record] != flagOf(Verdict::free)) return;
+    if (verdicts_[record] != Verdict::free) return;
     if (!unseen) {
       const ModelBall ball(model_, record, clearance_);
       for (const SeenScan* scan : scans)
@@ -112,23 +112,23 @@ private:
 
   void mark(std::uint32_t record)
   {
-    std::uint8_t& verdict = verdicts_[record];
-    if (verdict != flagOf(Verdict::free)) return;
-    verdict = flagOf(Verdict::unseen);
+    Verdict& verdict = verdicts_[record];
+    if (verdict != Verdict::free) return;
+    verdict = Verdict::unseen;
     ++result.unseen;
   }
 
   const Placed& model_;
   const SphereHierarchy::Storage& storage_;
   const double clearance_;
-  std::vector<std::uint8_t>& verdicts_;
+  std::vector<Verdict>& verdicts_;
   Scans all_;
 };
 
 } // namespace
 
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,
-                        std::vector<std::uint8_t>& verdicts)
+                        std::vector<Verdict>& verdicts)
 {
   checkUnseen(model, request, verdicts.size());
   const DefaultFloatEnvironment environment;

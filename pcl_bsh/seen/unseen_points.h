@@ -35,14 +35,14 @@ struct UnseenResult {
 /// @param model at T_scans_model. @param verdicts one per record of its view, such as FlagsResult::b
 /// @throws std::invalid_argument naming the value: a clearance, a pose, or a number of verdicts. Cancelled
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,
-                        std::vector<std::uint8_t>& verdicts);
+                        std::vector<Verdict>& verdicts);
 
 namespace brute_force {
 
 /// The oracle: each ball against each beam and each cell of directions. Quadratic.
 /// @param angle as SeenOptions has it, of all scans
 UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Placed& model, const UnseenRequest& request,
-                        std::vector<std::uint8_t>& verdicts);
+                        std::vector<Verdict>& verdicts);
 
 } // namespace brute_force
 } // namespace pcl_bsh

@@ -24,14 +24,13 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/flags/collision_flags.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/site/site.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -61,22 +60,19 @@ public:
 
 class ClashFinder;
 
-/// What is asked about a site, and with which means.
-struct SiteRequest {
+/// What is asked about a site, and with which means. A level, a number of pairs or a time is that of each tile; threads
+/// are those of each process. Progress is reported after each tile by the rank that had it: the share of the tiles that
+/// may have to be asked about, in the order in which they are dealt to all ranks.
+struct SiteRequest : Effort {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
-  Accuracy accuracy;           ///< a level, a number of pairs or a time is that of each tile
   std::optional<double> swept; ///< of collideAlong(): the motion between poses too, to this tolerance, as there
   Point3 pivot = {0, 0, 0};    ///< of that motion, as there
   Uncertainty uncertainty;     ///< of the site's points: for verdicts, as in PointsView. A field is one of the site's
   bool pose_summaries = false; ///< of collideAlong(): what collides at each pose, as there
   ClashFinder* clashes = nullptr;                ///< of collideAlong(): gets what collides; needs distances
-  unsigned threads = 1;                          ///< of each process; 0: all of the machine's
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Of flags, distances and paths: tiles that are known are not read, and their sinks not called. ResultSite has some.
   TileAnswers* answers = nullptr;
-  /// Called after each tile by the rank that had it, with its number in the order in which tiles are dealt to all
-  /// ranks, from 1, and the number of those that may have to be asked about. False: stop, the query throws Cancelled.
-  std::function<bool(std::uint64_t done, std::uint64_t all)> progress;
 };
 
 /// What a tile has cost, in seconds of the clock on the wall.

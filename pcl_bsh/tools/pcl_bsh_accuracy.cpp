@@ -42,12 +42,10 @@ constexpr std::array results = {"accuracy.csv", "accuracy.json", "accuracy.md", 
 
 struct Options {
   std::filesystem::path a, b, out, trajectory;
-  double clearance = 0.0;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  unsigned poses = 1, repetitions = 5, threads = 1;
+  Question question; ///< at a pose, or each of the path
+  unsigned poses = 1, repetitions = 5;
   std::string unit;
   bool peers = false;
-  io::SurfaceSettings surface;
   io::ColumnChoice columns;
   cli::CommandFiles files;
 };
@@ -61,10 +59,8 @@ std::optional<Options> parse(int argc, char** argv)
   app.footer(footer);
   app.add_option("A", options.a, "the cloud whose points are tested, or a mesh")->type_name("")->required();
   app.add_option("B", options.b, "cloud or mesh to collide with")->type_name("")->required();
-  app.add_option("--clearance", options.clearance, "greatest distance that counts as collision, in the clouds' unit")
-      ->type_name("D")
-      ->transform(cli::number<double>(cli::give_length))
-      ->required();
+  Question& question = options.question;
+  cli::addQuestionOptions(app, question, {"clearance"});
   app.add_option("--out", options.out, "folder for the results; made if it is not there")->type_name("DIR")->required();
   app.add_option("--pose", pose, "of B in A's frame, as for pcl_bsh_collide (default: no motion)")->type_name("POSE");
   const auto at_least_one = [](unsigned n) { return n >= 1; };
@@ -79,26 +75,22 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default: 5)")
       ->type_name("N")
       ->transform(cli::number<unsigned>("give a number, 1 or more", at_least_one));
-  app.add_option("--threads", options.threads, "0: all of the machine's (default: 1)")
-      ->type_name("N")
-      ->transform(cli::number<unsigned>(cli::give_threads));
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
-  Question question;
-  cli::addQuestionOptions(app, question, {"vertices_only"});
+  cli::addQuestionOptions(app, question, {"vertices_only", "threads"});
   app.add_flag("--peers", options.peers,
                "measure PCL's kd-tree, octree and VoxelGrid on the same clouds, too, which\n"
                "must be points");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   cli::requireAccepted(question);
-  options.surface = {question.vertices_only};
+  if (!question.clearance) throw cli::UsageError("--clearance: is missing: give a length");
   if (!options.trajectory.empty() && (!pose.empty() || poses))
     throw cli::UsageError(std::string(pose.empty() ? "--poses" : "--pose") + ": --trajectory is given too: give one");
   options.poses = poses.value_or(1);
   if (!pose.empty()) {
     std::vector<std::string> warnings;
-    options.pose = cli::parsePose("--pose", pose, warnings);
+    question.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
   options.columns = columns.read({options.a, options.b});
@@ -111,8 +103,9 @@ std::optional<Options> parse(int argc, char** argv)
 io::Obstacle load(const Options& options, const std::filesystem::path& path)
 {
   double seconds = 0.0;
+  const Question& question = options.question;
   io::Obstacle loaded =
-      cli::loadObstacle(path, options.surface, seconds, options.columns.of(path), nullptr, options.threads);
+      cli::loadObstacle(path, {question.vertices_only}, seconds, options.columns.of(path), nullptr, question.threads);
   cli::warn(program, cli::warningsOf(loaded, path));
   if (options.peers && loaded.isSurface())
     throw std::runtime_error("--peers: are measured on points, and " + path.string() +
@@ -144,12 +137,12 @@ std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diamete
 {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  std::vector<Eigen::Isometry3d> poses = {options.pose};
+  std::vector<Eigen::Isometry3d> poses = {options.question.pose};
   while (poses.size() < options.poses) {
     const Eigen::Vector3d axis = Eigen::Vector3d(unit(random), unit(random), unit(random)).normalized();
     const Eigen::Vector3d shift = 0.05 * diameter * Eigen::Vector3d(unit(random), unit(random), unit(random));
     const double angle = unit(random) * 10.0 * 3.14159265358979323846 / 180.0;
-    poses.push_back(Eigen::Translation3d(shift) * options.pose * Eigen::Translation3d(middle) *
+    poses.push_back(Eigen::Translation3d(shift) * options.question.pose * Eigen::Translation3d(middle) *
                     Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-middle));
   }
   return poses;
@@ -175,7 +168,7 @@ int study(const Options& options)
   const files::OutputFolder folder(options.out);
   for (const char* name : results) files::requireWritable(options.out / name);
   const io::Obstacle given_a = load(options, options.a), given_b = load(options, options.b);
-  accuracy::Subject subject{given_a.view(), given_b.view(), options.clearance, {}, 0.0, options.unit};
+  accuracy::Subject subject{given_a.view(), given_b.view(), *options.question.clearance, {}, 0.0, options.unit};
   const Box a(subject.a), b(subject.b);
   if (a.box.isEmpty() || b.box.isEmpty())
     throw std::runtime_error((a.box.isEmpty() ? options.a : options.b).string() +
@@ -183,16 +176,17 @@ int study(const Options& options)
   subject.diameter = a.box.diagonal().norm();
   subject.poses = given.empty() ? posesAbout(options, subject.diameter, b.box.center()) : given;
   std::vector<std::string> told;
-  addTexts(
-      warningsOf({measuredCloud(options.a.string(), SphereHierarchy(subject.a)),
-                  measuredCloud(options.b.string(), SphereHierarchy(subject.b)), subject.poses, options.clearance}),
-      told);
+  Question question = options.question;
+  question.path = subject.poses;
+  addTexts(warningsOf(question, measuredCloud(options.a.string(), SphereHierarchy(subject.a)),
+                      measuredCloud(options.b.string(), SphereHierarchy(subject.b))),
+           told);
   cli::warn(program, told);
 
   const auto progress = [](const std::string& what, double done) {
     std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';
   };
-  accuracy::Study result = accuracy::runStudy(subject, options.repetitions, options.threads, progress);
+  accuracy::Study result = accuracy::runStudy(subject, options.repetitions, question.threads, progress);
   if (options.peers) {
     for (accuracy::Measurement& m : accuracy::measurePeers(subject, std::min(options.repetitions, 3u), progress))
       result.measurements.push_back(std::move(m));

@@ -155,9 +155,10 @@ constexpr double kThinShare = 0x1p-8;
 
 } // namespace
 
-BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel)
+BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel, double coarse)
 : storage(of),
   origin(of.frame.origin),
+  coarse_(coarse),
   voxels_(std::make_unique<Entry[]>(of.voxel_count))
 {
   std::fill(low, low + 3, kNone);
@@ -246,8 +247,9 @@ const BoxedVoxel& BoxTree::voxel(std::uint32_t index, Work& work) const
   Entry& entry = voxels_[index];
   std::call_once(entry.once, [&] {
     const Voxel& built = storage.built(index, work);
-    entry.boxed = arePoints(storage.view) ? BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties)
-                                          : BoxedVoxel(built, storage.view, origin, stretch, kThinShare * radius);
+    entry.boxed = arePoints(storage.view)
+                      ? BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties)
+                      : BoxedVoxel(built, storage.view, origin, stretch, std::max(coarse_, kThinShare * radius));
     for (const BoxNode& node : entry.boxed.boxes()) work.volumes_built += node.count;
   });
   return entry.boxed;
@@ -307,7 +309,9 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3&
         parts.emplace_back(Triangle3{center - reach, center + reach, center}, record);
       }
     }
+  const std::size_t whole = parts.size();
   if (view.triangles) divideThick(parts, thin);
+  is_divided_ = parts.size() > whole;
 
   std::vector<PlacedPoint> middles;
   middles.reserve(parts.size());

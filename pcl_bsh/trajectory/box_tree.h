@@ -35,6 +35,7 @@ struct BoxLeaf {
   const std::uint32_t* records;
   const float* lengths; ///< their own uncertainties, likewise; null where they have none
   std::uint32_t count;
+  bool is_part = false; ///< whether there are other leaves of its record, perhaps
 
   const float* x() const { return at_x; }
   const float* y() const { return at_y; }
@@ -60,14 +61,15 @@ public:
   BoxLeaf leaf(std::uint32_t number) const
   {
     const std::uint32_t begin = begins_[number];
-    if (coordinates_.empty()) return {nullptr, nullptr, nullptr, records_.data() + begin, nullptr, 1};
+    if (coordinates_.empty()) return {nullptr, nullptr, nullptr, records_.data() + begin, nullptr, 1, is_divided_};
     const float* x = coordinates_.data() + begin;
     return {x,
             x + records_.size(),
             x + 2 * records_.size(),
             records_.data() + begin,
             lengths_.empty() ? nullptr : lengths_.data() + begin,
-            begins_[number + 1] - begin};
+            begins_[number + 1] - begin,
+            false};
   }
 
 private:
@@ -76,6 +78,7 @@ private:
   std::vector<std::uint32_t> records_; // per point
   std::vector<float> lengths_;         // likewise, of uncertain points
   std::vector<std::uint32_t> begins_;  // per leaf: its first point; then their number
+  bool is_divided_ = false;            // whether triangles are in parts
 };
 
 /// How the model moves along a path, by itself: what its middle travels along each of its own axes, and how far it
@@ -97,7 +100,9 @@ inline bool arePoints(const PointsView& view)
 /// travels farther along that axis than its points move along others, kMostStretch at most.
 class BoxTree {
 public:
-  BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel);
+  /// @param coarse triangles are not divided into boxes thinner than this: of what they are compared with, records are
+  /// as large
+  BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel, double coarse = 0.0);
 
   const SphereHierarchy::Storage& storage;
   const Point3 origin;      ///< of the boxes, in the cloud's frame
@@ -141,6 +146,7 @@ private:
   void setStretch(const Travel& travel);
 
   std::vector<BoxNode> top_;
+  double coarse_;
   std::unique_ptr<Entry[]> voxels_;
 };
 

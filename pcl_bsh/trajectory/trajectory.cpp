@@ -73,20 +73,16 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
   const std::vector<NearVoxel> near_voxels = query.nearVoxels(rule, progress);
   progress.end();
 
-  VoxelPasses<std::span<const NearVoxel>, VoxelResult> voxels(threadCount(request.threads), result.work);
+  VoxelPasses<std::span<const NearVoxel>, VoxelResult> voxels(threadCount(request.threads), result.work, progress);
   for (std::span<const NearVoxel> left = near_voxels; !left.empty();) voxels.places.push_back(takeVoxel(left));
   if (rule.mayStop())
     for (const auto& near : voxels.places) markUndecided(query.scan.hierarchy(), near[0].voxel, result.flags);
-  progress.begin(1.0, voxels.places.size() * (rule.mayStop() ? rule.passes().size() : 1));
+  progress.begin(1.0, voxels.steps(rule));
   const std::uint64_t tests = // those above the voxels count, too
       rule.node_pairs - (rule.node_pairs == StopRule::kNever ? 0 : std::min(rule.node_pairs, result.work.node_pairs));
   voxels.run(rule, tests, [&](const StopRule& own, std::span<const NearVoxel> near) {
-    if (progress.stopped()) return VoxelResult();
-    const VoxelResult answer = walkVoxel(query, own, near, progress);
-    progress.step();
-    return answer;
+    return walkVoxel(query, own, near, progress);
   });
-  progress.throwIfStopped();
   if (rule.mayStop()) countFlags(result);
   if (request.swept && std::isfinite(query.earliest)) result.first_contact = instantOf(query.path, query.earliest);
   if (request.pose_summaries) summarize(query, result);
@@ -103,7 +99,8 @@ std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierar
   Progress progress(request.progress);
   try {
     progress.limit(&rule);
-    const BoxTree boxes(model.storage(), travelOf(model_poses, model.storage().frame.origin));
+    const BoxTree boxes(model.storage(), travelOf(model_poses, model.storage().frame.origin),
+                        scan.hierarchy().storage().largest_radius);
     const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress, places);
     result.work.volumes_built += countChildren(boxes.storage.top);
     progress.limit(nullptr);

@@ -27,14 +27,13 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/query/accuracy.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -42,14 +41,12 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What collideAlong() reads.
-struct TrajectoryRequest {
-  double clearance = 0.0; ///< finite, >= 0; inclusive
-  /// A tolerance: pairs at distances in (clearance, clearance + tolerance] may count or not, at each pose anew; of
-  /// points that nothing else comes near to, the distance is within the tolerance of the smallest. Those that stop
-  /// early (level, pairs, time) decide flags only, and leave the others undecided. Swept motion has a tolerance of its
-  /// own: exact only.
-  Accuracy accuracy;
+/// What collideAlong() reads. With a tolerance, pairs at distances in (clearance, clearance + tolerance] may count or
+/// not, at each pose anew; of points that nothing else comes near to, the distance is within the tolerance of the
+/// smallest. Accuracies that stop early (level, pairs, time) decide flags only, and leave the others undecided. Swept
+/// motion has a tolerance of its own: exact only. Progress is reported also while nothing is near.
+struct TrajectoryRequest : Effort {
+  double clearance = 0.0;      ///< finite, >= 0; inclusive
   bool flags = true;           ///< per scan point: does it collide at any pose?
   bool distances = false;      ///< per colliding scan point: the smallest distance over all poses
   bool first_poses = false;    ///< per colliding scan point: the first pose at which it collides
@@ -57,11 +54,6 @@ struct TrajectoryRequest {
   bool pose_summaries = false; ///< per pose: how many points collide, and the smallest distance; not with `swept`
   std::optional<double> swept; ///< finite, > 0: the motion between poses too, to this tolerance
   Point3 pivot = {0, 0, 0};    ///< swept: the point of the model that moves in straight lines
-  unsigned threads = 1;        ///< 0: all of the machine's
-  /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls, also while
-  /// nothing is near, and at least once where there is anything to do. False: stop, collideAlong() throws Cancelled.
-  /// What it throws itself comes out of collideAlong().
-  std::function<bool(double)> progress;
 };
 
 /// The model at one pose.

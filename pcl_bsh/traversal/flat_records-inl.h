@@ -48,11 +48,12 @@ struct FlatRecord {
 /// Those of one cloud that were asked for of late.
 class FlatRecords {
 public:
-  /// Before a walk.
-  void clear()
+  /// Before a walk: forgets those of another cloud.
+  void prepare(const SphereHierarchy::Storage& cloud)
   {
-    slots_.resize(kSlots);
-    for (FlatRecord& slot : slots_) slot.record = FlatRecord::kNoRecord;
+    if (!cloud.view.triangles || cloud.revision == revision_) return;
+    slots_.assign(kSlots, FlatRecord());
+    revision_ = cloud.revision;
   }
 
   /// @param frame of the voxel that holds the record. Valid until the next call
@@ -75,9 +76,10 @@ public:
   std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(FlatRecord); }
 
 private:
-  static constexpr std::uint32_t kSlotBits = 10, kSlots = 1u << kSlotBits;
+  static constexpr std::uint32_t kSlotBits = 12, kSlots = 1u << kSlotBits;
 
   std::vector<FlatRecord> slots_;
+  std::uint64_t revision_ = 0; ///< of the cloud; none has 0
 };
 
 /// Spheres of a's nodes in the frame of a voxel of b, eight lanes, and which of them lie within or beyond a length of

@@ -9,6 +9,7 @@
 #define PCL_BSH_TRAVERSAL_VISIT_PAIRS_INL_H_
 #endif
 
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/pair_walk-inl.h>
 
 #include <vector>
@@ -22,6 +23,10 @@ enum class Next : std::uint8_t { go_on, prune, stop };
 
 /// What visitors of pairs do, unless they say otherwise.
 struct PairVisitor {
+  explicit PairVisitor(const Watch& by = {}) : watch(by) {}
+
+  const Watch watch; ///< who watches the walk, and may end it
+
   /// Before a pair is looked at: whether it is of no interest any more, or the walk is to stop with it on the stack.
   static Next visit(const LanePair&) { return Next::go_on; }
 
@@ -55,11 +60,14 @@ Next expand(PairWalk& walk, const Pair& pair, PairWalk::Step& step, Visitor& vis
 }
 
 /// The loop over pairs: depth first, the nearest children first, until the stack is empty or the visitor stops.
+/// @throws Cancelled
 template <class Pair, class Visitor>
 void visitPairs(PairWalk& walk, std::vector<Pair>& stack, Visitor& visitor)
 {
   PairWalk::Step step;
+  SearchPulse pulse(visitor.watch, stack.size());
   while (!stack.empty()) {
+    pulse.step(stack.size());
     const Pair pair = stack.back();
     const Next next = visitor.visit(pair);
     if (next == Next::stop) return;

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/query/work.h>
 
@@ -29,7 +30,14 @@ template <class Place, class Part>
 class VoxelPasses {
 public:
   /// @param work receives that of all walks
-  VoxelPasses(unsigned threads, Work& work) : threads_(threads), work_(work) { places.clear(); }
+  /// @param progress counts them
+  VoxelPasses(unsigned threads, Work& work, Progress& progress) : threads_(threads), work_(work), progress_(progress)
+  {
+    places.clear();
+  }
+
+  /// How many walks all passes of a rule take at most, for the progress.
+  std::size_t steps(const StopRule& rule) const { return places.size() * (rule.mayStop() ? rule.passes().size() : 1); }
 
   /// Whether everything is decided.
   bool done() const { return places.empty(); }
@@ -39,6 +47,7 @@ public:
 
   /// All passes of a rule. @param tests for all of them, those already spent among them
   /// @param walk Part(rule, place), from several threads at once for different places
+  /// @throws Cancelled
   template <class Walk>
   void run(StopRule rule, std::uint64_t tests, const Walk& walk)
   {
@@ -55,17 +64,24 @@ private:
   template <class Walk>
   void pass(const StopRule& rule, const Walk& walk)
   {
+    const auto watched = [&](const StopRule& own, const Place& place) {
+      if (progress_.stopped()) return Part();
+      const Part part = walk(own, place);
+      progress_.step();
+      return part;
+    };
     parts_.assign(places.size(), Part());
     if (rule.node_pairs == StopRule::kNever) {
-      parallelFor(places.size(), threads_, [&](std::size_t i) { parts_[i] = walk(rule, places[i]); });
+      parallelFor(places.size(), threads_, [&](std::size_t i) { parts_[i] = watched(rule, places[i]); });
     }
     else { // one after another: what one leaves is the next one's
       StopRule own = rule;
       for (std::size_t i = 0; i < places.size(); ++i) {
-        parts_[i] = walk(own, places[i]);
+        parts_[i] = watched(own, places[i]);
         own.node_pairs -= std::min(own.node_pairs, parts_[i].work.node_pairs);
       }
     }
+    progress_.throwIfStopped();
     std::size_t left = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       work_ += parts_[i].work;
@@ -79,6 +95,7 @@ private:
   std::vector<Part>& parts_ = (*scratch_).parts; ///< of the last pass
   const unsigned threads_;
   Work& work_;
+  Progress& progress_;
   std::uint64_t spent_ = 0;
 
 public:

@@ -160,7 +160,7 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     pcl_bsh::Answer answer = pcl_bsh::ask(question, points, other);
     if (is_surface) {
       for (std::uint32_t& nearest : answer.distances.a.nearest)
-        if (nearest != pcl_bsh::PointDistances::kNoPoint) nearest = kept.cells()[nearest];
+        if (nearest != pcl_bsh::kNothing) nearest = kept.cells()[nearest];
     }
     for (const pcl_bsh::Warning& warning : answer.warnings) vtkWarningMacro(<< warning.text);
     this->Fill(question, answer, output);

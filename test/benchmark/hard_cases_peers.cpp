@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The catalogue of hard cases, asked of us and of our peers: how many ordered pairs of points lie within the clearance?
-// Prints a table in Markdown. Each answer is computed in a process of its own, for some of them crash.
+// How many ordered pairs of points of two files lie within the clearance? Asked of us, or of one of our peers: what
+// test/hard_cases/run.py runs.
 //
-//   hard_cases_peers
+//   hard_cases_peers PEER A.pcd B.pcd CLEARANCE [T_a_b, twelve numbers]
 #include <pcl_bsh/collide.h>
 
-#include "support/hard_cases.h"
+#include "support/pcd_points.h"
+#include "support/random_clouds.h"
 
 #include <nanoflann.hpp>
 #include <pcl/kdtree/kdtree_flann.h>
@@ -14,34 +15,37 @@
 #include <pcl/point_types.h>
 #include <pcl/search/brute_force.h>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <functional>
+#include <charconv>
 #include <iostream>
 #include <string>
 
 namespace pcl_bsh {
 namespace {
 
-using hard_cases::HardCase;
-using hard_cases::Points;
+using Points = std::vector<Point3>;
+
+/// b as given, and as those have it who move points and round them.
+struct Question {
+  test::PcdPoints a, b;
+  Points moved_b;
+  double clearance;
+  Eigen::Isometry3d pose;
+};
 
 // Answers ---------------------------------------------------------------------------------------------------------
 
-std::size_t countOurs(const HardCase& c)
+std::size_t countOurs(const Question& c)
 {
-  const test::Cloud b(c.b, {c.scalar});
+  const test::Cloud b(c.b.points, {c.b.scalar});
   const SphereHierarchy obstacle(b.view());
   FlagsRequest request;
   request.clearance = c.clearance;
   request.flagged = Side::b;
   std::size_t pairs = 0;
-  for (const Point3& p : c.a) {
-    const test::Cloud one({p}, {c.scalar});
+  for (const Point3& p : c.a.points) {
+    const test::Cloud one({p}, {c.a.scalar});
     const SphereHierarchy point(one.view());
-    pairs += collisionFlags({point}, {obstacle}, request).colliding_b;
+    pairs += collisionFlags({point}, {obstacle, c.pose}, request).colliding_b;
   }
   return pairs;
 }
@@ -62,35 +66,35 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr toPcl(const Points& points)
 }
 
 template <class Search>
-std::size_t countPcl(Search& search, const HardCase& c)
+std::size_t countPcl(Search& search, const Question& c)
 {
   pcl::Indices found;
   std::vector<float> squared;
   std::size_t pairs = 0;
-  for (const Point3& p : c.a)
+  for (const Point3& p : c.a.points)
     pairs += static_cast<std::size_t>(search.radiusSearch(toPcl(p), c.clearance, found, squared));
   return pairs;
 }
 
-std::size_t countKdTree(const HardCase& c)
+std::size_t countKdTree(const Question& c)
 {
   pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
-  tree.setInputCloud(toPcl(c.b));
+  tree.setInputCloud(toPcl(c.moved_b));
   return countPcl(tree, c);
 }
 
-std::size_t countOctree(const HardCase& c)
+std::size_t countOctree(const Question& c)
 {
   pcl::octree::OctreePointCloudSearch<pcl::PointXYZ> tree(c.clearance > 0.0 ? c.clearance : 1.0);
-  tree.setInputCloud(toPcl(c.b));
+  tree.setInputCloud(toPcl(c.moved_b));
   tree.addPointsFromInputCloud();
   return countPcl(tree, c);
 }
 
-std::size_t countBruteForce(const HardCase& c)
+std::size_t countBruteForce(const Question& c)
 {
   pcl::search::BruteForce<pcl::PointXYZ> search;
-  search.setInputCloud(toPcl(c.b));
+  search.setInputCloud(toPcl(c.moved_b));
   return countPcl(search, c);
 }
 
@@ -107,14 +111,14 @@ struct Adaptor {
 };
 
 template <class T>
-std::size_t countNanoflann(const HardCase& c)
+std::size_t countNanoflann(const Question& c)
 {
   using Metric = nanoflann::L2_Simple_Adaptor<T, Adaptor<T>>;
-  const Adaptor<T> adaptor{c.b};
+  const Adaptor<T> adaptor{c.moved_b};
   nanoflann::KDTreeSingleIndexAdaptor<Metric, Adaptor<T>, 3> tree(3, adaptor, {10});
   tree.buildIndex();
   std::size_t pairs = 0;
-  for (const Point3& p : c.a) {
+  for (const Point3& p : c.a.points) {
     const T query[3] = {static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2])};
     std::vector<std::pair<std::uint32_t, T>> found;
     const T d = static_cast<T>(c.clearance);
@@ -123,90 +127,45 @@ std::size_t countNanoflann(const HardCase& c)
   return pairs;
 }
 
-// The table -------------------------------------------------------------------------------------------------------
+// The program -----------------------------------------------------------------------------------------------------
 
-/// What a child process answers: a count, or how it ended.
-std::string ask(const std::function<std::size_t(const HardCase&)>& count, const std::vector<HardCase>& cases)
-{
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("pipe failed");
-  std::cout.flush();
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) {
-    alarm(60);
-    close(ends[0]);
-    if (!std::freopen("/dev/null", "w", stderr)) _exit(2);
-    std::size_t pairs = 0;
-    for (const HardCase& c : cases) pairs += count(c);
-    const bool written = write(ends[1], &pairs, sizeof pairs) == sizeof pairs;
-    _exit(written ? 0 : 2);
-  }
-  close(ends[1]);
-  std::size_t pairs = 0;
-  const bool answered = read(ends[0], &pairs, sizeof pairs) == sizeof pairs;
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (answered) return std::to_string(pairs);
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) return "no answer in 60 s";
-  return WIFSIGNALED(status) ? "crash" : "error";
-}
-
-struct Row {
-  std::string name;
-  std::vector<HardCase> cases;
+struct Peer {
+  const char* name;
+  std::size_t (*count)(const Question&);
 };
 
-/// The catalogue in rows: of H4's series all thousand distances, of H15's only what an octree cannot hold.
-std::vector<Row> rowsOf(const std::vector<HardCase>& all)
+constexpr Peer peers[] = {{"pcl_bsh", countOurs},
+                          {"kd_tree", countKdTree},
+                          {"octree", countOctree},
+                          {"brute_force", countBruteForce},
+                          {"nanoflann_float", countNanoflann<float>},
+                          {"nanoflann_double", countNanoflann<double>}};
+
+double numberOf(const std::string& text)
 {
-  std::vector<Row> rows;
-  for (const HardCase& c : all) {
-    if (c.name.rfind("H4 ", 0) == 0 || c.name.rfind("H16", 0) == 0 || c.name.rfind("H17", 0) == 0) continue;
-    rows.push_back({c.name, {c}});
-  }
-  Row series{"H4, 10000 distances", {}};
-  for (int k = 1; k <= 10000; ++k)
-    series.cases.push_back(hard_cases::pairOf("", {0, 0, 0}, {hard_cases::f(k / 1000.0), 0, 0}, k / 1000.0, false));
-  rows.insert(rows.begin() + 3, series);
-  HardCase deep{"H15, clearance 1e-7", {{0, 0, 0}, {430, 0, 0}}, {{0, 0, 0}, {430, 0, 0}}, 1e-7};
-  rows.push_back({deep.name, {deep}});
-  return rows;
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw std::runtime_error("'" + text + "' is no number: give a clearance, and twelve numbers of a pose");
+  return number;
 }
 
-void printTable()
+Question read(const std::vector<std::string>& words)
 {
-  struct Column {
-    const char* name;
-    std::function<std::size_t(const HardCase&)> count;
-  };
-  const Column columns[] = {{"pcl_bsh", countOurs},
-                            {"PCL KdTreeFLANN", countKdTree},
-                            {"PCL octree", countOctree},
-                            {"PCL BruteForce", countBruteForce},
-                            {"nanoflann float", countNanoflann<float>},
-                            {"nanoflann double", countNanoflann<double>}};
-  std::cout << "| case | exact |";
-  for (const Column& column : columns) std::cout << ' ' << column.name << " |";
-  std::cout << "\n|---|---|";
-  for (std::size_t i = 0; i < std::size(columns); ++i) std::cout << "---|";
-  std::cout << '\n';
-  std::vector<int> wrong(std::size(columns), 0);
-  for (const Row& row : rowsOf(hard_cases::smallCases())) {
-    const std::string truth = ask(hard_cases::countPairs, row.cases);
-    std::cout << "| " << row.name << " | " << truth << " |";
-    for (std::size_t i = 0; i < std::size(columns); ++i) {
-      const std::string answer = ask(columns[i].count, row.cases);
-      const bool right = answer == truth;
-      wrong[i] += !right;
-      std::cout << ' ' << (right ? "right" : "**" + answer + "**") << " |";
-    }
-    std::cout << std::endl;
+  Question question{test::readPcdPoints(words[1]),
+                    test::readPcdPoints(words[2]),
+                    {},
+                    numberOf(words[3]),
+                    Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 4; i < words.size(); ++i)
+    question.pose.matrix()(static_cast<Eigen::Index>(i - 4) / 4, static_cast<Eigen::Index>(i - 4) % 4) =
+        numberOf(words[i]);
+  const bool moved = !question.pose.matrix().isIdentity(0.0);
+  for (const Point3& p : question.b.points) {
+    const Eigen::Vector3d q = question.pose * Eigen::Vector3d(p[0], p[1], p[2]);
+    question.moved_b.push_back(moved ? Point3{q[0], q[1], q[2]} : p);
   }
-  std::cout << "| wrong rows | |";
-  for (const int count : wrong) std::cout << ' ' << count << " |";
-  std::cout << '\n';
+  return question;
 }
 
 } // namespace
@@ -214,12 +173,18 @@ void printTable()
 
 int main(int argc, char** argv)
 {
-  if (argc > 1) {
-    std::cerr << "usage: " << argv[0] << "\nPrints the catalogue of hard cases as a table: ours and peers' answers.\n";
-    return std::string(argv[1]) == "--help" ? 0 : 2;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const pcl_bsh::Peer* peer = nullptr;
+  for (const pcl_bsh::Peer& any : pcl_bsh::peers)
+    if (!words.empty() && words.front() == any.name) peer = &any;
+  if (peer == nullptr || (words.size() != 4 && words.size() != 16)) {
+    std::cerr << "usage: " << argv[0] << " PEER A.pcd B.pcd CLEARANCE [T_a_b, twelve numbers]\nPEER:";
+    for (const pcl_bsh::Peer& any : pcl_bsh::peers) std::cerr << ' ' << any.name;
+    std::cerr << '\n';
+    return 2;
   }
   try {
-    pcl_bsh::printTable();
+    std::cout << peer->count(pcl_bsh::read(words)) << '\n';
   }
   catch (const std::exception& error) {
     std::cerr << "hard_cases_peers: " << error.what() << '\n';

@@ -37,7 +37,7 @@ protected:
 
   const Points points_ = randomPoints(300, 1);
   const Points obstacle_ = randomPoints(200, 2);
-  const std::vector<std::uint8_t> flags_ = doubleLoop(points_, obstacle_, Eigen::Isometry3d::Identity(), 0.1);
+  const std::vector<Verdict> flags_ = doubleLoop(points_, obstacle_, Eigen::Isometry3d::Identity(), 0.1);
   const pcl::PointCloud<PointFromDrone>::Ptr input_ = typedCloud<PointFromDrone>(points_);
   CollisionFilter<PointFromDrone> filter_;
 };
@@ -58,7 +58,7 @@ TEST_F(CollisionFilterCustomPoint, KeepOrganized)
   pcl::PointCloud<PointFromDrone> output;
   filter_.filter(output);
   ASSERT_EQ(output.size(), points_.size());
-  for (std::size_t i = 0; i < output.size(); ++i) EXPECT_EQ(output[i].x == 7.0f, flags_[i] == 1) << i;
+  for (std::size_t i = 0; i < output.size(); ++i) EXPECT_EQ(output[i].x == 7.0f, flags_[i] == Verdict::colliding) << i;
 }
 
 TEST_F(CollisionFilterCustomPoint, StandardTypesWorkBesideIt)

@@ -147,7 +147,7 @@ TEST_F(CollisionFilterPcl2Test, TrajectoryAddsItsFields)
     append(along.distance[i]);
     append(along.first_pose[i]);
     append(along.closest_pose[i]);
-    EXPECT_EQ(along.first_pose[i], flags_[i] ? 1 : -1);
+    EXPECT_EQ(along.first_pose[i], flags_[i] != Verdict::free ? 1 : -1);
     EXPECT_EQ(record(output, i), bytes) << i;
   }
 }
@@ -232,7 +232,7 @@ TEST_F(CollisionFilterPcl2Test, KeepOrganizedWritesDoublesToDoubles)
     const PointsView before = viewOf(*input);
     const PointsView after = viewOf(output);
     for (std::uint32_t i = 0; i < before.count; ++i) {
-      const bool removed = flags_[i] || !points_[i].allFinite();
+      const bool removed = flags_[i] != Verdict::free || !points_[i].allFinite();
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double expected = removed ? static_cast<double>(value) : before.point(i)[axis];
         EXPECT_TRUE(after.point(i)[axis] == expected || (std::isnan(expected) && std::isnan(after.point(i)[axis])))

@@ -159,7 +159,7 @@ TEST_F(CollisionFilterTest, KeepOrganizedOverwritesWhatIsRemoved)
     for (std::size_t i = 0; i < output.size(); ++i) {
       EXPECT_EQ(output[i].intensity, static_cast<float>(i));
       const Eigen::Vector3f xyz = output[i].getVector3fMap();
-      if (points_[i].allFinite() && !flags_[i])
+      if (points_[i].allFinite() && flags_[i] == Verdict::free)
         EXPECT_EQ(xyz, (*original_)[i].getVector3fMap());
       else if (std::isnan(value))
         EXPECT_TRUE(xyz.array().isNaN().all()) << i;
@@ -175,7 +175,7 @@ TEST_F(CollisionFilterTest, IndicesAreTheOnlyPoints)
   filter_.setIndices(indices);
   pcl::Indices expected;
   std::copy_if(indices->begin(), indices->end(), std::back_inserter(expected),
-               [this](pcl::index_t i) { return i != 7 && !flags_[static_cast<std::size_t>(i)]; });
+               [this](pcl::index_t i) { return i != 7 && flags_[static_cast<std::size_t>(i)] == Verdict::free; });
   EXPECT_EQ(filtered(), expected);
 
   std::vector<Verdict> flags;
@@ -197,7 +197,7 @@ TEST_F(CollisionFilterTest, KeepOrganizedLeavesPointsOutsideTheIndicesAlone)
   Cloud output;
   filter_.filter(output);
   for (std::size_t i = 0; i < output.size(); ++i) {
-    const bool removed = i < 350 && (!points_[i].allFinite() || flags_[i]);
+    const bool removed = i < 350 && (!points_[i].allFinite() || flags_[i] != Verdict::free);
     EXPECT_EQ(output[i].z, removed ? 9.0f : (*original_)[i].z) << i;
   }
 }
@@ -547,7 +547,7 @@ TEST_F(CollisionFilterTest, TrajectoryCollidesAtAnyOfItsPoses)
   EXPECT_EQ(along.closest_pose, closest);
   EXPECT_EQ(along.poses.size(), poses.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (expected[i])
+    if (expected[i] != Verdict::free)
       EXPECT_NEAR(along.distance[i], distance[i], 1e-6) << i;
     else
       EXPECT_TRUE(std::isnan(along.distance[i])) << i;

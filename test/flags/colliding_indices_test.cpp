@@ -21,7 +21,7 @@ using test::Shape;
 
 FlagsRequest within(double clearance, Side flagged = Side::both, const Accuracy& accuracy = {}, unsigned threads = 1)
 {
-  return {clearance, flagged, threads, accuracy};
+  return {clearance, flagged, {accuracy, threads}};
 }
 
 std::vector<std::int32_t> recordsOf(const std::vector<Verdict>& flags, Verdict verdict)

@@ -28,7 +28,7 @@ constexpr std::size_t kRow = 48;
 
 FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads = 1)
 {
-  return {clearance, flagged, threads, {}};
+  return {clearance, flagged, threads};
 }
 
 /// Rows over hills, one unit apart, to and fro or always forth. Some returns are missing.

@@ -206,7 +206,7 @@ void expectExact(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen
   for (const double clearance : {expected.distance, std::nextafter(expected.distance, 0.0),
                                  expected.distance * (1.0 - 1e-6), expected.distance * (1.0 + 1e-7)}) {
     if (!(clearance >= 0.0)) continue;
-    const FlagsRequest request{clearance, Side::both, 1, {}};
+    const FlagsRequest request{clearance, Side::both};
     const FlagsResult flags = brute_force::collisionFlags(at_a, at_b, request),
                       own = collisionFlags(at_a, at_b, request);
     ASSERT_EQ(own.a, flags.a) << what << ", " << clearance;

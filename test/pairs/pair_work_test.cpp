@@ -80,7 +80,7 @@ constexpr auto kAny = [](const Placed& a, const Placed& b, double clearance) {
 };
 constexpr auto kClosest = [](const Placed& a, const Placed& b, double) { return closestPair(a, b, {}); };
 constexpr auto kFlags = [](const Placed& a, const Placed& b, double clearance) {
-  return collisionFlags(a, b, {clearance, Side::both, 1, {}});
+  return collisionFlags(a, b, {clearance, Side::both});
 };
 constexpr auto kWithin = [](const Placed& a, const Placed& b, double clearance) {
   return pairsWithin(a, b, {clearance, 1000});
@@ -123,7 +123,7 @@ TEST(PairWork, FlagsWithManyCandidatesAreThoseOfSearchesForNeighbors)
     const SphereHierarchy of_a(a.view()), of_b(b.view());
     std::size_t most = 0;
     for (const double beyond : {-1.5 * rough, -0.5 * rough, 0.0, 2e-6}) {
-      const FlagsResult flags = collisionFlags(of_a, of_b, {10 + beyond, Side::both, 1, {}});
+      const FlagsResult flags = collisionFlags(of_a, of_b, {10 + beyond, Side::both});
       EXPECT_EQ(numbersOf(flags.a), flagAnyInRadius(of_b, a.view(), 10 + beyond)) << rough << ", " << beyond;
       EXPECT_EQ(numbersOf(flags.b), flagAnyInRadius(of_a, b.view(), 10 + beyond)) << rough << ", " << beyond;
       most = std::max(most, flags.colliding_a);

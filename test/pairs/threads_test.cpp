@@ -118,8 +118,8 @@ TEST(ThreadsOfAQuery, AreNotNeededBySmallOrEmptyClouds)
 {
   const Cloud none(std::vector<Point3>{}), point({{0, 0, 0}});
   const SphereHierarchy empty(none.view()), one(point.view());
-  EXPECT_EQ(anyCollision({empty}, {one}, {1.0, {}, 2}).verdict, Verdict::free);
-  EXPECT_EQ(anyCollision({one}, {one}, {0.0, {}, 2}).witness, (PointPair{0, 0}));
+  EXPECT_EQ(anyCollision({empty}, {one}, {1.0, 2}).verdict, Verdict::free);
+  EXPECT_EQ(anyCollision({one}, {one}, {0.0, 2}).witness, (PointPair{0, 0}));
   EXPECT_FALSE(closestPair({empty}, {one}, {{}, 2}).pair);
   EXPECT_EQ(closestPair({one}, {one}, {{}, 2}).distance, 0.0);
 }

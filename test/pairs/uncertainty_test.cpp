@@ -34,7 +34,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 FlagsRequest within(double clearance, Side flagged, unsigned threads = 1, const Accuracy& accuracy = {})
 {
-  return {clearance, flagged, threads, accuracy};
+  return {clearance, flagged, {accuracy, threads}};
 }
 
 Scene uncertainScene(std::uint64_t seed, int most_points)
@@ -110,7 +110,7 @@ TEST(Uncertainty, SameAsBruteForceForAnyThreads)
     const AnyResult brute = brute_force::anyCollision(placed_a, placed_b, {scene.clearance, {}});
     const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both));
     for (const unsigned threads : {1u, 2u}) {
-      const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, {}, threads});
+      const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, threads});
       ASSERT_EQ(any.verdict, brute.verdict);
       ASSERT_EQ(any.witness.has_value(), any.verdict == Verdict::colliding);
       const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both, threads));
@@ -201,8 +201,7 @@ TEST(Uncertainty, WholeNodesAreTakenAtTheLeastReach)
   own.back() = 0.0625f;
   cloud_a.setUncertainties(0.0, own);
   const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
-  for (const unsigned threads : {1u, 2u})
-    EXPECT_EQ(anyCollision({a}, {b}, {0.9, {}, threads}).verdict, Verdict::undecided);
+  for (const unsigned threads : {1u, 2u}) EXPECT_EQ(anyCollision({a}, {b}, {0.9, threads}).verdict, Verdict::undecided);
   const FlagsResult found = collisionFlags({a}, {b}, within(0.9, Side::both));
   EXPECT_EQ(found.undecided_a, 500u);
   EXPECT_EQ(found.undecided_b, 500u);
@@ -318,13 +317,14 @@ TEST(Uncertainty, AtManyPoses)
     for (int i = 0; i < 30; ++i)
       poses.push_back(scene.pose_b * random.pose((scene.clearance + 0.01) * std::pow(10.0, random.integer(-4, 0))));
     for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.0)}) {
-      AnyRequest request{scene.clearance, accuracy, static_cast<unsigned>(seed % 3) + 1};
+      AnyRequest request{scene.clearance, {accuracy, static_cast<unsigned>(seed % 3) + 1}};
       double done = 0.0;
-      const AnyAtPoses found = anyCollisionAtPoses(placed, b, poses, request, [&](double now) {
+      request.progress = [&](double now) {
         EXPECT_GE(now, done);
         done = now;
         return true;
-      });
+      };
+      const AnyAtPoses found = anyCollisionAtPoses(placed, b, poses, request);
       const AnyAtPoses expected = brute_force::anyCollisionAtPoses(placed, b, poses, request);
       ASSERT_EQ(found.verdicts, expected.verdicts);
       EXPECT_EQ(found.colliding, expected.colliding);

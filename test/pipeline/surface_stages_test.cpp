@@ -209,7 +209,8 @@ TEST_F(SurfaceInput, FlagsTrianglesAlongAPath)
   EXPECT_THAT(faceFlags(mesh), ElementsAre(1, 0, 1, 1)) << "1.92 0.2 is within 10 cm of both";
   ASSERT_EQ(mesh.face_properties.size(), 4u);
   EXPECT_THAT(std::get<std::vector<std::int32_t>>(mesh.face_properties[2].values), ElementsAre(1, -1, 0, 0));
-  EXPECT_EQ(std::get<std::vector<float>>(mesh.face_properties[1].values)[0], 0.f);
+  EXPECT_FLOAT_EQ(std::get<std::vector<float>>(mesh.face_properties[1].values)[0],
+                  static_cast<float>(double{0.05f} - 0.05));
   EXPECT_TRUE(std::isnan(std::get<std::vector<float>>(mesh.face_properties[1].values)[1]));
   EXPECT_EQ(mesh.cloud.fields.back().name, "closest_pose");
 }
@@ -237,7 +238,9 @@ TEST_F(SurfaceInput, KeepsTrianglesAndTheirVertices)
 TEST_F(SurfaceInput, TellsDistancesOfTriangles)
 {
   const std::string file = (folder_ / "distances.json").string();
-  const PipelineResult result = runStrip(R"({"type": "writers.distances", "obstacle": "scan", "filename": ")" + file +
+  const PipelineResult result = runStrip(R"({"type": "writers.distances", "obstacle": "scan",
+      "places_beyond": 0.5, "filename": ")" +
+                                         file +
                                          R"("}, {"type": "filters.bsh_distance", "tag": "d", "obstacle": "scan",
       "filter_limits": [null, 1]})");
   const StageCloud& mesh = *result.clouds.at("d");
@@ -249,7 +252,8 @@ TEST_F(SurfaceInput, TellsDistancesOfTriangles)
   EXPECT_EQ(mesh.triangles->size(), 3u);
   const auto json = nlohmann::json::parse(files::contentOf(file));
   EXPECT_EQ(json["input_to_obstacle"]["count"], 4);
-  EXPECT_TRUE(json["input_to_obstacle"]["places"][0].contains("triangle"));
+  ASSERT_FALSE(json["input_to_obstacle"]["places"].empty());
+  EXPECT_EQ(json["input_to_obstacle"]["places"][0]["triangle"], 3);
   EXPECT_TRUE(json["obstacle_to_input"]["places"].empty() || json["obstacle_to_input"]["places"][0].contains("point"));
 }
 

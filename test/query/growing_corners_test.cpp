@@ -88,11 +88,11 @@ const std::vector<Query>& queries()
        }},
       {"flags",
        [](const Placed& a, const SphereHierarchy& b, const Pose& at, double clearance) {
-         return collisionFlags(a, Placed(b, at), {clearance, Side::both, 1, {}}).work;
+         return collisionFlags(a, Placed(b, at), {clearance, Side::both}).work;
        }},
       {"flags, 1 % more",
        [](const Placed& a, const SphereHierarchy& b, const Pose& at, double clearance) {
-         return collisionFlags(a, Placed(b, at), {1.01 * clearance, Side::both, 1, {}}).work;
+         return collisionFlags(a, Placed(b, at), {1.01 * clearance, Side::both}).work;
        }},
       {"path", [](const Placed& a, const SphereHierarchy& b, const Pose& at,
                   double clearance) { return along(a, b, wayPast(at, 0.01 * clearance), clearance, false, {}); }},

@@ -57,6 +57,9 @@ Truth truthOf(const HardCase& c, const Placed& a, const Placed& b)
   if (c.colliding_pairs != unknown) {
     EXPECT_EQ(countPairs(c), c.colliding_pairs);
     EXPECT_EQ(truth.any.verdict == Verdict::colliding, c.colliding_pairs > 0);
+    EXPECT_EQ(truth.flags.colliding_a, c.colliding_a);
+    EXPECT_EQ(truth.flags.colliding_b, c.colliding_b);
+    EXPECT_EQ(truth.closest.distance, c.smallest_distance);
   }
   return truth;
 }
@@ -153,7 +156,7 @@ std::string nameOf(const testing::TestParamInfo<HardCase>& info)
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::ValuesIn(smallCases()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Catalogue, HardCases, testing::ValuesIn(catalogue()), nameOf);
 
 // Series ----------------------------------------------------------------------------------------------------------
 
@@ -260,7 +263,7 @@ TEST(HardCaseSeries, H23AffinePosesAreRefusedNearlyRigidOnesExact)
 TEST(HardCaseSeries, H25AnyEnvironmentOfTheCaller)
 {
   const auto each = [](const auto& set) {
-    for (const HardCase& c : smallCases()) {
+    for (const HardCase& c : catalogue()) {
       if (c.a.size() > 400) continue;
       SCOPED_TRACE(c.name);
       const Cloud a(c.a, {c.scalar}), b(c.b, {c.scalar});

@@ -13,6 +13,7 @@
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include "support/meshes.h"
 
@@ -150,6 +151,24 @@ TEST(Triangles, OthersOfTheSameQueriesAgree)
     }
     ASSERT_TRUE(ha.validate().none()) << ha.validate().lines.front();
     ASSERT_TRUE(hb.validate().none()) << hb.validate().lines.front();
+  }
+}
+
+TEST(Triangles, AtListsOfPoses)
+{
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Scene scene = test::anyMeshScene(seed, 40);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy ha(scene.a.view()), hb(scene.b.view());
+    const Placed a(ha, scene.pose_a);
+    Random random(seed);
+    std::vector<Eigen::Isometry3d> poses;
+    for (int i = 0; i < 30; ++i) poses.push_back(scene.pose_b * random.pose(i % 3 == 0 ? 1e-3 : 0.5));
+    const AnyRequest any{scene.clearance, {}};
+    EXPECT_EQ(anyCollisionAtPoses(a, hb, poses, any).verdicts,
+              brute_force::anyCollisionAtPoses(a, hb, poses, any).verdicts);
+    EXPECT_EQ(closestPairAtPoses(a, hb, poses, {}).distances,
+              brute_force::closestPairAtPoses(a, hb, poses, {}).distances);
   }
 }
 

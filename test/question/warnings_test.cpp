@@ -134,7 +134,7 @@ TEST(Warnings, SurfacesAreAsLargeAsTheirCorners)
   const NamedCloud floor = namedCloud("floor", SphereHierarchy(viewOf(view)));
   EXPECT_EQ(floor.box.max(), Eigen::Vector3d(100, 100, 0));
   const Cloud robot(plane(2, 5));
-  EXPECT_THAT(warningsOf({robot.named("robot"), floor, {at(0)}, 0.5}), IsEmpty());
+  EXPECT_THAT(warningsOf(question({at(0)}, 0.5), robot.named("robot"), floor), IsEmpty());
 }
 
 TEST(Warnings, TrianglesThatAreNotFinite)

@@ -47,7 +47,7 @@ void expectSingleAnswers(const Scene& scene, const Poses& poses, double clearanc
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed{a, scene.pose_a};
   for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
-    const AnyAtPoses any = anyCollisionAtPoses(placed, b, poses, {clearance, accuracy, threads});
+    const AnyAtPoses any = anyCollisionAtPoses(placed, b, poses, {clearance, {accuracy, threads}});
     const DistancesAtPoses closest = closestPairAtPoses(placed, b, poses, {accuracy, threads});
     ASSERT_EQ(any.verdicts.size(), poses.size());
     ASSERT_EQ(closest.distances.size(), poses.size());
@@ -281,7 +281,7 @@ TEST(AtPoses, RefusesWhatTheSingleQueriesRefuseByTheIndexOfThePose)
   poses[1300].linear() *= 2.0;
   for (const unsigned threads : {1u, 4u}) {
     EXPECT_THAT(messageOf([&] {
-                  anyCollisionAtPoses({a}, a, poses, {0.0, {}, threads});
+                  anyCollisionAtPoses({a}, a, poses, {0.0, threads});
                 }),
                 testing::HasSubstr("pose 1234 of b"));
     EXPECT_THAT(messageOf([&] {
@@ -306,12 +306,13 @@ TEST(AtPoses, ACallbackStopsThemInThreads)
   const Bodies bodies(300, 1500, 0.05);
   for (const unsigned threads : {1u, 2u})
     for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
-      const auto any = [&](const PosesProgress& progress) {
-        return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, accuracy, threads}, progress).verdicts;
+      const auto any = [&](const std::function<bool(double)>& progress) {
+        const Effort effort(accuracy, threads, progress);
+        return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, effort}).verdicts;
       };
-      const auto closest = [&](const PosesProgress& progress) {
+      const auto closest = [&](const std::function<bool(double)>& progress) {
         const Poses some(bodies.poses.begin(), bodies.poses.begin() + 300);
-        return closestPairAtPoses({bodies.a}, bodies.b, some, {accuracy, threads}, progress).distances;
+        return closestPairAtPoses({bodies.a}, bodies.b, some, {accuracy, threads, progress}).distances;
       };
       const auto expectStops = [](const auto& query) {
         double last = 0.0;

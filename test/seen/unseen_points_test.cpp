@@ -24,9 +24,9 @@ using test::MadeScan;
 using test::MadeScanner;
 using test::makeScan;
 using test::Random;
-using Verdicts = std::vector<std::uint8_t>;
+using Verdicts = std::vector<Verdict>;
 
-constexpr std::uint8_t kUnseen = flagOf(Verdict::unseen);
+constexpr Verdict kUnseen = Verdict::unseen;
 
 UnseenRequest within(double clearance, unsigned threads = 1)
 {
@@ -39,7 +39,7 @@ UnseenRequest within(double clearance, unsigned threads = 1)
 /// Verdicts of a model at a pose, all free before.
 Verdicts verdictsOf(const SeenSpace& seen, const Placed& model, double clearance, unsigned threads = 1)
 {
-  Verdicts verdicts(model.hierarchy().view().count, flagOf(Verdict::free));
+  Verdicts verdicts(model.hierarchy().view().count, Verdict::free);
   const UnseenResult found = markUnseen(seen, model, within(clearance, threads), verdicts);
   EXPECT_EQ(found.unseen, static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), kUnseen)));
   return verdicts;
@@ -47,7 +47,7 @@ Verdicts verdictsOf(const SeenSpace& seen, const Placed& model, double clearance
 
 Verdicts bruteForce(const std::vector<Scan>& scans, double angle, const Placed& model, double clearance)
 {
-  Verdicts verdicts(model.hierarchy().view().count, flagOf(Verdict::free));
+  Verdicts verdicts(model.hierarchy().view().count, Verdict::free);
   brute_force::markUnseen(scans, angle, model, within(clearance), verdicts);
   return verdicts;
 }

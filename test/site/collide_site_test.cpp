@@ -102,8 +102,7 @@ protected:
       SiteRequest request;
       request.clearance = scene.clearance;
 
-      EXPECT_EQ(anyCollision(site, b, request).verdict,
-                pcl_bsh::anyCollision({all}, b, {scene.clearance, {}, 1}).verdict);
+      EXPECT_EQ(anyCollision(site, b, request).verdict, pcl_bsh::anyCollision({all}, b, {scene.clearance, 1}).verdict);
 
       FlagsRequest flags_request;
       flags_request.clearance = scene.clearance;

@@ -97,7 +97,7 @@ protected:
     wanted.clearance = clearance;
     wanted.flagged = Side::both;
     const FlagsResult flags = pcl_bsh::collisionFlags({all_a}, {all_b, pose}, wanted);
-    const AnyResult any = pcl_bsh::anyCollision({all_a}, {all_b, pose}, {clearance, {}, 1});
+    const AnyResult any = pcl_bsh::anyCollision({all_a}, {all_b, pose}, {clearance, 1});
     const DistanceResult nearest = pcl_bsh::closestPair({measured_a}, {measured_b, pose});
     const std::uint64_t tilings[][2] = {{100000, 100000}, {300, 70}, {30, 900}};
     for (const auto& tiling : tilings) {
@@ -358,19 +358,18 @@ TEST_F(CollideSites, TellTheirProgressAndStop)
   const Site site = siteOf("a", floorOf(1000, 6), 50), other = siteOf("b", floorOf(1000, 7), 300);
   SiteRequest request;
   request.clearance = 0.1;
-  std::vector<std::uint64_t> told;
-  std::uint64_t of = 0;
-  request.progress = [&](std::uint64_t done, std::uint64_t all) {
+  std::vector<double> told;
+  request.progress = [&](double done) {
     told.push_back(done);
-    of = all;
     return true;
   };
   const SiteFlags flags = collisionFlags(site, {other}, request);
   ASSERT_EQ(told.size(), flags.tiles.needed);
-  EXPECT_EQ(told.front(), 1u);
-  EXPECT_EQ(told.back(), flags.tiles.needed);
-  EXPECT_EQ(of, flags.tiles.needed);
-  request.progress = [](std::uint64_t done, std::uint64_t) { return done < 3; };
+  EXPECT_EQ(told.front(), 1.0 / static_cast<double>(flags.tiles.needed));
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+  const double third = 3.0 / static_cast<double>(flags.tiles.needed);
+  request.progress = [third](double done) { return done < third; };
   EXPECT_THROW(collisionFlags(site, {other}, request), Cancelled);
   EXPECT_THROW(pointDistances(site, {other}, 1.0, request), Cancelled);
 }

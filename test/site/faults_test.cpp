@@ -100,8 +100,8 @@ TEST_F(SiteFaults, Documents)
     replace(what, by);
     expectDefect(words);
   };
-  each("\"version\": 2", "\"version\": 3", "version: this program reads versions 1 to 2");
-  each("\"version\": 2", "\"version\": 0", "version: this program reads versions 1 to 2");
+  each("\"version\": 3", "\"version\": 4", "version: this program reads versions 1 to 3");
+  each("\"version\": 3", "\"version\": 0", "version: this program reads versions 1 to 3");
   each("tiles/tile_000001.pcd", "../scan.xyz", "tiles[1].file: '../scan.xyz' leaves the folder");
   each("tiles/tile_000001.pcd", "/etc/passwd", "leaves the folder");
   each("tiles/tile_000001.pcd", "tiles/../../scan.xyz", "leaves the folder");

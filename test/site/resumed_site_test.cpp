@@ -119,8 +119,8 @@ protected:
     ClashFinder finder(site, 0.5);
     request.clashes = &finder;
     request.answers = results.answers();
-    request.progress = [&](std::uint64_t done, std::uint64_t) {
-      dieAt(At::after_tile, done);
+    request.progress = [&, done = std::uint64_t{0}](double) mutable {
+      dieAt(At::after_tile, ++done);
       return true;
     };
     const SitePassage passage = collideAlong(site, model, poses, request,
@@ -244,8 +244,8 @@ TEST_F(ResumedSite, AboutTwoSites)
     ResultSite results(site, out, {{"found", pcl::PCLPointField::FLOAT32, -1.0}},
                        {"question " + std::to_string(question), goes_on});
     request.answers = results.answers();
-    request.progress = [&](std::uint64_t done, std::uint64_t) {
-      if (done == kill) ::kill(::getpid(), SIGKILL);
+    request.progress = [&, done = std::uint64_t{0}](double) mutable {
+      if (++done == kill) ::kill(::getpid(), SIGKILL);
       return true;
     };
     const auto write = [&](const Tile& tile, const Cloud& cloud, const auto& numbers) {

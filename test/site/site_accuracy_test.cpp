@@ -171,7 +171,10 @@ TEST_F(SiteAccuracy, OfTheProgram)
         {"--obstacle-out b.pcd", "is the file of OBSTACLE"},
         {"--obstacle-out site200/tiles/tile_000000.pcd", "lies in the folder of SITE"},
         {"--report site200/../site200/site.json", "lies in the folder of SITE"},
-        {"--obstacle-out c.pcd --clashes c.json", "--obstacle-out: are flags at one pose"}}) {
+        {"--obstacle-out c.pcd --clashes c.json", "--obstacle-out: are flags at one pose"},
+        {"--report c.json --swept 0.1", "--swept: is given, but nothing moves"}, // as all faces say it
+        {"--report c.json --sigmas 2", "--sigmas: is given, but no uncertainty is a field"},
+        {"--report c.json --max-distance -1", "--max-distance: -1: give a length >= 0"}}) {
     const Outcome outcome = run("pcl_bsh_site", asked + arguments, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(words));

@@ -102,7 +102,7 @@ TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
                                               Eigen::Isometry3d(Eigen::Translation3d(0, 0, 40))}) {
           request.clearance = 0.3;
           const Verdict verdict = anyCollision(site, {b, pose}, request).verdict;
-          EXPECT_EQ(verdict, pcl_bsh::anyCollision({a}, {b, pose}, {0.3, {}, 1}).verdict);
+          EXPECT_EQ(verdict, pcl_bsh::anyCollision({a}, {b, pose}, {0.3, 1}).verdict);
           saw_any[static_cast<std::size_t>(verdict)] = true;
           FlagsRequest wanted;
           wanted.clearance = 0.3;

@@ -12,8 +12,8 @@ struct Question {
   unsigned threads = 1;
   Accuracy accuracy;
 
-  operator AnyRequest() const { return {clearance, accuracy, threads}; }
-  operator FlagsRequest() const { return {clearance, flagged, threads, accuracy}; }
+  operator AnyRequest() const { return {clearance, {accuracy, threads}}; }
+  operator FlagsRequest() const { return {clearance, flagged, {accuracy, threads}}; }
   operator DistanceRequest() const { return {accuracy, threads}; }
 };
 

@@ -20,14 +20,14 @@ namespace {
 void askPair(const Instance& instance, const Placed& a, const Placed& b, Answers& answers)
 {
   const double clearance = instance.clearance;
-  answers.any = flagOf(anyCollision(a, b, {clearance, {}, instance.threads}).verdict);
+  answers.any = static_cast<std::uint8_t>(anyCollision(a, b, {clearance, {}, instance.threads}).verdict);
   FlagsRequest flags;
   flags.clearance = clearance;
   flags.flagged = Side::both;
   flags.threads = instance.threads;
   const FlagsResult flagged = collisionFlags(a, b, flags);
-  answers.flags_a = flagged.a;
-  answers.flags_b = flagged.b;
+  answers.flags_a = numbersOf(flagged.a);
+  answers.flags_b = numbersOf(flagged.b);
   const CollidingIndices indices = collidingIndices(a, b, flags);
   answers.indices_a = indices.a;
   answers.indices_b = indices.b;
@@ -67,20 +67,21 @@ void askOwn(const Instance& instance, const SphereHierarchy& a, Answers& answers
   boxSearch(a, instance.low, instance.high, answers.box);
   const Clusters clusters = euclideanClusters(a, instance.clearance);
   answers.clusters.resize(clusters.of.size());
-  std::vector<std::int32_t> first(clusters.sizes.size(), Clusters::kNone);
+  std::vector<std::int32_t> first(clusters.sizes.size(), kNothing);
   for (std::size_t i = 0; i < clusters.of.size(); ++i) {
     const std::int32_t cluster = clusters.of[i];
     std::int32_t& smallest = cluster < 0 ? answers.clusters[i] : first[static_cast<std::size_t>(cluster)];
-    if (cluster < 0 || smallest < 0) smallest = cluster < 0 ? Clusters::kNone : static_cast<std::int32_t>(i);
+    if (cluster < 0 || smallest < 0) smallest = cluster < 0 ? std::int32_t{kNothing} : static_cast<std::int32_t>(i);
     answers.clusters[i] = smallest;
   }
 }
 
 /// Flags, each 1 where it is `verdict`.
-std::vector<std::uint8_t> where(std::vector<std::uint8_t> flags, Verdict verdict)
+std::vector<std::uint8_t> where(const std::vector<Verdict>& flags, Verdict verdict)
 {
-  for (std::uint8_t& flag : flags) flag = flag == flagOf(verdict);
-  return flags;
+  std::vector<std::uint8_t> found;
+  for (const Verdict flag : flags) found.push_back(flag == verdict);
+  return found;
 }
 
 void askMotion(const Instance& instance, const Placed& a, const SphereHierarchy& b, Answers& answers)
@@ -100,8 +101,8 @@ void askMotion(const Instance& instance, const Placed& a, const SphereHierarchy&
     return anyCollisionOnMotions(a, b, instance.path, edges, each).verdicts;
   };
   const auto told = [&](const auto& ask) {
-    const std::vector<std::uint8_t> near = ask(instance.clearance),
-                                    far = ask(std::nextafter(instance.clearance + instance.tolerance, HUGE_VAL));
+    const std::vector<Verdict> near = ask(instance.clearance),
+                               far = ask(std::nextafter(instance.clearance + instance.tolerance, HUGE_VAL));
     return Answers::Motion{where(near, Verdict::free), where(near, Verdict::colliding), where(far, Verdict::free)};
   };
   answers.swept = told(flags);
@@ -115,7 +116,7 @@ void askAlong(const Instance& instance, const Placed& a, const SphereHierarchy& 
   request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
   request.threads = instance.threads;
   const TrajectoryResult along = collideAlong(a, b, instance.path, request);
-  answers.path_flags = along.flags;
+  answers.path_flags = numbersOf(along.flags);
   answers.path_distances = along.distance;
   answers.first_poses = along.first_pose;
   answers.closest_poses = along.closest_pose;
@@ -125,7 +126,8 @@ void askAlong(const Instance& instance, const Placed& a, const SphereHierarchy& 
     answers.colliding_at.push_back(pose.undecided_points);
     answers.distance_at.push_back(pose.distance);
   }
-  answers.any_at = anyCollisionAtPoses(a, b, instance.path, {instance.clearance, {}, instance.threads}).verdicts;
+  answers.any_at =
+      numbersOf(anyCollisionAtPoses(a, b, instance.path, {instance.clearance, {}, instance.threads}).verdicts);
   answers.closest_at = closestPairAtPoses(a, b, instance.path, {{}, instance.threads}).distances;
 }
 
@@ -140,15 +142,15 @@ void askQuestion(const Instance& instance, const PointsView& a, const PointsView
   Wanted& wanted = question.wanted;
   wanted.flags = wanted.contacts = wanted.closest = wanted.distances = wanted.both_ways = wanted.within = true;
   const Answer at_one = ask(question, input, obstacle);
-  answers.asked_flags = at_one.collisions.flags;
-  answers.asked_obstacle_flags = at_one.obstacle_flags;
+  answers.asked_flags = numbersOf(at_one.collisions.flags);
+  answers.asked_obstacle_flags = numbersOf(at_one.obstacle_flags);
   answers.asked_within = at_one.within;
   answers.asked_distances = at_one.collisions.distance;
   answers.asked_both_ways = at_one.distances.b.distance;
   answers.asked_closest = at_one.closest.distance;
   question.path = instance.relative;
   wanted.distances = wanted.both_ways = wanted.within = false;
-  answers.asked_path_flags = ask(question, input, obstacle).collisions.flags;
+  answers.asked_path_flags = numbersOf(ask(question, input, obstacle).collisions.flags);
 }
 
 // Comparison ------------------------------------------------------------------------------------------------------

@@ -395,7 +395,7 @@ void repeatPoses(Image& image, Random&)
 
 std::uint8_t worse(std::uint8_t l, std::uint8_t r)
 {
-  const std::uint8_t hit = flagOf(Verdict::colliding);
+  constexpr auto hit = static_cast<std::uint8_t>(Verdict::colliding);
   return l == hit || r == hit ? hit : std::max(l, r);
 }
 

@@ -52,7 +52,7 @@ TEST(Symmetries, OfRandomClouds)
 TEST(Symmetries, OfHardCases)
 {
   Random random(1);
-  for (const hard_cases::HardCase& c : hard_cases::smallCases()) {
+  for (const hard_cases::HardCase& c : hard_cases::catalogue()) {
     Instance instance;
     instance.name = c.name;
     instance.a = {someOf(c.a), {}, {}, c.scalar, c.pose_a};

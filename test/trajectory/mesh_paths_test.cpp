@@ -57,6 +57,7 @@ TEST(TrianglesAlongPaths, AgreeWithBruteForceWherePlacesAreUncertain)
     Journey run = anyMeshJourney(seed, 20, 8);
     SCOPED_TRACE(run.name);
     Random random(seed);
+    if (!(run.scene.clearance < 1e6)) continue;
     test::makeUncertain(run.scene.a, run.scene.clearance, random);
     test::makeUncertain(run.scene.b, run.scene.clearance, random);
     const SphereHierarchy scan(run.scene.a.view()), model(run.scene.b.view());

@@ -188,7 +188,7 @@ private:
   bool matters(const Point3& direction, double begin, double end) const
   {
     const double least = leastApart(direction, a_, b_, begin, end);
-    if (least > near_enough_) return false;
+    if (least > near_enough_ - resolution_) return false; // so that each instant is of one kind or the other
     if (!found_.contact || begin < found_.enter) return true;
     return nearest_ && least < found_.distance - resolution_;
   }

@@ -47,8 +47,10 @@ struct Approach {
   double distance = 0.0, at = 0.0, enter = 0.0; ///< the smallest one, when that is, and the first instant near enough
 };
 
-/// The distances at the instants are near enough, or the smallest, within `resolution`, which bounds the work, too.
-/// @param nearest whether the smallest distance counts; if not, only the first instant does
+/// There is no contact where both stay beyond `near_enough`, and there is one where they come nearer than that by more
+/// than `resolution`. Distances are the smallest within it, and instants those before which none are nearer by more.
+/// @param resolution above what rounding takes; bounds the work. @param nearest whether the smallest distance counts;
+/// if not, only the first instant does
 PCL_BSH_EXPORT_INTERNAL Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough,
                                             double resolution, bool nearest);
 

@@ -148,10 +148,10 @@ TriangleDistance::Enclosure TriangleDistance::enclose(const Point3& p, const Tri
   return distanceOfOrigin(flatten<double>(at.b, at.error));
 }
 
-TriangleDistance::Enclosure TriangleDistance::enclose(const Triangle3& a, const Triangle3& b) const
+TriangleDistance::Enclosure TriangleDistance::enclose(const Triangle3& a, const Triangle3& b, double reach) const
 {
   const Seen at = seen(a, b);
-  return distanceOfTriangles(at.a, at.b, at.error, kAnyLength).distance;
+  return distanceOfTriangles(at.a, at.b, at.error, reach).distance;
 }
 
 /// In double, of a distance that is compared with a sum: eight additions at most, rounded relative to what they add up.

@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 
 namespace pcl_bsh {
 
@@ -40,8 +41,10 @@ public:
   TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
   /// Bounds of the distance as far as double arithmetic can tell; both infinite where it cannot.
+  /// @param reach the bounds need not be near to each other where both are beyond it
   Enclosure enclose(const Point3& p, const Triangle3& b) const;
-  Enclosure enclose(const Triangle3& a, const Triangle3& b) const;
+  Enclosure enclose(const Triangle3& a, const Triangle3& b,
+                    double reach = std::numeric_limits<double>::infinity()) const;
 
   /// Sign of the distance less clearance + radius: negative, 0 when they are equal, or positive. The pair collides when
   /// the answer is <= 0. @param clearance, radius finite; clearance may be infinite, too

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/query/result.h>
 
 #include <pybind11/numpy.h>

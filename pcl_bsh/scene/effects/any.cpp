@@ -47,7 +47,7 @@ void Scene::State::decideAny(BroadPair& pair) const
     bool free = true;
     eachPartPair(pair, [&](const PartPair& parts) {
       const AnyResult found =
-          anyCollision(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {clearance, options.accuracy});
+          anyCollision(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {clearance, ofParts()});
       memory.work += found.work;
       if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
       if (!found.witness) return true;
@@ -108,6 +108,7 @@ bool Scene::State::isKnownFree(const BroadPair& pair) const
 
 void Scene::State::findSelf(EffectCost& spent)
 {
+  progress->begin(share, bodies.size());
   for (ObjectId object = 0; object < bodies.size(); ++object) {
     const SceneObject& whole = bodies[object].object;
     for (std::uint32_t i = 0; i < whole.parts.size(); ++i)
@@ -117,12 +118,14 @@ void Scene::State::findSelf(EffectCost& spent)
         // In the object's own frame, where only the parts' poses count.
         const AnyResult found =
             anyCollision({*whole.parts[i].hierarchy, whole.parts[i].pose},
-                         {*whole.parts[j].hierarchy, whole.parts[j].pose}, {options.clearance, options.accuracy});
+                         {*whole.parts[j].hierarchy, whole.parts[j].pose}, {options.clearance, ofParts()});
         spent.work += found.work;
         ++spent.pairs;
         if (found.witness) result.self.push_back({object, i, j, *found.witness});
         if (found.verdict == Verdict::undecided) result.undecided.push_back({object, object, i, j});
       }
+    progress->step();
+    progress->throwIfStopped();
   }
 }
 

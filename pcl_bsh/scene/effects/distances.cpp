@@ -30,8 +30,7 @@ void Scene::State::decideDistance(BroadPair& pair, double within) const
   if (a.box.empty() || b.box.empty() || !box.meets(b.world_box)) return;
   bool first = true;
   eachPartPair(pair, [&](const PartPair& parts) {
-    const DistanceResult found =
-        closestPair(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {options.accuracy});
+    const DistanceResult found = closestPair(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), ofParts());
     memory.work += found.work;
     interval.lower = std::min(interval.lower, found.interval.lower);
     interval.upper = std::min(interval.upper, found.interval.upper);
@@ -49,7 +48,7 @@ void Scene::State::findContacts(EffectCost& spent)
   std::vector<std::vector<ContactPair>> found(near.size());
   eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
     ContactsResult contacts = nearestContacts(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
-                                              {pair.clearance, *options.effects.contacts});
+                                              {pair.clearance, *options.effects.contacts, exactOfParts()});
     pair.memory.work += contacts.work;
     if (contacts.contacts.empty() && contacts.complete) return;
     found[k].push_back({parts, std::move(contacts.contacts), contacts.complete});

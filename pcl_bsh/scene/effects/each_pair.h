@@ -19,12 +19,16 @@ constexpr double scene_rounding = 0x1p-40; ///< relative; far above that of a fe
 template <class Decide>
 void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide)
 {
+  progress->begin(share, pairs.size());
   parallelFor(pairs.size(), threadCount(options.threads), [&](std::size_t i) {
+    if (progress->stopped()) return;
     pairs[i]->memory.work = Work();
     pairs[i]->memory.asked = 0;
     pairs[i]->memory.reused = false;
     decide(i);
+    progress->step();
   });
+  progress->throwIfStopped();
   for (const BroadPair* pair : pairs) {
     cost.pairs += pair->memory.asked;
     cost.reused += pair->memory.reused ? 1 : 0;

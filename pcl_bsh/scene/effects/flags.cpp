@@ -65,11 +65,8 @@ void Scene::State::findFlags(EffectCost& spent)
 {
   std::vector<std::vector<PairFlags>> found(near.size());
   eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
-    FlagsRequest request;
-    request.clearance = pair.clearance;
-    request.flagged = Side::both;
-    request.accuracy = options.accuracy;
-    FlagsResult flags = collisionFlags(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), request);
+    FlagsResult flags = collisionFlags(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
+                                       {pair.clearance, Side::both, ofParts()});
     pair.memory.work += flags.work;
     const std::size_t not_free = flags.colliding_a + flags.colliding_b + flags.undecided_a + flags.undecided_b;
     if (not_free > 0) found[k].push_back({parts, std::move(flags.a), std::move(flags.b)});

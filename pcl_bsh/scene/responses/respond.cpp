@@ -111,7 +111,7 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
     const double height = options.effects.gravity->step_height;
     const Eigen::Vector3d down = options.effects.gravity->down.normalized();
     const Eigen::Vector3d wanted = target.translation() - start.translation();
-    const auto progress = [&](const Eigen::Vector3d& center) { return (center - from).dot(wanted); };
+    const auto advance = [&](const Eigen::Vector3d& center) { return (center - from).dot(wanted); };
     const auto drop = [&](Mover& falling, double depth) {
       falling.outcome.touched = false;
       return !falling.translate(shifted(falling.pose(), depth * down), false) && falling.outcome.touched &&
@@ -132,7 +132,7 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
       const Outcome climbing = climber.outcome;
       const bool grounded = drop(climber, lifted + height);
       lifted_is_better =
-          grounded && progress(climber.center()) > progress(plain_center) + options.tolerance * wanted.norm();
+          grounded && advance(climber.center()) > advance(plain_center) + options.tolerance * wanted.norm();
       if (lifted_is_better) {
         outcome.touched = climbing.touched;
         outcome.against = climbing.touched ? climbing.against : climber.outcome.against;

@@ -108,7 +108,8 @@ private:
   {
     return [this, &ask, tiles](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
       ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
-      if (request_.progress && !request_.progress(visitor_.place() + 1, tiles)) throw Cancelled();
+      const double done = static_cast<double>(visitor_.place() + 1) / static_cast<double>(tiles);
+      if (request_.progress && !request_.progress(done)) throw Cancelled();
     };
   }
 

@@ -20,8 +20,8 @@ site::SiteRequest requestOf(const SiteOptions& options, Step* step)
   request.uncertainty = question.uncertaintyOfInput();
   request.swept = question.sweptTolerance();
   if (step != nullptr) {
-    request.progress = [step](std::uint64_t done, std::uint64_t all) {
-      step->share(static_cast<double>(done) / static_cast<double>(all));
+    request.progress = [step](double done) {
+      step->share(done);
       return true;
     };
   }

@@ -8,7 +8,6 @@
 
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/parse_number.h>
-#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/site/site.h>
 
 #include <algorithm>
@@ -130,7 +129,7 @@ void checkScene(const Options& options)
   };
   if (!options.clouds.empty()) refuse("CLOUD");
   if (options.model) refuse("--model");
-  if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
+  if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
   if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
   if (options.cut) throw UsageError("--cut: cuts a cloud: give clouds in place of --scene");
@@ -143,15 +142,15 @@ void checkScene(const Options& options)
 void checkClouds(const Options& options)
 {
   if (options.clouds.empty()) throw UsageError("CLOUD: is missing: name a cloud, or a scene with --scene");
-  const bool moves = options.trajectory || !options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0);
+  const bool moves = options.trajectory || !options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0);
   if (moves && !options.model) throw UsageError("--model: is missing: say which cloud the poses are for");
   const bool obstacles = options.model || options.clouds.size() > 1;
-  if (options.clearance && !obstacles)
+  if (options.question.clearance && !obstacles)
     throw UsageError("--clearance: there is nothing to collide with: give a second cloud or --model");
-  if (!options.clearance && obstacles && options.color &&
+  if (!options.question.clearance && obstacles && options.color &&
       (*options.color == Coloring::collision || *options.color == Coloring::first_pose))
     throw UsageError("--clearance: is missing: this --color asks what collides");
-  if (options.trace && !options.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
+  if (options.trace && !options.question.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
   if (options.closest && !obstacles)
     throw UsageError("--closest: there is no second cloud: give a second cloud or --model");
 }
@@ -165,9 +164,9 @@ void checkSite(const Options& options)
   if (!options.clouds.empty()) refuse("CLOUD");
   if (options.scene) refuse("--scene");
   if (options.model) refuse("--model");
-  if (!options.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
+  if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
-  if (options.clearance) refuse("--clearance");
+  if (options.question.clearance) refuse("--clearance");
   if (options.trace) refuse("--trace");
   if (options.closest) refuse("--closest");
   if (options.export_to) throw UsageError("--export: of a site: give pcl_bsh_site export SITE FILE.pvtp");
@@ -178,7 +177,7 @@ void checkRange(const Options& options)
 {
   if (!options.range) return;
   if (options.color != Coloring::distance) throw UsageError("--range: is for distances: give --color distance, too");
-  if (!(*options.range > options.clearance.value_or(0.0)) || !std::isfinite(*options.range))
+  if (!(*options.range > options.question.clearance.value_or(0.0)) || !std::isfinite(*options.range))
     throw UsageError("--range: give a length greater than --clearance, or than 0");
 }
 
@@ -217,12 +216,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
                  "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
       ->type_name("N")
       ->transform(cli::number<unsigned>("give the number of a pose or step, from 0"));
-  app.add_option("--clearance", options.clearance,
-                 "greatest distance that counts as collision, in the clouds' unit\n(default for a scene: its own)")
-      ->type_name("D")
-      ->transform(cli::number<double>(cli::give_length));
-  Question question;
-  cli::addQuestionOptions(app, question, {"vertices_only"});
+  options.question.threads = 0;
+  cli::addQuestionOptions(app, options.question, {"clearance", "vertices_only", "threads"});
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--color", options.color,
@@ -267,17 +262,13 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("HOW");
   app.add_option("--export", options.export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")
       ->type_name("FILE");
-  app.add_option("--threads", options.threads, "0: all of the machine's (default)")
-      ->type_name("N")
-      ->transform(cli::number<unsigned>(cli::give_threads));
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
-  cli::requireAccepted(question);
-  options.surface = {question.vertices_only};
+  cli::requireAccepted(options.question);
 
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
     std::vector<std::string> warnings;
-    options.pose = cli::parsePose("--pose", pose, warnings);
+    options.question.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
   if (!cut.empty()) options.cut = parseCut(cut);
@@ -303,7 +294,6 @@ std::optional<Options> parseOptions(int argc, char** argv)
     options.scene ? checkScene(options) : checkClouds(options);
   checkRange(options);
   checkFiles(options);
-  if (options.clearance) checkClearance(*options.clearance); // before anything is loaded
   return options;
 }
 

@@ -4,9 +4,8 @@
 
 #include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/io/clouds/meshes/obstacle.h>
-
-#include <Eigen/Geometry>
+#include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/question/question.h>
 
 #include <array>
 #include <cstdint>
@@ -41,9 +40,7 @@ struct Options {
   std::uint64_t budget = 10'000'000;          ///< points of a site that are drawn at once
   std::optional<std::filesystem::path> model;
   std::optional<std::filesystem::path> trajectory;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< of the model, without a trajectory
-  std::optional<double> clearance;
-  io::SurfaceSettings surface; ///< of clouds with faces
+  Question question; ///< of the first cloud and each other one; the pose is the model's, without a trajectory
   std::optional<Coloring> color;
   std::optional<double> range; ///< distances up to here have colours; what collides, the colour of collisions
   std::optional<Cut> cut;      ///< of the first cloud
@@ -55,7 +52,6 @@ struct Options {
   int width = 1280, height = 960;
   Camera camera;
   std::optional<std::filesystem::path> export_to;
-  unsigned threads = 0;
   io::ColumnChoice columns;
   cli::CommandFiles files; ///< but for a scene's clouds
 };

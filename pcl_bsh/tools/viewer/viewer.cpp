@@ -208,7 +208,7 @@ bool Viewer::press(const std::string& key)
   if (key == "plus" || key == "+" || key == "KP_Add") {
     extras.level = extras.level ? *extras.level + 1 : 0;
     for (const ViewedCloud& viewed : content_.viewedClouds()) // the finest level of any is the last
-      if (*extras.level > 0) viewed.hierarchy->buildAll(content_.options().threads);
+      if (*extras.level > 0) viewed.hierarchy->buildAll(content_.options().question.threads);
     std::size_t deepest = 0;
     for (const ViewedCloud& viewed : content_.viewedClouds())
       deepest = std::max(deepest, viewed.hierarchy->statistics().depth);
@@ -225,7 +225,7 @@ bool Viewer::press(const std::string& key)
   else if (key == "o")
     extras.cells = !extras.cells;
   else if (key == "t") {
-    if (!content_.options().clearance)
+    if (!content_.options().question.clearance)
       render_view_->setNote("t shows a query: give an obstacle and --clearance");
     else
       extras.trace = !extras.trace;

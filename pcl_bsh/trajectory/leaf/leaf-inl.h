@@ -33,10 +33,10 @@ public:
     model_(model),
     stop_check_(stop_check),
     results_(results),
-    swept_(query, voxel_frame, results),
+    swept_(query, voxel_frame, results, compared_),
     at_pose_(query, voxel_frame, results),
     on_arcs_(query, voxel_frame, results, at_pose_),
-    records_(query, voxel_frame, results, at_pose_)
+    records_(query, voxel_frame, results, at_pose_, compared_)
   {
   }
 
@@ -64,6 +64,7 @@ public:
     ++results_.work.volumes_carried;
     at_pose_.beginVisit(motion);
     records_.beginVisit();
+    compared_.clear();
     if (motion.at_rest && query_.everything())
       nearestFirst(candidates, points, motion);
     else
@@ -241,6 +242,7 @@ private:
   ModelBoxes& model_;
   StopCheck& stop_check_;
   VoxelResults& results_;
+  ComparedPairs compared_;
   SweptLeaf swept_;
   LeafAtPose at_pose_;
   ArcsAtPoses on_arcs_;

@@ -9,6 +9,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
 #include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
@@ -24,34 +25,38 @@ namespace HWY_NAMESPACE {
 class RecordLeaf {
 public:
   RecordLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
-             LeafAtPose& at_pose)
+             LeafAtPose& at_pose, ComparedPairs& compared)
   : query_(query),
     voxel_frame_(voxel_frame),
     placing_(query.error(voxel_frame.origin)),
     may_overlap_(areBalls(query.scan.hierarchy().view()) || areBalls(query.model.view())),
     results_(results),
-    at_pose_(at_pose)
+    at_pose_(at_pose),
+    compared_(compared)
   {
   }
 
   /// Before a leaf is compared during a motion.
   void beginVisit() { known_ = 0; }
 
-  /// A leaf of the model, at the poses that bring it near.
+  /// A leaf of the model, at the poses that bring it near; of a triangle in parts at all poses, once.
   void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
   {
     const BoxLeaf other = box.points(query_.boxes);
     for (std::uint32_t j = 0; j < other.count; ++j) {
       const MovingCorners model = restingAt(query_, other.record(j));
-      for (std::uint32_t bits = ranges.lanes & leaf.open; bits != 0; bits &= bits - 1) {
+      std::uint32_t bits = ranges.lanes & leaf.open;
+      if (other.is_part) bits = compared_.add(other.record(j), bits);
+      for (; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
         const PointPair pair{leaf.points.record(i), other.record(j)};
         const auto [least, most] = query_.of_pairs.around(pair);
         if (most < 0.0) continue;
         const double radii = query_.scan.hierarchy().view().ownRadius(pair.a) + query_.model.view().ownRadius(pair.b);
         ++results_.work.leaf_pairs;
-        halve({leaf, motion, courseOf(leaf, i, motion), model, pair, i, radii, least, most}, ranges.first[i],
-              ranges.last[i]);
+        halve({leaf, motion, courseOf(leaf, i, motion), model, pair, i, radii, least, most},
+              other.is_part ? motion.interval->first : ranges.first[i],
+              other.is_part ? motion.interval->last : ranges.last[i]);
       }
     }
   }
@@ -176,7 +181,7 @@ private:
   bool isNearer(const Pair& pair, std::uint32_t k, double low) const
   {
     const NearestPoint& best = results_.best[pair.point()];
-    if (best.record == TrajectoryResult::kNoPoint) return true;
+    if (best.record == kNothing) return true;
     if (!best.meets) return low <= best.gap;
     const auto best_pose = static_cast<std::uint32_t>(best.time); // nothing is nearer
     return k < best_pose || (k == best_pose && pair.records.b < best.record);
@@ -208,6 +213,7 @@ private:
   const bool may_overlap_; ///< balls may, so that gaps are below 0
   VoxelResults& results_;
   LeafAtPose& at_pose_;
+  ComparedPairs& compared_;
   RecordCourse courses_[kLeafPoints];
   std::uint32_t known_ = 0; ///< bits of those that are set
 };

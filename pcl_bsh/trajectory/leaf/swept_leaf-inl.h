@@ -8,6 +8,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_SWEPT_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
@@ -23,11 +24,13 @@ namespace HWY_NAMESPACE {
 
 class SweptLeaf {
 public:
-  SweptLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results)
+  SweptLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
+            ComparedPairs& compared)
   : query_(query),
     tree_(query.boxes),
     voxel_frame_(voxel_frame),
-    results_(results)
+    results_(results),
+    compared_(compared)
   {
   }
 
@@ -43,6 +46,7 @@ public:
     for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
+      if (other.is_part && compared_.add(other.record(0), 1u << i) == 0) continue;
       pass(leaf, i, other, box, motion);
       std::optional<PointSegment> segment;
       std::optional<RecordCourse> course; // of what is not points
@@ -144,6 +148,7 @@ private:
   const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
+  ComparedPairs& compared_;
   Passages<kLeafPoints> passages_{}; // of one point
 };
 

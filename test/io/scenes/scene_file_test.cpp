@@ -360,7 +360,7 @@ TEST(SceneFile, FilesWithFacesAreSurfaces)
   EXPECT_TRUE(collides("0.1", ""));
   EXPECT_FALSE(collides("0.10000000000000002", "")) << "the next double";
   EXPECT_FALSE(collides("0", R"(, "vertices_only": true)"));
-  EXPECT_TRUE(collides("3.1", R"(, "shift": [0, 0, 3])")) << "shifted as the vertices are";
+  EXPECT_TRUE(collides("3.0625", R"(, "shift": [0, 0, 3])")) << "shifted as the vertices are";
 
   const SceneWorld world(parseScene(pointOver(folder, "0", ""), "scene.json"));
   const Obstacle* const surface = world.surface("square");

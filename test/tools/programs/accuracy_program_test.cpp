@@ -162,7 +162,7 @@ TEST_F(AccuracyProgram, RefusesWhatItCannotMeasure)
   const fs::path poses = folder.write("poses.txt", "0 0 0 0 0 0 0 1\n");
   fails(clouds + " --clearance 1 --poses 2 --trajectory " + poses.string(), 2, "--poses: --trajectory is given too");
   fails(clouds + " --clearance 1 --trajectory " + (folder / "none.txt").string(), 1, "none.txt: no such file");
-  fails(clouds + " --clearance -1", 1, "clearance: -1");
+  fails(clouds + " --clearance -1", 2, "--clearance");
   const fs::path nothing = folder.write("nothing.xyz", "nan nan nan\n");
   fails(nothing.string() + " " + b.string() + " --clearance 1 --out " + (folder / "study").string(), 1,
         "no finite point");

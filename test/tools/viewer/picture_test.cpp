@@ -42,12 +42,12 @@ protected:
     Options made;
     made.clouds = {floor};
     made.model = ball;
-    made.pose.translation() = Eigen::Vector3d(-0.5, 0.5, 0.2);
-    made.clearance = 0.1;
+    made.question.pose.translation() = Eigen::Vector3d(-0.5, 0.5, 0.2);
+    made.question.clearance = 0.1;
     made.width = 400;
     made.height = 300;
     made.camera.kind = Camera::Kind::top;
-    made.threads = 1;
+    made.question.threads = 1;
     return made;
   }
 };
@@ -72,7 +72,7 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   const auto [x, y] = below.seen(contact);
   EXPECT_GT(under.countNear(colliding_color, x, y, 30), 200u) << "around the ball's dip";
   EXPECT_GT(under.countNear(colliding_color, x, y, 40), under.count(colliding_color) * 3 / 4) << "legend apart";
-  touching.pose.translation().z() = 2.0;
+  touching.question.pose.translation().z() = 2.0;
   OffscreenView apart(touching);
   ASSERT_EQ(apart.view->collisions().colliding, 0u);
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
@@ -102,7 +102,7 @@ TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
 TEST_F(Picture, DistancesOfAllPointsHaveColoursABarAndAHistogram)
 {
   Options all = options();
-  all.clearance.reset();
+  all.question.clearance.reset();
   all.color = Coloring::distance;
   all.range = 2.0;
   all.camera.kind = Camera::Kind::given;
@@ -116,7 +116,7 @@ TEST_F(Picture, DistancesOfAllPointsHaveColoursABarAndAHistogram)
   const auto table = colorTable(0.0, 2.0, false);
   const SphereHierarchy& obstacle = *view.content->viewedClouds()[1].hierarchy;
   const std::vector<double> distances =
-      brute_force::pointDistances({*view.content->viewedClouds()[0].hierarchy}, {obstacle, all.pose}).distance;
+      brute_force::pointDistances({*view.content->viewedClouds()[0].hierarchy}, {obstacle, all.question.pose}).distance;
   std::size_t compared = 0;
   for (std::uint32_t i = 0; i < distances.size(); i += 37) {
     const Point3 p = view.content->scan().points().point(i);
@@ -139,7 +139,7 @@ TEST_F(Picture, DistancesOfAllPointsHaveColoursABarAndAHistogram)
   Options field = all;
   field.clouds = {told};
   field.model.reset();
-  field.pose = Eigen::Isometry3d::Identity();
+  field.question.pose = Eigen::Isometry3d::Identity();
   OffscreenView from_field(field);
   from_field.draw();
   const std::vector<double> read = from_field.content->allDistances(0);
@@ -190,8 +190,8 @@ TEST_F(Picture, SpheresAreOutlinedWhereTheirCentresSay)
   Options plain = options();
   plain.clouds = {ball};
   plain.model.reset();
-  plain.clearance.reset();
-  plain.pose = Eigen::Isometry3d::Identity();
+  plain.question.clearance.reset();
+  plain.question.pose = Eigen::Isometry3d::Identity();
   plain.color = Coloring::height;
   plain.width = 800; // the bar stands beside the ball, not before it
   OffscreenView set(plain);
@@ -261,7 +261,7 @@ TEST_F(Picture, ACloudWithoutAColourIsDrawnByHeight)
 TEST_F(Picture, TheClosestPairIsDrawn)
 {
   Options apart = options();
-  apart.pose.translation() = Eigen::Vector3d(3.0, 0, 0);
+  apart.question.pose.translation() = Eigen::Vector3d(3.0, 0, 0);
   apart.closest = true;
   OffscreenView set(apart);
   const Pixels pixels = set.draw();
@@ -324,7 +324,7 @@ TEST_F(Picture, PointsFarOffLeaveTheOthersInSight)
   asked.width = 400;
   asked.height = 300;
   asked.camera.kind = Camera::Kind::top;
-  asked.threads = 1;
+  asked.question.threads = 1;
   OffscreenView set(asked);
   const Pixels pixels = set.draw();
   for (const double x : {1.0, 25.0, 48.0}) {
@@ -350,7 +350,7 @@ TEST_F(Picture, WordsBesideTheBarEndInThePicture)
     asked.unit = "metres";
     asked.width = width;
     asked.height = 300;
-    asked.threads = 1;
+    asked.question.threads = 1;
     OffscreenView set(asked);
     const Pixels pixels = set.draw();
     const auto column = [&](int x) { // below the title
@@ -397,7 +397,7 @@ TEST_F(Picture, RefusesWhatItCannotShow)
   fails(one + " --size 10" + png, 2, "--size");
   fails(one + " --trajectory " + path.string() + png, 2, "--model");
   fails(one + " --model " + ball.string() + " --trajectory " + path.string() + " --step 99" + png, 2, "--step");
-  fails(one + " --model " + ball.string() + " --clearance -1" + png, 1, "clearance");
+  fails(one + " --model " + ball.string() + " --clearance -1" + png, 2, "--clearance");
   fails(one + " --screenshot " + (folder / "p.jpg").string(), 2, "--screenshot");
   fails(one + " --export " + (folder / "p.obj").string(), 2, "--export");
   fails(one + " --screenshot " + (folder / "none" / "p.png").string(), 1, "p.png");

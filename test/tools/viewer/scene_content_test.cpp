@@ -39,7 +39,7 @@ protected:
     made.width = 400;
     made.height = 300;
     made.camera.kind = Camera::Kind::front;
-    made.threads = 1;
+    made.question.threads = 1;
     return made;
   }
 
@@ -99,7 +99,7 @@ TEST_F(SceneRunTest, ObjectsHaltAsTheSceneSaysAndAClearanceShowsWhatIsNear)
   EXPECT_EQ(scene->collisions(4).colliding, 0u);
   EXPECT_NEAR(scene->poseOf(1, 4).translation().x(), -1.05, 0.02) << "before the other";
   EXPECT_THAT(scene->heading(scene->collisions(4), 4), HasSubstr("flying meets still"));
-  near.clearance = 0.2;
+  near.question.clearance = 0.2;
   near.closest = true;
   const std::unique_ptr<ViewContent> wide = makeSceneContent(near);
   EXPECT_EQ(wide->poseOf(1, 4).matrix(), scene->poseOf(1, 4).matrix()) << "the path is the scene's";
@@ -188,7 +188,7 @@ TEST_F(SceneRunTest, RefusesWhatIsNoSceneOrNoStepOfIt)
   fails(scene + " --trajectory " + path.string(), 2, "--trajectory");
   fails(scene + " --trace", 2, "--trace");
   fails(scene + " --color height", 2, "--color");
-  fails(scene + " --clearance -1", 1, "clearance");
+  fails(scene + " --clearance -1", 2, "--clearance");
   fails(scene + " --export " + (folder / "p.vtp").string(), 2, ".vtm");
 }
 

@@ -44,7 +44,7 @@ protected:
     chosen.budget = 2500;
     chosen.width = 400;
     chosen.height = 300;
-    chosen.threads = 1;
+    chosen.question.threads = 1;
     chosen.camera = {Camera::Kind::given, {-15, -15, 25}, {15, 15, 0}, {0, 0, 1}};
     return chosen;
   }

@@ -53,11 +53,11 @@ protected:
     Options made;
     made.clouds = {folder.write("scan.xyz", scan.str())};
     made.model = folder.write("crate.off", crateOff());
-    made.clearance = 0.1;
-    made.surface.vertices_only = vertices_only;
+    made.question.clearance = 0.1;
+    made.question.vertices_only = vertices_only;
     made.width = 500;
     made.height = 400;
-    made.threads = 1;
+    made.question.threads = 1;
     made.camera.kind = Camera::Kind::front;
     return made;
   }
@@ -97,7 +97,7 @@ TEST_F(SurfaceViewTest, TrianglesOfTheFirstCloudCollide)
   EXPECT_EQ(found.colliding, 1u);
   EXPECT_THAT(content.heading(found, 0), HasSubstr("crate.off: 12 triangles, 1 collides"));
   Options corners = asked();
-  corners.surface.vertices_only = true;
+  corners.question.vertices_only = true;
   EXPECT_THAT(CloudsContent(corners).collisions(0).flags[0], Each(Verdict::free));
   EXPECT_EQ(CloudsContent(corners).collisions(0).flags[0].size(), 8u);
 }
@@ -126,7 +126,7 @@ TEST_F(SurfaceViewTest, AndAreColouredWhereTheyAre)
 TEST_F(SurfaceViewTest, TheirDistancesAreExact)
 {
   Options all = asked();
-  all.clearance.reset();
+  all.question.clearance.reset();
   all.color = Coloring::distance;
   all.model = folder.write("above.xyz", "0.5 0.2 3\n");
   const std::vector<double> distances = CloudsContent(all).allDistances(0);
@@ -169,7 +169,7 @@ TEST_F(SurfaceViewTest, ShowWhatAFileSaysOfItsFaces)
             0);
   Options told;
   told.clouds = {marked};
-  told.threads = 1;
+  told.question.threads = 1;
   const CloudsContent content(told);
   const StepCollisions found = content.collisions(0);
   EXPECT_TRUE(found.known);
@@ -195,7 +195,7 @@ TEST_F(SurfaceViewTest, AreExportedWithWhatIsKnownOfThem)
 TEST_F(SurfaceViewTest, HaveTheMeanColourAndHeightOfTheirCorners)
 {
   Options coloured;
-  coloured.threads = 1;
+  coloured.question.threads = 1;
   coloured.clouds = {folder.write("t.ply",
                                   "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                                   "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar "

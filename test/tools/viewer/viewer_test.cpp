@@ -29,10 +29,10 @@ protected:
     made.clouds = {floor};
     made.model = ball;
     made.trajectory = path;
-    made.clearance = 0.1;
+    made.question.clearance = 0.1;
     made.width = 500;
     made.height = 400;
-    made.threads = 1;
+    made.question.threads = 1;
     return made;
   }
 

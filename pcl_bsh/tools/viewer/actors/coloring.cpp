@@ -220,7 +220,8 @@ void mark(CloudActors clouds, ValueBar& bar, const ViewContent& content, const S
     if (options.range)
       markValues(*clouds[0], bar, content, shown, {0.0, *options.range}, collisions.flags[0]);
     else
-      markValues(*clouds[0], bar, content, shown, {0.0, options.clearance.value_or(rangeOf(shown.values, 0.0).high)});
+      markValues(*clouds[0], bar, content, shown,
+                 {0.0, options.question.clearance.value_or(rangeOf(shown.values, 0.0).high)});
   }
   else if (coloring == Coloring::first_pose) {
     requireCollisions(collisions, "first_pose");

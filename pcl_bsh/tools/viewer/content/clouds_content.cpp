@@ -27,12 +27,13 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   viewed.role = role;
   viewed.file = file;
   cli::Step step("Loading " + file.string());
+  const io::SurfaceSettings settings = {options.question.vertices_only};
   io::CloudFacts facts;
-  io::Mesh mesh = io::readMesh(file, options.surface, &facts, options.columns.of(file), options.threads);
+  io::Mesh mesh = io::readMesh(file, settings, &facts, options.columns.of(file), options.question.threads);
   viewed.face_values = std::move(mesh.face_values);
-  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), options.surface);
+  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings);
   HierarchyOptions how;
-  how.threads = options.threads;
+  how.threads = options.question.threads;
   viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
   viewed.cloud = read.cloud();
   if (read.isSurface()) viewed.surface = read;
@@ -43,7 +44,7 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
 
 } // namespace
 
-CloudsContent::CloudsContent(const Options& options) : FieldContent(options), poses_{options.pose}
+CloudsContent::CloudsContent(const Options& options) : FieldContent(options), poses_{options.question.pose}
 {
   if (options.trajectory) {
     std::vector<std::string> warnings;
@@ -74,7 +75,7 @@ void CloudsContent::warnOfQuestions() const
 {
   std::vector<std::string> told;
   Question question;
-  question.clearance = options_.clearance;
+  question.clearance = options_.question.clearance;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     question.path = pathOf(other);
     addTexts(warningsOf(question, shapeOf(0).facts(true), shapeOf(other).facts(true)), told);
@@ -94,8 +95,8 @@ std::vector<Eigen::Isometry3d> CloudsContent::pathOf(std::size_t cloud) const
 
 Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question) const
 {
-  question.clearance = options_.clearance;
-  question.threads = options_.threads;
+  question.clearance = options_.question.clearance;
+  question.threads = options_.question.threads;
   question.pose = poseOf(other, step);
   Shape input = shapeOf(0), obstacle = shapeOf(other);
   return ask(question, input, obstacle);
@@ -103,8 +104,8 @@ Answer CloudsContent::asked(std::size_t other, std::size_t step, Question questi
 
 StepCollisions CloudsContent::collisions(std::size_t step) const
 {
-  StepCollisions found = options_.clearance ? StepCollisions() : FieldContent::collisions(step);
-  if (options_.clearance) {
+  StepCollisions found = options_.question.clearance ? StepCollisions() : FieldContent::collisions(step);
+  if (options_.question.clearance) {
     found.known = true;
     found.flags.resize(viewed_clouds_.size());
     found.flags[0].assign(scan().parts(), Verdict::free);
@@ -145,7 +146,8 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
     text << ", " << groupedCount(collisions.colliding, "collides", "collide");
     if (collisions.undecided > 0) text << ", " << groupedCount(collisions.undecided, "is undecided", "are undecided");
     if (collisions.sparse > 0) text << ", " << grouped(collisions.sparse) << " not scanned densely enough";
-    if (options_.clearance) text << "  (clearance " << lengthOf(*options_.clearance, options_.unit) << ')';
+    if (options_.question.clearance)
+      text << "  (clearance " << lengthOf(*options_.question.clearance, options_.unit) << ')';
   }
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
   return text.str();
@@ -173,10 +175,10 @@ std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t 
 
 std::vector<float> CloudsContent::distances(std::size_t step) const
 {
-  if (!options_.clearance) return FieldContent::distances(step);
+  if (!options_.question.clearance) return FieldContent::distances(step);
   std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
   Question question; // along a path of one pose, which tells floats
-  question.max_distance = options_.range.value_or(*options_.clearance);
+  question.max_distance = options_.range.value_or(*options_.question.clearance);
   question.wanted.distances = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     question.path = {poseOf(other, step)};
@@ -188,7 +190,7 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
 
 std::vector<double> CloudsContent::allDistances(std::size_t step) const
 {
-  if (options_.clearance) return {};
+  if (options_.question.clearance) return {};
   if (viewed_clouds_.size() == 1) return FieldContent::allDistances(step);
   Question question;
   question.wanted.distances = true;
@@ -205,8 +207,8 @@ std::vector<std::int32_t> CloudsContent::firstPoses() const
 {
   if (first_poses_) return *first_poses_;
   std::vector<std::int32_t> first =
-      options_.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
-  if (options_.clearance) {
+      options_.question.clearance ? std::vector<std::int32_t>(scan().parts(), -1) : FieldContent::firstPoses();
+  if (options_.question.clearance) {
     cli::Step step("Following " + counted(steps(), "pose"));
     Question question;
     question.wanted.first_poses = true;
@@ -238,7 +240,8 @@ std::vector<Trace> CloudsContent::traces(std::size_t step) const
   std::vector<Trace> traces;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
     traces.push_back(
-        {0, other, traceCollision(placed(0, step), placed(other, step), {options_.clearance.value_or(0.0), {}})});
+        {0, other,
+         traceCollision(placed(0, step), placed(other, step), {options_.question.clearance.value_or(0.0), {}})});
   return traces;
 }
 

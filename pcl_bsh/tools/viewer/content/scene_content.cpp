@@ -34,7 +34,7 @@ io::SceneFile readScene(const Options& options)
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the scene has steps 0 to " +
                           std::to_string(file.steps));
   file.options.effects = movingOnly(file.options.effects);
-  file.options.threads = options.threads;
+  file.options.threads = options.question.threads;
   return file;
 }
 
@@ -75,7 +75,7 @@ private:
   const StepState& at(std::size_t step) const;
   StepState stateAfter(const SceneResult& result) const;
   std::size_t cloudOf(ObjectId object, std::uint32_t part) const { return first_cloud_[object] + part; }
-  double clearance() const { return options_.clearance.value_or(file_.options.clearance); }
+  double clearance() const { return options_.question.clearance.value_or(file_.options.clearance); }
 
   io::SceneFile file_;
   std::unique_ptr<io::SceneWorld> running_scene_; ///< moves the objects from step to step, and reports nothing else
@@ -135,7 +135,7 @@ void SceneContent::makeQueryScene()
     query_scene_->add(std::move(still));
   }
   std::vector<io::RuleEntry> rules = file_.rules;
-  if (options_.clearance)
+  if (options_.question.clearance)
     for (io::RuleEntry& entry : rules) entry.rule.clearance.reset();
   io::setRules(*query_scene_, rules);
 }

@@ -74,7 +74,7 @@ SiteContent::SiteContent(const Options& options) : FieldContent(options), site_(
   overview.name = std::filesystem::weakly_canonical(site_.folder).filename().string();
   overview.legend = "points";
   HierarchyOptions how;
-  how.threads = options.threads;
+  how.threads = options.question.threads;
   overview.hierarchy = std::make_shared<SphereHierarchy>(overview.records, how);
   if (overview.hierarchy->empty())
     throw files::FileError(file, "has no finite point to show", "make the site of others");

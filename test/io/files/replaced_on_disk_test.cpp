@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a loss of power leaves: the content is on the disk before it gets its name, and the name before the call
+// returns.
+#include "support/disk_calls.h"
+#include "support/temporary_folder.h"
+
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
+
+#include <gmock/gmock.h>
+
+#include <cerrno>
+
+namespace pcl_bsh::files {
+namespace {
+
+using testing::ElementsAre;
+
+class ReplacedOnDisk : public testing::Test {
+protected:
+  void replace()
+  {
+    replaceFile(file, [](std::ostream& out) { out << "new"; });
+  }
+
+  /// The call fails: the file is as it was, and nothing is left beside it.
+  void expectKept(const std::string& call)
+  {
+    {
+      test::DiskCalls disk;
+      disk.failing[call] = EIO;
+      EXPECT_THROW(replace(), FileError) << call;
+      EXPECT_EQ(disk.calls.back(), call) << "and nothing after it";
+    }
+    EXPECT_EQ(contentOf(file), "old") << call;
+    EXPECT_EQ(folder.files(), 1U) << call;
+  }
+
+  void SetUp() override
+  {
+    replaceFile(file, [](std::ostream& out) { out << "old"; });
+  }
+
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "out";
+  const std::string fsync_folder = "fsync " + file.parent_path().filename().string();
+};
+
+TEST_F(ReplacedOnDisk, ContentThenNameThenFolder)
+{
+  test::DiskCalls disk;
+  replace();
+  EXPECT_THAT(disk.calls, ElementsAre("write out.part0", "fsync out.part0", "rename out.part0 out", fsync_folder));
+}
+
+TEST_F(ReplacedOnDisk, KeepsTheOldFileWhereTheNewOneCannotBeBroughtToTheDisk)
+{
+  expectKept("write out.part0");
+  expectKept("fsync out.part0");
+  expectKept("rename out.part0 out");
+}
+
+TEST_F(ReplacedOnDisk, TellsThatTheNameMayNotSurvive)
+{
+  test::DiskCalls disk;
+  disk.failing[fsync_folder] = EIO;
+  EXPECT_THROW(replace(), FileError);
+}
+
+TEST_F(ReplacedOnDisk, OnFileSystemsThatCannotSyncFolders)
+{
+  test::DiskCalls disk;
+  for (const int error : {EINVAL, ENOTSUP}) {
+    disk.failing[fsync_folder] = error;
+    EXPECT_NO_THROW(replace());
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh::files

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a program tells the kernel about files that must survive a loss of power, in order. A test that is linked with
+// disk_calls.cpp has these calls pass through there.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::test {
+
+/// While it lives, write(), fsync() and rename() of this process are noted, by the names of files without folders:
+/// "write out.part0", "fsync out.part0", "rename out.part0 out". One at a time.
+class DiskCalls {
+public:
+  DiskCalls();
+  ~DiskCalls();
+  DiskCalls(const DiskCalls&) = delete;
+  DiskCalls& operator=(const DiskCalls&) = delete;
+
+  std::vector<std::string> calls;
+  std::map<std::string, int> failing; ///< calls that are not made, and the errno that they fail with
+};
+
+} // namespace pcl_bsh::test
