@@ -39,6 +39,10 @@ Answer QuestionFilter::answer(Shape input, const Wanted& wanted)
   question.wanted = wanted;
   question.wanted.spacings = wanted.collisions() && !measured_;
   if (!question.density) question.widest_gap.reset(); // a setting that waits
+  if (!question.seen) {
+    question.origin = {};
+    question.seen_angle.reset();
+  }
   Answer found = ask(question, input, obstacle_);
   measured_ |= question.wanted.spacings;
   for (const Warning& warning : warnings_.unheard(std::move(found.warnings))) {
@@ -49,6 +53,8 @@ Answer QuestionFilter::answer(Shape input, const Wanted& wanted)
   }
   work_ = found.work;
   sparse_ = found.sparse;
+  unseen_ = found.unseen;
+  obstacle_flags_ = question.seen ? found.obstacle_flags : std::vector<std::uint8_t>();
   undecided_ = found.collisions.undecided + found.sparse;
   return found;
 }

@@ -123,6 +123,13 @@ public:
   /// How many of them because the obstacle is not scanned densely enough.
   std::size_t getSparseCount() const { return sparse_; }
 
+  /// What of the obstacle the last query found unseen (setSeenOnly()).
+  const Answer::Unseen& getUnseen() const { return unseen_; }
+
+  /// Verdicts of the obstacle's points then, as numbers: 0 free, 1 collides, 2 undecided, 4 unseen; along a trajectory
+  /// the gravest of its poses. Empty without setSeenOnly().
+  const std::vector<std::uint8_t>& getObstacleFlags() const { return obstacle_flags_; }
+
 protected:
   QuestionFilter() = default;
   ~QuestionFilter() = default;
@@ -141,7 +148,7 @@ protected:
   template <typename Cloud>
   Shape inputOf(const PointsView& points, const Cloud& cloud) const
   {
-    const bool by_field = !question_.uncertainty.field.empty();
+    const bool by_field = !question_.uncertainty.field.empty() || !question_.origin.field.empty();
     return Shape("the input", points, by_field ? fieldsOfRecords(cloud) : std::vector<RecordField>());
   }
 
@@ -161,6 +168,8 @@ private:
   bool measured_ = false; ///< spacings
   Work work_;
   std::size_t sparse_ = 0;
+  Answer::Unseen unseen_;
+  std::vector<std::uint8_t> obstacle_flags_;
 };
 
 /// Parts the input's records, in their order, into those that are kept and the rest, where points that are not finite
@@ -222,6 +231,24 @@ public:
     question_.widest_gap = widest_gap == 0.0 ? std::nullopt : std::optional(widest_gap);
   }
   double getWidestGap() const { return question_.widest_gap.value_or(0.0); }
+
+  /// Points of the obstacle that are free count as unseen where no scanner of the input saw that the space within the
+  /// clearance about them is empty (pcl_bsh/seen/seen_space.h says when it did, and to what that is blind). Needs
+  /// setScanOrigins(). Not with swept motion. Flags of the input stay as they are. Default: false.
+  void setSeenOnly(bool seen_only) { question_.seen = seen_only; }
+  bool getSeenOnly() const { return question_.seen; }
+
+  /// Where the input's scanners stood, in its frame; with setSeenOnly() alone.
+  void setScanOrigins(const ScanOrigins& origins) { question_.origin = origins; }
+  const ScanOrigins& getScanOrigins() const { return question_.origin; }
+
+  /// The angle for which a beam speaks, in radians, in [1e-4, 0.25]; 0 (default): measured of each scan.
+  void setSeenAngle(double angle) { question_.seen_angle = angle == 0.0 ? std::nullopt : std::optional(angle); }
+  double getSeenAngle() const { return question_.seen_angle.value_or(0.0); }
+
+  /// How far the obstacle's pose, or each of its trajectory, may truly be from what is given. Default: not at all.
+  void setPoseUncertainty(const PoseUncertainty& uncertainty) { question_.pose_uncertainty = uncertainty; }
+  const PoseUncertainty& getPoseUncertainty() const { return question_.pose_uncertainty; }
 
 protected:
   CollisionSettings() { question_.clearance = 0.0; }

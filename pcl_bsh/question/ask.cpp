@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/unseen.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,7 @@ public:
       flag();
     if (wanted_.closest && !closest_is_known_) findClosest();
     if (wanted_.measures() && !question_.path) measure();
+    if (question_.seen && wanted_.collisions()) lookAround(question_, input_, obstacle_, answer_);
     warn();
     return std::move(answer_);
   }
@@ -229,9 +231,11 @@ private:
 /// What is about points cannot be asked of surfaces.
 void requireAnswerable(const Question& question, const Shape& input)
 {
-  if (input.isSurface() && question.density)
-    throw InvalidOption("density", "is about points, and " + input.name() + " is a surface",
-                        "give `vertices_only` to ask about its vertices, or leave it out");
+  if (!input.isSurface()) return;
+  for (const char* const option : {"density", "seen"})
+    if (option[0] == 'd' ? question.density : question.seen)
+      throw InvalidOption(option, "is about points, and " + input.name() + " is a surface",
+                          "give `vertices_only` to ask about its vertices, or leave it out");
 }
 
 } // namespace
@@ -249,6 +253,9 @@ void check(const Question& question)
   of_nothing.uncertainty.field.clear();
   of_nothing.obstacle_uncertainty.field.clear();
   of_nothing.sigmas = 1.0;
+  of_nothing.seen = false;
+  of_nothing.origin = {};
+  of_nothing.seen_angle.reset();
   of_nothing.progress = nullptr;
   of_nothing.wanted.spacings = false;
   checkOptions(question);

@@ -29,11 +29,21 @@ struct Answer {
   std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
   DistanceResult closest;              ///< its pair: records of the input and of the obstacle
   SymmetricDistances distances;        ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
-  std::vector<Verdict> obstacle_flags; ///< where wanted, of the obstacle's records
-  std::vector<std::uint8_t> within;    ///< 1: within the limits
-  double widest_gap = 0.0;             ///< of the density guard; 0: it guarded nothing
-  Density density;                     ///< where spacings are wanted
-  Work work;                           ///< of all queries
+  std::vector<Verdict> obstacle_flags; ///< where wanted or with `seen`, of the obstacle's records; along a path the
+                                       ///< gravest verdict of its poses
+
+  /// With `seen`: points of the obstacle, or triangles where it is a surface, that are unseen.
+  struct Unseen {
+    std::size_t count = 0;                 ///< at some pose, and at none worse
+    std::vector<std::size_t> at_poses;     ///< at each
+    std::optional<std::size_t> first_pose; ///< with any
+    std::vector<double> angles;            ///< of each scan: what its beams speak for, in radians
+  };
+  Unseen unseen;
+  std::vector<std::uint8_t> within; ///< 1: within the limits
+  double widest_gap = 0.0;          ///< of the density guard; 0: it guarded nothing
+  Density density;                  ///< where spacings are wanted
+  Work work;                        ///< of all queries
   std::vector<Warning> warnings;
 };
 

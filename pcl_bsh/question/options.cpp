@@ -38,12 +38,28 @@ std::vector<QuestionOption> table()
        "the same for the obstacle's points"},
       {"sigmas", &Q::sigmas, Kind::collisions, "K", "", Input::uncertainty,
        "by how many sigmas a point may be off, where an uncertainty is a field"},
+      {"pose_uncertainty", &Q::pose_uncertainty, Kind::collisions, "T,W,X,Y,Z", "m", Input::uncertainty,
+       "how far the obstacle's pose, or each of its path, may truly be from what is given: a length, and an angle in "
+       "radians about a place in the obstacle's frame, its origin without one; or `covariance=SIGMAS:` and the 36 "
+       "numbers of a registration's; a point then moves by at most T + 2 sin(W / 2) times its distance from the place, "
+       "and verdicts are those of uncertain points"},
       {"density", &Q::density, Kind::collisions, "", "", Input::density,
        "a point that is free of the obstacle's points, but within the clearance of the surface in a hole between them, "
        "is undecided: not scanned densely enough; at one pose"},
       {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
        "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
        "median distance between its neighbouring points, too little where lines of a scan are farther apart",
+       Range::above_zero},
+      {"seen", &Q::seen, Kind::collisions, "", "", std::nullopt,
+       "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
+       "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
+       "edges; not with swept motion"},
+      {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
+       "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
+       "the field that numbers them; without it, what the input's file says"},
+      {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
+       "with `seen`: up to this angle from its own direction a beam tells what is empty, from 0.0001 to 0.25; without "
+       "it, one and a half times the angle between the scan's beams as measured",
        Range::above_zero},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
@@ -74,7 +90,7 @@ std::optional<double> numberOf(const QuestionOption& option, const Question& que
           return question.*member;
         else if constexpr (std::is_same_v<Value, Uncertainty>)
           return (question.*member).length;
-        else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, Accuracy>) // which queries check
+        else if constexpr (std::is_same_v<Value, bool> || is_text_option<Value>) // which queries check
           return std::nullopt;
         else
           return static_cast<double>(question.*member);
@@ -157,6 +173,10 @@ void checkOptions(const Question& question)
            "leave out the path, the list of clashes, or `density`");
   if (question.widest_gap && !question.density)
     refuse("widest_gap", "is given, but not `density`", "give `density`, too");
+  if (question.seen && question.swept > 0.0)
+    refuse("seen", "is about poses, and the motion between them is asked about", "leave out `seen` or `swept`");
+  if (!question.seen && (question.seen_angle || !question.origin.empty()))
+    refuse(question.seen_angle ? "seen_angle" : "origin", "is given, but not `seen`", "give `seen`, too");
   if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
   if (question.path && wanted.distances && wanted.collisions())

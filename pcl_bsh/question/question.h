@@ -11,6 +11,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/effort.h>
+#include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
 
 #include <Eigen/Geometry>
@@ -59,9 +60,13 @@ struct Question : Effort {
   double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
   std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
   Uncertainty uncertainty = {}, obstacle_uncertainty = {};
+  PoseUncertainty pose_uncertainty = {};   ///< of every pose, in the obstacle's frame
   double sigmas = 1.0;                     ///< times those of both uncertainties, where they are fields
   bool density = false;                    ///< the density guard (FlagsRequest::spacings_of_b)
   std::optional<double> widest_gap = {};   ///< of the guard; none: usualGap()
+  bool seen = false;                       ///< what is free and nobody saw is unseen: of the obstacle (Answer::unseen)
+  ScanOrigins origin = {};                 ///< where the input was scanned from
+  std::optional<double> seen_angle = {};   ///< SeenOptions::angle
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
   bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
@@ -71,8 +76,21 @@ struct Question : Effort {
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
   /// None: the poses alone.
   std::optional<double> sweptTolerance() const { return swept > 0.0 ? std::optional(swept) : std::nullopt; }
-  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); }             ///< with `sigmas`
-  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty); } ///< likewise
+  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); } ///< with `sigmas`
+
+  /// Likewise, and with that of its pose.
+  Uncertainty uncertaintyOfObstacle() const
+  {
+    Uncertainty all = scaled(obstacle_uncertainty);
+    all.pose = pose_uncertainty;
+    return all;
+  }
+
+  /// Whether a point may be elsewhere than it is given.
+  bool isUncertain() const
+  {
+    return !uncertainty.isZero() || !obstacle_uncertainty.isZero() || !pose_uncertainty.isZero();
+  }
 
 private:
   Uncertainty scaled(Uncertainty one) const

@@ -74,6 +74,19 @@ const Shape::Patches& Shape::patches(const std::optional<double>& gap, const Eff
   return *patches_;
 }
 
+const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads)
+{
+  if (looked_ && looked_->origins == origins && looked_->angle == angle && looked_->uncertainty == uncertainty_)
+    return looked_->space;
+  SeenOptions options;
+  options.angle = angle;
+  options.threads = threads;
+  const std::vector<RecordField> fields = fields_ ? fields_() : std::vector<RecordField>();
+  looked_ = std::make_shared<const Looked>(
+      Looked{origins, angle, uncertainty_, SeenSpace(scansOf(hierarchy_->view(), fields, name_, origins), options)});
+  return looked_->space;
+}
+
 void Shape::setPatches(std::vector<float> spacings)
 {
   patches_ = std::make_shared<const Patches>(Patches{std::nullopt, 0.0, std::move(spacings)});

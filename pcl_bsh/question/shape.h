@@ -6,6 +6,7 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
 
 #include <cstdint>
@@ -64,6 +65,10 @@ public:
   /// Patches that its owner has measured, for question without a gap. @param spacings one per record
   void setPatches(std::vector<float> spacings);
 
+  /// What its scanners saw to be empty. Made once for origins and an angle. @pre hierarchy() was called
+  /// @throws InvalidInput as scansOf() and SeenSpace do
+  const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads);
+
   /// What is to be known of it beside an answer. @pre hierarchy() was called
   /// @param spacing how far its points are apart, too: measured once, for all copies; not of balls, which are taken for
   ///   those of a surface
@@ -96,6 +101,15 @@ private:
     std::optional<Spacing> spacing;
   };
   std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
+
+  /// What SeenSpace is of.
+  struct Looked {
+    ScanOrigins origins;
+    std::optional<double> angle;
+    Uncertainty uncertainty;
+    SeenSpace space;
+  };
+  std::shared_ptr<const Looked> looked_; ///< once it is asked for
 };
 
 } // namespace pcl_bsh

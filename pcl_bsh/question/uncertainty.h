@@ -6,9 +6,9 @@
 //
 // A verdict is as sure as this length is: a point whose error exceeds it is misjudged. It is the radius of a ball, so
 // add what may be wrong: k sigma of the range, the angles' error times the range, and the registration's, which moves
-// all points of a scan together (Lague, Brodu, Leroux, Accurate 3D comparison of complex topography with terrestrial
-// laser scanner, 2013, add it to the noise likewise). Of normal errors, alike in all directions, 2.9 % exceed 3 sigma
-// and 0.1 % exceed 4. Bias, mixed pixels at edges, glass and water are no noise: no sigma covers them.
+// all points of a scan together (PoseUncertainty; Lague, Brodu, Leroux, Accurate 3D comparison of complex topography
+// with terrestrial laser scanner, 2013, add it to the noise likewise). Of normal errors, alike in all directions, 2.9 %
+// exceed 3 sigma and 0.1 % exceed 4. Bias, mixed pixels at edges, glass and water are no noise: no sigma covers them.
 //
 // Phase-based terrestrial scanner: ranging noise in the data sheet, a sigma by distance and reflectance, mostly below
 // some millimetres, and the ranging error beside it. Noise grows where signals are weak, on dark, far and slanting
@@ -29,6 +29,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/question/pose_uncertainty.h>
 
 #include <cstdint>
 #include <string>
@@ -52,12 +53,14 @@ struct Uncertainty {
   double length = 0.0;
   std::string field; ///< empty: `length` counts; else this does
   double sigmas = 1.0;
+  PoseUncertainty pose = {}; ///< on top: all points may move together
 
-  bool isZero() const { return field.empty() && length == 0.0; } ///< points are where they were measured
+  /// Points are where they were measured.
+  bool isZero() const { return field.empty() && length == 0.0 && pose.isZero(); }
   /// Whether both say the same.
   bool operator==(const Uncertainty& other) const
   {
-    return length == other.length && field == other.field && sigmas == other.sigmas;
+    return length == other.length && field == other.field && sigmas == other.sigmas && pose == other.pose;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
 #include <pcl_bsh/query/work.h>
 #include <pcl_bsh/seen/seen_space.h>
 

@@ -13,6 +13,7 @@
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
@@ -121,6 +122,9 @@ void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
                             });
   if (!all.measures()) return;
   wanted = {};
+  question.seen = false; // that is answered
+  question.origin = {};
+  question.seen_angle.reset();
   wanted.distances = wanted.both_ways = wanted.spacings = true;
   Answer measured =
       askInStep("Measuring distances", question, input, obstacle, report.seconds.distances, [&](const Answer& found) {
@@ -205,6 +209,7 @@ void check(const Options& options, const Question& question)
 {
   cli::requireAccepted(question, options.names_of_poses);
   io::requireWritableCloud(options.output);
+  if (options.obstacle_out) io::requireWritableCloud(*options.obstacle_out);
   if (options.report) files::requireWritable(*options.report);
   for (const fs::path& list : options.clashes) {
     try {
@@ -251,6 +256,10 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
   for (std::string& remark : cli::warningsOf(obstacle, options.obstacle)) addOnce(std::move(remark), report.warnings);
 
   write(options, input, report.answer, report.seconds.write);
+  if (options.obstacle_out) {
+    io::writeCloud(*options.obstacle_out, marked(options.obstacle, obstacle.points(),
+                                                 {{collision_field_name, &report.answer.obstacle_flags}}));
+  }
   const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, b, earlier, report);
   const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, report);
   if (measured) report.distances = io::distanceJson(*measured);
@@ -271,11 +280,15 @@ int collide(const Options& options)
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
+  if (question.seen && question.origin.empty()) question.origin = io::originsOf(input.cloud(), input.facts);
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
   const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
                                                   options.columns.of(options.obstacle), nullptr, question.threads);
+  if (options.obstacle_out && obstacle.isSurface())
+    throw cli::UsageError("--obstacle-out: " + options.obstacle.string() +
+                          ": is a surface, and points are written: give --vertices-only, too");
   return cli::named([&] { return tell(options, input, scan, obstacle, earlier, report); }, question,
                     options.names_of_poses);
 }

@@ -182,10 +182,9 @@ TEST(SurfaceQueries, OfTrianglesAboutTriangles)
   Counts counts;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     SCOPED_TRACE(seed);
-    test::Random random(200 + seed);
-    const test::TestMesh part = triangles(seed, 24), around = triangles(seed + 50 * 2, 8);
+    const test::TestMesh part = triangles(seed, 24), around = triangles(seed + 50 * 2, 30);
     expectTrue(SphereHierarchy(viewOf(part.trianglesView())), SphereHierarchy(viewOf(around.trianglesView())),
-               random.pick({0.0, 0.05, 0.2}), squaredDistances(exact(part), exact(around)), counts);
+               0.1 * static_cast<double>(seed % 4), squaredDistances(exact(part), exact(around)), counts);
   }
   EXPECT_GT(counts.colliding, 10);
   EXPECT_GT(counts.free, 10);
@@ -265,7 +264,7 @@ void expectTrueOutput(test::TestMesh mesh, double clearance, std::uint64_t seed)
   ASSERT_EQ(line, "x,y,z,collision,distance");
 
   const std::vector<Number> squared = squaredDistances(exact(scan), exact(mesh));
-  constexpr double rounding = 1e-7; // of a float
+  constexpr double rounding = 2e-7; // of a float, in text
   Counts counts;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     ASSERT_TRUE(std::getline(out, line));

@@ -437,8 +437,10 @@ TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
       "--clearance 0.08 --pose 0.1,0,0,0,0,0 --out now_found --obstacle-out before_found --report r.json";
   const Outcome outcome = collide(asked);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(valuesOf("now_found", "collision", a), std::vector<double>(right.a.begin(), right.a.end()));
-  EXPECT_EQ(valuesOf("before_found", "collision", b), std::vector<double>(right.b.begin(), right.b.end()));
+  EXPECT_EQ(valuesOf("now_found", "collision", a),
+            std::vector<double>(bytesOf(right.a), bytesOf(right.a) + right.a.size()));
+  EXPECT_EQ(valuesOf("before_found", "collision", b),
+            std::vector<double>(bytesOf(right.b), bytesOf(right.b) + right.b.size()));
   const std::string report = files::contentOf(folder / "r.json");
   EXPECT_THAT(report, HasSubstr("\"colliding\": " + std::to_string(right.colliding_a) + ","));
   EXPECT_THAT(report, HasSubstr("\"colliding_of_obstacle\": " + std::to_string(right.colliding_b) + ","));

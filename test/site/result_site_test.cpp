@@ -168,7 +168,7 @@ TEST_F(SiteResults, AreExportedToEachSource)
     const Cloud written = io::readCloud(folder / "of_way" / name);
     EXPECT_EQ(written.fields.size(), 7U);
     for (std::uint32_t i = 0; i < written.width; i += 37) {
-      EXPECT_EQ(io::valueOf(written, i, "collision"), found.flags[i]);
+      EXPECT_EQ(io::valueOf(written, i, "collision"), bytesOf(found.flags)[i]);
       EXPECT_EQ(io::valueOf(written, i, "first_pose"), found.first_pose[i]);
       EXPECT_EQ(io::valueOf(written, i, "closest_pose"), found.closest_pose[i]);
     }

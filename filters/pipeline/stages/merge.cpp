@@ -21,7 +21,7 @@ const pcl::PCLPointField* fieldLike(const pcl::PCLPointCloud2& cloud, const pcl:
   return nullptr;
 }
 
-/// The points of all inputs in one row, with the first one's layout, frame and viewpoint.
+/// The points of all inputs in one row, with the first one's layout and frame, and the viewpoint if all have the same.
 struct Merge : Stage {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
@@ -44,6 +44,7 @@ struct Merge : Stage {
     for (StageCloudPtr& input : inputs) {
       next = append(input->cloud, merged, next);
       if (input->cloud.is_dense == 0) merged.is_dense = 0;
+      if (input->viewpoint != output->viewpoint) output->viewpoint = io::no_viewpoint; // it would be that of some
       input.reset();
     }
     return output;

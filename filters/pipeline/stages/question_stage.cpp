@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
@@ -53,11 +54,10 @@ void warnOfUndecided(const Answer& answer, const Question& question, const char*
 {
   const std::size_t undecided = answer.collisions.undecided + answer.sparse;
   if (undecided == 0) return;
-  const bool is_uncertain = !question.uncertainty.isZero() || !question.obstacle_uncertainty.isZero();
   const std::string why = answer.sparse > 0 ? ", of which " + std::to_string(answer.sparse) +
                                                   " where the obstacle is not scanned densely enough"
-                          : is_uncertain ? " where places are as uncertain"
-                                         : " with this accuracy";
+                          : question.isUncertain() ? " where places are as uncertain"
+                                                   : " with this accuracy";
   stage.warn(std::to_string(undecided) + ' ' + parts + " stay undecided" + why + ": they are not taken for free");
 }
 
@@ -72,10 +72,6 @@ io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const
   }
 }
 
-Value valueOf(const Accuracy& accuracy)
-{
-  return accuracy.text();
-}
 Value valueOf(const Uncertainty& uncertainty)
 {
   return OptionType<LengthOrField>::to({uncertainty.length, uncertainty.field});
@@ -83,13 +79,12 @@ Value valueOf(const Uncertainty& uncertainty)
 template <typename T>
 Value valueOf(const T& value)
 {
-  return OptionType<T>::to(value);
+  if constexpr (is_text_option<T>)
+    return value.text();
+  else
+    return OptionType<T>::to(value);
 }
 
-void assign(Accuracy& accuracy, const Value& value)
-{
-  accuracy = Accuracy::parse(std::get<std::string>(value));
-}
 void assign(Uncertainty& uncertainty, const Value& value)
 {
   const auto [length, field] = OptionType<LengthOrField>::from(value);
@@ -98,13 +93,16 @@ void assign(Uncertainty& uncertainty, const Value& value)
 template <typename T>
 void assign(T& member, const Value& value)
 {
-  member = OptionType<T>::from(value);
+  if constexpr (is_text_option<T>)
+    member = T::parse(std::get<std::string>(value));
+  else
+    member = OptionType<T>::from(value);
 }
 
 template <typename T>
 constexpr Kind kindOf()
 {
-  if constexpr (std::is_same_v<T, Accuracy>)
+  if constexpr (is_text_option<T>)
     return Kind::text;
   else if constexpr (std::is_same_v<T, Uncertainty>)
     return Kind::length_or_field;
@@ -177,6 +175,11 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
   asked.progress = [&stage](double) { return !stage.isCancelled(); };
+  if (asked.seen && asked.origin.empty()) {
+    io::CloudFacts facts;
+    facts.viewpoint = input->viewpoint;
+    asked.origin = io::originsOf(input->cloud, facts);
+  }
   Asked found;
   found.compared = shapeOf(obstacle.cloud, question, "obstacle");
   found.obstacle = found.compared.shape("the obstacle");
@@ -189,6 +192,9 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
     refuse(error, question);
   }
   for (const Warning& warning : found.answer.warnings) stage.warn(warning.text);
+  if (found.answer.unseen.count > 0)
+    stage.warn(std::to_string(found.answer.unseen.count) +
+               " parts of the obstacle are unseen: they do not collide, but no scanner saw that nothing is there");
   warnOfUndecided(found.answer, question, found.input.isSurface() ? "triangles" : "points", stage);
   return found;
 }

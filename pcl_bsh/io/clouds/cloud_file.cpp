@@ -79,7 +79,7 @@ Contents parse(const std::string& extension, std::string_view file, const Column
     contents.cloud = parsePly(file, contents.facts.viewpoint, faces ? &faces->polygons : nullptr);
   }
   else if (extension == ".ptx") {
-    contents.cloud = parsePtx(file, contents.facts.viewpoint);
+    contents.cloud = parsePtx(file, contents.facts.viewpoint, {}, &contents.facts.scanners);
   }
   else if (extension == ".obj") {
     contents.cloud = parseObj(file);

@@ -24,6 +24,17 @@ Uncertainty uncertaintyOf(const std::string& option, const std::string& text)
   return length;
 }
 
+template <typename T>
+T parsed(const std::string& option, const std::string& text)
+{
+  try {
+    return T::parse(text);
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError(option + ": " + error.advice());
+  }
+}
+
 /// `name` becomes --name, where it is an option.
 std::string withOptions(std::string text)
 {
@@ -50,9 +61,9 @@ void add(CLI::App& app, Question& question, const QuestionOption& row)
         CLI::Option* added = nullptr;
         if constexpr (std::is_same_v<Value, bool>)
           added = app.add_flag(option, value, doc);
-        else if constexpr (std::is_same_v<Value, Accuracy>)
+        else if constexpr (is_text_option<Value>)
           added = app.add_option_function<std::string>(
-              option, [&value](const std::string& text) { value = parseAccuracy(text); }, doc);
+              option, [&value, option](const std::string& text) { value = parsed<Value>(option, text); }, doc);
         else if constexpr (std::is_same_v<Value, Uncertainty>)
           added = app.add_option_function<std::string>(
               option, [&value, option](const std::string& text) { value = uncertaintyOf(option, text); }, doc);
@@ -106,12 +117,7 @@ void addQuestionOptions(CLI::App& app, Question& question, QuestionKind kind, co
 
 Accuracy parseAccuracy(const std::string& text)
 {
-  try {
-    return Accuracy::parse(text);
-  }
-  catch (const InvalidInput& error) {
-    throw UsageError("--accuracy: " + error.advice());
-  }
+  return parsed<Accuracy>("--accuracy", text);
 }
 
 std::string advice(const InvalidInput& error, const Question& question, const std::vector<std::string>& names_of_poses)

@@ -30,6 +30,8 @@ Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
 Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
+Example: where would a robot stand in what no scanner of the hall ever looked into?
+  pcl_bsh_collide hall.ptx robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --seen
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface?
@@ -50,6 +52,8 @@ void requireConsistent(const CollideOptions& options)
   if (options.distances && options.moves())
     refuse("--distances",
            "are of one pose; along a path the output has the smallest within the clearance: leave it out");
+  if (options.obstacle_out && !options.question.seen)
+    refuse("--obstacle-out", "is of what was seen of OBSTACLE: give --seen, or leave it out");
   if (!options.unit.empty() && !options.distances && options.clashes.empty())
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
   if (!options.question.clearance && !options.distances)
@@ -92,6 +96,10 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("--distance-page", options.distance_page,
                  "page for browsers: statistics, histograms, the farthest places")
       ->type_name("FILE.html");
+  app.add_option("--obstacle-out", options.obstacle_out,
+                 "OBSTACLE's points with all their fields, and a field 'collision': 1\n"
+                 "collides, 0 is free, 2 is undecided, 4 is unseen; with --seen")
+      ->type_name("FILE");
   ColumnOptions columns;
   columns.addTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
@@ -134,6 +142,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));
+  files.writes("--obstacle-out", options.obstacle_out.value_or(""));
   for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
   return options;
 }

@@ -23,6 +23,7 @@ struct CollideOptions {
   std::filesystem::path input;
   std::filesystem::path obstacle;
   std::filesystem::path output;
+  std::optional<std::filesystem::path> obstacle_out;
   std::optional<std::filesystem::path> report;
   Keep keep = Keep::flagged;
   Question question;                          ///< its path: a straight run, or that of the trajectory, once it is read

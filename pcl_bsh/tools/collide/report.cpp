@@ -27,6 +27,15 @@ nlohmann::ordered_json toJson(const Spacing& spacing)
   return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
 }
 
+/// Of the obstacle.
+nlohmann::ordered_json toJson(const Answer::Unseen& unseen)
+{
+  return {{"obstacle_points", unseen.count},
+          {"at_poses", unseen.at_poses},
+          {"first_pose", unseen.first_pose ? nlohmann::ordered_json(*unseen.first_pose) : nlohmann::ordered_json()},
+          {"angles_of_scans", unseen.angles}};
+}
+
 nlohmann::ordered_json pathJson(const Question& question, const TrajectoryResult& found)
 {
   nlohmann::ordered_json json;
@@ -63,6 +72,11 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["undecided"] = undecided;
   json["not_scanned_densely_enough"] = answer.sparse;
   json["free"] = report.input.finite - colliding - undecided - answer.sparse;
+  json["unseen"] = nullptr;
+  if (question.seen) json["unseen"] = toJson(answer.unseen);
+  json["pose_uncertainty"] = nullptr;
+  if (const PoseUncertainty& pose = question.pose_uncertainty; !pose.isZero())
+    json["pose_uncertainty"] = {{"length", pose.length}, {"angle", pose.angle}, {"about", pose.about}};
   json["uncertainty"] = {{"input", io::uncertaintyJson(question.uncertaintyOfInput())},
                          {"obstacle", io::uncertaintyJson(question.uncertaintyOfObstacle())}};
   json["distance"] = nullptr;

@@ -45,7 +45,7 @@ struct CollisionReport {
 
   bool mayLeaveUndecided() const
   {
-    return question.accuracy.stopsEarly() || !question.uncertainty.isZero() || !question.obstacle_uncertainty.isZero();
+    return question.accuracy.stopsEarly() || question.isUncertain();
   }
 };
 

@@ -52,6 +52,13 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
       << (report.input.points == 1 ? " collides" : " collide");
   if (report.mayLeaveUndecided()) out << ", " << answer.collisions.undecided << " are undecided";
   if (answer.widest_gap > 0) out << ", " << answer.sparse << " are not scanned densely enough";
+  if (report.question.seen) {
+    out << "; of the obstacle, "
+        << counted(answer.unseen.count, report.surface ? "triangle is" : "point is",
+                   report.surface ? "triangles are" : "points are")
+        << " unseen";
+    if (report.question.path && answer.unseen.first_pose) out << ", first at pose " << *answer.unseen.first_pose;
+  }
   if (const auto& pair = answer.closest.pair) {
     out << "; smallest distance " << distanceText(report) << ", between "
         << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "

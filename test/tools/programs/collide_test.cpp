@@ -176,6 +176,50 @@ TEST_F(Collide, RefusesUncertaintiesThatAreNone)
                 "negative.xyz: field 'column_4' of point 1 is -0.5: give finite lengths >= 0");
 }
 
+/// Beams from (0, 0, 1) all around, five metres long, but those to the right, which end after two.
+TEST_F(Collide, TellsWhatOfTheObstacleNobodySaw)
+{
+  std::string points, header = "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS ";
+  int count = 0;
+  for (double elevation = -1.55; elevation <= 1.55; elevation += 0.05) {
+    for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.05, ++count) {
+      const double right = std::cos(elevation) * std::cos(azimuth), range = right > 0.5 ? 2.0 : 5.0;
+      points += std::to_string(range * right) + ' ' + std::to_string(range * std::cos(elevation) * std::sin(azimuth)) +
+                ' ' + std::to_string(1.0 + range * std::sin(elevation)) + '\n';
+    }
+  }
+  folder.write("scan.pcd", header + std::to_string(count) + "\nDATA ascii\n" + points);
+  folder.write("scan.xyz", points);
+  folder.write("machine.xyz", "1 0 1\n3 0 1\n-3 0 1\n2 0 1\n");
+  const std::string rest = " {machine.xyz} {out.pcd} --clearance 0.15 --seen ";
+  for (const std::string scan : {"{scan.pcd}" + rest, "{scan.xyz}" + rest + "--origin 0,0,1 "}) {
+    const Outcome done = collide(scan + "--obstacle-out {seen.pcd} --report {report.json}");
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("; of the obstacle, 1 point is unseen"));
+    EXPECT_EQ(flags("seen.pcd"), (std::vector<int>{0, 4, 0, 1}));
+    EXPECT_EQ(report()["unseen"]["obstacle_points"], 1);
+    EXPECT_EQ(report()["unseen"]["first_pose"], 0);
+    EXPECT_NEAR(report()["unseen"]["angles_of_scans"][0], 0.075, 0.01);
+  }
+  expectFailure("{scan.xyz}" + rest, 1, "scan.xyz: does not say where its scanner stood: give --origin, as X,Y,Z");
+  expectFailure("{scan.pcd}" + rest + "--seen-angle 1", 1, "--seen-angle: 1 radians: give one in [0.0001, 0.25]");
+  expectFailure("{scan.pcd}" + rest + "--origin 1,2", 2, "--origin: '1,2' is none: give X,Y,Z");
+  expectFailure("{scan.pcd} {machine.xyz} {out.pcd} --clearance 1 --origin 0,0,0", 2,
+                "--origin: is given, but not --seen: give --seen, too");
+}
+
+TEST_F(Collide, VerdictsHoldForUncertainPoses)
+{
+  expectDone("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.6 --pose-uncertainty 0.05,0.1,1.5,0,0 "
+             "--report {report.json}");
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 1, 1, 0, 0}));
+  EXPECT_EQ(report()["pose_uncertainty"], (Json{{"length", 0.05}, {"angle", 0.1}, {"about", {1.5, 0, 0}}}));
+  expectDone("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.6 --pose-uncertainty 0.2");
+  EXPECT_EQ(flags("out.pcd"), (std::vector<int>{0, 2, 2, 0, 0}));
+  expectFailure("{input.ply} {obstacle.xyz} {no.pcd} --clearance 1 --pose-uncertainty a", 2,
+                "--pose-uncertainty: 'a' is none: give T");
+}
+
 TEST_F(Collide, ReportsWhatItFoundAndWhatItCost)
 {
   const Outcome done = collide("{input.ply} {obstacle.xyz} {out.pcd} --clearance 0.5 --report {report.json}");

@@ -264,7 +264,8 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file)
   return TextRows(ptsLine(text, promised).values).finished();
 }
 
-pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> wanted)
+pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> wanted,
+                             std::vector<Viewpoint>* scanners)
 {
   const PtxContents contents(file, wanted);
   const bool several = contents.scans > 1 && !wanted;
@@ -278,6 +279,7 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
     const bool kept = wanted.value_or(number) == number;
     if (number == wanted.value_or(0)) viewpoint = scannerPose(scan);
     if (kept) only = scan;
+    if (scanners) scanners->push_back(scannerPose(scan));
     for (std::uint64_t i = 0; i < scan.columns * scan.rows; ++i) {
       if (!kept) {
         text.nextLine();

@@ -34,7 +34,9 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
 /// @param viewpoint the scanner's pose in the common frame: the transform's position, and the rotation that is nearest
 ///   to it; of several scans, the first one's
 /// @throws FormatError
-pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> scan = {});
+/// @param scanners null, or gets the pose of each scan
+pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> scan = {},
+                             std::vector<Viewpoint>* scanners = nullptr);
 
 /// Only the fields that parsePtx() makes; looks how many scans there are.
 pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> scan = {});

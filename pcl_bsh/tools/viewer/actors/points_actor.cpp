@@ -126,7 +126,7 @@ private:
 
 class PointsActor final : public CloudActor {
 public:
-  PointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color, const Color& marked)
+  PointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& marked)
   : CloudActor(renderer),
     points_(sizeFor(viewed.points().size()), false),
     marks_(6.0f, true)
@@ -216,10 +216,10 @@ private:
 
 } // namespace
 
-std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
+std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& /*color*/,
                                             const Color& marked)
 {
-  return std::make_unique<PointsActor>(viewed, renderer, color, marked);
+  return std::make_unique<PointsActor>(viewed, renderer, marked);
 }
 
 } // namespace pcl_bsh::viewer

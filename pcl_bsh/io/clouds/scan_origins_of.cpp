@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
+
+#include <algorithm>
+
+namespace pcl_bsh::io {
+
+ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)
+{
+  const bool several = std::any_of(cloud.fields.begin(), cloud.fields.end(),
+                                   [](const pcl::PCLPointField& field) { return field.name == scan_field_name; });
+  if (!several) {
+    const Point3 origin = {facts.viewpoint[0], facts.viewpoint[1], facts.viewpoint[2]};
+    return origin == Point3{0, 0, 0} ? ScanOrigins() : ScanOrigins::of(origin);
+  }
+  ScanOrigins origins{scan_field_name, {}};
+  for (const Viewpoint& pose : facts.scanners)
+    origins.entries.push_back({static_cast<double>(origins.entries.size()), {pose[0], pose[1], pose[2]}});
+  return origins.entries.empty() ? ScanOrigins() : origins;
+}
+
+} // namespace pcl_bsh::io

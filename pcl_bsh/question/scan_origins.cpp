@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/scan_origins.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/question/record_numbers.h>
+#include <pcl_bsh/question/text_numbers.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <memory>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+[[noreturn]] void refuseText(const std::string& text)
+{
+  throw InvalidInput(Input::seen, "origin", "'" + text + "' is none",
+                     "give X,Y,Z, or of several scans FIELD:N=X,Y,Z;N=X,Y,Z by the field that numbers them");
+}
+
+std::string textOf(const Point3& p)
+{
+  return plainText(std::setprecision(17), p[0], ',', p[1], ',', p[2]);
+}
+
+/// Subsets of a cloud, and what they are of.
+struct Subsets {
+  std::shared_ptr<const void> points;
+  std::vector<std::vector<std::int32_t>> records;
+};
+
+} // namespace
+
+ScanOrigins ScanOrigins::parse(const std::string& text)
+{
+  if (text.empty()) return {};
+  const auto originOf = [&](std::string_view numbers) {
+    const auto xyz = numbersOf(numbers);
+    if (!xyz || xyz->size() != 3) refuseText(text);
+    return Point3{(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return of(originOf(text));
+  ScanOrigins origins{text.substr(0, colon), {}};
+  for (const std::string_view entry : partsOf(std::string_view(text).substr(colon + 1), ';')) {
+    const std::size_t equals = entry.find('=');
+    const auto number = numbersOf(entry.substr(0, equals));
+    if (equals == std::string_view::npos || !number || number->size() != 1) refuseText(text);
+    const double scan = number->front();
+    const auto same = [&](const Entry& other) { return other.scan == scan; };
+    if (std::any_of(origins.entries.begin(), origins.entries.end(), same)) refuseText(text);
+    origins.entries.push_back({scan, originOf(entry.substr(equals + 1))});
+  }
+  if (origins.field.empty()) refuseText(text);
+  return origins;
+}
+
+std::string ScanOrigins::text() const
+{
+  if (entries.empty()) return {};
+  if (field.empty()) return textOf(entries.front().origin);
+  std::string all = field;
+  for (const Entry& entry : entries)
+    all += (&entry == entries.data() ? ":" : ";") + plainText(entry.scan) + '=' + textOf(entry.origin);
+  return all;
+}
+
+std::vector<Scan> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
+                          const ScanOrigins& origins)
+{
+  if (origins.empty()) {
+    throw InvalidInput(Input::points, cloud, "does not say where its scanner stood",
+                       "give `origin`, as X,Y,Z in its frame, or a file that has it (.ptx, .pcd with VIEWPOINT, .ply "
+                       "with camera)");
+  }
+  std::vector<Scan> scans(origins.entries.size());
+  for (std::size_t s = 0; s < scans.size(); ++s) scans[s].origin = origins.entries[s].origin;
+  if (origins.field.empty()) {
+    scans.front().returns = view;
+    return scans;
+  }
+  const RecordNumbers numbers(view, fields, origins.field, cloud,
+                              {Input::points, "that numbers its scans", "give one of its fields"});
+  auto subsets = std::make_shared<Subsets>();
+  subsets->points = view.owner;
+  subsets->records.resize(scans.size());
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::uint32_t record = view.record(i);
+    if (!isFinite(view.point(record))) continue;
+    const double scan = numbers[record];
+    const auto found = std::find_if(origins.entries.begin(), origins.entries.end(),
+                                    [&](const ScanOrigins::Entry& entry) { return entry.scan == scan; });
+    if (found == origins.entries.end()) {
+      throw InvalidInput(
+          Input::points, cloud,
+          plainText("point ", record, " is of scan ", scan, " in field '", origins.field, "', which has no origin"),
+          "give one for each scan")
+          .withIndex(record);
+    }
+    subsets->records[static_cast<std::size_t>(found - origins.entries.begin())].push_back(
+        static_cast<std::int32_t>(record));
+  }
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    scans[s].returns = view;
+    scans[s].returns.indices = subsets->records[s].data();
+    scans[s].returns.index_count = subsets->records[s].size();
+    scans[s].returns.owner = subsets;
+  }
+  return scans;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the scanners stood that an input is of.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/uncertainty.h>
+#include <pcl_bsh/seen/seen_space.h>
+
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// One origin for all points, or a table of them by a number that each point has in a field. In the input's frame.
+struct ScanOrigins {
+  /// Of one scan.
+  struct Entry {
+    double scan = 0.0; ///< the number; of no meaning without a field
+    Point3 origin = {0, 0, 0};
+    bool operator==(const Entry& other) const { return scan == other.scan && origin == other.origin; } ///< alike
+  };
+
+  std::string field;          ///< empty: there is one scan
+  std::vector<Entry> entries; ///< empty: it is not known
+
+  bool empty() const noexcept { return entries.empty(); } ///< nothing is known
+  /// Whether both say the same.
+  bool operator==(const ScanOrigins& other) const { return field == other.field && entries == other.entries; }
+
+  static ScanOrigins of(const Point3& origin) { return {{}, {{0.0, origin}}}; } ///< one for all
+
+  /// `X,Y,Z`, or `FIELD:N=X,Y,Z;N=X,Y,Z;...`; empty: not known. @throws InvalidInput quoting the text
+  static ScanOrigins parse(const std::string& text);
+  std::string text() const; ///< what parse() reads
+};
+
+/// The scans of a cloud. @param view with uncertainties, which shorten beams. @param cloud its name in errors
+/// @throws InvalidInput when there is no origin, a field that is missing or holds several numbers a point, and for the
+///   first point whose scan has no origin
+std::vector<Scan> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
+                          const ScanOrigins& origins);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

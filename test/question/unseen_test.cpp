@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/scan_origins.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/question/ask.h>
+
+#include "support/made_scans.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A room with a pillar, scanned from one place or from two, as one cloud; and three points to be placed into it.
+class Unseen : public testing::Test {
+protected:
+  struct Record {
+    double x, y, z;
+    std::uint8_t scan;
+  };
+
+  Unseen()
+  {
+    test::MadeRoom room{{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(8, 6, 3)}, {}};
+    room.boxes.emplace_back(Eigen::Vector3d(3, 2.5, 0), Eigen::Vector3d(3.5, 3.5, 3));
+    test::Random random(1);
+    for (std::uint8_t scan = 0; scan < 2; ++scan) {
+      const Eigen::Vector3d origin(scan == 0 ? 1 : 7, 3, 1.5);
+      const std::vector<double> ends = test::makeScan(room, {origin, 0.02, -1.57, 1.57}, random).returns;
+      for (std::size_t i = 0; i < ends.size(); i += 3) {
+        const Record record{ends[i], ends[i + 1], ends[i + 2], static_cast<std::uint8_t>(scan + 5)};
+        if (scan == 0) first_.push_back(record);
+        both_.push_back(record);
+      }
+    }
+    question.clearance = 0.1;
+    question.seen = true;
+    question.origin = ScanOrigins::of({1, 3, 1.5});
+    question.wanted.flags = true;
+  }
+
+  static Shape shapeOf(const std::vector<Record>& records)
+  {
+    PointsView view = viewOf(&records.front().x, records.size(), sizeof(Record));
+    return {"room.ptx", view, {{"scan", offsetof(Record, scan), 2, 1}}};
+  }
+
+  Answer asked(const std::vector<Record>& records)
+  {
+    Shape room = shapeOf(records), model("model", viewOf(model_.data(), 3));
+    return ask(question, room, model);
+  }
+
+  std::string refusalOf(const std::vector<Record>& records)
+  {
+    try {
+      asked(records);
+    }
+    catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  Question question;
+  std::vector<Record> first_, both_;
+  /// Before the pillar; behind it; on its surface.
+  std::vector<double> model_ = {2, 3, 1.5, 5, 3, 1.5, 3, 3, 1.5};
+};
+
+TEST_F(Unseen, IsFreeOfCollisionsAndNotSeen)
+{
+  const Answer found = asked(first_);
+  EXPECT_THAT(found.obstacle_flags, ElementsAre(0, 4, 1)); // colliding wins over unseen, unseen over free
+  EXPECT_EQ(found.unseen.count, 1u);
+  EXPECT_THAT(found.unseen.at_poses, ElementsAre(1u));
+  EXPECT_EQ(found.unseen.first_pose, 0u);
+  ASSERT_EQ(found.unseen.angles.size(), 1u);
+  EXPECT_NEAR(found.unseen.angles[0], 0.03, 0.003); // reported as measured
+}
+
+TEST_F(Unseen, IsAskedForOnly)
+{
+  question.seen = false;
+  question.origin = {};
+  const Answer found = asked(first_);
+  EXPECT_TRUE(found.obstacle_flags.empty());
+  EXPECT_EQ(found.unseen.count, 0u);
+}
+
+TEST_F(Unseen, OneScannerThatSeesItSuffices)
+{
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  const Answer found = asked(both_);
+  EXPECT_THAT(found.obstacle_flags, ElementsAre(0, 0, 1));
+  EXPECT_EQ(found.unseen.angles.size(), 2u);
+}
+
+TEST_F(Unseen, IsToldOfEachPoseOfAPath)
+{
+  question.path.emplace();
+  model_ = {2, 3, 1.5, 1.5, 3, 1.5, 1, 3, 1.5};
+  for (const double x : {0.5, 3.0, 1.0, 0.5}) // before the pillar, behind it, the first at its surface
+    question.path->emplace_back(Eigen::Translation3d(x, 0, 0));
+  const Answer found = asked(first_);
+  EXPECT_THAT(found.unseen.at_poses, ElementsAre(0u, 3u, 0u, 0u));
+  EXPECT_EQ(found.unseen.first_pose, 1u);
+  EXPECT_THAT(found.obstacle_flags, ElementsAre(1, 4, 4)); // the gravest
+  EXPECT_EQ(found.unseen.count, 2u);
+}
+
+TEST_F(Unseen, UncertainPointsStayUndecided)
+{
+  model_ = {2, 3, 1.5, 5, 3, 1.5, 2.85, 3, 1.5}; // the last may be within the clearance
+  question.obstacle_uncertainty = 0.08;
+  EXPECT_THAT(asked(first_).obstacle_flags, ElementsAre(0, 4, 2));
+}
+
+TEST_F(Unseen, NeedsToKnowWhereScannersStood)
+{
+  question.origin = {};
+  EXPECT_EQ(refusalOf(first_),
+            "room.ptx: does not say where its scanner stood: give `origin`, as X,Y,Z in its frame, or "
+            "a file that has it (.ptx, .pcd with VIEWPOINT, .ply with camera)");
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5");
+  EXPECT_THAT(refusalOf(both_), HasSubstr("is of scan 6 in field 'scan', which has no origin: give one for each scan"));
+  question.origin = ScanOrigins::parse("id:5=1,3,1.5");
+  EXPECT_EQ(refusalOf(first_), "room.ptx: field 'id' that numbers its scans is missing: give one of its fields: scan");
+}
+
+TEST_F(Unseen, RefusesWhatDoesNotGoTogether)
+{
+  question.path = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))};
+  question.swept = 0.1;
+  EXPECT_THAT(refusalOf(first_), HasSubstr("seen: is about poses"));
+  question.swept = 0.0;
+  question.seen = false;
+  EXPECT_THAT(refusalOf(first_), HasSubstr("origin: is given, but not `seen`"));
+  question.origin = {};
+  question.seen_angle = 0.01;
+  EXPECT_THAT(refusalOf(first_), HasSubstr("seen_angle: is given, but not `seen`"));
+}
+
+TEST(ScanOrigins, ReadTheirText)
+{
+  for (const char* text : {"", "1,2.5,-3", "scan:0=1,2,3;7=4,5,6"}) EXPECT_EQ(ScanOrigins::parse(text).text(), text);
+  for (const char* wrong : {"1,2", "x", "scan:", ":0=1,2,3", "scan:0=1,2", "scan:0=1,2,3;0=1,2,3", "nan,0,0"}) {
+    try {
+      ScanOrigins::parse(wrong);
+      ADD_FAILURE() << wrong;
+    }
+    catch (const InvalidInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr("give X,Y,Z")) << wrong;
+    }
+  }
+}
+
+} // namespace
+} // namespace pcl_bsh
