@@ -24,23 +24,19 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
   const auto sizeAs = [groups](const auto& values, auto& own, auto none) {
     if (!values.empty()) own.assign(groups, none);
   };
-  sizeAs(found.flags, gathered.flags, flagOf(Verdict::free));
+  sizeAs(found.flags, gathered.flags, Verdict::free);
   sizeAs(found.distance, gathered.distance, std::numeric_limits<float>::quiet_NaN());
   sizeAs(found.first_pose, gathered.first_pose, -1);
   sizeAs(found.certain_pose, gathered.certain_pose, -1);
   sizeAs(found.closest_pose, gathered.closest_pose, -1);
   sizeAs(found.closest_point, gathered.closest_point, kNothing);
-  const auto isGraver = [](auto flag, auto than) { // 1, 2 and 3 from the gravest on; 0 is free
-    return flag != flagOf(Verdict::free) && (than == flagOf(Verdict::free) || flag < than);
-  };
   const auto takeFirst = [](std::int32_t pose, std::int32_t& first) {
     if (pose >= 0 && (first < 0 || pose < first)) first = pose;
   };
   const std::size_t triangles = std::max(found.flags.size(), found.distance.size());
   for (std::size_t t = 0; t < triangles; ++t) {
     for (const std::size_t group : groupsOf(t)) {
-      if (!found.flags.empty() && isGraver(found.flags[t], gathered.flags[group]))
-        gathered.flags[group] = found.flags[t];
+      if (!found.flags.empty()) gathered.flags[group] = graver(gathered.flags[group], found.flags[t]);
       if (!found.first_pose.empty()) takeFirst(found.first_pose[t], gathered.first_pose[group]);
       if (!found.certain_pose.empty()) takeFirst(found.certain_pose[t], gathered.certain_pose[group]);
       if (found.distance.empty() || !(found.distance[t] >= 0.0f)) continue;
@@ -55,11 +51,8 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
       if (!found.closest_point.empty()) gathered.closest_point[group] = found.closest_point[t];
     }
   }
-  const auto count = [&](Verdict verdict) {
-    return static_cast<std::size_t>(std::count(gathered.flags.begin(), gathered.flags.end(), flagOf(verdict)));
-  };
-  gathered.colliding = count(Verdict::colliding);
-  gathered.undecided = count(Verdict::undecided);
+  gathered.colliding = countOf(gathered.flags, Verdict::colliding);
+  gathered.undecided = countOf(gathered.flags, Verdict::undecided);
   gathered.first_contact = found.first_contact;
   gathered.certain_contact = found.certain_contact;
   gathered.work = found.work;

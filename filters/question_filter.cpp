@@ -54,7 +54,7 @@ Answer QuestionFilter::answer(Shape input, const Wanted& wanted)
   work_ = found.work;
   sparse_ = found.sparse;
   unseen_ = found.unseen;
-  obstacle_flags_ = question.seen ? found.obstacle_flags : std::vector<std::uint8_t>();
+  obstacle_flags_ = question.seen ? found.obstacle_flags : std::vector<Verdict>();
   undecided_ = found.collisions.undecided + found.sparse;
   return found;
 }

@@ -128,7 +128,7 @@ public:
 
   /// Verdicts of the obstacle's points then, as numbers: 0 free, 1 collides, 2 undecided, 4 unseen; along a trajectory
   /// the gravest of its poses. Empty without setSeenOnly().
-  const std::vector<std::uint8_t>& getObstacleFlags() const { return obstacle_flags_; }
+  const std::vector<Verdict>& getObstacleFlags() const { return obstacle_flags_; }
 
 protected:
   QuestionFilter() = default;
@@ -169,7 +169,7 @@ private:
   Work work_;
   std::size_t sparse_ = 0;
   Answer::Unseen unseen_;
-  std::vector<std::uint8_t> obstacle_flags_;
+  std::vector<Verdict> obstacle_flags_;
 };
 
 /// Parts the input's records, in their order, into those that are kept and the rest, where points that are not finite

@@ -36,7 +36,8 @@ public:
     flat_(scratch.flat),
     maybe_(scratch.maybe_nearest),
     of_triangles_(query.pairs.ofTriangles()),
-    laid_flat_(query.b.hierarchy().view().triangles && !query.a.hierarchy().view().radii),
+    laid_flat_(query.b.hierarchy().view().triangles &&
+               (query.a.hierarchy().view().triangles || !query.a.hierarchy().view().radii)),
     stamp_(scratch.stamp),
     work_(work),
     view_a_(query.a.hierarchy().view()),
@@ -205,7 +206,7 @@ private:
   {
     std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
     const LaneTag d;
-    alignas(64) float squared[kLeafPoints], most[kLeafPoints];
+    alignas(64) float squared[kLeafPoints], most[kLeafPoints], radii[kLeafPoints] = {}; ///< of balls of a
     for (std::uint32_t i = 0; i < kLeafPoints; ++i)
       most[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
     for (const NearSphere& candidate : near) { // the middles of balls are on triangles
@@ -215,7 +216,7 @@ private:
       std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
       nearestSquared(carried(candidate.sphere.obstacle).points, other.x(), other.y(), other.z(), firstBits(other.count),
                      squared);
-      const float error = errorOf(obstacle, view_b_.off_middle / other.voxel->frame.unit);
+      const float error = errorOf(obstacle, (view_a_.off_middle + view_b_.off_middle) / other.voxel->frame.unit);
       for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
         LaneVector low, high;
         boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
@@ -232,27 +233,29 @@ private:
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
       const float error_of_points = errorOf(obstacle, 0.0);
       const double stretched = static_cast<double>(obstacle.frame.stretch_b) / other.voxel->frame.unit;
+      for (std::uint32_t i = 0; i < leaf_.count; ++i) radii[i] = roundUp(leaf_.radius(i) * stretched);
       for (std::uint32_t j = 0; j < other.count; ++j) {
         const LaneVector radius = hn::Set(d, roundUp(other.radius(j) * stretched));
         squaredDistances(own.points, other.x()[j], other.y()[j], other.z()[j], squared);
         bool any = false;
         for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
           LaneVector low, high;
-          boundsOfFlat(d, hn::Load(d, squared + i), radius, error_of_points, obstacle, low, high);
+          boundsOfFlat(d, hn::Load(d, squared + i), hn::Add(radius, hn::Load(d, radii + i)), error_of_points, obstacle,
+                       low, high);
           any = any || !hn::AllTrue(d, hn::Gt(low, hn::Load(d, most + i)));
         }
         if (!any) continue;
         const FlatRecord& triangle = flat_.of(view_b_, obstacle.voxel->frame, other.record(j));
         squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, squared);
         const float error =
-            roundUp((triangle.error(obstacle.frame) + obstacle.frame.error) * (1.0 + 2 * kSphereMargin));
+            errorOf(obstacle, triangle.error(obstacle.frame) + view_a_.off_middle / other.voxel->frame.unit);
         MaybeNearest& entry = maybe_.emplace_back();
         entry.voxel = other.voxel;
         entry.point = other.begin + j;
         any = false;
         for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
           LaneVector low, high;
-          boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
+          boundsOfFlat(d, hn::Load(d, squared + i), hn::Load(d, radii + i), error, obstacle, low, high);
           const LaneVector before = hn::Load(d, most + i);
           hn::StoreU(low, d, entry.low + i);
           hn::StoreU(high, d, entry.high + i);
@@ -278,6 +281,7 @@ private:
   {
     Found best;
     std::optional<RecordDistance::Pair> best_pair;
+    double nearest = double{most} * unit_;
     for (const MaybeNearest& entry : maybe_) {
       if (entry.low[i] > most) continue;
       Found found{entry.voxel, entry.point};
@@ -287,13 +291,20 @@ private:
         best.most = std::isnan(entry.high[i]) ? kInfinity : double{entry.high[i]} * unit_;
         continue;
       }
-      if (!best_pair) best_pair = posed(i, best);
+      if (!best_pair) {
+        best_pair = posed(i, best);
+        nearest = std::min(nearest, query_.pairs.distance.enclose(*best_pair).high);
+        best.least = -kInfinity; // of several: what floats say is not the least of them
+        best.most = kInfinity;
+      }
       ++work_.exact_decisions;
       const RecordDistance::Pair pair = posed(i, found);
+      if (query_.pairs.distance.isSurelyBeyond(pair, nearest)) continue;
       const int sign = query_.pairs.distance.compareGaps(pair, *best_pair);
       if (sign > 0 || (sign == 0 && recordOf(best) < recordOf(found))) continue;
       best = found;
       best_pair = pair;
+      nearest = std::min(nearest, query_.pairs.distance.enclose(pair).high);
     }
     return best;
   }
@@ -430,7 +441,7 @@ private:
   FlatRecords& flat_;
   std::vector<MaybeNearest>& maybe_;
   const bool of_triangles_; ///< whether a cloud is
-  const bool laid_flat_;    ///< whether b alone is, and points of a have no radii
+  const bool laid_flat_;    ///< whether b is, and points of a have no radii
   std::uint64_t& stamp_;
   Work& work_;
   const PointsView& view_a_;

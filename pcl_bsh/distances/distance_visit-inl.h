@@ -206,16 +206,16 @@ HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& 
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
 }
 
-/// The squared distances of eight values from a triangle as lengths in the walk's unit: at least, and at most.
-/// @param error of the triangle and of what is carried, in the obstacle's unit
+/// The squared distances of eight values from a triangle as lengths in the walk's unit: at least, less a radius, and at
+/// most. @param error of the triangle and of what is carried, in the obstacle's unit
 template <class Tag>
 HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, float error,
                              const DistanceObstacle& obstacle, hn::Vec<Tag>& low, hn::Vec<Tag>& high)
 {
   const auto length = hn::Sqrt(squared);
   const auto doubt = hn::Mul(hn::Add(hn::Add(length, radius), hn::Set(d, error)), hn::Set(d, kFlatMargin));
-  const auto more = hn::Add(hn::Add(doubt, radius), hn::Set(d, error));
-  const auto near = hn::Sub(hn::Min(length, hn::Set(d, 0x1p63f)), more);
+  const auto more = hn::Add(doubt, hn::Set(d, error));
+  const auto near = hn::Sub(hn::Min(length, hn::Set(d, 0x1p63f)), hn::Add(more, radius));
   low = hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
   high = hn::Mul(hn::Add(length, more), hn::Set(d, obstacle.most));
 }
@@ -235,7 +235,9 @@ HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own,
     const float error = roundUp(record.error(obstacle.frame)) + obstacle.slack;
     for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
       LaneVector low, high;
-      boundsOfFlat(d, hn::Load(d, squared + i), hn::LoadU(d, own.r + i), error, obstacle, low, high);
+      const LaneVector radius = hn::LoadU(d, own.r + i);
+      boundsOfFlat(d, hn::Load(d, squared + i), radius, error, obstacle, low, high);
+      high = hn::Add(high, hn::Mul(radius, hn::Set(d, obstacle.most * (1.0f + 2 * kSphereMargin)))); // of the farthest
       hn::Store(low, d, of_triangle + i);
       hn::Store(hn::IfThenElse(hn::Lt(high, hn::Load(d, upper + i)), high, hn::Load(d, upper + i)), d, upper + i);
     }

@@ -135,57 +135,140 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   return hit;
 }
 
-/// Where b is of triangles, and a's points have no radii: by the middles of their balls, which are on them, then by the
-/// float band of those whose balls come near enough, and exactly within the band.
-inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                                  const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
-                                  FlatRecords& flat, Work& work)
+/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach.
+inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                                const LeafPoints& points)
 {
+  if (!(obstacle.sure_reach > 0.0f)) return 0;
   const std::uint32_t open = visit.open_points[lane];
-  const std::vector<ObstacleSphere>& candidates = visit.near[lane];
-  const PointsView& view = query.b.hierarchy().view();
+  const float surely = obstacle.sure_reach * obstacle.sure_reach * (1.0f - kSphereMargin) - kVanishingSquare;
   alignas(64) float squared[kLeafPoints];
+  std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
   std::uint32_t hit = 0;
-  if (obstacle.sure_reach > 0.0f) {
-    const float surely = obstacle.sure_reach * obstacle.sure_reach * (1.0f - kSphereMargin) - kVanishingSquare;
-    std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
-    for (const ObstacleSphere& candidate : candidates) {
-      const LeafRange other = candidate.leaf(*obstacle.voxel);
-      const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
-      if (facing == 0) continue;
-      nearestSquared(points, other.x(), other.y(), other.z(), facing, squared);
-      hit = open & atMost(squared, surely);
-      if (hit == open) return hit;
-    }
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
+    if (facing == 0) continue;
+    nearestSquared(points, other.x(), other.y(), other.z(), facing, squared);
+    hit = open & atMost(squared, surely);
+    if (hit == open) break;
   }
+  return hit;
+}
+
+/// Calls compare(record, triangle, squared, near) for the triangles of b whose balls may be near enough to open points
+/// of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those; until it
+/// returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's frame, at
+/// least; or zeros
+template <class Compare>
+void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                      const std::uint32_t& hit, const LeafPoints& points, const float* radii, const PointsView& view,
+                      FlatRecords& flat, Work& work, const Compare& compare)
+{
+  const LaneTag d;
   const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
-  for (const ObstacleSphere& candidate : candidates) {
+  alignas(64) float squared[kLeafPoints], beyond[kLeafPoints];
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
     for (std::uint32_t j = 0; j < other.count; ++j) {
-      const float within = obstacle.reach + static_cast<float>(other.radius(j) * stretched);
+      const LaneVector within = hn::Set(d, obstacle.reach + static_cast<float>(other.radius(j) * stretched));
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+        const LaneVector limit = hn::Add(within, hn::Load(d, radii + i));
+        hn::Store(
+            hn::Add(hn::Mul(hn::Mul(limit, limit), hn::Set(d, 1.0f + 8 * kSphereMargin)), hn::Set(d, kVanishingSquare)),
+            d, beyond + i);
+      }
       squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
-      const float beyond = within * within * (1.0f + 4 * kSphereMargin) + kVanishingSquare;
-      const std::uint32_t near = open & ~hit & ~above(squared, beyond);
+      const std::uint32_t near = visit.open_points[lane] & ~hit & ~aboveEach(squared, beyond);
       if (near == 0) continue;
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
       squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
-      const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
-      const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
-        std::uint32_t decided = among & atMost(squared, band.hit);
-        for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0; bits &= bits - 1) {
-          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-          if (pairs.collide({leaf.record(i), record}, work)) decided |= 1u << i;
-        }
-        return decided;
-      };
-      hit |= decide(query.surely.band(bandOf), query.surePairs(), near);
-      if (hit == open) return hit;
-      if (query.certain)
-        visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, near & ~hit & ~visit.perhaps[lane]);
+      if (compare(record, triangle, squared, near)) return;
     }
   }
+}
+
+/// Where b is of triangles, and a's points have no radii: by the middles of balls, then by the float band of those
+/// whose balls come near enough, and exactly within the band.
+inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
+                                  const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
+                                  FlatRecords& flat, Work& work)
+{
+  alignas(64) static constexpr float kNone[kLeafPoints] = {};
+  const std::uint32_t open = visit.open_points[lane];
+  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points);
+  if (hit == open) return hit;
+  eachTriangleNear(
+      obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work,
+      [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
+        const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
+        const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
+          std::uint32_t decided = among & atMost(squared, band.hit);
+          for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0; bits &= bits - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+            if (pairs.collide({leaf.record(i), record}, work)) decided |= 1u << i;
+          }
+          return decided;
+        };
+        hit |= decide(query.surely.band(bandOf), query.surePairs(), near);
+        if (query.certain)
+          visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, near & ~hit & ~visit.perhaps[lane]);
+        return hit == open;
+      });
+  return hit;
+}
+
+/// The same of a's balls and triangles: by their middles, as far as these are near enough, and exactly where only their
+/// balls come near.
+inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
+                                    const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
+                                    FlatRecords& flat, Work& work)
+{
+  const LaneTag d;
+  const std::uint32_t open = visit.open_points[lane];
+  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points);
+  if (hit == open) return hit;
+  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+  const double surely = query.surePairs().reach.least - query.a.hierarchy().view().off_middle;
+  alignas(64) float radii[kLeafPoints] = {}, limits[kLeafPoints];
+  for (std::uint32_t i = 0; i < leaf.count; ++i) radii[i] = roundUp(leaf.radius(i) * stretched);
+  struct Doubtful {
+    std::uint32_t record, near;
+  };
+  static constexpr std::size_t kMost = 256;
+  Doubtful doubtful[kMost];
+  std::size_t count = 0;
+  const auto decide = [&] { // once floats have found what they can
+    for (const Doubtful* pair = doubtful; pair != doubtful + count && hit != open; ++pair)
+      for (std::uint32_t bits = pair->near & ~hit; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        const PointPair at{leaf.record(i), pair->record};
+        if (query.surePairs().collide(at, work))
+          hit |= 1u << i;
+        else if (query.certain && (visit.perhaps[lane] >> i & 1) == 0 && query.pairs.collide(at, work))
+          visit.perhaps[lane] |= 1u << i;
+      }
+    count = 0;
+  };
+  eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work,
+                   [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
+                     if (surely > 0.0) hit |= near & atMost(squared, triangle.band(obstacle.frame, surely).hit);
+                     if (hit == open) return true;
+                     const LaneVector more = hn::Set(d, obstacle.reach + roundUp(triangle.error(obstacle.frame)));
+                     for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+                       const LaneVector limit =
+                           hn::Mul(hn::Add(hn::Load(d, radii + i), more), hn::Set(d, 1.0f + kFlatMargin));
+                       hn::Store(hn::Add(hn::Mul(limit, limit), hn::Set(d, kVanishingSquare)), d, limits + i);
+                     }
+                     near &= ~hit & ~aboveEach(squared, limits);
+                     if (near == 0) return false;
+                     doubtful[count++] = {record, near};
+                     if (count == kMost) decide();
+                     return hit == open;
+                   });
+  decide();
   return hit;
 }
 

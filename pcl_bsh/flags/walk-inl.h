@@ -60,10 +60,11 @@ public:
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
-      obstacles_.push_back({&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
-                            frame.acceptReach(query_.surePairs().reach.least - b_.storage.view.off_middle),
-                            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-                            query_.acceptance.band(frame)});
+      obstacles_.push_back(
+          {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
+           frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
+           frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
+           query_.acceptance.band(frame)});
     }
     if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
@@ -402,8 +403,9 @@ private:
   std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    if (b_.storage.view.triangles && !a_.storage.view.radii)
-      return hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work);
+    if (b_.storage.view.triangles)
+      return a_.storage.view.radii ? hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work)
+                                   : hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work);
     if (pairs_.haveRadii()) return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work);
     if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
     return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),

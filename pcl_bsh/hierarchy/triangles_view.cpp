@@ -21,29 +21,6 @@ namespace {
 
 constexpr auto kName = "triangles";
 
-void check(const TrianglesView& view)
-{
-  const auto refuse = [](const std::string& wrong, const std::string& remedy = {}) {
-    throw InvalidInput(Input::surface, kName, wrong, remedy);
-  };
-  checkView("vertices", view.vertices);
-  if (view.vertices.indices || view.vertices.radii || view.vertices.uncertainties)
-    refuse("the vertices are a subset, or have radii or uncertainties of their own", "give all of them, without");
-  if (view.count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    refuse(counted(view.count, "triangle is", "triangles are") + " more than an index can name");
-  if (view.count > 0 && !view.corners) refuse("corners are null, of " + counted(view.count, "triangle"));
-  if (view.count > 1 && view.stride < 3 * sizeof(std::uint32_t))
-    refuse("a stride of " + std::to_string(view.stride) + " bytes puts triangles over each other",
-           "give the bytes from one triangle's corners to the next one's");
-  for (std::size_t i = 0; i < view.count; ++i)
-    for (const std::uint32_t corner : view.cornersOf(static_cast<std::uint32_t>(i)))
-      if (corner >= view.vertices.count)
-        throw InvalidInput(Input::surface, kName,
-                           "triangle " + std::to_string(i) + " names vertex " + std::to_string(corner) + " of " +
-                               std::to_string(view.vertices.count))
-            .withIndex(i);
-}
-
 double apart(const Point3& p, const Point3& q)
 {
   const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
@@ -168,9 +145,32 @@ PointsView middlesOf(const PointsView& view)
   return middles;
 }
 
+void checkTriangles(const TrianglesView& view)
+{
+  const auto refuse = [](const std::string& wrong, const std::string& remedy = {}) {
+    throw InvalidInput(Input::surface, kName, wrong, remedy);
+  };
+  checkView("vertices", view.vertices);
+  if (view.vertices.indices || view.vertices.radii || view.vertices.uncertainties)
+    refuse("the vertices are a subset, or have radii or uncertainties of their own", "give all of them, without");
+  if (view.count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    refuse(counted(view.count, "triangle is", "triangles are") + " more than an index can name");
+  if (view.count > 0 && !view.corners) refuse("corners are null, of " + counted(view.count, "triangle"));
+  if (view.count > 1 && view.stride < 3 * sizeof(std::uint32_t))
+    refuse("a stride of " + std::to_string(view.stride) + " bytes puts triangles over each other",
+           "give the bytes from one triangle's corners to the next one's");
+  for (std::size_t i = 0; i < view.count; ++i)
+    for (const std::uint32_t corner : view.cornersOf(static_cast<std::uint32_t>(i)))
+      if (corner >= view.vertices.count)
+        throw InvalidInput(Input::surface, kName,
+                           "triangle " + std::to_string(i) + " names vertex " + std::to_string(corner) + " of " +
+                               std::to_string(view.vertices.count))
+            .withIndex(i);
+}
+
 PointsView viewOf(const TrianglesView& triangles)
 {
-  check(triangles);
+  checkTriangles(triangles);
   const DefaultFloatEnvironment environment;
   return triangles.vertices.scalar == Scalar::float32 ? ballsOf<float>(triangles, Scalar::float32)
                                                       : ballsOf<double>(triangles, Scalar::float64);

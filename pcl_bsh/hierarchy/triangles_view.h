@@ -63,5 +63,8 @@ PointsView viewOf(const TrianglesView& triangles);
 /// rounding. Whatever is no triangle is seen as it is, without radii.
 PointsView middlesOf(const PointsView& view);
 
+/// What viewOf() refuses, but for a size. @throws InvalidInput as it does
+void checkTriangles(const TrianglesView& triangles);
+
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

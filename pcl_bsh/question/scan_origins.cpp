@@ -67,15 +67,15 @@ std::string ScanOrigins::text() const
   return all;
 }
 
-std::vector<Scan> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
-                          const ScanOrigins& origins)
+std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
+                               const ScanOrigins& origins)
 {
   if (origins.empty()) {
     throw InvalidInput(Input::points, cloud, "does not say where its scanner stood",
                        "give `origin`, as X,Y,Z in its frame, or a file that has it (.ptx, .pcd with VIEWPOINT, .ply "
                        "with camera)");
   }
-  std::vector<Scan> scans(origins.entries.size());
+  std::vector<ScanBeams> scans(origins.entries.size());
   for (std::size_t s = 0; s < scans.size(); ++s) scans[s].origin = origins.entries[s].origin;
   if (origins.field.empty()) {
     scans.front().returns = view;

@@ -38,8 +38,8 @@ struct ScanOrigins {
 /// The scans of a cloud. @param view with uncertainties, which shorten beams. @param cloud its name in errors
 /// @throws InvalidInput when there is no origin, a field that is missing or holds several numbers a point, and for the
 ///   first point whose scan has no origin
-std::vector<Scan> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
-                          const ScanOrigins& origins);
+std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
+                               const ScanOrigins& origins);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

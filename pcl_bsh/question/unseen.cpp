@@ -5,32 +5,7 @@
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
-#include <algorithm>
-
 namespace pcl_bsh {
-namespace {
-
-/// Points that are; of a surface, triangles with a part that is.
-std::size_t countUnseen(const Shape& obstacle, const std::vector<std::uint8_t>& flags)
-{
-  const auto is_unseen = [](std::uint8_t flag) { return flag == flagOf(Verdict::unseen); };
-  if (!obstacle.surface()) return static_cast<std::size_t>(std::count_if(flags.begin(), flags.end(), is_unseen));
-  std::vector<bool> parts(obstacle.surface()->triangle_count);
-  for (std::uint32_t i = 0; i < flags.size(); ++i)
-    if (is_unseen(flags[i])) parts[obstacle.part(i)] = true;
-  return static_cast<std::size_t>(std::count(parts.begin(), parts.end(), true));
-}
-
-/// Which verdict stays of two poses.
-int rankOf(std::uint8_t flag)
-{
-  if (flag == flagOf(Verdict::colliding)) return 3;
-  if (flag == flagOf(Verdict::undecided)) return 2;
-  return flag == flagOf(Verdict::unseen) ? 1 : 0;
-}
-
-} // namespace
-
 void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer& answer)
 {
   const SphereHierarchy& model = obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
@@ -45,7 +20,7 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
   UnseenRequest request;
   request.clearance = flags.clearance;
   request.threads = question.threads;
-  answer.obstacle_flags.assign(model.view().count, flagOf(Verdict::free));
+  answer.obstacle_flags.assign(model.view().count, Verdict::free);
   FlagsResult found;
   const std::vector<Eigen::Isometry3d> poses = question.poses();
   for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -54,12 +29,12 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
     collisionFlags(scan, placed, flags, found);
     answer.work += found.work;
     answer.work += markUnseen(seen, placed, request, found.b).work;
-    unseen.at_poses.push_back(countUnseen(obstacle, found.b));
+    unseen.at_poses.push_back(countOf(found.b, Verdict::unseen));
     if (unseen.at_poses.back() > 0 && !unseen.first_pose) unseen.first_pose = k;
     for (std::size_t i = 0; i < found.b.size(); ++i)
-      if (rankOf(found.b[i]) > rankOf(answer.obstacle_flags[i])) answer.obstacle_flags[i] = found.b[i];
+      answer.obstacle_flags[i] = graver(answer.obstacle_flags[i], found.b[i]);
   }
-  unseen.count = countUnseen(obstacle, answer.obstacle_flags);
+  unseen.count = countOf(answer.obstacle_flags, Verdict::unseen);
 }
 
 } // namespace pcl_bsh

@@ -127,7 +127,8 @@ MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_o
 : scan(scan_at),
   model(model_of),
   request(asked),
-  boxes(model_of.storage(), Travel(), scan_at.hierarchy().storage().largest_radius), // of motions in all directions
+  boxes(model_of.storage(), Travel(), // of motions in all directions
+        divisionFor(scan_at.hierarchy().storage().size, scan_at.hierarchy().storage().largest_radius)),
   swept(requestOfOne(asked))
 {
 }

@@ -47,12 +47,12 @@ BeamNode around(const Beam* begin, const Beam* end)
 
 } // namespace
 
-std::uint32_t beamRecords(const Scan& scan)
+std::uint32_t beamRecords(const ScanBeams& scan)
 {
   return static_cast<std::uint32_t>(scan.returns.count + scan.misses.count);
 }
 
-BeamEnd beamOf(const Scan& scan, std::uint32_t record)
+BeamEnd beamOf(const ScanBeams& scan, std::uint32_t record)
 {
   const bool returned = record < scan.returns.count;
   const PointsView& view = returned ? scan.returns : scan.misses;
@@ -65,7 +65,7 @@ BeamEnd beamOf(const Scan& scan, std::uint32_t record)
   return {way, std::max(0.0, length - view.uncertainty - view.ownUncertainty(record) - view.radius(record))};
 }
 
-BeamTree::BeamTree(const Scan& scan) : scan_(scan)
+BeamTree::BeamTree(const ScanBeams& scan) : scan_(scan)
 {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
   order.reserve(scan.returns.size());

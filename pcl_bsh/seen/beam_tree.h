@@ -34,14 +34,14 @@ struct BeamEnd {
   Eigen::Vector3d way; ///< from the origin; 0: it is no beam
   double empty;        ///< up to here
 };
-BeamEnd beamOf(const Scan& scan, std::uint32_t record);
+BeamEnd beamOf(const ScanBeams& scan, std::uint32_t record);
 
 /// Records that beamOf() takes.
-std::uint32_t beamRecords(const Scan& scan);
+std::uint32_t beamRecords(const ScanBeams& scan);
 
 /// Calls visit(record, beam) for all beams of a scan.
 template <class Visit>
-void eachBeam(const Scan& scan, const Visit& visit)
+void eachBeam(const ScanBeams& scan, const Visit& visit)
 {
   const auto take = [&](std::uint32_t record) {
     const BeamEnd beam = beamOf(scan, record);
@@ -55,9 +55,9 @@ void eachBeam(const Scan& scan, const Visit& visit)
 
 class BeamTree {
 public:
-  explicit BeamTree(const Scan& scan);
+  explicit BeamTree(const ScanBeams& scan);
 
-  const Scan& scan() const { return scan_; }
+  const ScanBeams& scan() const { return scan_; }
   const std::vector<Beam>& beams() const { return beams_; } ///< in Morton order of their directions
 
   /// Whether test(beam) is true of any beam below nodes for which enter(node) is.
@@ -88,7 +88,7 @@ private:
 
   void raise();
 
-  Scan scan_;
+  ScanBeams scan_;
   std::vector<Beam> beams_;
   std::vector<BeamNode> nodes_;     ///< level by level, leaves first, the root last
   std::vector<std::size_t> levels_; ///< where each begins

@@ -28,7 +28,7 @@ void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t 
 namespace brute_force {
 namespace {
 
-std::vector<DirectionCell> holesOf(const Scan& scan, double angle)
+std::vector<DirectionCell> holesOf(const ScanBeams& scan, double angle)
 {
   const double cosine = std::cos(cellAngle(angle));
   std::vector<Eigen::Vector3d> beams;
@@ -52,9 +52,9 @@ std::vector<DirectionCell> holesOf(const Scan& scan, double angle)
   return holes;
 }
 
-bool sees(const Scan& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& ball)
+bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& ball)
 {
-  if (ball.is_around && !holes.empty()) return false;
+  if (!ball.isMeasured() || (ball.is_around && !holes.empty())) return false;
   if (!ball.is_around) {
     const Cone cone(ball.direction, ball.coneAngle());
     if (std::any_of(holes.begin(), holes.end(), [&](const DirectionCell& cell) { return cone.meets(cell); }))
@@ -72,8 +72,8 @@ bool sees(const Scan& scan, const std::vector<DirectionCell>& holes, double angl
 
 } // namespace
 
-UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Placed& model, const UnseenRequest& request,
-                        std::vector<Verdict>& verdicts)
+UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const Placed& model,
+                        const UnseenRequest& request, std::vector<Verdict>& verdicts)
 {
   checkUnseen(model, request, verdicts.size());
   checkBeamAngle(angle);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace pcl_bsh {
@@ -36,7 +37,7 @@ void checkBeamAngle(double angle)
       .withValue(angle);
 }
 
-void checkScan(const Scan& scan, std::size_t index)
+void checkScan(const ScanBeams& scan, std::size_t index)
 {
   const std::string name = "scan " + std::to_string(index);
   const auto refuse = [&](const std::string& what, const std::string& wrong, const char* remedy) {
@@ -53,7 +54,7 @@ void checkScan(const Scan& scan, std::size_t index)
   if (scan.returns.count + scan.misses.count > 0xffffffffu) refuse("beams", "are too many", "divide the scan");
 }
 
-SeenScan::SeenScan(const Scan& scan, double angle, unsigned threads)
+SeenScan::SeenScan(const ScanBeams& scan, double angle, unsigned threads)
 : beams_(scan),
   angle_(angleOf(beams_, angle)),
   speaks_(angle_),
@@ -63,7 +64,7 @@ SeenScan::SeenScan(const Scan& scan, double angle, unsigned threads)
 
 bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
 {
-  if (angle_ == 0.0) return false;
+  if (angle_ == 0.0 || !ball.isMeasured()) return false;
   double chord = 2.0;
   if (!ball.is_around) {
     const double cone = ball.coneAngle();
@@ -89,9 +90,10 @@ bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
 bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const
 {
   if (angle_ == 0.0) return true;
-  if (ball.is_around) return false;
+  if (ball.is_around || !ball.isMeasured()) return false;
   // Each direction to a place in it is in a hole, or has a beam within the angle that ends before the nearest one.
   const double nearest = (ball.distance - ball.radius + least) * (1.0 - 0x1p-20);
+  if (!(nearest < std::numeric_limits<float>::max())) return false; // ranges are stored no greater
   const double chord = chordOf(ball.coneAngle() + angle_) + 2.0 * kDirectionError;
   return !beams_.any(
       [&](const BeamNode& node) {
@@ -103,14 +105,14 @@ bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested
       });
 }
 
-SeenSpace::SeenSpace(const std::vector<Scan>& scans, const SeenOptions& options) : storage_(new Storage)
+SeenSpace::SeenSpace(const std::vector<ScanBeams>& scans, const SeenOptions& options) : storage_(new Storage)
 {
   const DefaultFloatEnvironment environment;
   if (options.angle) checkBeamAngle(*options.angle);
   if (scans.empty()) throw InvalidInput(Input::seen, "scans", "there are none", "give one at least, with its origin");
   for (std::size_t i = 0; i < scans.size(); ++i) checkScan(scans[i], i);
   const unsigned threads = threadCount(options.threads);
-  for (const Scan& scan : scans) storage_->scans.emplace_back(scan, options.angle.value_or(0.0), threads);
+  for (const ScanBeams& scan : scans) storage_->scans.emplace_back(scan, options.angle.value_or(0.0), threads);
 }
 
 SeenSpace::~SeenSpace() = default;

@@ -33,7 +33,7 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// The beams of one scanner from one place, in the frame and the unit that all scans share.
-struct Scan {
+struct ScanBeams {
   Point3 origin = {0, 0, 0}; ///< where the beams began
   PointsView returns;        ///< where they ended; a record that is not finite, or at the origin, is no beam
 
@@ -55,7 +55,7 @@ class SeenSpace {
 public:
   /// @throws std::invalid_argument naming the value: an origin, an angle or a range that is not what its declaration
   ///   asks for; a view that a SphereHierarchy would refuse; no scan
-  explicit SeenSpace(const std::vector<Scan>& scans, const SeenOptions& options = {});
+  explicit SeenSpace(const std::vector<ScanBeams>& scans, const SeenOptions& options = {});
   ~SeenSpace();
   SeenSpace(SeenSpace&&) noexcept;
   SeenSpace& operator=(SeenSpace&&) noexcept;

@@ -48,6 +48,9 @@ struct Sight {
   Eigen::Vector3d direction;
   double farthest; ///< a beam that is empty up to here leaves nothing open
 
+  /// Whether its squares have not overflown; if so, it is not seen.
+  bool isMeasured() const { return std::isfinite(farthest * farthest); }
+
   /// Half the angle of its cone, at least. @pre not around
   double coneAngle() const { return std::asin(std::min(1.0, (radius + 4.0 * slack) / distance)); }
 };

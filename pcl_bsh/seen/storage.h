@@ -14,7 +14,7 @@ namespace pcl_bsh {
 class SeenScan {
 public:
   /// @param angle 0: measured
-  SeenScan(const Scan& scan, double angle, unsigned threads);
+  SeenScan(const ScanBeams& scan, double angle, unsigned threads);
 
   const Point3& origin() const { return beams_.scan().origin; }
   double angle() const { return angle_; }
@@ -39,7 +39,7 @@ public:
 };
 
 /// What SeenSpace refuses. @throws InvalidInput
-void checkScan(const Scan& scan, std::size_t index);
+void checkScan(const ScanBeams& scan, std::size_t index);
 void checkBeamAngle(double angle);
 
 } // namespace pcl_bsh

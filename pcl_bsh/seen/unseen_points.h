@@ -42,8 +42,8 @@ namespace brute_force {
 
 /// The oracle: each ball against each beam and each cell of directions. Quadratic.
 /// @param angle as SeenOptions has it, of all scans
-UnseenResult markUnseen(const std::vector<Scan>& scans, double angle, const Placed& model, const UnseenRequest& request,
-                        std::vector<Verdict>& verdicts);
+UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const Placed& model,
+                        const UnseenRequest& request, std::vector<Verdict>& verdicts);
 
 } // namespace brute_force
 } // namespace pcl_bsh

@@ -257,8 +257,9 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
 
   write(options, input, report.answer, report.seconds.write);
   if (options.obstacle_out) {
-    io::writeCloud(*options.obstacle_out, marked(options.obstacle, obstacle.points(),
-                                                 {{collision_field_name, &report.answer.obstacle_flags}}));
+    const std::vector<std::uint8_t> flags = numbersOf(report.answer.obstacle_flags);
+    io::writeCloud(*options.obstacle_out,
+                   marked(options.obstacle, obstacle.points(), {{collision_field_name, &flags}}));
   }
   const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, b, earlier, report);
   const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, report);

@@ -4,7 +4,6 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
-#include <pcl_bsh/trajectory/boxed_part.h>
 
 #include <Eigen/Core>
 
@@ -155,10 +154,10 @@ constexpr double kThinShare = 0x1p-8;
 
 } // namespace
 
-BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel, double coarse)
+BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel, const Division& division)
 : storage(of),
   origin(of.frame.origin),
-  coarse_(coarse),
+  division_(division),
   voxels_(std::make_unique<Entry[]>(of.voxel_count))
 {
   std::fill(low, low + 3, kNone);
@@ -174,6 +173,7 @@ BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel, doubl
   }
   if (storage.size > 0) fitTop();
   setStretch(travel);
+  division_.thin = std::max(division_.thin, kThinShare * radius);
 }
 
 void BoxTree::setStretch(const Travel& travel)
@@ -247,9 +247,8 @@ const BoxedVoxel& BoxTree::voxel(std::uint32_t index, Work& work) const
   Entry& entry = voxels_[index];
   std::call_once(entry.once, [&] {
     const Voxel& built = storage.built(index, work);
-    entry.boxed = arePoints(storage.view)
-                      ? BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties)
-                      : BoxedVoxel(built, storage.view, origin, stretch, std::max(coarse_, kThinShare * radius));
+    entry.boxed = arePoints(storage.view) ? BoxedVoxel(built, offset(index), stretch, storage.view.uncertainties)
+                                          : BoxedVoxel(built, storage.view, origin, stretch, division_);
     for (const BoxNode& node : entry.boxed.boxes()) work.volumes_built += node.count;
   });
   return entry.boxed;
@@ -289,7 +288,7 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* st
 }
 
 BoxedVoxel::BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch,
-                       double thin)
+                       const Division& division)
 {
   std::vector<BoxedPart> parts;
   for (const Node& node : voxel.nodes)
@@ -310,7 +309,7 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3&
       }
     }
   const std::size_t whole = parts.size();
-  if (view.triangles) divideThick(parts, thin);
+  if (view.triangles) divideThick(parts, division);
   is_divided_ = parts.size() > whole;
 
   std::vector<PlacedPoint> middles;

@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/result.h>
+#include <pcl_bsh/trajectory/boxed_part.h>
 
 #include <array>
 #include <memory>
@@ -52,9 +53,9 @@ public:
   /// of the cloud's records; may be null
   BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch, const float* uncertainties);
 
-  /// Of balls, or of triangles: those that fill little of their boxes in parts. @param thin boxes no thicker than this
-  /// are not divided
-  BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch, double thin);
+  /// Of balls, or of triangles: those that fill little of their boxes in parts.
+  BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch,
+             const Division& division);
 
   const std::vector<BoxNode>& boxes() const { return boxes_; }
 
@@ -100,9 +101,7 @@ inline bool arePoints(const PointsView& view)
 /// travels farther along that axis than its points move along others, kMostStretch at most.
 class BoxTree {
 public:
-  /// @param coarse triangles are not divided into boxes thinner than this: of what they are compared with, records are
-  /// as large
-  BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel, double coarse = 0.0);
+  BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel, const Division& division = {});
 
   const SphereHierarchy::Storage& storage;
   const Point3 origin;      ///< of the boxes, in the cloud's frame
@@ -146,7 +145,7 @@ private:
   void setStretch(const Travel& travel);
 
   std::vector<BoxNode> top_;
-  double coarse_;
+  Division division_;
   std::unique_ptr<Entry[]> voxels_;
 };
 

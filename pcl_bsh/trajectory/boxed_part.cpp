@@ -10,7 +10,8 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr std::size_t kManyParts = 1 << 10, kPartsOfEach = 4;
+constexpr std::size_t kPartsOfEach = 4, kMostParts = 1U << 14;
+constexpr std::size_t kRecordsOfPart = 16; ///< that are compared with it, at least, on average
 
 double sideOf(const Triangle3& triangle, std::size_t i)
 {
@@ -68,9 +69,15 @@ Point3 BoxedPart::high() const noexcept
   return end;
 }
 
-void divideThick(std::vector<BoxedPart>& parts, double thin)
+Division divisionFor(std::size_t records, double largest_radius)
 {
-  const std::size_t most = std::max(kManyParts, kPartsOfEach * parts.size());
+  return {largest_radius, std::clamp(records / kRecordsOfPart, Division().most, kMostParts)};
+}
+
+void divideThick(std::vector<BoxedPart>& parts, const Division& division)
+{
+  const double thin = division.thin;
+  const std::size_t most = std::max(division.most, kPartsOfEach * parts.size());
   const auto begin_thick =
       std::partition(parts.begin(), parts.end(), [&](const BoxedPart& part) { return !(part.thickness > thin); });
   std::vector<BoxedPart> thick(begin_thick, parts.end());

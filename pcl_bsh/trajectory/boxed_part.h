@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,10 +21,18 @@ struct BoxedPart {
   Point3 high() const noexcept;
 };
 
+/// How far triangles are divided into parts.
+struct Division {
+  double thin = 0.0;           ///< what is no thicker is left as it is
+  std::size_t most = 1U << 10; ///< parts in all; but four of each triangle
+};
+
+/// What pays where they are compared with so many records, none of which is larger: parts finer than these say no more,
+/// and what is asked little is not worth many.
+Division divisionFor(std::size_t records, double largest_radius);
+
 /// Divides triangles that fill little of their boxes, the thickest first: a box around a large slanting triangle, or
-/// around a needle, holds much that is far from it. No more than 2^10 parts come of it in all, or four of each
-/// triangle.
-/// @param thin what is no thicker is left as it is
-void divideThick(std::vector<BoxedPart>& parts, double thin);
+/// around a needle, holds much that is far from it.
+void divideThick(std::vector<BoxedPart>& parts, const Division& division);
 
 } // namespace pcl_bsh

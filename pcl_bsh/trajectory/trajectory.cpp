@@ -100,7 +100,7 @@ std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierar
   try {
     progress.limit(&rule);
     const BoxTree boxes(model.storage(), travelOf(model_poses, model.storage().frame.origin),
-                        scan.hierarchy().storage().largest_radius);
+                        divisionFor(scan.hierarchy().storage().size, scan.hierarchy().storage().largest_radius));
     const TrajectoryQuery query(scan, model, boxes, model_poses, request, result, progress, places);
     result.work.volumes_built += countChildren(boxes.storage.top);
     progress.limit(nullptr);

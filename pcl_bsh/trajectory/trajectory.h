@@ -7,8 +7,9 @@
 //   TrajectoryResult run = collideAlong({tunnel}, wagon, wagon_poses, request);
 //
 // Point p of the scan collides at pose k iff |T_scan p - T_k q| <= clearance (+ radii) for a point q of the model,
-// decided as exact arithmetic on the given numbers decides it. The same input gives the same answer, bit for bit, for
-// any number of threads and any processor.
+// decided as exact arithmetic on the given numbers decides it. Records may be triangles (triangles_view.h), on either
+// side: then p and q are any of their places. The same input gives the same answer, bit for bit, for any number of
+// threads and any processor.
 //
 // Swept: the motion between consecutive poses counts, too, to a tolerance. The model's pivot moves in a straight line
 // while the model turns at constant speed about a fixed axis: poseBetween(). A point reported free stays farther than

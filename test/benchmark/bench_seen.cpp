@@ -74,7 +74,7 @@ struct World {
   test::MadeRoom room;
   std::vector<Eigen::Vector3d> origins;
   std::vector<test::MadeScan> made;
-  std::vector<Scan> scans;
+  std::vector<ScanBeams> scans;
   std::vector<float> machine;
   std::vector<Eigen::Isometry3d> poses;
 };

@@ -110,7 +110,7 @@ void expectTrue(const SphereHierarchy& a, const SphereHierarchy& b, double clear
   ASSERT_EQ(flags.a.size(), squared.size());
   for (std::size_t i = 0; i < squared.size(); ++i) {
     const bool collides = squared[i] <= CGAL::square(Number(clearance));
-    EXPECT_EQ(flags.a[i], flagOf(collides ? Verdict::colliding : Verdict::free)) << i;
+    EXPECT_EQ(flags.a[i], (collides ? Verdict::colliding : Verdict::free)) << i;
     EXPECT_TRUE(isRootOf(distances.distance[i], squared[i])) << i << ": " << distances.distance[i];
     ++(collides ? counts.colliding : counts.free);
   }
@@ -218,7 +218,7 @@ TEST(SurfaceQueries, OfTrianglesAlongAPath)
         if (first < 0) first = pose;
         if (closest < 0 || squared[k][t] < squared[static_cast<std::size_t>(closest)][t]) closest = pose;
       }
-      EXPECT_EQ(run.flags[t], flagOf(first >= 0 ? Verdict::colliding : Verdict::free)) << t;
+      EXPECT_EQ(run.flags[t], (first >= 0 ? Verdict::colliding : Verdict::free)) << t;
       EXPECT_EQ(run.first_pose[t], first) << t;
       EXPECT_EQ(run.closest_pose[t], closest) << t;
     }

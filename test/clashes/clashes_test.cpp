@@ -2,6 +2,7 @@
 #include "support/verdicts.h"
 
 #include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +63,27 @@ TEST(Clashes, GroupsAndSortsBySeverity)
   EXPECT_EQ(three.model_point, 101u);
   EXPECT_EQ(three.first_pose, 4);
   EXPECT_EQ(three.closest_pose, 7);
+}
+
+TEST(Clashes, HoldTrianglesWhole)
+{
+  // Two that are a quarter apart, though their middles are far from each other, and one at a distance.
+  const std::vector<double> xyz = {0, 0,  0, 10, 0,  0, 0, 1,  0, 10.25, 0,  0, 20, 0,
+                                   0, 20, 2, -1, 50, 0, 0, 51, 0, 0,     50, 1, 0};
+  const std::vector<std::uint32_t> corners = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  const PointsView view = viewOf(TrianglesView{viewOf(xyz.data(), 9), corners.data(), 3});
+  TrajectoryResult found;
+  found.flags = {1, 1, 1};
+  found.distance = {0.03f, 0.02f, 0.04f};
+  found.first_pose = found.closest_pose = {0, 0, 0};
+  found.closest_point = {0, 0, 0};
+  const std::vector<Clash> clashes = findClashes(view, found, 0.5);
+  ASSERT_EQ(clashes.size(), 2u);
+  EXPECT_EQ(clashes[0].records, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(clashes[0].low, (Point3{0, 0, -1}));
+  EXPECT_EQ(clashes[0].high, (Point3{20, 2, 0}));
+  EXPECT_EQ(clashes[1].low, (Point3{50, 0, 0}));
+  EXPECT_EQ(clashes[1].high, (Point3{51, 1, 0}));
 }
 
 /// Of -0 and 0 a box has the latter, whichever comes first.

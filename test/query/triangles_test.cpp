@@ -87,16 +87,16 @@ TEST(Triangles, EveryAccuracyClaimsWhatIsSo)
       const auto check = [&](const auto& flags, const auto& is, const auto& may_be) {
         ASSERT_EQ(flags.size(), is.size());
         for (std::size_t i = 0; i < flags.size(); ++i) {
-          if (flags[i] == flagOf(Verdict::undecided)) {
+          if (flags[i] == Verdict::undecided) {
             ASSERT_TRUE(accuracy.stopsEarly());
             continue;
           }
           ++decided;
-          if (flags[i] == flagOf(Verdict::free)) {
-            ASSERT_EQ(is[i], flagOf(Verdict::free)) << i;
+          if (flags[i] == Verdict::free) {
+            ASSERT_EQ(is[i], Verdict::free) << i;
           }
           else {
-            ASSERT_EQ((accuracy.stopsEarly() ? is : may_be)[i], flagOf(Verdict::colliding)) << i;
+            ASSERT_EQ((accuracy.stopsEarly() ? is : may_be)[i], Verdict::colliding) << i;
           }
         }
       };
@@ -136,7 +136,7 @@ TEST(Triangles, OthersOfTheSameQueriesAgree)
     const CollidingIndices lists = collidingIndices(a, b, request);
     std::vector<std::int32_t> listed;
     for (std::size_t i = 0; i < flags.a.size(); ++i)
-      if (flags.a[i] == flagOf(Verdict::colliding)) listed.push_back(static_cast<std::int32_t>(i));
+      if (flags.a[i] == Verdict::colliding) listed.push_back(static_cast<std::int32_t>(i));
     ASSERT_EQ(lists.a, listed);
     ASSERT_EQ(traceCollision(a, b, {scene.clearance, {}}).result.verdict,
               anyCollision(a, b, {scene.clearance, {}}).verdict);

@@ -7,6 +7,7 @@
 
 #include "scene_worlds.h"
 #include "support/meshes.h"
+#include "support/verdicts.h"
 #include "watched_motion.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +96,9 @@ TEST(SceneOfTriangles, EffectsAreThoseOfTheQueries)
     EXPECT_EQ(result.flags.size(), flags.colliding_a > 0 ? 2u : 0u);
     const DistanceResult nearest = brute_force::closestPair(at_a, at_b, {});
     ASSERT_EQ(result.distance.size(), nearest.pair ? 1u : 0u);
-    if (nearest.pair) EXPECT_EQ(result.distance[0].distance, nearest.distance);
+    if (nearest.pair) {
+      EXPECT_EQ(result.distance[0].distance, nearest.distance);
+    }
     colliding += flags.colliding_a > 0;
     if (HasFailure()) return;
   }
@@ -192,7 +195,7 @@ TEST(SceneOfTriangles, ABoxSlidesOverAFloorOfTwoTriangles)
     WatchedMotion watch(scene);
     const SceneResult result = scene.step(0.3);
     EXPECT_EQ(watch.replayResponses(result, 60), "");
-    work += result.cost(Effect::response).work.node_pairs + result.cost(Effect::response).work.exact_decisions;
+    work += result.cost(Effect::slide).work.node_pairs + result.cost(Effect::slide).work.exact_decisions;
   }
   const Eigen::Vector3d place = scene[id].pose.translation();
   EXPECT_NEAR(place.x(), -5 + 9.0, 1e-3) << "no friction, along the floor's plane";
@@ -223,8 +226,8 @@ TEST(SceneOfTriangles, SweptFlagsAreThoseOfManyInstants)
   scene.query();
   const SceneResult result = scene.step(1.0);
   ASSERT_EQ(result.swept.size(), 2u);
-  EXPECT_EQ(result.swept[0].flags, (std::vector<std::uint8_t>{1, 1}));
-  EXPECT_EQ(result.swept[1].flags, (std::vector<std::uint8_t>{1, 0, 1}));
+  EXPECT_EQ(result.swept[0].flags, test::verdictsOf({1, 1}));
+  EXPECT_EQ(result.swept[1].flags, test::verdictsOf({1, 0, 1}));
   ASSERT_EQ(result.first_contact.size(), 1u);
   EXPECT_NEAR(result.first_contact[0].fraction, (4 - 3 - 0.03) / 8, 1e-3) << "the second needle comes first";
 }

@@ -45,14 +45,14 @@ Verdicts verdictsOf(const SeenSpace& seen, const Placed& model, double clearance
   return verdicts;
 }
 
-Verdicts bruteForce(const std::vector<Scan>& scans, double angle, const Placed& model, double clearance)
+Verdicts bruteForce(const std::vector<ScanBeams>& scans, double angle, const Placed& model, double clearance)
 {
   Verdicts verdicts(model.hierarchy().view().count, Verdict::free);
   brute_force::markUnseen(scans, angle, model, within(clearance), verdicts);
   return verdicts;
 }
 
-SeenSpace spaceOf(const std::vector<Scan>& scans, double angle, unsigned threads = 1)
+SeenSpace spaceOf(const std::vector<ScanBeams>& scans, double angle, unsigned threads = 1)
 {
   SeenOptions options;
   options.angle = angle;
@@ -61,7 +61,7 @@ SeenSpace spaceOf(const std::vector<Scan>& scans, double angle, unsigned threads
 }
 
 /// One place, as a model.
-bool isSeen(const std::vector<Scan>& scans, double angle, const Point3& place, double clearance)
+bool isSeen(const std::vector<ScanBeams>& scans, double angle, const Point3& place, double clearance)
 {
   const SphereHierarchy model(viewOf(place.data(), 1));
   const Verdicts verdicts = verdictsOf(spaceOf(scans, angle), {model}, clearance);
@@ -83,9 +83,9 @@ std::vector<double> allAround(double step, double range)
   return made.returns;
 }
 
-Scan scanOf(const std::vector<double>& xyz)
+ScanBeams scanOf(const std::vector<double>& xyz)
 {
-  Scan scan;
+  ScanBeams scan;
   scan.returns = viewOf(xyz.data(), xyz.size() / 3);
   return scan;
 }
@@ -108,7 +108,7 @@ TEST(MarkUnseen, AgreesWithBruteForce)
       made.push_back(makeScan(room, scanner, random));
       origins.push_back(scanner.origin);
     }
-    std::vector<Scan> scans;
+    std::vector<ScanBeams> scans;
     for (std::size_t s = 0; s < made.size(); ++s) {
       scans.push_back(made[s].scan(origins[s]));
       if (seed % 4 == 3 && s == 0) scans.back().misses_beyond = 5.0;
@@ -134,10 +134,10 @@ TEST(MarkUnseen, AgreesWithBruteForce)
 }
 
 /// What the contract says of a ball that is seen, tried in directions of its cone.
-void expectSeenByOne(const std::vector<Scan>& scans, double angle, const Eigen::Vector3d& center, double radius)
+void expectSeenByOne(const std::vector<ScanBeams>& scans, double angle, const Eigen::Vector3d& center, double radius)
 {
   bool seen_by_one = false;
-  for (const Scan& scan : scans) {
+  for (const ScanBeams& scan : scans) {
     const Eigen::Vector3d origin(scan.origin.data()), way = center - origin, axis = way.normalized();
     const double distance = way.norm();
     bool seen = distance > radius;
@@ -168,7 +168,7 @@ TEST(MarkUnseen, KeepsItsPromiseInARoomOfPillars)
   const MadeRoom room = hallOfPillars();
   const double step = 0.03, clearance = 0.1;
   std::vector<MadeScan> made;
-  std::vector<Scan> scans;
+  std::vector<ScanBeams> scans;
   const Eigen::Vector3d origins[] = {{2, 2, 1.5}, {18, 10, 1.5}};
   Random random(7);
   for (const Eigen::Vector3d& origin : origins) made.push_back(makeScan(room, {origin, step, -1.57, 1.57}, random));
@@ -274,7 +274,7 @@ TEST(MarkUnseenHardCases, TwoScannersThatSeeHalfEach)
 TEST(MarkUnseenHardCases, AllBeamsWithoutReturn)
 {
   const std::vector<double> ends = allAround(0.1, 1.0);
-  Scan scan;
+  ScanBeams scan;
   scan.misses = viewOf(ends.data(), ends.size() / 3);
   EXPECT_EQ(SeenSpace({scan}).beams(0), 0u);
   EXPECT_EQ(SeenSpace({scan}).angle(0), 0.0);
@@ -308,7 +308,7 @@ TEST(MarkUnseenHardCases, FarFromTheWorldsOrigin)
   std::vector<double> moved = ends;
   const double shift[3] = {431234.5, 5412345.25, 300.125};
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += shift[i % 3];
-  Scan scan = scanOf(moved);
+  ScanBeams scan = scanOf(moved);
   scan.origin = {shift[0], shift[1], shift[2]};
   EXPECT_TRUE(isSeen({scan}, 0.2, {shift[0] + 5, shift[1], shift[2]}, 4.999));
   EXPECT_FALSE(isSeen({scan}, 0.2, {shift[0] + 5, shift[1], shift[2]}, 5.001));
@@ -317,7 +317,7 @@ TEST(MarkUnseenHardCases, FarFromTheWorldsOrigin)
 TEST(MarkUnseen, ShortensBeamsByTheirUncertainty)
 {
   const std::vector<double> ends = allAround(0.1, 12.5);
-  Scan scan = scanOf(ends);
+  ScanBeams scan = scanOf(ends);
   EXPECT_TRUE(isSeen({scan}, 0.2, {8, 0, 0}, 1.9));
   scan.returns.uncertainty = 0.2;
   EXPECT_FALSE(isSeen({scan}, 0.2, {8, 0, 0}, 1.9));
@@ -335,7 +335,7 @@ TEST(MarkUnseen, TakesUncertainPlacesAsTheyAre)
   EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
 }
 
-std::string refusalOf(const std::vector<Scan>& scans, const SeenOptions& options = {})
+std::string refusalOf(const std::vector<ScanBeams>& scans, const SeenOptions& options = {})
 {
   try {
     const SeenSpace space(scans, options);
@@ -348,7 +348,7 @@ std::string refusalOf(const std::vector<Scan>& scans, const SeenOptions& options
 
 TEST(SeenSpace, RefusesWhatHasNoMeaning)
 {
-  Scan scan;
+  ScanBeams scan;
   EXPECT_EQ(refusalOf({scan}), "taken");
   EXPECT_EQ(refusalOf({}), "scans: there are none: give one at least, with its origin");
   for (const double angle : {0.0, 3.14159, std::nan(""), 1e-5}) { // half a turn, too

@@ -94,9 +94,9 @@ struct MadeScanner {
 /// Coordinates of returns, in a row, and of the ends of beams without a return.
 struct MadeScan {
   std::vector<double> returns, misses;
-  Scan scan(const Eigen::Vector3d& origin) const
+  ScanBeams scan(const Eigen::Vector3d& origin) const
   {
-    Scan scan;
+    ScanBeams scan;
     scan.origin = {origin.x(), origin.y(), origin.z()};
     scan.returns = viewOf(returns.data(), returns.size() / 3);
     scan.misses = viewOf(misses.data(), misses.size() / 3);

@@ -15,7 +15,7 @@ namespace pcl_bsh {
 /// As GoogleTest prints it.
 inline void PrintTo(Verdict verdict, std::ostream* out)
 {
-  constexpr std::array<const char*, 4> names = {"free", "colliding", "undecided", "sparse"};
+  constexpr std::array<const char*, 5> names = {"free", "colliding", "undecided", "sparse", "unseen"};
   const auto number = static_cast<std::size_t>(verdict);
   if (number < names.size())
     *out << names[number];
@@ -25,7 +25,7 @@ inline void PrintTo(Verdict verdict, std::ostream* out)
 
 namespace test {
 
-/// From numbers: 0 free, 1 colliding, 2 undecided, 3 sparse.
+/// From numbers: 0 free, 1 colliding, 2 undecided, 3 sparse, 4 unseen.
 inline std::vector<Verdict> verdictsOf(std::initializer_list<int> numbers)
 {
   std::vector<Verdict> verdicts;

@@ -80,7 +80,7 @@ TEST(TrianglesAlongPaths, StoppedEarlyAreNeverWrong)
     request.accuracy = Accuracy::level(static_cast<unsigned>(seed % 4));
     const TrajectoryResult some = collideAlong(placed, model, run.poses, request);
     for (std::size_t i = 0; i < some.flags.size(); ++i) {
-      if (some.flags[i] == flagOf(Verdict::undecided)) continue;
+      if (some.flags[i] == Verdict::undecided) continue;
       EXPECT_EQ(some.flags[i], truth.flags[i]) << i;
     }
     if (HasFailure()) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/records.h>
 

@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/uncertainty.h>
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
@@ -192,9 +193,11 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
     refuse(error, question);
   }
   for (const Warning& warning : found.answer.warnings) stage.warn(warning.text);
-  if (found.answer.unseen.count > 0)
-    stage.warn(std::to_string(found.answer.unseen.count) +
-               " parts of the obstacle are unseen: they do not collide, but no scanner saw that nothing is there");
+  if (found.answer.unseen.count > 0) {
+    const std::string part = found.compared.partName();
+    stage.warn(counted(found.answer.unseen.count, part + " of the obstacle is", part + "s of the obstacle are") +
+               " unseen: free of collisions, but no scanner saw that nothing is there");
+  }
   warnOfUndecided(found.answer, question, found.input.isSurface() ? "triangles" : "points", stage);
   return found;
 }

@@ -57,15 +57,14 @@ Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
 
 Winding::Winding(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b, int axis)
 : points_(pose_a, pose_b),
+  turned_(pose_b.linear() != Eigen::Matrix3d::Identity()),
   axis_(static_cast<std::size_t>(axis))
 {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>((i + axis_) % 3);
+  for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
-      a_[i][j] = pose_a.matrix()(row, static_cast<Eigen::Index>(j));
-      b_[i][j] = pose_b.matrix()(row, static_cast<Eigen::Index>(j));
+      a_[i][j] = pose_a.matrix()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      b_[i][j] = pose_b.matrix()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
-  }
 }
 
 /// T_b q - T_a p.
@@ -83,28 +82,46 @@ std::array<Number, 3> Winding::seen(const Point3& p, const Point3& q) const
   return at;
 }
 
+/// The same in b's own axes, the ray's first, then cyclically: as long as the determinant of b's rotation makes them,
+/// for which row k of the inverse is the product of the columns k + 1 and k + 2.
+template <class Number>
+Winding::Corners<Number> Winding::turnedBack(const Corners<Number>& corners) const
+{
+  Corners<Number> turned;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t row = (k + axis_) % 3;
+    if (!turned_) {
+      for (std::size_t i = 0; i < 3; ++i) turned[i][k] = corners[i][row];
+      continue;
+    }
+    const auto column = [&](std::size_t j) -> Vector3<Number> {
+      return {Number(b_[0][j % 3]), Number(b_[1][j % 3]), Number(b_[2][j % 3])};
+    };
+    const Vector3<Number> inverse = cross(column(row + 1), column(row + 2));
+    for (std::size_t i = 0; i < 3; ++i) turned[i][k] = dot(inverse, corners[i]);
+  }
+  return turned;
+}
+
 Winding::Crossing Winding::crossing(const Point3& p, const Triangle3& triangle, Stages* stages) const
 {
   Stages none, &count = stages ? *stages : none;
-  std::array<Vector3<RoughNumber>, 3> rough;
+  Corners<RoughNumber> rough;
   bool sure = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const ExactDistance::Difference z = points_.approximate(p, triangle[i]);
-    for (std::size_t k = 0; k < 3; ++k) rough[i][k] = {-z.vector[(k + axis_) % 3], z.error};
+    for (std::size_t k = 0; k < 3; ++k) rough[i][k] = {-z.vector[k], z.error};
   }
-  if (const Crossing found = meet(rough, sure); sure) return ++count.doubles, found;
+  if (const Crossing found = meet(turnedBack(rough), sure); sure) return ++count.doubles, found;
   sure = true;
-  const auto at = [&]<class Number>(std::array<Vector3<Number>, 3>& t) {
-    for (std::size_t i = 0; i < 3; ++i) t[i] = seen<Number>(p, triangle[i]);
+  const auto seen_corners = [&]<class Number>(Number) {
+    return turnedBack(
+        Corners<Number>{seen<Number>(p, triangle[0]), seen<Number>(p, triangle[1]), seen<Number>(p, triangle[2])});
   };
-  std::array<Vector3<LongNumber>, 3> longer;
-  at(longer);
-  if (const Crossing found = meet(longer, sure); sure) return ++count.long_numbers, found;
+  if (const Crossing found = meet(seen_corners(LongNumber()), sure); sure) return ++count.long_numbers, found;
   sure = true;
   ++count.integers;
-  std::array<Vector3<Dyadic>, 3> exact;
-  at(exact);
-  return meet(exact, sure);
+  return meet(seen_corners(Dyadic()), sure);
 }
 
 std::optional<int> Winding::number(const Point3& p, std::size_t count,

@@ -18,7 +18,7 @@
 
 namespace pcl_bsh {
 
-/// Rays from points of a along an axis of the world, through triangles of b. The ray begins beside the point, by an
+/// Rays from points of a along an axis of b, through triangles of b. The ray begins beside the point, by an
 /// infinitesimal step along the next axis and an infinitely smaller one along the last: it meets no edge and no corner,
 /// each of its crossings counts once, and the winding number is that of the point where the point is not on the
 /// surface.
@@ -34,7 +34,7 @@ public:
     std::uint64_t doubles = 0, long_numbers = 0, integers = 0;
   };
 
-  /// @param axis 0, 1 or 2: of the world, towards which the rays go
+  /// @param axis 0, 1 or 2: of b's own frame, towards which the rays go
   Winding(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b, int axis = 0);
 
   /// @param p, triangle finite
@@ -48,10 +48,16 @@ public:
 
 private:
   template <class Number>
+  using Corners = std::array<std::array<Number, 3>, 3>;
+
+  template <class Number>
   std::array<Number, 3> seen(const Point3& p, const Point3& q) const;
+  template <class Number>
+  Corners<Number> turnedBack(const Corners<Number>& corners) const;
 
   ExactDistance points_;
-  std::array<std::array<double, 4>, 3> a_, b_; ///< rows of the poses, the ray's axis first, then cyclically
+  std::array<std::array<double, 4>, 3> a_, b_; ///< rows of the poses
+  bool turned_;                                ///< b's axes are not those of the world
   std::size_t axis_;
 };
 

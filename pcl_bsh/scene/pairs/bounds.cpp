@@ -2,6 +2,7 @@
 #include <pcl_bsh/scene/pairs/bounds.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <cmath>
@@ -9,11 +10,26 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr double kMargin = 0x1p-45; // of the largest number that went into a bound: far above what rounding takes
+constexpr double kLooseBall = 0.125; // of a part's size
+constexpr double kMargin = 0x1p-45;  // of the largest number that went into a bound: far above what rounding takes
 
 double largest(const Box3& box)
 {
   return std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
+}
+
+Box3 boxOfCorners(const PointsView& triangles)
+{
+  Box3 box;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t record = triangles.record(i);
+    if (!isFinite(triangles.point(record))) continue;
+    for (const Point3& corner : triangles.triangles->triangle(record)) {
+      const Eigen::Vector3d at(corner[0], corner[1], corner[2]);
+      box.merge({at, at});
+    }
+  }
+  return box;
 }
 
 } // namespace
@@ -56,6 +72,12 @@ Box3 boxOf(const ScenePart& part)
   const SphereHierarchy::Storage& storage = part.hierarchy->storage();
   if (storage.size == 0) return Box3();
   Box3 box = boxOf(storage.frame);
+  // Balls of large triangles, those of a floor, say, reach far beyond them.
+  if (storage.view.triangles && storage.largest_radius > kLooseBall * box.half().norm()) {
+    box = boxOfCorners(storage.view);
+    box.grow(storage.uncertainty.most * (1.0 + kMargin) + kMargin * largest(box));
+    return box;
+  }
   box.grow(outreach(*part.hierarchy) + kMargin * largest(box));
   return box;
 }

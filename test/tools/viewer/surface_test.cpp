@@ -65,7 +65,9 @@ protected:
 
 TEST_F(SurfaceViewTest, ACrateIsDrawnWithItsFaces)
 {
-  OffscreenView surface(options(false)), vertices(options(true));
+  Options faces = options(false), corners = options(true);
+  faces.clearance = corners.clearance = 0.01; // nothing collides
+  OffscreenView surface(faces), vertices(corners);
   const double middle[3] = {0.0, -1.0, 1.0}; // of the face towards the camera
   const auto [x, y] = surface.seen(middle);
   EXPECT_GT(surface.draw().countNear(obstacle_color, x, y, 30), 1000u);

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd.
+//
+// A point's winding number needs the triangles of its own column only. Beside the grid stands a coarse one of cubes
+// that tells where the surface surely is not.
+#pragma once
+
+#include <pcl_bsh/geometry/triangle/triangle3.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Places are seen from `origin()`, with the ray's axis last: seen(q)[k] = q[axes()[k]] - origin()[axes()[k]]. What
+/// rounds there is covered by error().
+class Columns {
+public:
+  /// Of the triangles that are finite. The axis is the one along which their boxes cast the least shadow.
+  explicit Columns(const TrianglesView& triangles);
+
+  /// Whether there is no finite triangle.
+  bool empty() const noexcept { return boxes_.empty() || !(low_[0] <= high_[0]); }
+
+  const Point3& origin() const noexcept { return origin_; }
+  const std::array<std::size_t, 3>& axes() const noexcept { return axes_; }
+  double error() const noexcept { return error_; } ///< per axis, of a corner as seen()
+
+  Point3 seen(const Point3& q) const noexcept
+  {
+    return {q[axes_[0]] - origin_[axes_[0]], q[axes_[1]] - origin_[axes_[1]], q[axes_[2]] - origin_[axes_[2]]};
+  }
+
+  /// A triangle's box, as seen, rounded outward. Its place above decides many crossings.
+  struct Box {
+    float low[3], high[3];
+  };
+  const Box& box(std::uint32_t triangle) const noexcept { return boxes_[triangle]; }
+
+  Triangle3 seenTriangle(std::uint32_t triangle) const noexcept
+  {
+    const Triangle3 t = view_.triangle(triangle);
+    return {seen(t[0]), seen(t[1]), seen(t[2])};
+  }
+
+  /// Triangles, each once.
+  struct Range {
+    const std::uint32_t *first, *last;
+    const std::uint32_t* begin() const noexcept { return first; }
+    const std::uint32_t* end() const noexcept { return last; }
+  };
+
+  /// All triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps others.
+  /// @param several memory for those of several columns, where the place may be in more than one
+  Range above(const Point3& at, double error, std::vector<std::uint32_t>& several) const;
+
+  /// Whether all places within `reach` of `at`, per axis, are outside of the box of all triangles.
+  bool isBeyond(const Point3& at, double reach) const noexcept
+  {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (at[k] + reach < low_[k] || at[k] - reach > high_[k]) return true;
+    return false;
+  }
+
+  /// Whether surely no triangle meets the cube of the places within `reach` of `at`, per axis. False where the cube is
+  /// too large to tell at little cost.
+  bool isClear(const Point3& at, double reach) const noexcept;
+
+  std::size_t bytes() const noexcept;
+
+private:
+  /// Columns in rows, over [x, x + columns / per_x].
+  struct Grid {
+    double x, y, per_x, per_y; ///< its corner, and columns for each unit
+    double pad;                ///< a triangle is also in the columns that it misses by no more
+    std::uint32_t columns, rows;
+    std::uint32_t first; ///< cell of the first column
+  };
+
+  /// Of entries_, or a finer grid.
+  struct Cell {
+    static constexpr std::uint32_t kGrid = ~std::uint32_t{0};
+    std::uint32_t begin, end; ///< kGrid and its number, where there is a finer grid
+  };
+
+  static constexpr std::size_t kCubes = 64; ///< along each axis: a word is a row of cubes
+
+  static std::uint32_t indexOf(double x, double low, double per, std::uint32_t count) noexcept
+  {
+    const double i = (x - low) * per;
+    return i >= 0.0 ? (i < count ? static_cast<std::uint32_t>(i) : count - 1) : 0; // not a number: 0
+  }
+
+  struct Shadows;
+  bool makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles, bool finer);
+  template <class Visit>
+  void forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
+  void refine();
+  void collect(std::uint32_t grid, const Point3& at, double error, std::vector<std::uint32_t>& found) const;
+  void markCubes(const Triangle3& triangle, int depth);
+
+  TrianglesView view_;
+  Point3 origin_ = {};
+  std::array<std::size_t, 3> axes_ = {0, 1, 2};
+  double error_ = 0.0;
+  Point3 low_, high_; ///< of all triangles, as seen, rounded outward
+  std::vector<Box> boxes_;
+  std::vector<Grid> grids_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> entries_;
+  Point3 cubes_per_ = {}; ///< cubes for each unit
+  std::vector<std::uint64_t> cubes_;
+};
+
+} // namespace pcl_bsh

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The descent of one cloud's spheres into a solid: what does not meet the surface gets its label at once.
+#pragma once
+
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/work.h>
+#include <pcl_bsh/solid/point_labels.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace pcl_bsh {
+
+/// What is told of the points in a sphere before they are looked at.
+enum class Whole : std::uint8_t { outside, one_label, unknown };
+
+/// A cloud's spheres at one pose of cloud and solid, from the tree above the voxels down to points.
+class LabelWalk {
+public:
+  LabelWalk(const Placed& cloud, const PlacedSolid& solid, Work& work)
+  : cloud_(cloud.hierarchy().storage()),
+    labels_(cloud.pose, solid),
+    work_(work)
+  {
+    if (cloud_.size > 0) top_ = frameOf(cloud_.frame);
+  }
+
+  const SphereHierarchy::Storage& cloud() const noexcept { return cloud_; }
+
+  /// Of a child of a node above the voxels.
+  Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
+
+  Label labelOf(const PointLabels::Frame& frame, std::uint32_t record)
+  {
+    return labels_.label(frame, cloud_.view.point(record), work_.exact_decisions);
+  }
+  Label labelOf(std::uint32_t record) { return labelOf(top_, record); }
+
+  /// Tells the sink of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
+  /// label). Asks it before: wants(smallest record) tells whether it cares about any such points.
+  template <class Sink>
+  void labelVoxel(std::uint32_t index, Sink& sink)
+  {
+    const Voxel& voxel = cloud_.voxels[index];
+    const PointLabels::Frame frame = frameOf(voxel.frame);
+    if (voxel.state.load(std::memory_order_acquire) == Voxel::built) return labelNode(voxel, frame, 0, sink);
+    ++work_.leaf_pairs;
+    cloud_.forEachRecord(index, [&](std::uint32_t record) { tell(frame, record, cloud_.view.point(record), sink); });
+  }
+
+private:
+  PointLabels::Frame frameOf(const LocalFrame& local) const
+  {
+    // Centres of spheres lie between points; twice their reach is more than enough.
+    const double reach = std::max({local.reach[0], local.reach[1], local.reach[2]}) * local.unit;
+    return labels_.frameAt(local.origin, 2.0 * reach);
+  }
+
+  Whole of(const PointLabels::Frame& frame, double unit, const Node& node, std::uint32_t child)
+  {
+    ++work_.node_pairs;
+    const Point3 center = {static_cast<double>(node.x[child]) * unit, static_cast<double>(node.y[child]) * unit,
+                           static_cast<double>(node.z[child]) * unit};
+    const Point3 at = labels_.seen(frame, center);
+    // A pose may lengthen a radius by little more than half of rigidity_tolerance.
+    const double reach = static_cast<double>(node.r[child]) * unit * (1.0 + 4e-6) + frame.error;
+    if (!(reach < std::numeric_limits<double>::infinity())) return Whole::unknown;
+    if (labels_.columns().isBeyond(at, reach)) return Whole::outside;
+    return labels_.columns().isClear(at, reach) ? Whole::one_label : Whole::unknown;
+  }
+
+  template <class Sink>
+  void tell(const PointLabels::Frame& frame, std::uint32_t record, const Point3& p, Sink& sink)
+  {
+    if (!sink.wants(record)) return;
+    const Label label = labels_.label(frame, p, work_.exact_decisions);
+    if (label != Label::outside) sink.one(record, label);
+  }
+
+  template <class Sink>
+  void labelNode(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t index, Sink& sink)
+  {
+    const Node& node = voxel.nodes[index];
+    const std::uint32_t* records = voxel.records();
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      if (!sink.wants(node.lowest[i])) continue;
+      const Whole whole = of(frame, voxel.frame.unit, node, i);
+      if (whole == Whole::outside) continue;
+      const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
+      if (whole == Whole::one_label || node.isCoincident(i)) {
+        const Label label = labelOf(frame, records[begin]);
+        if (label == Label::outside) continue;
+        if (label == Label::inside)
+          sink.inside(records + begin, records + end);
+        else
+          for (std::uint32_t j = begin; j < end; ++j) sink.one(records[j], label);
+      }
+      else if (!node.isLeaf(i)) {
+        labelNode(voxel, frame, node.child[i], sink);
+      }
+      else {
+        ++work_.leaf_pairs;
+        for (std::uint32_t j = begin; j < end; ++j) tell(frame, records[j], voxel.point(cloud_.view, j), sink);
+      }
+    }
+  }
+
+  const SphereHierarchy::Storage& cloud_;
+  PointLabels labels_;
+  PointLabels::Frame top_ = {};
+  Work& work_;
+};
+
+} // namespace pcl_bsh

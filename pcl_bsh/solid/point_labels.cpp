@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/solid/point_labels.h>
+
+#include <pcl_bsh/geometry/exact/long_number.h>
+#include <pcl_bsh/geometry/rounding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+constexpr double kFrameError = 1024 * kDoubleUnit;
+
+/// What a ray from the origin makes of a triangle that is seen from there.
+enum class Crossing : std::uint8_t { none, front, back, unknown };
+
+/// By double arithmetic, of corners that are off by `error` per axis; the ray goes along the last axis.
+///
+/// Error bound: with m the largest coordinate across the ray, M of all, and E the error, a product of two coordinates
+/// errs by less than m (2.25 E + 4 v m) where 4 E <= m (where it is larger, nothing is sure), and a side by less than
+/// m (4.5 E + 9 v m). The volume is three products of a side, at most 2 m^2, and a height: it errs by less than
+/// M m (20 E + 48 v m). Twice these are taken.
+Crossing meet(const Triangle3& t, double error, bool above)
+{
+  const auto side = [&](std::size_t i, std::size_t j) { return t[i][0] * t[j][1] - t[i][1] * t[j][0]; };
+  const double sides[3] = {side(0, 1), side(1, 2), side(2, 0)};
+  const double across = std::max({std::abs(t[0][0]), std::abs(t[0][1]), std::abs(t[1][0]), std::abs(t[1][1]),
+                                  std::abs(t[2][0]), std::abs(t[2][1])});
+  const double doubt = across * (9.0 * error + 18.0 * kDoubleUnit * across) + 0x1p-1000;
+  const bool left = sides[0] > doubt || sides[1] > doubt || sides[2] > doubt;
+  const bool right = sides[0] < -doubt || sides[1] < -doubt || sides[2] < -doubt;
+  if (left && right) return Crossing::none;
+  const bool all_left = sides[0] > doubt && sides[1] > doubt && sides[2] > doubt;
+  const bool all_right = sides[0] < -doubt && sides[1] < -doubt && sides[2] < -doubt;
+  if (!all_left && !all_right) return Crossing::unknown;
+  const Crossing met = all_left ? Crossing::front : Crossing::back;
+  if (above) return met;
+  const double volume = t[0][2] * sides[1] + t[1][2] * sides[2] + t[2][2] * sides[0];
+  const double most = std::max({across, std::abs(t[0][2]), std::abs(t[1][2]), std::abs(t[2][2])});
+  const double volume_doubt = most * across * (40.0 * error + 96.0 * kDoubleUnit * across) + 0x1p-1000;
+  if (volume > volume_doubt) return all_left ? met : Crossing::none;
+  if (volume < -volume_doubt) return all_right ? met : Crossing::none;
+  return Crossing::unknown;
+}
+
+} // namespace
+
+PointLabels::PointLabels(const Eigen::Isometry3d& pose_a, const PlacedSolid& b)
+: columns_(b.solid->columns()),
+  triangles_(b.solid->triangles()),
+  winding_(pose_a, b.pose, static_cast<int>(columns_.axes()[2])),
+  pose_a_(pose_a),
+  pose_b_(b.pose)
+{
+  const auto a = [&](std::size_t i, std::size_t j) {
+    return pose_a_.linear()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  };
+  const auto of_b = [&](std::size_t i, std::size_t j) {
+    return pose_b_.linear()(static_cast<Eigen::Index>(i % 3), static_cast<Eigen::Index>(j % 3));
+  };
+  double determinant = 0.0;
+  for (std::size_t k = 0; k < 3; ++k)
+    determinant += of_b(k, 0) * (of_b(k + 1, 1) * of_b(k + 2, 2) - of_b(k + 2, 1) * of_b(k + 1, 2));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t row = columns_.axes()[k];
+    for (std::size_t j = 0; j < 3; ++j)
+      inverse_[k][j] =
+          (of_b(j + 1, row + 1) * of_b(j + 2, row + 2) - of_b(j + 2, row + 1) * of_b(j + 1, row + 2)) / determinant;
+    for (std::size_t j = 0; j < 3; ++j)
+      rotation_[k][j] = inverse_[k][0] * a(0, j) + inverse_[k][1] * a(1, j) + inverse_[k][2] * a(2, j);
+  }
+}
+
+PointLabels::Frame PointLabels::frameAt(const Point3& origin, double reach) const
+{
+  Point3 shift;
+  double largest = 0.0, error = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    LongNumber sum = LongNumber(pose_a_.translation()[row]) - LongNumber(pose_b_.translation()[row]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      sum += LongNumber(pose_a_.linear()(row, column)) * LongNumber(origin[j]);
+      sum += LongNumber(-pose_b_.linear()(row, column)) * LongNumber(columns_.origin()[j]);
+    }
+    shift[k] = sum.value();
+    largest = std::max(largest, std::abs(sum.value()));
+    error = std::max(error, sum.error() + std::abs(sum.tail()));
+  }
+  Frame frame{origin, {}, kFrameError * (reach + largest) + 4.0 * error + columns_.error() + 0x1p-1000};
+  if (!std::isfinite(frame.error)) frame.error = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k)
+    frame.shift[k] = inverse_[k][0] * shift[0] + inverse_[k][1] * shift[1] + inverse_[k][2] * shift[2];
+  return frame;
+}
+
+Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions)
+{
+  const Point3 at = seen(frame, {p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]});
+  const double error = frame.error;
+  if (!std::isfinite(at[0] + at[1] + at[2] + error)) { // out of range: all triangles, exactly
+    exact_decisions += triangles_.count;
+    const std::optional<int> turns = winding_.number(
+        p, triangles_.count, [&](std::size_t i) { return triangles_.triangle(static_cast<std::uint32_t>(i)); });
+    return !turns ? Label::surface : *turns != 0 ? Label::inside : Label::outside;
+  }
+  if (columns_.isBeyond(at, error)) return Label::outside;
+  const Point3 low = {at[0] - error, at[1] - error, at[2] - error},
+               high = {at[0] + error, at[1] + error, at[2] + error};
+  int turns = 0;
+  for (const std::uint32_t i : columns_.above(at, error, several_)) {
+    const Columns::Box& box = columns_.box(i);
+    if (high[0] < static_cast<double>(box.low[0]) || low[0] > static_cast<double>(box.high[0]) ||
+        high[1] < static_cast<double>(box.low[1]) || low[1] > static_cast<double>(box.high[1]) ||
+        low[2] > static_cast<double>(box.high[2]))
+      continue;
+    Triangle3 t = columns_.seenTriangle(i);
+    for (Point3& corner : t)
+      for (std::size_t k = 0; k < 3; ++k) corner[k] -= at[k];
+    const Crossing met = meet(t, error, static_cast<double>(box.low[2]) > high[2]);
+    if (met == Crossing::unknown) {
+      ++exact_decisions;
+      const Winding::Crossing exact = winding_.crossing(p, triangles_.triangle(i));
+      if (exact.on_surface) return Label::surface;
+      turns += exact.turns;
+    }
+    else {
+      turns += met == Crossing::front ? 1 : met == Crossing::back ? -1 : 0;
+    }
+  }
+  return turns != 0 ? Label::inside : Label::outside;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Labels of single points of a cloud in a solid, at one pose of both.
+#pragma once
+
+#include <pcl_bsh/geometry/triangle/winding.h>
+#include <pcl_bsh/solid/columns.h>
+#include <pcl_bsh/solid/solid.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Double arithmetic decides crossings where its error bound lets it, Winding all others: of the same ray, so that both
+/// may decide crossings of one point.
+///
+/// Error bound. A place is R (p - o) + g, where o is near it in the cloud and g = Rb^-1 s, s = Ra o + ta - tb - Rb ob.
+/// With |entries| <= 1 + 1e-6 and v = 2^-53: cofactors and determinant of Rb err by 4 v and 20 v, its inverse by less
+/// than 32 v an entry, R by less than 128 v. So R (p - o) errs by less than 400 v A per axis, A the largest |p - o|,
+/// and g by less than 120 v S + 4 e, where S is the largest |s| and e the error of s, which is summed in numbers that
+/// know it; the last sums add 8 v (A + S). kFrameError = 1024 v of A + S has room for twice that, and for bounds
+/// of boxes that are compared with it.
+class PointLabels {
+public:
+  PointLabels(const Eigen::Isometry3d& pose_a, const PlacedSolid& b);
+
+  /// A cloud near one of its places, as the solid sees it.
+  struct Frame {
+    Point3 origin; ///< in the cloud's own frame
+    Point3 shift;  ///< where it is
+    double error;  ///< of seen(), per axis, in both the place and the solid's corners; infinite where nothing is known
+  };
+
+  /// @param reach at least |p - origin| per axis, of all points that are seen from this frame
+  Frame frameAt(const Point3& origin, double reach) const;
+
+  /// Of a place of the cloud less the frame's origin.
+  Point3 seen(const Frame& frame, const Point3& from_origin) const noexcept
+  {
+    Point3 at;
+    for (std::size_t k = 0; k < 3; ++k)
+      at[k] = (rotation_[k][0] * from_origin[0] + rotation_[k][1] * from_origin[1] + rotation_[k][2] * from_origin[2]) +
+              frame.shift[k];
+    return at;
+  }
+
+  const Columns& columns() const noexcept { return columns_; }
+
+  /// @param p finite, of the cloud. @param exact_decisions crossings that Winding decided are added
+  Label label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions);
+
+private:
+  const Columns& columns_;
+  const TrianglesView& triangles_;
+  Winding winding_;
+  Eigen::Isometry3d pose_a_, pose_b_;
+  std::array<Point3, 3> rotation_, inverse_; ///< rows, in the order of the columns' axes
+  std::vector<std::uint32_t> several_;
+};
+
+} // namespace pcl_bsh

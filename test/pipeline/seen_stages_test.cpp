@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stages that ask what of an obstacle nobody saw.
+#include "run_stage.h"
+
+#include "../filters/clouds.h"
+#include "support/made_scans.h"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+StageCloudPtr cloudOf(const std::vector<double>& xyz, const io::Viewpoint& viewpoint)
+{
+  test::Points points;
+  for (std::size_t i = 0; i < xyz.size(); i += 3) points.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
+  auto cloud = std::make_shared<StageCloud>();
+  cloud->cloud = *test::fieldCloud<double>(points);
+  cloud->viewpoint = viewpoint;
+  return cloud;
+}
+
+class SeenStages : public testing::Test {
+protected:
+  /// A scan of a room from a place.
+  static StageCloudPtr scanFrom(double x, const io::Viewpoint& viewpoint)
+  {
+    const test::MadeRoom room{{Eigen::Vector3d(-5, -5, 0), Eigen::Vector3d(5, 5, 3)}, {}};
+    test::Random random(1);
+    return cloudOf(test::makeScan(room, {{x, 0, 1}, 0.05, -1.57, 1.57}, random).returns, viewpoint);
+  }
+
+  const io::Viewpoint at_scanner = {1, 0, 1, 1, 0, 0, 0};
+  const StageCloudPtr scan = scanFrom(1, at_scanner);
+  const StageCloudPtr machine = cloudOf({2, 0, 1, 9, 0, 1}, io::no_viewpoint); // in the room, and outside
+  const std::string flag = R"({"type": "filters.bsh_flag", "obstacle": "other", "clearance": 0.1, "seen": true)";
+};
+
+TEST_F(SeenStages, WarnOfWhatIsUnseen)
+{
+  const std::string told = "1 point of the obstacle is unseen";
+  EXPECT_THAT(runStage(scan, flag + "}", machine).warnings, Contains(HasSubstr(told)));
+  EXPECT_THAT(runStage(scanFrom(1, io::no_viewpoint), flag + R"(, "origin": "1,0,1"})", machine).warnings,
+              Contains(HasSubstr(told)));
+}
+
+/// A viewpoint of some of the points says nothing of the others.
+TEST_F(SeenStages, RefuseCloudsMergedOfSeveralScans)
+{
+  const std::string merge = R"({"type": "filters.merge", "inputs": ["in", "other"]})";
+  EXPECT_EQ(outputOf(scan, merge, scanFrom(1, at_scanner))->viewpoint, at_scanner);
+  EXPECT_EQ(outputOf(scan, merge, machine)->viewpoint, io::no_viewpoint);
+}
+
+} // namespace
+} // namespace pcl_bsh::pipeline

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Labels against every triangle in exact arithmetic.
+#include <pcl_bsh/solid/brute_force_labels.h>
+#include <pcl_bsh/solid/labels.h>
+
+#include "meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace pcl_bsh {
+namespace {
+
+using Eigen::Isometry3d;
+using test::Mesh;
+using test::Random;
+
+Isometry3d poseOf(double angle, const Eigen::Vector3d& shift)
+{
+  Isometry3d pose = Isometry3d::Identity();
+  pose.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, -3).normalized()));
+  pose.pretranslate(shift);
+  return pose;
+}
+
+/// Compares all queries with brute force, of voxels that are built and that are not.
+void expectExact(const Mesh& mesh, const std::vector<double>& points, const Isometry3d& pose_a = Isometry3d::Identity(),
+                 const Isometry3d& pose_b = Isometry3d::Identity(), const std::string& what = {})
+{
+  SCOPED_TRACE(what);
+  const Solid solid(mesh.view());
+  const SphereHierarchy cloud(viewOf(points.data(), points.size() / 3));
+  const Placed a(cloud, pose_a);
+  const PlacedSolid b(solid, pose_b);
+  const LabelsResult expected = brute_force::labelPoints(a, b);
+  std::optional<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < expected.labels.size() && !first; ++i)
+    if (expected.labels[i] != labelOf(Label::outside)) first = i;
+  for (const bool built : {false, true}) {
+    if (built) cloud.buildAll();
+    const LabelsResult found = labelPoints(a, b, built ? 2 : 1);
+    EXPECT_EQ(found.labels, expected.labels) << "built " << built;
+    EXPECT_EQ(found.inside, expected.inside);
+    EXPECT_EQ(found.on_surface, expected.on_surface);
+    EXPECT_EQ(firstInside(a, b), first);
+    EXPECT_EQ(anyInside(a, b), first.has_value());
+  }
+}
+
+std::vector<double> somewhere(std::size_t count, double low, double high, std::uint64_t seed)
+{
+  Random random(seed);
+  std::vector<double> points(3 * count);
+  for (double& x : points) x = random.uniform(low, high);
+  return points;
+}
+
+TEST(Labels, OfABox)
+{
+  const Mesh box = test::boxMesh();
+  expectExact(box, somewhere(2000, -0.3, 1.3, 1));
+  expectExact(box, test::pointsAbout(box, 2000, 0.01, 2));
+  expectExact(box, somewhere(2000, -0.3, 1.3, 3), poseOf(0.3, {0.2, 0.1, 0}), poseOf(1.1, {0.1, 0, 0.2}));
+}
+
+TEST(Labels, OfShellsThatCrossAndTouchOnALattice)
+{
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const int steps = seed % 2 == 0 ? 4 : 8;
+    const Mesh mesh = test::latticeMesh(12, steps, seed);
+    std::vector<double> points;
+    for (int x = -1; x <= 2 * steps + 1; x += 2)
+      for (int y = -1; y <= 2 * steps + 1; ++y)
+        for (int z = -1; z <= 2 * steps + 1; ++z)
+          points.insert(points.end(), {x / (2.0 * steps), y / (2.0 * steps), z / (2.0 * steps)});
+    expectExact(mesh, points, Isometry3d::Identity(), Isometry3d::Identity(), "seed " + std::to_string(seed));
+    expectExact(mesh, test::pointsAbout(mesh, 300, 1e-9, seed), poseOf(0.5, {0, 0, 0}), poseOf(0.5, {0, 0, 0}));
+  }
+}
+
+TEST(Labels, OfNestedOverlappingAndDoubledShells)
+{
+  const Mesh box = test::boxMesh();
+  Mesh mesh;
+  mesh.add(box, 1.0);
+  mesh.add(box, 0.5, {0.25, 0.25, 0.25}, true); // a hollow
+  mesh.add(box, 0.25, {0.375, 0.375, 0.375});   // a body in it
+  mesh.add(box, 1.0, {0.5, 0.5, 0.5});          // overlaps
+  mesh.add(box, 1.0, {2, 0, 0});
+  mesh.add(box, 1.0, {2, 0, 0}, true); // doubled in opposite directions: encloses nothing
+  mesh.add(box, 1.0, {3, 0, 0}, true); // inside out, and touches
+  expectExact(mesh, somewhere(3000, -0.2, 4.2, 5));
+  expectExact(mesh, test::pointsAbout(mesh, 2000, 0.02, 6));
+  const Solid solid(mesh.view());
+  EXPECT_EQ(labelPlace(solid, {0.1, 0.1, 0.1}), Label::inside);
+  EXPECT_EQ(labelPlace(solid, {0.3, 0.3, 0.3}), Label::outside);
+  EXPECT_EQ(labelPlace(solid, {0.45, 0.45, 0.45}), Label::inside);
+  EXPECT_EQ(labelPlace(solid, {0.7, 0.7, 0.7}), Label::inside);
+  EXPECT_EQ(labelPlace(solid, {2.5, 0.5, 0.5}), Label::outside);
+  EXPECT_EQ(labelPlace(solid, {2.5, 0.5, 1.0}), Label::surface);
+  EXPECT_EQ(labelPlace(solid, {3.5, 0.5, 0.5}), Label::inside);
+  EXPECT_EQ(labelPlace(solid, {std::numeric_limits<double>::quiet_NaN(), 0, 0}), Label::outside);
+}
+
+TEST(Labels, OfABumpySurfaceAndAFan)
+{
+  const Mesh bumpy = test::bumpyMesh(24, 0.3), fan = test::fanMesh(3000);
+  expectExact(bumpy, test::pointsAbout(bumpy, 1500, 0.02, 8));
+  expectExact(bumpy, test::pointsAbout(bumpy, 500, 0.02, 9), poseOf(2.0, {5, 1, 2}), poseOf(2.1, {5, 1, 2}));
+  expectExact(fan, test::pointsAbout(fan, 300, 0.01, 10));
+}
+
+TEST(Labels, OfLongThinTriangles)
+{
+  Random random(11);
+  Mesh mesh;
+  const Mesh box = test::boxMesh();
+  for (int i = 0; i < 60; ++i) { // sheared beams in all directions
+    Mesh beam = box;
+    const Point3 way = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    for (std::size_t v = 0; v < 8; ++v)
+      for (std::size_t k = 0; k < 3; ++k)
+        beam.xyz[3 * v + k] =
+            (v & 1) * way[k] + (k == 1 ? 1e-3 : 0) * (v >> 1 & 1) + (k == 2 ? 1e-3 : 0) * (v >> 2 & 1);
+    mesh.add(beam, 1.0, {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)});
+  }
+  expectExact(mesh, test::pointsAbout(mesh, 1500, 1e-3, 12));
+}
+
+TEST(Labels, OfSmallEdgesFarFromTheOrigin)
+{
+  Mesh mesh;
+  mesh.add(test::bumpyMesh(10, 0.3), 1e-4, {5e5, 5.4e6, 120}); // edges of about 10 um at UTM coordinates
+  const std::vector<double> points = test::pointsAbout(mesh, 1500, 2e-6, 13);
+  expectExact(mesh, points);
+  expectExact(mesh, points, poseOf(0.7, {10, 20, 30}), poseOf(0.7, {10, 20, 30}));
+}
+
+TEST(Labels, OfAStrayBodyAndOfExtremeSizes)
+{
+  Mesh stray = test::bumpyMesh(12, 0.2);
+  stray.add(test::boxMesh(), 1.0, {1e7, -1e7, 3e6});
+  expectExact(stray, test::pointsAbout(stray, 1000, 0.02, 14));
+  for (const double scale : {1e-150, 1e-30, 1e30, 1e150}) {
+    Mesh box;
+    box.add(test::bumpyMesh(6, 0.3), scale);
+    std::vector<double> points = test::pointsAbout(test::bumpyMesh(6, 0.3), 300, 0.1, 15);
+    for (double& x : points) x *= scale;
+    if (scale < 1e38 && scale > 1e-38) expectExact(box, points);
+    const Solid solid(box.view());
+    EXPECT_EQ(labelPlace(solid, {0.5 * scale, 0.5 * scale, 0.5 * scale}), Label::inside);
+    EXPECT_EQ(labelPlace(solid, {0.5 * scale, 0.5 * scale, 1.5 * scale}), Label::outside);
+  }
+}
+
+TEST(Labels, OfPlatesThatCastNoShadowAndOfPoints)
+{
+  Mesh mesh; // a triangle from both sides, and one without area
+  const std::uint32_t a = mesh.vertex(0, 0, 0), b = mesh.vertex(1, 0, 0), c = mesh.vertex(0, 1, 0);
+  mesh.triangle(a, b, c);
+  mesh.triangle(a, c, b);
+  mesh.triangle(a, a, a);
+  const Solid solid(mesh.view());
+  EXPECT_EQ(labelPlace(solid, {0.25, 0.25, 0}), Label::surface);
+  EXPECT_EQ(labelPlace(solid, {0.25, 0.25, 1e-300}), Label::outside);
+  const Solid nothing(TrianglesView{viewOf(mesh.xyz.data(), 3), nullptr, 0});
+  EXPECT_EQ(labelPlace(nothing, {0, 0, 0}), Label::outside);
+}
+
+TEST(Labels, OfWholeNodesTakeFewTests)
+{
+  const Mesh box = test::boxMesh();
+  const Solid solid(box.view());
+  const std::vector<double> deep = somewhere(20000, 0.2, 0.8, 16), far = somewhere(20000, 3, 4, 17);
+  const SphereHierarchy inside(viewOf(deep.data(), 20000)), outside(viewOf(far.data(), 20000));
+  const LabelsResult in = labelPoints({inside}, solid), out = labelPoints({outside}, solid);
+  EXPECT_EQ(in.inside, 20000u);
+  EXPECT_EQ(in.work.leaf_pairs, 0u);
+  EXPECT_EQ(out.inside, 0u);
+  EXPECT_LE(out.work.node_pairs, 8u);
+  EXPECT_EQ(in.work.voxels_built, 0u);
+}
+
+TEST(Labels, OfPointsThatAreNotFinite)
+{
+  const Mesh box = test::boxMesh();
+  const Solid solid(box.view());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> points = {0.5, 0.5, 0.5, nan, 0.5, 0.5, 0.25, 0.5, 0.5};
+  const SphereHierarchy cloud(viewOf(points.data(), 3));
+  EXPECT_EQ(labelPoints({cloud}, solid).labels, (std::vector<std::uint8_t>{1, 0, 1}));
+}
+
+} // namespace
+} // namespace pcl_bsh

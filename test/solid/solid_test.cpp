@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/solid/solid.h>
+
+#include "meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+TEST(Solid, RefusesWhatIsOpenAndSaysWhere)
+{
+  test::Mesh open = test::boxMesh();
+  open.corners.erase(open.corners.begin() + 3, open.corners.begin() + 6); // the second triangle of the first side
+  try {
+    const Solid solid(open.view());
+    FAIL();
+  }
+  catch (const InvalidInput& error) {
+    EXPECT_EQ(error.input(), Input::surface);
+    EXPECT_EQ(error.index(), 0u);
+    EXPECT_EQ(std::string(error.what()),
+              "solid: 3 edges are open, the first from (1, 1, 0) to (0, 0, 0) in triangle 0: "
+              "close the mesh, or let it count as a surface");
+  }
+}
+
+TEST(Solid, RefusesCornersThatAreNotThere)
+{
+  test::Mesh mesh = test::boxMesh();
+  mesh.corners[7] = 8;
+  EXPECT_THROW(Solid(mesh.view()), InvalidInput);
+}
+
+TEST(Solid, JoinsCornersOfEqualCoordinates)
+{
+  const test::Mesh box = test::boxMesh();
+  test::Mesh soup;
+  for (const std::uint32_t corner : box.corners)
+    soup.corners.push_back(soup.vertex(box.xyz[3 * corner], box.xyz[3 * corner + 1], box.xyz[3 * corner + 2]));
+  EXPECT_NO_THROW(Solid(soup.view()));
+}
+
+TEST(Solid, TakesLittleMemory)
+{
+  const test::Mesh mesh = test::bumpyMesh(100, 0.2);
+  const Solid solid(mesh.view());
+  EXPECT_LT(static_cast<double>(solid.bytes()) / static_cast<double>(mesh.view().count), 128.0);
+}
+
+} // namespace
+} // namespace pcl_bsh
