@@ -57,6 +57,12 @@ function(pcl_bsh_precompile target set)
   endif()
 endfunction()
 
+# Highway's code for AArch64 is compiled for its vectors as all processors have them: with a choice at run time g++ takes
+# none of it into functions outside of that choice, and vectors of unknown length are no members of classes.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+  add_compile_definitions(TOOLCHAIN_MISS_SYS_AUXV_H)
+endif()
+
 # Which symbols of a library are seen: of the visible ones, ours.
 configure_file("${CMAKE_CURRENT_LIST_DIR}/exports.map.in" "${PROJECT_BINARY_DIR}/exports.map" @ONLY)
 function(pcl_bsh_limit_exports target)

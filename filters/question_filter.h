@@ -223,6 +223,12 @@ public:
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
   bool getDensityGuard() const { return question_.density; }
 
+  /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
+  /// and names the first open edge. What is inside collides at any clearance, its distance is negative. Default: false,
+  /// a surface alone.
+  void setObstacleSolid(bool solid) { question_.solid = solid; }
+  bool getObstacleSolid() const { return question_.solid; }
+
   /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
   /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
   /// between the lines. Finite and >= 0. Counts with the density guard alone.

@@ -65,10 +65,11 @@ void bindWords(py::module_& module)
   members["COLLIDING"] = static_cast<int>(Verdict::colliding);
   members["UNDECIDED"] = static_cast<int>(Verdict::undecided);
   members["SPARSE"] = static_cast<int>(Verdict::sparse);
+  members["UNSEEN"] = static_cast<int>(Verdict::unseen);
   verdicts() = py::module_::import("enum").attr("IntEnum")("Verdict", members, "module"_a = "pcl_bsh").release();
   verdicts().attr("__doc__") =
       "What stands in arrays of flags: 0 free, 1 colliding, 2 undecided, 3 free of all points, "
-      "but not scanned densely enough.";
+      "but not scanned densely enough, 4 free, but seen by no scanner.";
   module.attr("Verdict") = verdicts();
   module.attr("NO_POINT") = std::uint32_t{kNothing};
 

@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/solids.h>
 #include <pcl_bsh/question/unseen.h>
 
 #include <algorithm>
@@ -36,6 +37,7 @@ public:
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
     const std::uint32_t nearest = found_.nearest[record];
+    if (distance < 0.0) return -exact_.compare({record, nearest}, -length); // a depth
     return exact_.compare({record, nearest}, length);
   }
 
@@ -69,6 +71,7 @@ public:
     b_(obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads), question.pose),
     a_(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input)
   {
+    if (question.solid) solid_.emplace(question, obstacle, a_, b_);
   }
 
   Answer answer()
@@ -101,6 +104,7 @@ private:
     answer_.collisions.flags = std::move(found.a);
     answer_.collisions.colliding = found.colliding_a;
     answer_.collisions.undecided = found.undecided_a;
+    if (solid_) solid_->addTo(answer_.collisions, answer_.work);
   }
 
   /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
@@ -150,6 +154,7 @@ private:
     request.swept = question_.sweptTolerance();
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
+    if (solid_) solid_->addToPath(answer_.collisions, answer_.work);
     if (wanted_.closest) {
       answer_.closest = closestOf(answer_.collisions);
       answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
@@ -165,6 +170,7 @@ private:
     DistanceResult found = closestPair(a_, b_, effort);
     answer_.work += found.work;
     answer_.closest = std::move(found);
+    if (solid_) solid_->turn(answer_.closest);
   }
 
   /// How far to look.
@@ -174,7 +180,7 @@ private:
     if (!wanted_.within) return told;
     const auto [least, most] = question_.limits;
     const double of_limits = std::isinf(most) ? least : most;
-    return wanted_.distances ? std::max(told, of_limits) : of_limits;
+    return wanted_.distances ? std::max(told, of_limits) : std::max(of_limits, 0.0);
   }
 
   void measure()
@@ -189,6 +195,7 @@ private:
       found.a = pointDistances(a_, b_, request);
     answer_.work += found.a.work;
     answer_.work += found.b.work;
+    if (solid_) solid_->turn(found.a);
     if (wanted_.within) compare(request.max_distance);
   }
 
@@ -223,6 +230,7 @@ private:
   Shape& input_;
   Shape& obstacle_;
   Placed b_, a_; ///< in this order: what is wrong with the obstacle is told first
+  std::optional<SolidObstacle> solid_;
   bool closest_is_known_ = false;
   int begun_ = 0; ///< queries that have
   Answer answer_;
@@ -253,7 +261,7 @@ void check(const Question& question)
   of_nothing.uncertainty.field.clear();
   of_nothing.obstacle_uncertainty.field.clear();
   of_nothing.sigmas = 1.0;
-  of_nothing.seen = false;
+  of_nothing.seen = of_nothing.solid = false;
   of_nothing.origin = {};
   of_nothing.seen_angle.reset();
   of_nothing.progress = nullptr;

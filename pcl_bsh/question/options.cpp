@@ -64,6 +64,10 @@ std::vector<QuestionOption> table()
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity},
+      {"solid", &Q::solid, Kind::any, "", "", Input::surface,
+       "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
+       "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
+       "alone, hollow as a tunnel that a wagon passes"},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
        "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
        "input "
@@ -177,6 +181,8 @@ void checkOptions(const Question& question)
     refuse("seen", "is about poses, and the motion between them is asked about", "leave out `seen` or `swept`");
   if (!question.seen && (question.seen_angle || !question.origin.empty()))
     refuse(question.seen_angle ? "seen_angle" : "origin", "is given, but not `seen`", "give `seen`, too");
+  if (question.solid && question.vertices_only)
+    refuse("solid", "is given, but `vertices_only`, too", "give one of them");
   if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
   if (question.path && wanted.distances && wanted.collisions())
@@ -184,9 +190,10 @@ void checkOptions(const Question& question)
   if (question.path && wanted.distances && !question.max_distance)
     refuse("max_distance", "is without limit", "give a finite one along a path");
   const auto [least, most] = question.limits;
-  if (!(0.0 <= least && least <= most && std::isfinite(least))) {
+  if (!((question.solid || 0.0 <= least) && least <= most && std::isfinite(least))) {
     throw InvalidOption("filter_limits", plainText("from ", least, " to ", most),
-                        "give a finite least >= 0, and a most that is not less");
+                        question.solid ? "give a finite least, and a most that is not less"
+                                       : "give a finite least >= 0, and a most that is not less");
   }
 }
 

@@ -69,6 +69,7 @@ struct Question : Effort {
   std::optional<double> seen_angle = {};   ///< SeenOptions::angle
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
+  bool solid = false;         ///< the obstacle counts with what its faces enclose: they must close
   bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
   Wanted wanted = {};
 

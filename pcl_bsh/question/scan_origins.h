@@ -16,8 +16,8 @@ namespace pcl_bsh {
 struct ScanOrigins {
   /// Of one scan.
   struct Entry {
-    double scan = 0.0; ///< the number; of no meaning without a field
-    Point3 origin = {0, 0, 0};
+    double scan = 0.0;         ///< the number; of no meaning without a field
+    Point3 origin = {0, 0, 0}; ///< where its scanner stood
     bool operator==(const Entry& other) const { return scan == other.scan && origin == other.origin; } ///< alike
   };
 

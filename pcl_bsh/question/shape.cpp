@@ -87,6 +87,17 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
   return looked_->space;
 }
 
+const Solid& Shape::solid()
+{
+  try {
+    if (!solid_) solid_ = std::make_shared<const Solid>(*hierarchy_->view().triangles);
+    return *solid_;
+  }
+  catch (const InvalidInput& error) {
+    throw InvalidInput(Input::surface, name_, error.wrong(), error.remedy());
+  }
+}
+
 void Shape::setPatches(std::vector<float> spacings)
 {
   patches_ = std::make_shared<const Patches>(Patches{std::nullopt, 0.0, std::move(spacings)});

@@ -9,6 +9,7 @@
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
+#include <pcl_bsh/solid/solid.h>
 
 #include <cstdint>
 #include <functional>
@@ -70,6 +71,10 @@ public:
   /// @throws InvalidInput as scansOf() and SeenSpace do
   const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads);
 
+  /// What its faces enclose. Made once. @pre isSurface(), and hierarchy() was called
+  /// @throws InvalidInput naming it, as Solid does
+  const Solid& solid();
+
   /// What is to be known of it beside an answer. @pre hierarchy() was called
   /// @param spacing how far its points are apart, too: measured once, for all copies; not of balls, which are taken for
   ///   those of a surface
@@ -102,6 +107,8 @@ private:
     std::optional<Spacing> spacing;
   };
   std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
+
+  std::shared_ptr<const Solid> solid_; ///< once it is asked for
 
   /// What SeenSpace is of.
   struct Looked {

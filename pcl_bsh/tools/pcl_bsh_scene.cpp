@@ -115,7 +115,8 @@ void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::Sc
     fs::path path = folder / names.of(part.object, part.part, step);
     if (const io::Obstacle* const surface = world.surface(entry.cloud)) {
       path.replace_extension(".ply"); // which holds faces
-      io::writeMesh(path, surface->points(), *surface->triangles(), {{collision_field_name, &part.flags}});
+      const std::vector<std::uint8_t> flags = numbersOf(part.flags);
+      io::writeMesh(path, surface->points(), *surface->triangles(), {{collision_field_name, &flags}});
       continue;
     }
     io::writeCloud(path, withField(world.cloud(entry.cloud), collision_field_name, part.flags));

@@ -135,6 +135,8 @@ std::vector<LegendEntry> RenderView::legend() const
       add(viewed.legend + ", undecided", undecided_color);
     if (collisions_.sparse > 0 && (!by_value || content_.options().range))
       add(viewed.legend + ", not scanned densely enough", sparse_color);
+    if (collisions_.unseen > 0 && (!by_value || content_.options().range))
+      add(viewed.legend + ", unseen", unseen_color);
   }
   if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
   if (collisions_.closest) add("closest pair", segment_color);
@@ -244,6 +246,7 @@ std::string RenderView::describePart(const ViewContent& content, std::size_t clo
     text << (flag == Verdict::free        ? "; free"
              : flag == Verdict::undecided ? "; undecided"
              : flag == Verdict::sparse    ? "; not scanned densely enough"
+             : flag == Verdict::unseen    ? "; unseen"
                                           : "; collides");
   return text.str() + content.details(cloud, part, step_);
 }

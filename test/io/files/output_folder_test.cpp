@@ -8,6 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <string>
+#include <thread>
+
 namespace pcl_bsh::files {
 
 namespace fs = std::filesystem;
@@ -49,6 +53,40 @@ TEST(OutputFolder, SaysWhatIsInTheWay)
   EXPECT_THROW(OutputFolder made(file), FileError);
   EXPECT_THROW(OutputFolder made(file / "sub/sub"), FileError);
   EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(OutputFolder, TakesBackTheFoldersAboveOneThatCannotBeMade)
+{
+  const TemporaryFolder folder;
+  try {
+    const OutputFolder made(folder / "a/b" / std::string(300, 'x'));
+    ADD_FAILURE() << "a name of 300 letters was accepted";
+  }
+  catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot be made (File name too long)"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(OutputFolder, MayBeMadeBySomeoneElseMeanwhile)
+{
+  const TemporaryFolder folder;
+  std::string wrong;
+  auto lock = lockUnfinished();
+  std::thread maker([&] {
+    try {
+      const OutputFolder made(folder / "a");
+    }
+    catch (const FileError& error) {
+      wrong = error.what();
+    }
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50)); // it has looked, and waits for the lock
+  fs::create_directory(folder / "a");
+  lock.unlock();
+  maker.join();
+  EXPECT_EQ(wrong, "");
+  EXPECT_TRUE(fs::exists(folder / "a")) << "is not its own";
 }
 
 TEST(OutputFolder, IsNoLinkToNothing)

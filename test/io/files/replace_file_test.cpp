@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <set>
@@ -298,6 +299,30 @@ TEST(ReplaceFile, AFolderThatVanishesIsAnError)
                FileError);
   EXPECT_FALSE(fs::exists(folder / "sub"));
   EXPECT_FALSE(fs::exists(folder / "moved/out"));
+}
+
+TEST(ReplaceFile, RefusesFoldersBeforeAnythingIsComputed)
+{
+  const TemporaryFolder folder;
+  try {
+    requireWritable(folder.path());
+    ADD_FAILURE() << "a folder was accepted";
+  }
+  catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("is a folder: name a file in it"), std::string::npos) << error.what();
+  }
+}
+
+/// Who discards what is unfinished must not miss a file that is just being made.
+TEST(ReplaceFile, MakesNoFileWhileUnfinishedOnesAreListed)
+{
+  const TemporaryFolder folder;
+  auto lock = lockUnfinished();
+  std::thread maker([&] { const FileReplacement made(folder / "out"); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(folder.files(), 0U);
+  lock.unlock();
+  maker.join();
 }
 
 } // namespace pcl_bsh::files

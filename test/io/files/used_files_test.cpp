@@ -58,6 +58,8 @@ TEST(UsedFiles, AnyTwoNamesOfOneFile)
   // None of these is there yet.
   for (const char* other : {"new", "./new", "sub/../new", "sub/up/new", "dangling", "sub/up/dangling", "NEW", "./New"})
     EXPECT_EQ(clashOf({out("A", folder / "new"), out("B", folder / other)}), twice) << other;
+  EXPECT_EQ(clashOf({out("A", folder / "AMZ"), out("B", folder / "amz")}), twice) << "on disks that know no capitals";
+  EXPECT_EQ(clashOf({out("A", folder / "@["), out("B", folder / "`{")}), "");
   for (const char* other : {"nowhere/new", "nowhere/./new", "sub/up/nowhere/new", "sub/../nowhere/new"})
     EXPECT_EQ(clashOf({out("A", folder / "nowhere/new"), out("B", folder / other)}), twice) << other;
   for (const char* other : {"newer", "sub/new", "file", "nowhere/new"})

@@ -88,6 +88,7 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, c
 Color colorOfFlag(Verdict flag)
 {
   if (flag == Verdict::undecided) return undecided_color;
+  if (flag == Verdict::unseen) return unseen_color;
   return flag == Verdict::sparse ? sparse_color : colliding_color;
 }
 

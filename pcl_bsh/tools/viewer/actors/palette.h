@@ -22,6 +22,7 @@ inline constexpr Color compared_color = {84, 92, 102};  ///< of clouds that dist
 inline constexpr Color colliding_color = {255, 106, 0}; ///< vermillion, brighter than in print
 inline constexpr Color undecided_color = {204, 121, 167};
 inline constexpr Color sparse_color = {0, 158, 115};
+inline constexpr Color unseen_color = {0, 114, 178};
 inline constexpr Color obstacle_colliding_color = {240, 228, 66};
 inline constexpr Color sphere_color = {86, 180, 233};
 inline constexpr Color voxel_color = {0, 158, 115};

@@ -13,7 +13,7 @@ namespace {
 /// As the field `collision` has it: any other number is a collision.
 Verdict verdictOf(float value)
 {
-  for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse})
+  for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse, Verdict::unseen})
     if (value == static_cast<float>(verdict)) return verdict;
   return Verdict::colliding;
 }
@@ -25,6 +25,7 @@ void countVerdicts(StepCollisions& found)
   found.colliding = countOf(found.flags[0], Verdict::colliding);
   found.undecided = countOf(found.flags[0], Verdict::undecided);
   found.sparse = countOf(found.flags[0], Verdict::sparse);
+  found.unseen = countOf(found.flags[0], Verdict::unseen);
 }
 
 StepCollisions FieldContent::collisions(std::size_t /*step*/) const

@@ -30,6 +30,7 @@ struct StepCollisions {
   std::size_t colliding = 0;               ///< parts of the scan, or points of all clouds of a scene
   std::size_t undecided = 0;               ///< likewise
   std::size_t sparse = 0;                  ///< likewise, not scanned densely enough
+  std::size_t unseen = 0;                  ///< likewise, free, but seen by no scanner
   std::optional<ClosestPair> closest;
 };
 
