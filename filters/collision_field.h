@@ -31,7 +31,7 @@ struct NewField {
   std::string name;
   std::variant<const std::vector<Verdict>*, const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*,
                const std::vector<float>*>
-      values;
+      values; ///< one per point
 };
 
 /// A copy of the cloud with more fields at the end of each record; every other byte is kept. A field of the same name

@@ -20,7 +20,7 @@ enum class Side : std::uint8_t { a = 1, b = 2, both = 3 };
 /// What collisionFlags() reads.
 struct FlagsRequest : Effort {
   FlagsRequest() = default;
-  FlagsRequest(double within, Side whose = Side::a, Effort effort = {})
+  /** All. */ FlagsRequest(double within, Side whose = Side::a, Effort effort = {})
   : Effort(std::move(effort)),
     clearance(within),
     flagged(whose)

@@ -15,7 +15,7 @@ namespace pcl_bsh {
 /// What anyCollision() reads.
 struct AnyRequest : Effort {
   AnyRequest() = default;
-  AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
+  /** All. */ AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
 
   double clearance = 0.0; ///< finite, >= 0; inclusive
 };

@@ -16,7 +16,7 @@ namespace pcl_bsh {
 /// What closestPair() reads.
 struct DistanceRequest : Effort {
   using Effort::Effort;
-  DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
+  /** All. */ DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
   DistanceRequest() = default;
 };
 

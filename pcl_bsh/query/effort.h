@@ -18,13 +18,13 @@ namespace pcl_bsh {
 /// The base of all requests.
 struct Effort {
   Effort() = default;
-  Effort(const Accuracy& how_sure, unsigned on_threads = 1, std::function<bool(double)> report = {})
+  /** All. */ Effort(const Accuracy& how_sure, unsigned on_threads = 1, std::function<bool(double)> report = {})
   : accuracy(how_sure),
     threads(on_threads),
     progress(std::move(report))
   {
   }
-  Effort(unsigned on_threads, std::function<bool(double)> report = {})
+  /** Exact. */ Effort(unsigned on_threads, std::function<bool(double)> report = {})
   : threads(on_threads),
     progress(std::move(report))
   {

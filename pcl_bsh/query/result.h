@@ -25,7 +25,7 @@ constexpr Verdict graver(Verdict one, Verdict other) noexcept
   if (one == Verdict::free || other == Verdict::free) return one == Verdict::free ? other : one;
   return one < other ? one : other;
 }
-
+/// How many are this one.
 inline std::size_t countOf(const std::vector<Verdict>& verdicts, Verdict verdict)
 {
   return static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), verdict));
@@ -54,7 +54,7 @@ inline std::vector<std::uint8_t> numbersOf(const std::vector<Verdict>& verdicts)
 }
 
 /// Among the numbers of an array: that there is none. -1 where they are signed, else the greatest there is.
-struct Nothing {
+struct Nothing { /// @cond
   template <class Number, class = std::enable_if_t<std::is_integral_v<Number> && !std::is_same_v<Number, bool>>>
   constexpr operator Number() const noexcept
   {
@@ -69,7 +69,7 @@ struct Nothing {
   friend constexpr bool operator!=(Number number, Nothing) noexcept
   {
     return number != static_cast<Number>(-1);
-  }
+  } /// @endcond
 };
 /// How results say so, of records, poses, clusters and balls. Of a single value that may be none, std::optional does.
 inline constexpr Nothing kNothing;

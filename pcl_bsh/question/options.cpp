@@ -64,7 +64,7 @@ std::vector<QuestionOption> table()
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity},
-      {"solid", &Q::solid, Kind::any, "", "", Input::surface,
+      {"solid", &Q::solid, Kind::any, "", "", std::nullopt,
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
        "alone, hollow as a tunnel that a wagon passes"},

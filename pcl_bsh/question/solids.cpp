@@ -57,11 +57,10 @@ std::vector<std::uint8_t> SolidObstacle::labels(const Eigen::Isometry3d& pose, W
   return std::move(found.labels);
 }
 
-void SolidObstacle::addTo(TrajectoryResult& flags, Work& work) const
+void SolidObstacle::addTo(TrajectoryResult& flags, Work& work)
 {
-  const std::vector<std::uint8_t> found = labels(b_.pose, &work);
-  for (std::size_t i = 0; i < flags.flags.size(); ++i)
-    if (isHeld(found[i])) add(flags.flags[i], question_.isUncertain());
+  if (flags.flags.empty()) return;
+  for (const std::uint32_t record : inside(&work)) add(flags.flags[record], question_.isUncertain());
   flags.colliding = countOf(flags.flags, Verdict::colliding);
   flags.undecided = countOf(flags.flags, Verdict::undecided);
 }
@@ -115,13 +114,14 @@ void SolidObstacle::addToPath(TrajectoryResult& found, Work& work) const
   }
 }
 
-std::vector<std::uint32_t> SolidObstacle::inside() const
+const std::vector<std::uint32_t>& SolidObstacle::inside(Work* work)
 {
-  const std::vector<std::uint8_t> found = labels(b_.pose, nullptr);
-  std::vector<std::uint32_t> records;
+  if (inside_) return *inside_;
+  const std::vector<std::uint8_t> found = labels(b_.pose, work);
+  inside_.emplace();
   for (std::uint32_t i = 0; i < found.size(); ++i)
-    if (isHeld(found[i])) records.push_back(i);
-  return records;
+    if (isHeld(found[i])) inside_->push_back(i);
+  return *inside_;
 }
 
 PointDistances SolidObstacle::depths(const std::vector<std::uint32_t>& records) const
@@ -136,9 +136,9 @@ PointDistances SolidObstacle::depths(const std::vector<std::uint32_t>& records) 
   return pointDistances({held, a_.pose}, b_, request);
 }
 
-void SolidObstacle::turn(PointDistances& found) const
+void SolidObstacle::turn(PointDistances& found)
 {
-  const std::vector<std::uint32_t> records = inside();
+  const std::vector<std::uint32_t>& records = inside(&found.work);
   std::vector<std::uint32_t> deep; // beyond what was asked for
   for (const std::uint32_t record : records)
     if (std::isnan(found.distance[record])) deep.push_back(record);
@@ -166,9 +166,9 @@ void SolidObstacle::turn(PointDistances& found) const
   }
 }
 
-void SolidObstacle::turn(DistanceResult& closest) const
+void SolidObstacle::turn(DistanceResult& closest)
 {
-  const std::vector<std::uint32_t> records = inside();
+  const std::vector<std::uint32_t>& records = inside(&closest.work);
   if (records.empty()) return;
   const PointDistances measured = depths(records);
   if (!(measured.greatest > 0.0)) return;
@@ -176,12 +176,6 @@ void SolidObstacle::turn(DistanceResult& closest) const
   closest.distance = -measured.greatest;
   closest.pair = measured.greatest_pair;
   closest.interval = {std::nextafter(closest.distance, -infinity), std::nextafter(closest.distance, infinity)};
-}
-
-bool SolidObstacle::holdsAny() const
-{
-  if (!a_.hierarchy().view().triangles) return anyInside(a_, {solid_, b_.pose});
-  return !inside().empty();
 }
 
 } // namespace pcl_bsh

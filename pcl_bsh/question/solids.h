@@ -15,28 +15,26 @@ public:
   SolidObstacle(const Question& question, Shape& obstacle, const Placed& a, const Placed& b);
 
   /// At one pose: what is inside collides. What is undecided for want of certain places stays so.
-  void addTo(TrajectoryResult& flags, Work& work) const;
+  void addTo(TrajectoryResult& flags, Work& work);
 
   /// Along the path: what is inside at a pose collides there, at a distance of 0.
   void addToPath(TrajectoryResult& found, Work& work) const;
 
   /// Distances of what is inside become negative, and are measured however deep.
-  void turn(PointDistances& found) const;
+  void turn(PointDistances& found);
 
   /// The deepest, where anything is inside.
-  void turn(DistanceResult& closest) const;
-
-  /// Whether a part of the input is inside, or on the surface.
-  bool holdsAny() const;
+  void turn(DistanceResult& closest);
 
 private:
   std::vector<std::uint8_t> labels(const Eigen::Isometry3d& pose, Work* work) const;
-  std::vector<std::uint32_t> inside() const;
+  const std::vector<std::uint32_t>& inside(Work* work); ///< records at the one pose; labelled once
   PointDistances depths(const std::vector<std::uint32_t>& records) const;
 
   const Question& question_;
   const Solid& solid_;
   const Placed &a_, &b_;
+  std::optional<std::vector<std::uint32_t>> inside_;
 };
 
 } // namespace pcl_bsh

@@ -125,6 +125,8 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   }
   makeGrid(low_, high_, all, false);
   refine();
+  cells_.shrink_to_fit();
+  entries_.shrink_to_fit();
 }
 
 bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles, bool finer)
@@ -143,7 +145,7 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
   const double most_entries = finer ? 16.0 * count : static_cast<double>(mostEntries(triangles.size()));
-  const double most_cells = finer ? 8.0 * count : 2.0 * count + 4096.0;
+  const double most_cells = finer ? 8.0 * count : count + 4096.0;
   const auto along = [](double length, double per) { return std::max(1.0, std::ceil(length * per)); };
   double per = shareOf(1.0, longest);
   if (!(per < kInfinity)) per = 0.0;
@@ -279,7 +281,7 @@ Columns::Range Columns::above(const Point3& at, double error, std::vector<std::u
 
 bool Columns::isClear(const Point3& at, double reach) const noexcept
 {
-  constexpr std::uint32_t kWidest = 12;
+  constexpr std::uint32_t kWidest = 32;
   std::array<std::uint32_t, 3> from, to;
   for (std::size_t k = 0; k < 3; ++k) {
     from[k] = indexOf(at[k] - reach, low_[k], cubes_per_[k], kCubes);
@@ -287,10 +289,12 @@ bool Columns::isClear(const Point3& at, double reach) const noexcept
     if (to[k] - from[k] >= kWidest) return false;
   }
   const std::uint64_t row = (~std::uint64_t{0} >> (kCubes - 1 - (to[2] - from[2]))) << from[2];
-  std::uint64_t met = 0;
-  for (std::uint32_t i = from[0]; i <= to[0]; ++i)
+  for (std::uint32_t i = from[0]; i <= to[0]; ++i) {
+    std::uint64_t met = 0;
     for (std::uint32_t j = from[1]; j <= to[1]; ++j) met |= cubes_[i * kCubes + j];
-  return (met & row) == 0;
+    if ((met & row) != 0) return false;
+  }
+  return true;
 }
 
 /// Marks the cubes that a triangle may meet: those of its box, once it is cut into pieces of two cubes at most.

@@ -89,7 +89,7 @@ private:
       const Whole whole = of(frame, voxel.frame.unit, node, i);
       if (whole == Whole::outside) continue;
       const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
-      if (whole == Whole::one_label || node.isCoincident(i)) {
+      if (whole == Whole::one_label || (node.isLeaf(i) && node.isCoincident(i))) {
         const Label label = labelOf(frame, records[begin]);
         if (label == Label::outside) continue;
         if (label == Label::inside)

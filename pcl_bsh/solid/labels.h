@@ -27,7 +27,7 @@ constexpr std::uint8_t labelOf(Label label) noexcept
 {
   return static_cast<std::uint8_t>(label);
 }
-
+/// What labelPoints() found.
 struct LabelsResult {
   std::vector<std::uint8_t> labels; ///< one per record of the cloud's view, a Label as a number
   std::size_t inside = 0;

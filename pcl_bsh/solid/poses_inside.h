@@ -13,7 +13,7 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
-
+/// What findPosesInside() found.
 struct PosesInside {
   static constexpr std::uint32_t kNever = ~std::uint32_t{0};
 

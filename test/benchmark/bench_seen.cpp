@@ -193,7 +193,7 @@ int main(int argc, char** argv)
   app.add_option("--points", options.points, "of the machine");
   app.add_option("--poses", options.poses, "of its way");
   app.add_option("--clearance", options.clearance, "m");
-  app.add_option("--noise", options.noise, "sigma of ranges, m");
+  app.add_option("--noise", options.noise, "a third of how far ranges are off at most, m");
   app.add_option("--cell", options.cell, "of OctoMap, m; 0: without it");
   app.add_option("--angle", options.angle, "that a beam speaks for; 0: measured");
   Table table({"method", "make (s)", "ask (s)", "memory (MB)", "visible", "recognised", "called seen", "wrongly"});

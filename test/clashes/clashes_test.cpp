@@ -73,7 +73,7 @@ TEST(Clashes, HoldTrianglesWhole)
   const std::vector<std::uint32_t> corners = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   const PointsView view = viewOf(TrianglesView{viewOf(xyz.data(), 9), corners.data(), 3});
   TrajectoryResult found;
-  found.flags = {1, 1, 1};
+  found.flags = test::verdictsOf({1, 1, 1});
   found.distance = {0.03f, 0.02f, 0.04f};
   found.first_pose = found.closest_pose = {0, 0, 0};
   found.closest_point = {0, 0, 0};

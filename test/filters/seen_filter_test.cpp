@@ -40,7 +40,7 @@ protected:
 
   Cloud::Ptr scan_{new Cloud}, machine_{new Cloud};
   CollisionFilter<pcl::PointXYZ> filter_;
-  std::vector<std::uint8_t> flags_;
+  std::vector<Verdict> flags_;
 };
 
 TEST_F(SeenFilter, TellsWhatOfTheObstacleIsUnseen)
@@ -52,7 +52,7 @@ TEST_F(SeenFilter, TellsWhatOfTheObstacleIsUnseen)
   filter_.computeFlags(flags_);
   EXPECT_EQ(filter_.getUnseen().count, 1u);
   EXPECT_EQ(filter_.getObstacleFlags(), test::verdictsOf({0, 4}));
-  EXPECT_THAT(flags_, testing::Each(0)) << "of the input: nothing collides";
+  EXPECT_THAT(flags_, testing::Each(Verdict::free)) << "of the input: nothing collides";
   filter_.setSeenOnly(false); // the origin waits
   filter_.computeFlags(flags_);
   EXPECT_EQ(filter_.getUnseen().count, 0u);

@@ -171,9 +171,9 @@ TEST(SurfaceFilter, OfTrianglesAnywhere)
   filter.setInputCloud(scan);
   filter.setObstacleSurface(TrianglesView{viewOf(xyz.data(), 3), triangles[0].data(), 1});
   filter.setClearance(0.5);
-  std::vector<std::uint8_t> flags;
+  std::vector<Verdict> flags;
   filter.computeFlags(flags);
-  EXPECT_THAT(flags, ElementsAre(1));
+  EXPECT_EQ(flags, test::verdictsOf({1}));
   xyz[8] = 1;
   EXPECT_THAT([&] { filter.computeFlags(flags); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("the obstacle: has changed since it was set")));

@@ -265,7 +265,7 @@ TEST_F(Ask, PosesInAWorldAreThoseOfTheQuery)
   EXPECT_EQ(found.collisions.flags, expected.a);
   EXPECT_EQ(found.obstacle_flags, expected.b);
   EXPECT_EQ(found.distances.a.nearest, distances.nearest);
-  EXPECT_EQ(found.within, expected.a);
+  EXPECT_EQ(found.within, numbersOf(expected.a));
   question.wanted = {};
   question.wanted.flags = true;
   question.path = somePath();

@@ -49,7 +49,7 @@ struct Tried {
   Shape scanShape() const { return {"scan", viewOf(scan.data(), scan.size() / 3)}; }
   Shape robotShape() const { return {"robot", viewOf(robot.data(), robot.size() / 3)}; }
 
-  std::vector<std::uint8_t> flags(const Question& asked) const
+  std::vector<Verdict> flags(const Question& asked) const
   {
     Shape a = scanShape(), b = robotShape();
     return ask(asked, a, b).collisions.flags;
@@ -57,10 +57,11 @@ struct Tried {
 };
 
 /// No verdict but undecided is other at a pose within the bound.
-void expectNoContradiction(const std::vector<std::uint8_t>& verdicts, const std::vector<std::uint8_t>& at_sample)
+void expectNoContradiction(const std::vector<Verdict>& verdicts, const std::vector<Verdict>& at_sample)
 {
   ASSERT_EQ(verdicts.size(), at_sample.size());
-  for (std::size_t i = 0; i < verdicts.size(); ++i) EXPECT_TRUE(verdicts[i] == 2 || verdicts[i] == at_sample[i]) << i;
+  for (std::size_t i = 0; i < verdicts.size(); ++i)
+    EXPECT_TRUE(verdicts[i] == Verdict::undecided || verdicts[i] == at_sample[i]) << i;
 }
 
 TEST(PoseUncertainty, NoPoseWithinItContradictsAVerdict)
@@ -78,7 +79,9 @@ TEST(PoseUncertainty, NoPoseWithinItContradictsAVerdict)
       else
         asked.pose = tried.path.front();
       const auto verdicts = tried.flags(asked);
-      for (const std::uint8_t verdict : verdicts) ++(verdict == 0 ? free_points : verdict == 1 ? colliding : undecided);
+      free_points += countOf(verdicts, Verdict::free);
+      colliding += countOf(verdicts, Verdict::colliding);
+      undecided += countOf(verdicts, Verdict::undecided);
       for (int sample = 0; sample < 100; ++sample) {
         certain.path.reset();
         certain.pose = sampled(asked.pose, asked.pose_uncertainty, random);
@@ -110,7 +113,8 @@ TEST(PoseUncertainty, HoldsOfSweptMotion)
       (*certain.path)[k] = sampled(tried.path[k], asked.pose_uncertainty, random);
     certain.swept = 0.0;
     const auto at_poses = tried.flags(certain); // some instants of the motion
-    for (std::size_t i = 0; i < verdicts.size(); ++i) EXPECT_TRUE(verdicts[i] != 0 || at_poses[i] == 0) << i;
+    for (std::size_t i = 0; i < verdicts.size(); ++i)
+      EXPECT_TRUE(verdicts[i] != Verdict::free || at_poses[i] == Verdict::free) << i;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "support/made_scans.h"
 #include "support/random_clouds.h"
+#include "support/verdicts.h"
 
 #include <gtest/gtest.h>
 
@@ -204,7 +205,7 @@ TEST(MarkUnseen, SettlesWholeSpheres)
   const SphereHierarchy model(viewOf(places.data(), places.size() / 3));
   const SeenSpace space = spaceOf({scanOf(ends)}, 0.2);
   for (const double far : {5.0, 20.0}) {
-    Verdicts verdicts(20000, 0);
+    Verdicts verdicts(20000, Verdict::free);
     const Eigen::Isometry3d pose(Eigen::Translation3d(far, 0, 0));
     const UnseenResult found = markUnseen(space, {model, pose}, within(0.05), verdicts);
     EXPECT_EQ(found.unseen, far > 10.0 ? 20000u : 0u);
@@ -217,9 +218,9 @@ TEST(MarkUnseen, LeavesOtherVerdictsAlone)
   const std::vector<double> ends = allAround(0.1, 1.0);
   const float places[] = {5, 0, 0, 5, 1, 0, 5, 2, 0, 5, 3, 0, std::nanf(""), 0, 0};
   const SphereHierarchy model(viewOf(places, 5));
-  Verdicts verdicts = {0, 1, 2, 3, 0};
+  Verdicts verdicts = test::verdictsOf({0, 1, 2, 3, 0});
   EXPECT_EQ(markUnseen(spaceOf({scanOf(ends)}, 0.2), {model}, within(0.1), verdicts).unseen, 1u);
-  EXPECT_EQ(verdicts, (Verdicts{kUnseen, 1, 2, 3, 0}));
+  EXPECT_EQ(verdicts, test::verdictsOf({4, 1, 2, 3, 0}));
 }
 
 TEST(MarkUnseenHardCases, BeamThatGrazes)
@@ -330,7 +331,7 @@ TEST(MarkUnseen, TakesUncertainPlacesAsTheyAre)
   const SeenSpace space = spaceOf({scanOf(ends)}, 0.2);
   const double place[] = {8, 0, 0};
   PointsView view = viewOf(place, 1);
-  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], 0);
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], Verdict::free);
   view.uncertainty = 0.2;
   EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
 }

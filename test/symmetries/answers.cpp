@@ -20,7 +20,7 @@ namespace {
 void askPair(const Instance& instance, const Placed& a, const Placed& b, Answers& answers)
 {
   const double clearance = instance.clearance;
-  answers.any = static_cast<std::uint8_t>(anyCollision(a, b, {clearance, {}, instance.threads}).verdict);
+  answers.any = static_cast<std::uint8_t>(anyCollision(a, b, {clearance, instance.threads}).verdict);
   FlagsRequest flags;
   flags.clearance = clearance;
   flags.flagged = Side::both;
@@ -126,8 +126,7 @@ void askAlong(const Instance& instance, const Placed& a, const SphereHierarchy& 
     answers.colliding_at.push_back(pose.undecided_points);
     answers.distance_at.push_back(pose.distance);
   }
-  answers.any_at =
-      numbersOf(anyCollisionAtPoses(a, b, instance.path, {instance.clearance, {}, instance.threads}).verdicts);
+  answers.any_at = numbersOf(anyCollisionAtPoses(a, b, instance.path, {instance.clearance, instance.threads}).verdicts);
   answers.closest_at = closestPairAtPoses(a, b, instance.path, {{}, instance.threads}).distances;
 }
 

@@ -151,17 +151,17 @@ TEST(TrianglesAlongPaths, SweptAgreesWithManyInstants)
     const std::vector<double> gaps = sampledGaps(run, scan, model, instants);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
       if (gaps[i] <= clearance * (1.0 - 1e-12)) {
-        EXPECT_EQ(found.flags[i], 1) << i << " at " << gaps[i];
+        EXPECT_EQ(found.flags[i], Verdict::colliding) << i << " at " << gaps[i];
       }
       if (gaps[i] > clearance + tolerance + step) {
-        EXPECT_EQ(found.flags[i], 0) << i << " at " << gaps[i];
+        EXPECT_EQ(found.flags[i], Verdict::free) << i << " at " << gaps[i];
       }
-      if (found.flags[i] != 1) continue;
+      if (found.flags[i] != Verdict::colliding) continue;
       EXPECT_LE(static_cast<double>(found.distance[i]), gaps[i] + 0.5 * tolerance + 1e-6 * tolerance) << i;
       EXPECT_GE(static_cast<double>(found.distance[i]), gaps[i] - step - 0.5 * tolerance) << i;
       EXPECT_GE(found.first_pose[i], 0);
     }
-    for (const std::uint8_t flag : found.flags) ++(flag == 1 ? hits : free);
+    for (const Verdict flag : found.flags) ++(flag == Verdict::colliding ? hits : free);
     if (HasFailure()) return;
   }
   EXPECT_GT(hits, 50);

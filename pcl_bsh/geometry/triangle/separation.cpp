@@ -211,6 +211,31 @@ private:
   Approach found_;
 };
 
+/// Of directions from b to a, the one along which both are farthest apart; of length 1.
+class BestDirection {
+public:
+  BestDirection(const Corners& a, const Corners& b) : a_(a), b_(b) {}
+
+  Point3 direction = {0, 0, 0};
+  double gap = -kInfinitelyFar;
+
+  void offer(const Point3& along)
+  {
+    const double length = lengthOf(along);
+    if (!(length > 0.0)) return;
+    const Point3 unit = (1.0 / length) * along;
+    double low_a = kInfinitelyFar, high_b = -kInfinitelyFar;
+    for (std::size_t i = 0; i < a_.count; ++i) low_a = std::min(low_a, dot(unit, a_.at[i]));
+    for (std::size_t j = 0; j < b_.count; ++j) high_b = std::max(high_b, dot(unit, b_.at[j]));
+    if (!(low_a - high_b > gap)) return;
+    gap = low_a - high_b;
+    direction = unit;
+  }
+
+private:
+  const Corners &a_, &b_;
+};
+
 } // namespace
 
 Separation separationOf(const Corners& a, const Corners& b)
@@ -225,12 +250,37 @@ Separation separationOf(const Corners& a, const Corners& b)
   const double error = kSeparationError * largest, length = std::sqrt(nearest.squared());
   apart.high = length * (1.0 + kFewDoubleRoundings) + error;
   if (!(length > 0.0)) return apart;
-  apart.direction = (1.0 / length) * (apart.place_a - apart.place_b);
-  double low_a = kInfinitelyFar, high_b = -kInfinitelyFar;
-  for (std::size_t i = 0; i < a.count; ++i) low_a = std::min(low_a, dot(apart.direction, a.at[i]));
-  for (std::size_t j = 0; j < b.count; ++j) high_b = std::max(high_b, dot(apart.direction, b.at[j]));
-  apart.low = std::max(0.0, (low_a - high_b) * (1.0 - kFewDoubleRoundings) - error);
+  // Where faces or edges are parallel, many places are as near as these, to rounding; of directions between them those
+  // count that hold both apart.
+  const Point3 between = apart.place_a - apart.place_b;
+  BestDirection best(a, b);
+  best.offer(between);
+  for (const Corners* corners : {&a, &b}) {
+    if (corners->count < 3) continue;
+    const Triangle3& t = corners->at;
+    const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    best.offer(dot(normal, between) < 0.0 ? -1.0 * normal : normal);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point3 edge = t[(i + 1) % 3] - t[i];
+      const double square = dot(edge, edge);
+      if (square > 0.0) best.offer(between - (dot(between, edge) / square) * edge);
+    }
+  }
+  apart.direction = best.direction;
+  apart.low = std::max(0.0, best.gap * (1.0 - kFewDoubleRoundings) - error);
   return apart;
+}
+
+Point3 faceBetween(const Corners& a, const Corners& b, double least)
+{
+  BestDirection best(a, b);
+  for (const Corners* corners : {&a, &b}) {
+    if (corners->count < 3) continue;
+    const Point3 normal = cross(corners->at[1] - corners->at[0], corners->at[2] - corners->at[0]);
+    best.offer(normal);
+    best.offer(-1.0 * normal);
+  }
+  return best.gap >= least ? best.direction : Point3{0, 0, 0};
 }
 
 Corners MovingCorners::at(double s) const

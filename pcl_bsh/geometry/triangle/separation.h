@@ -29,6 +29,10 @@ struct Separation {
 /// but for triangles so thin that their sides lie closer together than that.
 PCL_BSH_EXPORT_INTERNAL Separation separationOf(const Corners& a, const Corners& b);
 
+/// The normal of a face of one of them, of length 1 and from b to a, along which both are apart by no less than this;
+/// of several the one along which they are farthest apart; 0 where there is none.
+PCL_BSH_EXPORT_INTERNAL Point3 faceBetween(const Corners& a, const Corners& b, double least);
+
 /// Corners that move, each on a parabola: at s in [0, 1] at from + s way + 4 s (1 - s) bow.
 struct MovingCorners {
   Triangle3 from, way, bow;

@@ -154,8 +154,7 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
     if (!met) return bounce == 0 ? Walked::free : Walked::met;
     touch(*met);
     if (distance > tolerance_) planes.forget();
-    const Point3 normal = separationOf(*met).direction;
-    left = planes.add(Eigen::Vector3d(normal[0], normal[1], normal[2]), left);
+    left = planes.add(normalOf(*met), left);
     if (!slide) return Walked::met;
     if (bounce > 0) continue;
     // Only what is beside the straight path has been collected. From here on it may lead anywhere within what is
@@ -282,11 +281,29 @@ std::optional<double> Mover::contactOn(const RigidMotion& motion, const Encounte
 }
 
 /// At the object's pose.
+Corners Mover::mineOf(const Encounter& e) const
+{
+  return placedBy(body_.world[e.part], cornersOf(body_.object.parts[e.part].hierarchy->view(), e.pair.a));
+}
+
+Corners Mover::othersOf(const Encounter& e) const
+{
+  return placedBy(worldOf(e), cornersOf(hierarchyOf(e).view(), e.pair.b));
+}
+
 Separation Mover::separationOf(const Encounter& e) const
 {
-  return pcl_bsh::separationOf(
-      placedBy(body_.world[e.part], cornersOf(body_.object.parts[e.part].hierarchy->view(), e.pair.a)),
-      placedBy(worldOf(e), cornersOf(hierarchyOf(e).view(), e.pair.b)));
+  return pcl_bsh::separationOf(mineOf(e), othersOf(e));
+}
+
+/// Across a face, where that keeps them as far apart as they may pass each other: what comes over the edge between two
+/// triangles of a floor meets no step there.
+Eigen::Vector3d Mover::normalOf(const Encounter& e) const
+{
+  const Corners mine = mineOf(e), others = othersOf(e);
+  Point3 normal = faceBetween(mine, others, ContactZone{e.reach, tolerance_}.inner());
+  if (normal == Point3{0, 0, 0}) normal = pcl_bsh::separationOf(mine, others).direction;
+  return {normal[0], normal[1], normal[2]};
 }
 
 bool Mover::halt()

@@ -57,6 +57,9 @@ private:
   std::optional<double> contactOn(const RigidMotion& motion, const Encounter& encounter, double begin,
                                   double end) const;
   Separation separationOf(const Encounter& encounter) const;
+  Eigen::Vector3d normalOf(const Encounter& encounter) const;
+  Corners mineOf(const Encounter& encounter) const;
+  Corners othersOf(const Encounter& encounter) const;
   bool halt();
   void touch(const Encounter& encounter);
   const SphereHierarchy& hierarchyOf(const Encounter& encounter) const;

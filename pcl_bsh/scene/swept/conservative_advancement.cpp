@@ -112,7 +112,7 @@ Eigen::Vector3d vectorOf(const Point3& p)
   return {p[0], p[1], p[2]};
 }
 
-/// Corners of a body on their courses. All of them share the centre, the shift and the turn.
+/// Corners of a body on their courses. All of them share the shift, the turn, and the centre, if there is a turn.
 class CornersMotion {
 public:
   CornersMotion(const RigidMotion& motion, const Corners& corners) : count_(corners.count)
@@ -136,12 +136,12 @@ public:
   double bend() const { return bend_; }        ///< no acceleration is larger
   std::uint32_t count() const { return count_; }
 
-  /// At an instant, seen from a place.
+  /// At an instant, seen from where the centre is at `from`.
   Corners at(double s, const Eigen::Vector3d& from) const
   {
     Corners corners{{}, count_};
     for (std::uint32_t i = 0; i < count_; ++i) {
-      const Eigen::Vector3d place = from + courses_[i].spokeAt(s);
+      const Eigen::Vector3d place = from + (courses_[i].center - center()) + courses_[i].spokeAt(s);
       corners.at[i] = {place[0], place[1], place[2]};
     }
     return corners;

@@ -43,10 +43,7 @@ struct CollisionReport {
   Seconds seconds;
   std::vector<std::string> warnings;
 
-  bool mayLeaveUndecided() const
-  {
-    return question.accuracy.stopsEarly() || question.isUncertain();
-  }
+  bool mayLeaveUndecided() const { return question.accuracy.stopsEarly() || question.isUncertain(); }
 };
 
 /// Where `surface` is not null, the obstacle's numbers are those of triangles.

@@ -192,7 +192,7 @@ TEST_F(Collide, TellsWhatOfTheObstacleNobodySaw)
   folder.write("scan.xyz", points);
   folder.write("machine.xyz", "1 0 1\n3 0 1\n-3 0 1\n2 0 1\n");
   const std::string rest = " {machine.xyz} {out.pcd} --clearance 0.15 --seen ";
-  for (const std::string scan : {"{scan.pcd}" + rest, "{scan.xyz}" + rest + "--origin 0,0,1 "}) {
+  for (const std::string& scan : {"{scan.pcd}" + rest, "{scan.xyz}" + rest + "--origin 0,0,1 "}) {
     const Outcome done = collide(scan + "--obstacle-out {seen.pcd} --report {report.json}");
     ASSERT_EQ(done.exit_code, 0) << done.err;
     EXPECT_THAT(done.out, HasSubstr("; of the obstacle, 1 point is unseen"));

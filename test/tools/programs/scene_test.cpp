@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program_run.h"
 
+#include <pcl_bsh/io/clouds/cloud_file.h>
+
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -55,6 +57,25 @@ TEST(SceneProgram, RunsAScene)
   EXPECT_TRUE(std::filesystem::exists(folder / "out" / "moving_ball_000004.pcd"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "moving_ball_000003.pcd"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "steps.csv.part"));
+}
+
+/// Each triangle has a flag of its own, in a format that holds faces.
+TEST(SceneProgram, SurfacesAreWrittenWithTheirFaces)
+{
+  const io::TemporaryFolder folder;
+  folder.write("plate.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+  folder.write("point.xyz", "0.75 0.25 0.125\n");
+  folder.write("scene.json", R"({"clouds": {"plate": "plate.off", "point": "point.xyz"}, "objects": [
+      {"name": "plate", "cloud": "plate"}, {"name": "point", "cloud": "point"}],
+      "clearance": 0.125, "effects": {"flags": true}, "outputs": {"clouds": "last"}, "steps": 0})");
+  const Outcome done = run("pcl_bsh_scene", "scene.json --out out", folder.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const io::Mesh plate = io::readMesh(folder / "out" / "plate_000000.ply");
+  EXPECT_EQ(plate.triangles.size(), 2u);
+  ASSERT_EQ(plate.face_values.size(), 1u);
+  EXPECT_EQ(plate.face_values[0].name, "collision");
+  EXPECT_EQ(plate.face_values[0].values, (std::vector<double>{1, 0}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out" / "point_000000.pcd"));
 }
 
 TEST(SceneProgram, EachObjectHasFilesOfItsOwn)

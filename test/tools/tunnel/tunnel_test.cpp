@@ -103,7 +103,7 @@ TEST(TunnelPassage, BendsShowCollisionsThatTheCrossSectionDoesNot)
   const Track track;
   std::size_t lamps = 0, only_in_bends = 0;
   for (std::size_t i = 0; i < collides.size(); ++i) {
-    if (collides[i] == 0) continue;
+    if (collides[i] == Verdict::free) continue;
     const Place place = placeOf(track, run.scan[i]);
     if (place.outline > clearance + 0.01) {
       ++only_in_bends;

@@ -66,7 +66,7 @@ protected:
 TEST_F(SurfaceViewTest, ACrateIsDrawnWithItsFaces)
 {
   Options faces = options(false), corners = options(true);
-  faces.clearance = corners.clearance = 0.01; // nothing collides
+  faces.question.clearance = corners.question.clearance = 0.01; // nothing collides
   OffscreenView surface(faces), vertices(corners);
   const double middle[3] = {0.0, -1.0, 1.0}; // of the face towards the camera
   const auto [x, y] = surface.seen(middle);

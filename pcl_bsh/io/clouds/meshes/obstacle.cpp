@@ -33,7 +33,7 @@ Obstacle::Obstacle(CloudPtr vertices, const TrianglesPtr& triangles, const Surfa
 std::string promiseOf(const Obstacle& surface)
 {
   return "the obstacle is a surface of " + counted(surface.triangles()->size(), "triangle") +
-         ": what it encloses is no part of it";
+         ": what it encloses is no part of it without `solid`";
 }
 
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
