@@ -48,11 +48,14 @@ public:
     return q;
   }
 
-  /// Truncated towards zero. @pre in the range of int32.
+  /// Truncated towards zero. What int32 does not hold becomes its lowest or highest number, NaN a negative one.
   HWY_INLINE void storeTruncated(std::int32_t* to) const
   {
     const hn::RebindToSigned<Tag> d;
-    for (std::size_t i = 0; i < kVectors; ++i) hn::StoreU(hn::ConvertTo(d, v_[i]), d, to + i * kStep);
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      const auto nan = hn::BitCast(d, hn::VecFromMask(Tag(), hn::IsNaN(v_[i]))); // which ARM converts to 0
+      hn::StoreU(hn::Or(hn::ConvertTo(d, v_[i]), nan), d, to + i * kStep);
+    }
   }
 
   /// Whether x, y and z are the same, and none is NaN.

@@ -29,7 +29,7 @@ struct Triple {
   static Triple load(const double* from) { return {{from[0], from[1], from[2]}}; }
   static Triple of(double value) { return {{value, value, value}}; }
   void store(double* to) const { std::copy_n(v, 3, to); }
-  /// As Quad does on x86: what no int32 can hold, NaN included, becomes the lowest.
+  /// As Quad does: what no int32 can hold, NaN included, becomes the lowest.
   void storeTruncated(std::int32_t* to) const
   {
     for (int k = 0; k < 3; ++k)
