@@ -22,7 +22,7 @@ AnyResult anyOfUncertain(Progress& progress, const Search& search)
   AnyResult certain = search(Places::certain, Watch{&progress, 1.0});
   certain.work += possible.work;
   if (certain.verdict == Verdict::colliding) return certain;
-  return {Verdict::undecided, std::nullopt, {certain.distance.lower, possible.distance.upper}, certain.work};
+  return {Verdict::undecided, std::nullopt, {certain.interval.lower, possible.interval.upper}, certain.work};
 }
 
 } // namespace pcl_bsh

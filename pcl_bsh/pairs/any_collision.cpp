@@ -135,7 +135,7 @@ AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyReques
   }
   IntervalFinding found = searchInterval(a, b, rule, request.clearance, {&progress, 1.0});
   const bool colliding = found.verdict == Verdict::colliding;
-  return {found.verdict, colliding ? found.pair : std::nullopt, found.distance, found.work += work};
+  return {found.verdict, colliding ? found.pair : std::nullopt, found.interval, found.work += work};
 }
 
 /// Of points that may be elsewhere than they were measured.
@@ -143,10 +143,10 @@ AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& re
 {
   if (request.accuracy.stopsEarly()) {
     IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
-    const bool certain = found.distance.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
-    const bool possible = !(found.distance.lower > reachBetween(a, b, request.clearance, Places::possible).most);
+    const bool certain = found.interval.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
+    const bool possible = !(found.interval.lower > reachBetween(a, b, request.clearance, Places::possible).most);
     const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
-    return {verdict, certain ? found.pair : std::nullopt, found.distance, found.work};
+    return {verdict, certain ? found.pair : std::nullopt, found.interval, found.work};
   }
   return anyOfUncertain(
       progress, [&](Places places, const Watch& watch) { return anyCollisionAt(a, b, request, places, watch); });

@@ -25,8 +25,8 @@ struct AnyResult {
   Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early,
                                    ///< or where points have uncertainties
   /// A colliding pair, when colliding: the first that the depth-first search meets, for any number of threads.
-  std::optional<PointPair> witness;
-  Interval distance; ///< of the clouds, as far as the walk had to learn it
+  std::optional<PointPair> pair;
+  Interval interval; ///< of the clouds, as far as the walk had to learn it
   Work work;
 };
 

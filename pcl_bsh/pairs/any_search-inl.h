@@ -32,11 +32,11 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
                           const Work& work)
 {
   AnyResult result;
-  result.witness = witness;
+  result.pair = witness;
   result.work = work;
   result.verdict = witness ? Verdict::colliding : stopped ? Verdict::undecided : Verdict::free;
   if (result.verdict != Verdict::undecided)
-    (witness ? result.distance.upper : result.distance.lower) =
+    (witness ? result.interval.upper : result.interval.lower) =
         witness ? acceptance.surely_within : acceptance.surely_beyond;
   return result;
 }

@@ -124,7 +124,7 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
     const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
     progress.finish();
     const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();
-    return {gap, found.pair, found.distance, found.work};
+    return {gap, found.pair, found.interval, found.work};
   }
   const unsigned threads = request.accuracy.isExact() ? threadCount(request.threads) : 1;
   DistanceResult found = HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy, threads, progress);

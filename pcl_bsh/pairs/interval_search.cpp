@@ -197,9 +197,9 @@ private:
     IntervalFinding finding;
     double undecided = cut_lower_;
     for (const Open& open : open_) undecided = std::min(undecided, open.lower);
-    finding.distance.upper = upper_;
-    finding.distance.lower = std::min({undecided, pair_lower_, clearance_.value_or(kInfinity)});
-    if (!pairs_.mayOverlap()) finding.distance.lower = std::max(finding.distance.lower, 0.0);
+    finding.interval.upper = upper_;
+    finding.interval.lower = std::min({undecided, pair_lower_, clearance_.value_or(kInfinity)});
+    if (!pairs_.mayOverlap()) finding.interval.lower = std::max(finding.interval.lower, 0.0);
     finding.pair = pair_;
     if (clearance_) {
       finding.verdict = isSettled() ? Verdict::colliding : undecided > *clearance_ ? Verdict::free : Verdict::undecided;

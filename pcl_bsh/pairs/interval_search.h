@@ -9,7 +9,7 @@
 namespace pcl_bsh {
 
 struct IntervalFinding {
-  Interval distance;
+  Interval interval;
   std::optional<PointPair> pair;        ///< realises a distance <= the upper end
   Verdict verdict = Verdict::undecided; ///< on the clearance asked about
   Work work;

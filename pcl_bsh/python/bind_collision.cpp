@@ -104,7 +104,7 @@ Examples
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 3, 4]]))
 >>> bool(pcl_bsh.any_collision(a, b, 5.0)), bool(pcl_bsh.any_collision(a, b, 4.9))
 (True, False)
->>> pcl_bsh.any_collision(a, b, 5.0).witness
+>>> pcl_bsh.any_collision(a, b, 5.0).pair
 (0, 0)
 )";
 
@@ -236,7 +236,7 @@ std::string textOf(const AnyResult& result)
 {
   const char* const names[] = {"FREE", "COLLIDING", "UNDECIDED", "SPARSE"};
   std::string text = std::string("AnyCollision(") + names[static_cast<std::size_t>(result.verdict)];
-  if (result.witness) text += ", witness " + std::string(py::str(py::cast(tupleOf(*result.witness))));
+  if (result.pair) text += ", pair " + std::string(py::str(py::cast(tupleOf(*result.pair))));
   return text + ")";
 }
 
@@ -255,10 +255,10 @@ void bindCollision(py::module_& module)
   py::class_<AnyResult>(module, "AnyCollision", "The answer of `any_collision`.")
       .def_property_readonly("verdict", [](const AnyResult& result) { return verdictOf(result.verdict); })
       .def_property_readonly(
-          "witness", [](const AnyResult& result) { return tupleOf(result.witness); },
+          "pair", [](const AnyResult& result) { return tupleOf(result.pair); },
           "A colliding pair of rows (a, b), the first that the search met; or None.")
       .def_property_readonly(
-          "interval", [](const AnyResult& result) { return tupleOf(result.distance); },
+          "interval", [](const AnyResult& result) { return tupleOf(result.interval); },
           "(lower, upper): holds the distance of the clouds, as far as the search had to learn it.")
       .def_readonly("work", &AnyResult::work)
       .def("__bool__", &isColliding)

@@ -31,7 +31,7 @@ py::dict dictOf(const PartPair& pair, More... more)
 
 py::dict dictOf(const CollidingPair& pair)
 {
-  return dictOf(pair, "witness"_a = tupleOf(pair.witness));
+  return dictOf(pair, "pair"_a = tupleOf(pair.pair));
 }
 
 py::dict dictOf(const DistantPair& pair)
@@ -66,7 +66,7 @@ py::dict dictOf(const FlaggedPart& part)
 py::dict dictOf(const SelfCollision& pair)
 {
   return py::dict("object"_a = pair.object, "part_a"_a = pair.part_a, "part_b"_a = pair.part_b,
-                  "witness"_a = tupleOf(pair.witness));
+                  "pair"_a = tupleOf(pair.pair));
 }
 
 py::dict dictOf(const Leg& leg)
@@ -118,7 +118,7 @@ void bindSceneResult(py::module_& module)
       "What a scene computed: a list of dicts for each effect, empty unless it was asked for. Objects "
       "and parts are numbers, in the order in which they were added.")
       .def_readonly("time", &SceneResult::time, "Of the scene, seconds.")
-      .def_property_readonly("any", listed(&SceneResult::any), "a, b, part_a, part_b, witness.")
+      .def_property_readonly("any", listed(&SceneResult::any), "a, b, part_a, part_b, pair.")
       .def_property_readonly("undecided", listed(&SceneResult::undecided), "a, b, part_a, part_b.")
       .def_property_readonly("flags", listed(&SceneResult::flags), "object, part, colliding, undecided, flags.")
       .def_property_readonly("distance", listed(&SceneResult::distance),
@@ -138,7 +138,7 @@ void bindSceneResult(py::module_& module)
                              "Objects that did more than that since the last query: object, added (looked at where it "
                              "stands), reshaped (how its points got from their former places is not looked at), "
                              "detoured (it may have gone another way than its leg).")
-      .def_property_readonly("self_collisions", listed(&SceneResult::self), "object, part_a, part_b, witness.")
+      .def_property_readonly("self_collisions", listed(&SceneResult::self), "object, part_a, part_b, pair.")
       .def_property_readonly("outcomes", listed(&SceneResult::outcomes),
                              "Of moved objects, with a response or gravity: object, touched, against, stuck, grounded, "
                              "wanted, travelled, legs (as in swept_motions).")

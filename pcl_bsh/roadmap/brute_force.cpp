@@ -51,7 +51,7 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
     ++result.work.exact_decisions;
     if (verdict != Verdict::free) result.verdict = verdict;
     if (verdict != Verdict::colliding) return true;
-    result.witness = PointPair{p.record, q.record};
+    result.pair = PointPair{p.record, q.record};
     return false;
   });
   return result;

@@ -100,7 +100,7 @@ struct PartPair {
 
 /// Of Effect::any.
 struct CollidingPair : PartPair {
-  PointPair witness; ///< some colliding pair of points
+  PointPair pair; ///< some colliding pair of points
 };
 
 /// Of Effect::distance.
@@ -136,7 +136,7 @@ struct FlaggedPart {
 struct SelfCollision {
   ObjectId object = 0;
   std::uint32_t part_a = 0, part_b = 0;
-  PointPair witness;
+  PointPair pair;
 };
 
 /// What a response or gravity made of an object's wanted motion.

@@ -213,7 +213,7 @@ void measureOneEffect(const Options& options, Table& table)
         const Eigen::Vector3d apart = crowd.poses()[i].translation() - crowd.poses()[j].translation();
         if (apart.cwiseAbs().maxCoeff() > 1.0 + request.clearance) continue;
         colliding +=
-            anyCollision({hierarchy, crowd.poses()[i]}, {hierarchy, crowd.poses()[j]}, request).witness.has_value();
+            anyCollision({hierarchy, crowd.poses()[i]}, {hierarchy, crowd.poses()[j]}, request).pair.has_value();
       }
     bare_seconds.push_back(bare_watch.seconds());
     same = same && colliding == result.any.size();

@@ -52,10 +52,10 @@ void compareAnswers(const Placed& a, const Placed& b, const test::Question& requ
   require(sensible || !any, "a clearance that is negative or not finite was accepted");
   if (!any) return;
   require(any->verdict == expected_any->verdict, "anyCollision differs from brute force");
-  require(any->witness.has_value() == (any->verdict == Verdict::colliding), "a witness belongs to a collision");
-  if (any->witness) {
+  require(any->pair.has_value() == (any->verdict == Verdict::colliding), "a witness belongs to a collision");
+  if (any->pair) {
     const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
-    const auto [i, j] = *any->witness;
+    const auto [i, j] = *any->pair;
     require(
         ExactDistance(a.pose, b.pose).compare(p.point(i), q.point(j), request.clearance, p.radius(i), q.radius(j)) <= 0,
         "the witness does not collide");

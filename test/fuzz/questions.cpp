@@ -205,18 +205,18 @@ void Questions::askAny(const Placed& a, const Placed& b, const test::Question& r
 {
   const bool expected = brute_force::anyCollision(a, b, request).verdict == Verdict::colliding;
   const AnyResult any = anyCollision(a, b, request);
-  require(any.witness.has_value() == (any.verdict == Verdict::colliding) || request.accuracy.stopsEarly(),
+  require(any.pair.has_value() == (any.verdict == Verdict::colliding) || request.accuracy.stopsEarly(),
           "any: a witness belongs to a collision");
   if (any.verdict == Verdict::colliding)
-    require(any.witness && collides(a, b, *any.witness, withTolerance(request)), "any: the witness does not collide");
+    require(any.pair && collides(a, b, *any.pair, withTolerance(request)), "any: the witness does not collide");
   if (any.verdict == Verdict::free) require(!expected, "any: free, though a pair collides");
   if (any.verdict == Verdict::undecided) require(request.accuracy.stopsEarly(), "any: undecided, though exact");
   if (request.accuracy.isExact()) require((any.verdict == Verdict::colliding) == expected, "any: differs");
   const double distance = brute_force::closestPair(a, b).distance;
-  requireHeld(any.distance, distance, request, "any");
+  requireHeld(any.interval, distance, request, "any");
   if (request.accuracy.stopsEarly()) return;
   const CollisionTrace trace = traceCollision(a, b, request);
-  require(trace.result.verdict == any.verdict && trace.result.witness == any.witness, "trace: another answer");
+  require(trace.result.verdict == any.verdict && trace.result.pair == any.pair, "trace: another answer");
   require(trace.result.work.node_pairs == any.work.node_pairs && trace.result.work.leaf_pairs == any.work.leaf_pairs,
           "trace: other work");
 }

@@ -64,7 +64,7 @@ public:
         const auto any = std::find_if(found.any.begin(), found.any.end(), of);
         require((any != found.any.end()) == (expected.colliding_a > 0), "scene: another verdict");
         colliding += expected.colliding_a > 0 ? 1 : 0;
-        if (any != found.any.end()) requireColliding(a, b, any->witness);
+        if (any != found.any.end()) requireColliding(a, b, any->pair);
         for (std::size_t k = 0; k < expected.a.size(); ++k) flags[i][k] = graver(flags[i][k], expected.a[k]);
         for (std::size_t k = 0; k < expected.b.size(); ++k) flags[j][k] = graver(flags[j][k], expected.b[k]);
 

@@ -57,7 +57,7 @@ test::Question request(unsigned threads = 1, Side flagged = Side::both)
 
 auto answerOf(const AnyResult& result)
 {
-  return std::tuple(result.verdict, result.witness);
+  return std::tuple(result.verdict, result.pair);
 }
 auto answerOf(const FlagsResult& result)
 {
@@ -375,7 +375,7 @@ TEST(AllocationFailure, OfManyMotions)
   for (const unsigned threads : {1u, 2u}) {
     MotionsRequest asked;
     asked.clearance = 0.01;
-    asked.tolerance = 0.002;
+    asked.swept = 0.002;
     asked.threads = threads;
     failEachAllocation(freshPair, [&](const auto& pair) {
       return anyCollisionOnMotions(pair->placedA(), pair->b, poses, motions, asked).verdicts;

@@ -43,10 +43,10 @@ void expectSameAsBruteForce(const Scene& scene, double clearance)
   const AnyResult expected = brute_force::anyCollision(placed_a, placed_b, within(clearance));
   const AnyResult result = anyCollision(placed_a, placed_b, within(clearance));
   ASSERT_EQ(result.verdict, expected.verdict);
-  ASSERT_EQ(result.witness.has_value(), result.verdict == Verdict::colliding);
-  if (!result.witness) return;
-  EXPECT_EQ(result.witness, anyCollision(placed_a, placed_b, within(clearance)).witness) << "asked again";
-  EXPECT_LE(RecordDistance(a.view(), scene.pose_a, b.view(), scene.pose_b).compare(*result.witness, clearance), 0);
+  ASSERT_EQ(result.pair.has_value(), result.verdict == Verdict::colliding);
+  if (!result.pair) return;
+  EXPECT_EQ(result.pair, anyCollision(placed_a, placed_b, within(clearance)).pair) << "asked again";
+  EXPECT_LE(RecordDistance(a.view(), scene.pose_a, b.view(), scene.pose_b).compare(*result.pair, clearance), 0);
 }
 
 /// At the scene's clearance, and where the answer turns: at the smallest distance, give or take the last bit.
@@ -105,8 +105,8 @@ TEST(AnyCollision, WitnessNamesRecordsOfTheCloudNotOfTheSubset)
   const Cloud b({{50, 0, 0}, {0, 0, 1}});
   const SphereHierarchy hierarchy_a(a.view()), hierarchy_b(b.view());
   const AnyResult result = anyCollision({hierarchy_a}, {hierarchy_b}, within(1));
-  ASSERT_TRUE(result.witness);
-  EXPECT_EQ(*result.witness, (PointPair{3, 1}));
+  ASSERT_TRUE(result.pair);
+  EXPECT_EQ(*result.pair, (PointPair{3, 1}));
 }
 
 // Pairs that other tools decide wrongly.
@@ -195,7 +195,7 @@ TEST(AnyCollision, FarMovesDecidedWithoutRoundingTheMovedPoint) // H20
       const SphereHierarchy hierarchy_p(cloud_p.view()), hierarchy_q(cloud_q.view());
       const AnyResult result = anyCollision({hierarchy_p}, {hierarchy_q, pose}, within(.05));
       const ExactDistance distance(identity, pose);
-      EXPECT_EQ(result.witness.has_value(),
+      EXPECT_EQ(result.pair.has_value(),
                 distance.compare(cloud_p.view().point(0), cloud_q.view().point(0), .05) <= 0);
     }
   }
@@ -232,7 +232,7 @@ TEST(AnyCollision, WorkIsTheSameForAnyNumberOfThreads)
       const SphereHierarchy ha(a.view()), hb(b.view());
       const AnyResult result = anyCollision({ha}, {hb, pose}, within(0.03));
       if (time == 1) expected = result;
-      EXPECT_EQ(result.witness, expected.witness) << time;
+      EXPECT_EQ(result.pair, expected.pair) << time;
       EXPECT_EQ(test::countsOf(result.work), test::countsOf(expected.work)) << time;
     }
   }
@@ -246,7 +246,7 @@ TEST(AnyCollision, ManyThreadsOnOneFreshHierarchy)
   const SphereHierarchy ha(a.view()), hb(b.view()), reference_a(a.view()), reference_b(b.view());
   const auto ask = [&](const SphereHierarchy& x, const SphereHierarchy& y, std::size_t i) {
     const Eigen::Isometry3d pose(Eigen::Translation3d(1.9 + 0.05 * static_cast<double>(i), 0, 0));
-    return anyCollision({x}, {y, pose}, within(0.02)).witness;
+    return anyCollision({x}, {y, pose}, within(0.02)).pair;
   };
   std::vector<std::optional<PointPair>> witnesses(8);
   std::vector<std::thread> threads;

@@ -49,7 +49,7 @@ TEST(Budget, TimedAnySearchesAsExactDoes)
     const AnyResult exact = anyCollision(placed_a, placed_b, asking(Accuracy::exact(), scene.clearance));
     const AnyResult timed = anyCollision(placed_a, placed_b, asking(Accuracy::time(3600), scene.clearance));
     EXPECT_EQ(timed.verdict, exact.verdict);
-    EXPECT_EQ(timed.witness, exact.witness);
+    EXPECT_EQ(timed.pair, exact.pair);
     EXPECT_EQ(timed.work.node_pairs, exact.work.node_pairs);
     EXPECT_EQ(timed.work.leaf_pairs, exact.work.leaf_pairs);
     const double truth = brute_force::closestPair(placed_a, placed_b).distance;

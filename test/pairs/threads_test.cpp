@@ -62,9 +62,9 @@ TEST(ThreadsOfAnyCollision, GiveTheFirstWitnessAndTheWorkOfOneThread)
         request.threads = threads;
         const AnyResult several = anyCollision({fresh_a}, {fresh_b}, request);
         ASSERT_EQ(several.verdict, one.verdict) << trial;
-        ASSERT_EQ(several.witness, one.witness) << trial;
-        ASSERT_EQ(several.distance.lower, one.distance.lower);
-        ASSERT_EQ(several.distance.upper, one.distance.upper);
+        ASSERT_EQ(several.pair, one.pair) << trial;
+        ASSERT_EQ(several.interval.lower, one.interval.lower);
+        ASSERT_EQ(several.interval.upper, one.interval.upper);
         ASSERT_EQ(workOf(several.work), workOf(one.work)) << trial;
         ASSERT_GE(several.work.voxels_built, one.work.voxels_built);
         if (one.verdict == Verdict::free) {
@@ -119,7 +119,7 @@ TEST(ThreadsOfAQuery, AreNotNeededBySmallOrEmptyClouds)
   const Cloud none(std::vector<Point3>{}), point({{0, 0, 0}});
   const SphereHierarchy empty(none.view()), one(point.view());
   EXPECT_EQ(anyCollision({empty}, {one}, {1.0, 2}).verdict, Verdict::free);
-  EXPECT_EQ(anyCollision({one}, {one}, {0.0, 2}).witness, (PointPair{0, 0}));
+  EXPECT_EQ(anyCollision({one}, {one}, {0.0, 2}).pair, (PointPair{0, 0}));
   EXPECT_FALSE(closestPair({empty}, {one}, {{}, 2}).pair);
   EXPECT_EQ(closestPair({one}, {one}, {{}, 2}).distance, 0.0);
 }

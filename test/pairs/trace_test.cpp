@@ -45,7 +45,7 @@ TEST(Trace, AnswersAsAnyCollisionDoesWithTheSameWork)
       const AnyResult expected = anyCollision({a}, {b, pose}, within(clearance));
       const CollisionTrace trace = traceCollision({fresh_a}, {fresh_b, pose}, within(clearance));
       EXPECT_EQ(trace.result.verdict, expected.verdict);
-      EXPECT_EQ(trace.result.witness, expected.witness);
+      EXPECT_EQ(trace.result.pair, expected.pair);
       EXPECT_EQ(test::countsOf(trace.result.work), test::countsOf(expected.work));
     }
   }

@@ -112,7 +112,7 @@ TEST(Uncertainty, SameAsBruteForceForAnyThreads)
     for (const unsigned threads : {1u, 2u}) {
       const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, threads});
       ASSERT_EQ(any.verdict, brute.verdict);
-      ASSERT_EQ(any.witness.has_value(), any.verdict == Verdict::colliding);
+      ASSERT_EQ(any.pair.has_value(), any.verdict == Verdict::colliding);
       const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both, threads));
       ASSERT_EQ(found.a, all.a);
       ASSERT_EQ(found.b, all.b);
@@ -348,7 +348,7 @@ TEST(Uncertainty, ATraceTellsBothSearches)
     const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, {}});
     const CollisionTrace trace = traceCollision(placed_a, placed_b, {scene.clearance, {}});
     ASSERT_EQ(trace.result.verdict, any.verdict);
-    ASSERT_EQ(trace.result.witness, any.witness);
+    ASSERT_EQ(trace.result.pair, any.pair);
     ASSERT_EQ(test::countsOf(trace.result.work), test::countsOf(any.work));
     std::size_t compared = 0;
     for (const TracedSphere& sphere : trace.a) compared += sphere.fate == SphereFate::compared;

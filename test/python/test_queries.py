@@ -42,9 +42,9 @@ def test_two_clouds(kind_a, kind_b, pose):
     found = pcl_bsh.any_collision(A, B, clearance, pose_b=pose_b)
     assert bool(found) == near.any() == (found.verdict == pcl_bsh.Verdict.COLLIDING)
     if near.any():
-        assert near[found.witness]
+        assert near[found.pair]
     else:
-        assert found.witness is None and found.verdict is pcl_bsh.Verdict.FREE
+        assert found.pair is None and found.verdict is pcl_bsh.Verdict.FREE
 
     closest = pcl_bsh.closest_pair(A, B, pose_b=pose_b)
     if np.isfinite(d).any():

@@ -92,8 +92,8 @@ void expectCertified(const Truth& truth, const Accuracy& accuracy)
   if (any.verdict != Verdict::undecided) {
     EXPECT_EQ(any.verdict, truth.any.verdict);
   }
-  EXPECT_EQ(any.witness.has_value(), any.verdict == Verdict::colliding);
-  expectHolds(any.distance, truth.distance.distance);
+  EXPECT_EQ(any.pair.has_value(), any.verdict == Verdict::colliding);
+  expectHolds(any.interval, truth.distance.distance);
   const FlagsResult flags = truth.flagsAt(accuracy);
   expectNoneWrong(flags.a, truth.flags.a, flags.undecided_a);
   expectNoneWrong(flags.b, truth.flags.b, flags.undecided_b);
@@ -193,8 +193,8 @@ void expectNarrowing(const Truth& truth, const std::vector<Accuracy>& settings)
       EXPECT_EQ(next_any.verdict, any.verdict);
     }
     if (next_any.verdict == Verdict::undecided) { // a decided one stops, and knows no more than it needs
-      EXPECT_GE(next_any.distance.lower, any.distance.lower);
-      EXPECT_LE(next_any.distance.upper, any.distance.upper);
+      EXPECT_GE(next_any.interval.lower, any.interval.lower);
+      EXPECT_LE(next_any.interval.upper, any.interval.upper);
     }
     const FlagsResult next_flags = truth.flagsAt(accuracy);
     for (std::size_t i = 0; i < flags.a.size(); ++i) {
@@ -265,7 +265,7 @@ TEST(Accuracy, ToleranceErrsOnlyWithinIt)
         EXPECT_EQ(any.verdict, Verdict::free);
         EXPECT_EQ(truth.any.verdict, Verdict::free);
       }
-      expectHolds(any.distance, truth.distance.distance);
+      expectHolds(any.interval, truth.distance.distance);
       const DistanceResult distance = truth.distanceAt(accuracy);
       expectHolds(distance.interval, truth.distance.distance);
       if (truth.distance.pair) {

@@ -63,7 +63,7 @@ void addAnswers(const Scene& scene, unsigned threads, BuildOrder order, Hash& ha
   }
   const AnyResult any = anyCollision(placed_a, placed_b, request);
   hash.add(static_cast<std::uint64_t>(any.verdict));
-  hash.add(any.witness);
+  hash.add(any.pair);
   const FlagsResult flags = collisionFlags(placed_a, placed_b, request);
   hash.add(flags.a);
   hash.add(flags.b);

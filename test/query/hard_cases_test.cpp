@@ -71,9 +71,9 @@ void expectTruth(const Truth& truth, const HardCase& c, const Placed& a, const P
   const test::Question request = within(c.clearance, threads);
   const AnyResult any = anyCollision(a, b, request);
   ASSERT_EQ(any.verdict, truth.any.verdict);
-  if (any.witness) {
+  if (any.pair) {
     EXPECT_LE(ExactDistance(a.pose, b.pose)
-                  .compare(a.hierarchy().view().point(any.witness->a), b.hierarchy().view().point(any.witness->b),
+                  .compare(a.hierarchy().view().point(any.pair->a), b.hierarchy().view().point(any.pair->b),
                            c.clearance),
               0);
   }

@@ -65,7 +65,7 @@ TEST(SimdTargets, AnswerAlike)
     for (const std::int64_t target : targets) {
       SCOPED_TRACE(hwy::TargetName(target));
       const Answers answers = answersOn(target, scene);
-      EXPECT_EQ(answers.any.witness, expected.any.witness);
+      EXPECT_EQ(answers.any.pair, expected.any.pair);
       EXPECT_EQ(answers.flags.a, expected.flags.a);
       EXPECT_EQ(answers.flags.b, expected.flags.b);
       EXPECT_EQ(answers.closest.distance, expected.closest.distance);

@@ -107,8 +107,8 @@ TEST(Triangles, EveryAccuracyClaimsWhatIsSo)
       EXPECT_LE(nearest.interval.lower, closest);
       EXPECT_GE(nearest.interval.upper, closest);
       const AnyResult any = anyCollision(a, b, {scene.clearance, accuracy});
-      EXPECT_LE(any.distance.lower, closest);
-      EXPECT_GE(any.distance.upper, closest);
+      EXPECT_LE(any.interval.lower, closest);
+      EXPECT_GE(any.interval.upper, closest);
 
       PointDistancesRequest request;
       request.accuracy = accuracy;

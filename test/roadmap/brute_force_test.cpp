@@ -56,14 +56,14 @@ TEST_F(BruteForce, FlagsTheSideAskedFor)
 
 TEST_F(BruteForce, FindsTheSmallestWitness)
 {
-  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(5)).witness, (PointPair{2, 0}));
-  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(0)).witness, (PointPair{4, 1}));
-  EXPECT_EQ(brute_force::anyCollision({hierarchy_b_}, {hierarchy_b_}, within(0)).witness, (PointPair{0, 0}));
+  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(5)).pair, (PointPair{2, 0}));
+  EXPECT_EQ(brute_force::anyCollision(pa_, pb_, within(0)).pair, (PointPair{4, 1}));
+  EXPECT_EQ(brute_force::anyCollision({hierarchy_b_}, {hierarchy_b_}, within(0)).pair, (PointPair{0, 0}));
   const Cloud far({{100, 0, 0}});
   const SphereHierarchy away(far.view());
   const AnyResult none = brute_force::anyCollision(pa_, {away}, within(89.999));
   EXPECT_EQ(none.verdict, Verdict::free);
-  EXPECT_FALSE(none.witness);
+  EXPECT_FALSE(none.pair);
 }
 
 TEST_F(BruteForce, ClosestPairIsTheSmallestOfEquals)
@@ -112,14 +112,14 @@ TEST_F(BruteForce, AnswersAlikeWhateverTheRoundingMode)
     const Cloud p({random.point(coordinate)}, {Scalar::float64}), q({random.point(coordinate)}, {Scalar::float64});
     const SphereHierarchy hp(p.view()), hq(q.view());
     const double distance = brute_force::closestPair({hp}, {hq}).distance;
-    const bool expected = brute_force::anyCollision({hp}, {hq}, within(distance)).witness.has_value();
+    const bool expected = brute_force::anyCollision({hp}, {hq}, within(distance)).pair.has_value();
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
       std::fesetround(mode);
       const DistanceResult again = brute_force::closestPair({hp}, {hq});
       const AnyResult any = brute_force::anyCollision({hp}, {hq}, within(distance));
       std::fesetround(FE_TONEAREST);
       EXPECT_EQ(again.distance, distance);
-      EXPECT_EQ(any.witness.has_value(), expected);
+      EXPECT_EQ(any.pair.has_value(), expected);
     }
   }
 }

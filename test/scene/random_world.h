@@ -164,7 +164,7 @@ inline void expectAnyAsBruteForce(const RandomWorld& world, const pcl_bsh::Scene
     const Placed a = placed(scene, pair.a, pair.part_a), b = placed(scene, pair.b, pair.part_b);
     const PairReach reach(a.hierarchy().view(), b.hierarchy().view(), *world.clearanceOf(pair.a, pair.b),
                           certainPlaces(a, b));
-    EXPECT_TRUE(reach.holds(RecordDistance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose), pair.witness));
+    EXPECT_TRUE(reach.holds(RecordDistance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose), pair.pair));
   }
   EXPECT_EQ(found, expected);
 }

@@ -47,7 +47,7 @@ bool collides(const Scene& scene, ObjectId a, ObjectId b)
   request.clearance = scene.options().clearance;
   return brute_force::anyCollision({*scene[a].parts[0].hierarchy, scene.worldPose(a)},
                                    {*scene[b].parts[0].hierarchy, scene.worldPose(b)}, request)
-      .witness.has_value();
+      .pair.has_value();
 }
 
 /// A wall in the plane x = 0, points 0.1 apart.

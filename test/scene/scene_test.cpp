@@ -222,7 +222,7 @@ TEST(Scene, SameForAnyNumberOfThreads)
       const SceneResult a = one.query(), b = two.query();
       ASSERT_EQ(answers(a), answers(b));
       ASSERT_EQ(a.any.size(), b.any.size());
-      for (std::size_t i = 0; i < a.any.size(); ++i) ASSERT_EQ(a.any[i].witness, b.any[i].witness);
+      for (std::size_t i = 0; i < a.any.size(); ++i) ASSERT_EQ(a.any[i].pair, b.any[i].pair);
       ASSERT_EQ(a.flags.size(), b.flags.size());
       for (std::size_t i = 0; i < a.flags.size(); ++i) ASSERT_EQ(a.flags[i].flags, b.flags[i].flags);
       ASSERT_EQ(a.swept.size(), b.swept.size());
@@ -316,7 +316,7 @@ TEST(Scene, WhatIsRememberedLastsNoLongerThanItHolds)
       const SceneResult result = scene.step(0.1);
       const AnyRequest request{options.clearance, {}};
       const bool expected =
-          brute_force::anyCollision(placed(scene, 0, 0), placed(scene, 1, 0), request).witness.has_value();
+          brute_force::anyCollision(placed(scene, 0, 0), placed(scene, 1, 0), request).pair.has_value();
       ASSERT_EQ(result.any.size(), expected ? 1u : 0u) << step;
       reused += result.cost(Effect::any).reused;
       colliding += expected;

@@ -50,9 +50,9 @@ void Scene::State::decideAny(BroadPair& pair) const
           anyCollision(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {clearance, ofParts()});
       memory.work += found.work;
       if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
-      if (!found.witness) return true;
+      if (!found.pair) return true;
       memory.undecided.reset();
-      memory.witness = {parts, *found.witness};
+      memory.witness = {parts, *found.pair};
       return free = false;
     });
     return !free;
@@ -72,7 +72,7 @@ void Scene::State::decideAny(BroadPair& pair) const
     memory.patience = kPatience;
     memory.has_witness =
         memory.colliding && collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
-                                     memory.witness.witness, pair.clearance, memory.work);
+                                     memory.witness.pair, pair.clearance, memory.work);
     if (memory.has_witness) return;
   }
   else if (memory.patience > 0) {
@@ -96,7 +96,7 @@ bool Scene::State::remembersAny(BroadPair& pair) const
   }
   if (!memory.has_witness) return false;
   memory.colliding = collides(placed(pair.a, memory.witness.part_a), placed(pair.b, memory.witness.part_b),
-                              memory.witness.witness, pair.clearance, memory.work);
+                              memory.witness.pair, pair.clearance, memory.work);
   return memory.colliding;
 }
 
@@ -121,7 +121,7 @@ void Scene::State::findSelf(EffectCost& spent)
                          {*whole.parts[j].hierarchy, whole.parts[j].pose}, {options.clearance, ofParts()});
         spent.work += found.work;
         ++spent.pairs;
-        if (found.witness) result.self.push_back({object, i, j, *found.witness});
+        if (found.pair) result.self.push_back({object, i, j, *found.pair});
         if (found.verdict == Verdict::undecided) result.undecided.push_back({object, object, i, j});
       }
     progress->step();

@@ -34,7 +34,7 @@ public:
   {
     const AnyResult start = anyCollisionAt(a_.at(0), b_.at(0), {clearance_, {}}, places_);
     work_ += start.work;
-    if (start.witness) return PairContact{0.0, *start.witness};
+    if (start.pair) return PairContact{0.0, *start.pair};
     std::optional<PairContact> earliest;
     eachPart(0.0, 1.0, [&](double begin, double end, const PairsWithin& found) {
       earliest = found.complete ? firstOf(found, begin, end) : firstOfCrowd(begin, end);
@@ -118,8 +118,8 @@ private:
   {
     const AnyResult near = anyCollisionAt(a_.at(begin), b_.at(begin), {wideClearance(begin, end), {}}, places_);
     work_ += near.work;
-    if (!near.witness) return std::nullopt;
-    return PairContact{begin, *near.witness};
+    if (!near.pair) return std::nullopt;
+    return PairContact{begin, *near.pair};
   }
 
   void flagCrowd(double begin, double end)

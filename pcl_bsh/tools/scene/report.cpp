@@ -187,7 +187,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
     }
   };
   if (effects.any)
-    list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["witness"] = points(pair.witness); });
+    list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["pair"] = points(pair.pair); });
   if (open && (effects.any || effects.self)) list("undecided", result.undecided, [](Json&, const PartPair&) {});
   if (effects.flags) json["flags"] = flagged(result.flags);
   if (effects.distance)
@@ -228,7 +228,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
       json["self"].push_back({{"object", scene[hit.object].name},
                               {"part_a", scene[hit.object].parts[hit.part_a].name},
                               {"part_b", scene[hit.object].parts[hit.part_b].name},
-                              {"witness", points(hit.witness)}});
+                              {"pair", points(hit.pair)}});
   }
   if (effects.response != Response::none || effects.gravity) {
     json["moves"] = Json::array();
