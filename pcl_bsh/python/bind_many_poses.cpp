@@ -62,8 +62,8 @@ poses : array_like, (m, 4, 4) or (m, 3, 4)
 motions : array_like of int, (k, 2)
     From one pose of the list to another.
 clearance : float, default 0
-tolerance : float
-    Free is farther than the clearance at every instant, colliding comes within clearance + tolerance; > 0.
+swept : float
+    Free is farther than the clearance at every instant, colliding comes within clearance + `swept`; > 0.
 pose_scan : array_like, (4, 4) or (3, 4), optional
 pivot : array_like, (3,), optional
     The point of the model that moves in straight lines; default its origin.
@@ -81,7 +81,7 @@ Examples
 >>> wall = pcl_bsh.SphereHierarchy(np.array([[5.0, 0, 0]]))
 >>> drone = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
 >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 4, 9]
->>> pcl_bsh.any_collision_on_motions(wall, drone, poses, [[0, 1], [1, 2]], 0.5, tolerance=0.01)
+>>> pcl_bsh.any_collision_on_motions(wall, drone, poses, [[0, 1], [1, 2]], 0.5, swept=0.01)
 array([0, 1], dtype=uint8)
 )";
 
@@ -114,7 +114,7 @@ std::pair<py::array_t<double>, py::array_t<std::uint32_t>> closestAtPosesOf(cons
 }
 
 py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, const ArrayLike& poses,
-                                      const ArrayLike& motions, double clearance, double tolerance,
+                                      const ArrayLike& motions, double clearance, double swept,
                                       const PoseLike& pose_scan, const OptionalArray& pivot, unsigned threads,
                                       const ProgressLike& progress)
 {
@@ -125,7 +125,7 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
   for (std::size_t i = 0; i + 1 < ends.size(); i += 2) edges.push_back({ends[i], ends[i + 1]});
   MotionsRequest request;
   asked.question.clearance = request.clearance = clearance;
-  request.tolerance = tolerance;
+  request.swept = swept;
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
@@ -143,7 +143,7 @@ void bindManyPoses(py::module_& module)
   module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, "a"_a, "b"_a, "poses"_a, py::kw_only(),
              "pose_a"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
   module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, "scan"_a, "model"_a, "poses"_a, "motions"_a,
-             "clearance"_a = 0.0, py::kw_only(), "tolerance"_a, "pose_scan"_a = py::none(), "pivot"_a = py::none(),
+             "clearance"_a = 0.0, py::kw_only(), "swept"_a, "pose_scan"_a = py::none(), "pivot"_a = py::none(),
              "threads"_a = 1, "progress"_a = py::none());
 }
 

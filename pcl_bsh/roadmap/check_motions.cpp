@@ -61,7 +61,7 @@ void check(const Placed& scan, const PoseList& poses, const std::vector<PoseMoti
            const MotionsRequest& request)
 {
   checkClearance(request.clearance);
-  checkSweptTolerance("tolerance of the motions", request.tolerance);
+  checkSwept(request.swept);
   checkPivot(request.pivot);
   checkPose("pose of the scan", scan.pose);
   checkPoses(poses, "the model", request.threads);
@@ -95,11 +95,10 @@ void checkSwept(const MotionsQuery& query, const PoseList& poses, const std::vec
     throw InvalidInput(Input::motion, nameOf(motions, wrong), "half a turn, both directions are as short",
                        "give a pose between them")
         .withIndex(wrong);
-  throw InvalidInput(Input::swept, "tolerance of the motions",
-                     plainText(query.request.tolerance, ": too small for ", nameOf(motions, wrong)),
+  throw InvalidInput(Input::swept, "swept", plainText(query.request.swept, ": too small for ", nameOf(motions, wrong)),
                      "give a larger tolerance, or poses that are nearer to each other")
       .withIndex(wrong)
-      .withValue(query.request.tolerance);
+      .withValue(query.request.swept);
 }
 
 } // namespace pcl_bsh

@@ -24,7 +24,7 @@ TrajectoryRequest requestOfOne(const MotionsRequest& asked)
 {
   TrajectoryRequest request;
   request.clearance = asked.clearance;
-  request.swept = asked.tolerance;
+  request.swept = asked.swept;
   request.pivot = asked.pivot;
   request.flags = false;
   return request;
@@ -67,7 +67,7 @@ public:
     places_(places),
     progress_(progress)
   {
-    tolerance = query.request.tolerance;
+    tolerance = query.request.swept;
   }
 
   /// Appends a motion. @return the pose of its middle

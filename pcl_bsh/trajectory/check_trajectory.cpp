@@ -22,7 +22,7 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
     throw InvalidInput(Input::accuracy, "accuracy", request.accuracy.text(),
                        "decides which points collide, not when and how near: ask for flags alone, or give exact or "
                        "tolerance=LENGTH");
-  if (request.swept) checkSweptTolerance("tolerance of the swept motion", *request.swept);
+  if (request.swept) checkSwept(*request.swept);
   if (request.swept && request.pose_summaries)
     throw InvalidInput(Input::summaries, "pose_summaries", "are of poses, swept motion is of what is between",
                        "ask for one of them");
@@ -37,10 +37,10 @@ void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses
       checkPose("pose " + std::to_string(k) + " of the model", model_poses[k], k);
 }
 
-void checkSweptTolerance(const char* name, double tolerance)
+void checkSwept(double tolerance)
 {
   if (!(std::isfinite(tolerance) && tolerance > 0.0))
-    throw InvalidInput(Input::swept, name, plainText(tolerance), "give a finite length > 0").withValue(tolerance);
+    throw InvalidInput(Input::swept, "swept", plainText(tolerance), "give a finite length > 0").withValue(tolerance);
 }
 
 void checkPivot(const Point3& pivot)

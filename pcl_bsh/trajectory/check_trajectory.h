@@ -10,8 +10,8 @@ namespace pcl_bsh {
 ///   its declaration asks for, and what the request's accuracy cannot tell.
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
-/// Refuses a tolerance of swept motion that is not finite and > 0. @param name in the message
-void checkSweptTolerance(const char* name, double tolerance);
+/// Refuses a tolerance of swept motion that is not finite and > 0.
+void checkSwept(double tolerance);
 
 /// Refuses a pivot that is not finite.
 void checkPivot(const Point3& pivot);

@@ -155,13 +155,13 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
   if (total <= kMostPoses) {
     const double instants = 0x1p-52 * total * longest;
     if (instants <= sweep.rounding) return total;
-    throw InvalidInput(Input::swept, "tolerance of the swept motion",
+    throw InvalidInput(Input::swept, "swept",
                        plainText("too small: a double tells an instant among ", total,
                                  " parts of the motion, each as long as ", longest, ", within a length of ", instants,
                                  ", and ", sweep.rounding, " is needed"),
                        "give a larger tolerance, or fewer poses");
   }
-  throw InvalidInput(Input::swept, "tolerance of the swept motion",
+  throw InvalidInput(Input::swept, "swept",
                      plainText("too small, the motion would be cut into ", total, " parts, ", kMostPoses,
                                " are the most; from pose ", worst, " to the next the model turns by ", worst_angle,
                                " rad and moves by ", worst_way),

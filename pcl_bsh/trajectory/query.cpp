@@ -70,8 +70,7 @@ void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const 
                        plainText("give the clouds in a larger unit, less than ", 0x1p100))
         .withValue(size);
   if (*request.swept >= least) return;
-  throw InvalidInput(Input::swept, "tolerance of the swept motion",
-                     plainText(*request.swept, ": too small for coordinates as large as ", size),
+  throw InvalidInput(Input::swept, "swept", plainText(*request.swept, ": too small for coordinates as large as ", size),
                      plainText("give at least ", least))
       .withValue(*request.swept);
 }

@@ -83,7 +83,7 @@ public:
   {
     MotionsRequest request;
     request.clearance = request_.clearance;
-    request.tolerance = kMotionTolerance * request_.clearance;
+    request.swept = kMotionTolerance * request_.clearance;
     request.threads = threads;
     std::vector<PoseMotion> motions;
     for (std::size_t m = 0; m < count; ++m) motions.push_back({map.motions[m].first, map.motions[m].second});

@@ -81,7 +81,7 @@ def test_progress_and_stop():
         "symmetric": lambda progress: pcl_bsh.symmetric_distances(S, M, progress=progress).b.distance,
         "any": lambda progress: pcl_bsh.any_collision_at_poses(S, M, poses, 0.05, progress=progress),
         "closest": lambda progress: pcl_bsh.closest_pair_at_poses(S, M, poses, progress=progress)[0],
-        "motions": lambda progress: pcl_bsh.any_collision_on_motions(S, M, poses, motions, 0.05, tolerance=0.01,
+        "motions": lambda progress: pcl_bsh.any_collision_on_motions(S, M, poses, motions, 0.05, swept=0.01,
                                                                      progress=progress),
     }
     for name, call in calls.items():
@@ -149,7 +149,7 @@ def test_many_motions():
     motions = [[i, j] for i in range(5) for j in range(5)]
     A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
     clearance, tolerance = 0.02, 0.01
-    verdicts = pcl_bsh.any_collision_on_motions(A, B, poses, np.array(motions), clearance, tolerance=tolerance, threads=2)
+    verdicts = pcl_bsh.any_collision_on_motions(A, B, poses, np.array(motions), clearance, swept=tolerance, threads=2)
     for (i, j), verdict in zip(motions, verdicts):
         steps = [pcl_bsh.pose_between(poses[i], poses[j], s) for s in np.linspace(0, 1, 40)]
         least = min(distances(a, b, pose_b=step).min() for step in steps)
@@ -158,4 +158,4 @@ def test_many_motions():
         if least <= clearance:
             assert verdict and run.colliding
     assert 0 < verdicts.sum() < len(motions)
-    assert len(pcl_bsh.any_collision_on_motions(A, B, poses, np.zeros((0, 2), int), 0.1, tolerance=0.1)) == 0
+    assert len(pcl_bsh.any_collision_on_motions(A, B, poses, np.zeros((0, 2), int), 0.1, swept=0.1)) == 0

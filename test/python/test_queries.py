@@ -203,8 +203,8 @@ def test_accuracy_keeps_its_promises(text):
         (lambda A: pcl_bsh.patch_spacings(A, 0.0), "gap"),
         (lambda A: pcl_bsh.collide_along(A, A, np.zeros((2, 4, 4)), 0.1), "poses|rigid|last row"),
         (lambda A: pcl_bsh.collide_along(A, A, np.eye(4), 0.1), r"\(m, 4, 4\)"),
-        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 1]], 0.1, tolerance=0.1), "motion|pose"),
-        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1, tolerance=0.0), "tolerance"),
+        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 1]], 0.1, swept=0.1), "motion|pose"),
+        (lambda A: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1, swept=0.0), "swept"),
         (lambda A: pcl_bsh.SphereHierarchy.of_triangles(np.zeros((3, 3)), [[0, 1, 3]]), "names vertex 3"),
         (lambda A: pcl_bsh.SphereHierarchy.of_triangles(np.zeros((3, 3)), [[0, 1]]), r"triangles: have shape \(1, 2\)"),
         (lambda A: pcl_bsh.Accuracy("level=x"), "level=x"),
@@ -288,7 +288,7 @@ def test_warnings_say_what_answers_do_not():
         lambda b: pcl_bsh.collide_along(a, b, [np.eye(4)], 2.0),
         lambda b: pcl_bsh.any_collision_at_poses(a, b, [np.eye(4)], 2.0),
         lambda b: pcl_bsh.closest_pair_at_poses(a, b, [np.eye(4)]),
-        lambda b: pcl_bsh.any_collision_on_motions(a, b, [np.eye(4)], [[0, 0]], 2.0, tolerance=0.1),
+        lambda b: pcl_bsh.any_collision_on_motions(a, b, [np.eye(4)], [[0, 0]], 2.0, swept=0.1),
     ]
     for query in queries:
         assert warnings_of(lambda: query(b)) == []

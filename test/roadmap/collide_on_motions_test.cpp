@@ -37,7 +37,7 @@ Verdict verdictAlone(const Placed& scan, const SphereHierarchy& model, const Eig
 {
   const RigidMotion motion = motionBetween(one, other, request.pivot);
   TrajectoryRequest alone = flagsOnly(request.clearance);
-  alone.swept = request.tolerance;
+  alone.swept = request.swept;
   alone.pivot = request.pivot;
   const TrajectoryResult found = collideAlong(scan, model, {motion.from(), motion.to()}, alone);
   return found.colliding > 0 ? Verdict::colliding : found.undecided > 0 ? Verdict::undecided : Verdict::free;
@@ -82,7 +82,7 @@ Instants lookAt(const Placed& scan, const Cloud& scan_cloud, const Cloud& model,
     const double least = away(static_cast<double>(i) / count);
     const bool at_end = i == 0 || i == count;
     found.collides = found.collides || least <= request.clearance - (at_end ? 0.0 : rounding);
-    found.nears = found.nears || least <= request.clearance + request.tolerance + 0.5 * step + rounding;
+    found.nears = found.nears || least <= request.clearance + request.swept + 0.5 * step + rounding;
   }
   return found;
 }
@@ -141,7 +141,7 @@ Asked anyQuestion(const Scene& scene, std::size_t poses, std::size_t motions, Ra
   Asked asked;
   const double size = sizeOf(scene), length = scene.clearance > 0.0 ? 4 * scene.clearance : 1.0;
   asked.request.clearance = scene.clearance;
-  asked.request.tolerance = std::max(1e-9 * size, length * std::exp2(random.uniform(-8, 0)));
+  asked.request.swept = std::max(1e-9 * size, length * std::exp2(random.uniform(-8, 0)));
   asked.poses = anyPoses(scene, poses, length, random);
   asked.motions = anyMotions(poses, motions, random);
   if (random.chance(0.5)) {
@@ -233,7 +233,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
   const SphereHierarchy scan(still.view()), model(moving.view());
   MotionsRequest request;
   request.clearance = 0.5;
-  request.tolerance = 1e-6;
+  request.swept = 1e-6;
   const auto pass = [&](double distance) {
     const Poses poses = {at(-2, distance, 0), at(2, distance, 0)};
     const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
@@ -249,7 +249,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
   // What collides at a pose alone, to the last bit.
   const auto rest = [&](double distance) {
     const Poses poses = {at(0, distance, 0)};
-    request.tolerance = 1e-12;
+    request.swept = 1e-12;
     return anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).verdicts[0];
   };
   EXPECT_EQ(rest(0.125), Verdict::colliding);
@@ -299,7 +299,7 @@ struct Roadmap {
       for (std::uint32_t j = 0; j < i; ++j)
         if ((poses[i].translation() - poses[j].translation()).norm() < step) motions.push_back({i, j});
     request.clearance = 0.02;
-    request.tolerance = 0.005;
+    request.swept = 0.005;
   }
 
   static std::vector<Point3> surface(int points, double radius, Random& random)
@@ -356,7 +356,7 @@ TEST(OnMotions, ShareWhatTheyHaveInCommon)
   Work alone;
   for (const PoseMotion& motion : map.motions) {
     TrajectoryRequest request = flagsOnly(map.request.clearance);
-    request.swept = map.request.tolerance;
+    request.swept = map.request.swept;
     alone += collideAlong({map.hall}, map.body, {map.poses[motion.from], map.poses[motion.to]}, request).work;
   }
   EXPECT_LT(4 * together.node_pairs, alone.node_pairs);
@@ -370,7 +370,7 @@ TEST(OnMotions, FindsWhatIsMetAtOneInstantOnly)
   const Poses poses = {at(-1), at(1), at(1, 1e-9)};
   MotionsRequest request;
   request.clearance = 0x1p-20;
-  request.tolerance = 0x1p-24;
+  request.swept = 0x1p-24;
   for (int i = -97; i <= 97; ++i) {
     const Cloud post({{i / 100.0, 0, 0}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(post.view());
@@ -393,7 +393,7 @@ TEST(OnMotions, FollowsTheArcOfATip)
   const Poses poses = {at(0, 0, -1.4), at(0, 0, 1.4)};
   MotionsRequest request;
   request.clearance = 0.001;
-  request.tolerance = 0.0005;
+  request.swept = 0.0005;
   for (double angle = -1.39; angle < 1.4; angle += 0.037) {
     for (const auto& [length, verdict] : {std::pair(2.0 + 0.00099, 1), std::pair(2.0 + 0.00151, 0)}) {
       const Cloud post({{length * std::cos(angle), length * std::sin(angle), 0}}, {Scalar::float64, 0, 0});
@@ -414,7 +414,7 @@ TEST(OnMotions, GrazesAreRightInBatches)
     const SphereHierarchy model(body.view());
     MotionsRequest request;
     request.clearance = 0.01;
-    request.tolerance = 0.002;
+    request.swept = 0.002;
     request.pivot = random.point([&] { return random.uniform(-1, 1); });
     const double spread = std::pow(10.0, random.uniform(-2, 1));
     Poses poses;
@@ -474,7 +474,7 @@ TEST(OnMotions, EmptyListsAndClouds)
   const Cloud point({{0, 0, 0}}), none(std::vector<Point3>{});
   const SphereHierarchy a(point.view()), empty(none.view());
   MotionsRequest request;
-  request.tolerance = 0.1;
+  request.swept = 0.1;
   EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses(), {}, request).verdicts.empty());
   EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses{identity}, {}, request).verdicts.empty());
   EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::free);
@@ -502,7 +502,7 @@ TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
   poses[1] = at(5, 0, M_PI);
   poses[2] = at(0);
   MotionsRequest good;
-  good.tolerance = 0.1;
+  good.swept = 0.1;
   const auto refusal = [&](const Motions& motions, const MotionsRequest& request) {
     const std::string message = messageOf([&] { anyCollisionOnMotions({a}, a, poses, motions, request); });
     MotionsRequest threads = request;
@@ -521,11 +521,11 @@ TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
   late[4000] = late[4500] = {2, 1}; // pose 2 collides: refused nevertheless
   EXPECT_THAT(refusal(late, good), testing::HasSubstr("motion 4000, from pose 2 to pose 1: half a turn"));
   MotionsRequest wrong = good;
-  wrong.tolerance = 0.0;
-  EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("tolerance of the motions: 0: give"));
-  wrong.tolerance = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("tolerance of the motions"));
-  wrong.tolerance = 1e-18;
+  wrong.swept = 0.0;
+  EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("swept: 0: give"));
+  wrong.swept = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("swept"));
+  wrong.swept = 1e-18;
   EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("too small"));
   wrong = good;
   wrong.clearance = -1.0;
@@ -547,13 +547,13 @@ TEST(OnMotions, RefusesATightToleranceByTheMotion)
   const SphereHierarchy a(point.view());
   const Poses poses = {at(1e6), at(1e6, 1), at(1e6, 0, 3.1), at(1e6, 0, 3)};
   MotionsRequest request;
-  request.tolerance = 1e-5;
+  request.swept = 1e-5;
   EXPECT_EQ(anyCollisionOnMotions({a}, a, poses, {{0, 1}, {0, 2}}, request).colliding, 0u);
-  request.tolerance = 1e-8;
+  request.swept = 1e-8;
   for (const Motions& motions : {Motions{{0, 1}, {0, 2}}, Motions{{0, 1}, {0, 3}}}) {
     const std::string message = messageOf([&] { anyCollisionOnMotions({a}, a, poses, motions, request); });
     TrajectoryRequest alone = flagsOnly(0.0);
-    alone.swept = request.tolerance;
+    alone.swept = request.swept;
     const std::string expected = messageOf([&] { collideAlong({a}, a, {poses[0], poses[motions[1].to]}, alone); });
     EXPECT_EQ(message.empty(), expected.empty()) << expected;
   }

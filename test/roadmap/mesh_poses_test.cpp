@@ -51,7 +51,7 @@ TEST(TrianglesOnMotions, AgreeWithBruteForce)
     for (std::uint32_t k = 0; k + 1 < run.poses.size(); ++k) motions.push_back({k, k + 1});
     MotionsRequest request;
     request.clearance = run.scene.clearance;
-    request.tolerance = 1e-3 * (1.0 + run.scene.clearance);
+    request.swept = 1e-3 * (1.0 + run.scene.clearance);
     try {
       const AnyOnMotions truth = brute_force::anyCollisionOnMotions(placed, b, run.poses, motions, request);
       EXPECT_EQ(anyCollisionOnMotions(placed, b, run.poses, motions, request).verdicts, truth.verdicts);

