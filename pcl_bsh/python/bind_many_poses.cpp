@@ -97,7 +97,7 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
   request.threads = threads;
   request.progress = progressOf(progress);
   AnyAtPoses found = asked.answer([&] { return anyCollisionAtPoses(asked.a, b, list, request); });
-  return arrayFrom(std::move(found.verdicts));
+  return arrayFrom(std::move(found.flags));
 }
 
 std::pair<py::array_t<double>, py::array_t<std::uint32_t>> closestAtPosesOf(const Cloud& a, const Cloud& b,
@@ -130,7 +130,7 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
   request.threads = threads;
   request.progress = progressOf(progress);
   AnyOnMotions found = asked.answer([&] { return anyCollisionOnMotions(asked.a, model, list, edges, request); });
-  return arrayFrom(std::move(found.verdicts));
+  return arrayFrom(std::move(found.flags));
 }
 
 } // namespace

@@ -127,7 +127,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   AnyAtPoses result;
   for (std::size_t i = 0; i < T_world_b.size(); ++i) {
     const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
-    result.verdicts.push_back(found.verdict);
+    result.flags.push_back(found.verdict);
     result.colliding += found.verdict == Verdict::colliding;
     result.undecided += found.verdict == Verdict::undecided;
     result.work += found.work;

@@ -56,7 +56,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
-  result.verdicts.assign(motions.size(), Verdict::free);
+  result.flags.assign(motions.size(), Verdict::free);
   if (scan.hierarchy().empty() || model.empty()) return result;
   const MotionsQuery query(scan, model, request);
   std::vector<std::uint32_t> used;
@@ -71,7 +71,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
     };
     if (!collides(uncertain ? Places::possible : Places::measured)) continue;
     const bool certain = !uncertain || collides(Places::certain);
-    result.verdicts[m] = certain ? Verdict::colliding : Verdict::undecided;
+    result.flags[m] = certain ? Verdict::colliding : Verdict::undecided;
     ++(certain ? result.colliding : result.undecided);
   }
   return result;

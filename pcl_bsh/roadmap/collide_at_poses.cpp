@@ -73,7 +73,7 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   AnyAtPoses result;
-  result.verdicts.assign(T_world_b.size(), Verdict::free);
+  result.flags.assign(T_world_b.size(), Verdict::free);
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
   if (!request.accuracy.isExact()) {
     AnyRequest single = request;
@@ -82,13 +82,13 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
     single.progress = progress.nested();
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const AnyResult found = anyCollision(a, {b, pose}, single);
-      result.verdicts[i] = found.verdict;
+      result.flags[i] = found.verdict;
       return found.work;
     });
   }
   else {
     result.work =
-        giveVerdicts(areUncertain(a, {b}), request.progress, 0.0, result.verdicts,
+        giveVerdicts(areUncertain(a, {b}), request.progress, 0.0, result.flags,
                      [&](const std::vector<std::uint32_t>& some, Places places, Progress& progress, const auto& mark) {
                        return forEachNeighborhood(a, b, SomePoses{T_world_b, some}, request.threads, progress,
                                                   [&](const PoseBatch& batch, const std::uint32_t* order) {
@@ -100,8 +100,8 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
                                                   });
                      });
   }
-  result.colliding = countOf(result.verdicts, Verdict::colliding);
-  result.undecided = countOf(result.verdicts, Verdict::undecided);
+  result.colliding = countOf(result.flags, Verdict::colliding);
+  result.undecided = countOf(result.flags, Verdict::undecided);
   return result;
 }
 

@@ -27,7 +27,7 @@ namespace pcl_bsh {
 struct AnyAtPoses {
   /// One per pose; undecided only where points have uncertainties: some pair may be within the clearance, but none is
   /// wherever its points truly are.
-  std::vector<Verdict> verdicts;
+  std::vector<Verdict> flags;
   std::size_t colliding = 0; ///< poses that are
   std::size_t undecided = 0;
   Work work;

@@ -157,7 +157,7 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
-  result.verdicts.assign(motions.size(), Verdict::free);
+  result.flags.assign(motions.size(), Verdict::free);
   if (scan.hierarchy().empty() || model.empty() || motions.empty()) return result;
   const MotionsQuery query(scan, model, request);
   result.work.volumes_built += countChildren(query.boxes.storage.top);
@@ -179,11 +179,11 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   const AnyAtPoses found = anyCollisionAtPoses(scan, model, SomePoses{poses, used}, at_poses);
   result.work += found.work;
   for (std::size_t m = 0; m < motions.size(); ++m)
-    result.verdicts[m] = graver(found.verdicts[place[motions[m].from]], found.verdicts[place[motions[m].to]]);
+    result.flags[m] = graver(found.flags[place[motions[m].from]], found.flags[place[motions[m].to]]);
 
   const BodyBall body(model);
   result.work += giveVerdicts(
-      areUncertain(scan, {model}), request.progress, kAtPoses, result.verdicts,
+      areUncertain(scan, {model}), request.progress, kAtPoses, result.flags,
       [&](const std::vector<std::uint32_t>& open, Places places, Progress& progress, const auto& mark) {
         const std::vector<std::uint32_t> order =
             orderOf(RoughMiddles{poses, motions, open}, body, threadCount(request.threads));
@@ -201,8 +201,8 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
           return work;
         });
       });
-  result.colliding = countOf(result.verdicts, Verdict::colliding);
-  result.undecided = countOf(result.verdicts, Verdict::undecided);
+  result.colliding = countOf(result.flags, Verdict::colliding);
+  result.undecided = countOf(result.flags, Verdict::undecided);
   return result;
 }
 

@@ -48,7 +48,7 @@ struct MotionsRequest : Effort {
 /// What anyCollisionOnMotions() found.
 struct AnyOnMotions {
   /// One per motion; undecided only where points have uncertainties.
-  std::vector<Verdict> verdicts;
+  std::vector<Verdict> flags;
   std::size_t colliding = 0; ///< motions that are
   std::size_t undecided = 0;
   Work work;

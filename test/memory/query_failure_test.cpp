@@ -207,7 +207,7 @@ TEST(AllocationFailure, OfManyPoses)
     poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(0.3 * i, 0.01 * (i % 3), 0.0)) * any.T_world_b);
   for (const unsigned threads : {1u, 2u}) {
     failEachAllocation(freshPair, [&](const auto& pair) {
-      return anyCollisionAtPoses(pair->placedA(), pair->b, poses, request(threads)).verdicts;
+      return anyCollisionAtPoses(pair->placedA(), pair->b, poses, request(threads)).flags;
     });
     failEachAllocation(freshPair, [&](const auto& pair) {
       const DistancesAtPoses found = closestPairAtPoses(pair->placedA(), pair->b, poses, request(threads));
@@ -378,7 +378,7 @@ TEST(AllocationFailure, OfManyMotions)
     asked.swept = 0.002;
     asked.threads = threads;
     failEachAllocation(freshPair, [&](const auto& pair) {
-      return anyCollisionOnMotions(pair->placedA(), pair->b, poses, motions, asked).verdicts;
+      return anyCollisionOnMotions(pair->placedA(), pair->b, poses, motions, asked).flags;
     });
   }
 }

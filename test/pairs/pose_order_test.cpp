@@ -58,8 +58,8 @@ TEST(CollideAtPoses, OfTheSmallestLengths)
     for (const double clearance : {truth.distances[0], std::nextafter(truth.distances[1], 0.0), scale}) {
       AnyRequest request;
       request.clearance = clearance;
-      EXPECT_EQ(anyCollisionAtPoses(a, b, poses, request).verdicts,
-                brute_force::anyCollisionAtPoses(a, b, poses, request).verdicts);
+      EXPECT_EQ(anyCollisionAtPoses(a, b, poses, request).flags,
+                brute_force::anyCollisionAtPoses(a, b, poses, request).flags);
     }
     if (testing::Test::HasFailure()) return;
   }

@@ -326,11 +326,11 @@ TEST(Uncertainty, AtManyPoses)
       };
       const AnyAtPoses found = anyCollisionAtPoses(placed, b, poses, request);
       const AnyAtPoses expected = brute_force::anyCollisionAtPoses(placed, b, poses, request);
-      ASSERT_EQ(found.verdicts, expected.verdicts);
+      ASSERT_EQ(found.flags, expected.flags);
       EXPECT_EQ(found.colliding, expected.colliding);
       EXPECT_EQ(found.undecided, expected.undecided);
       EXPECT_TRUE(done == 1.0 || a.empty() || b.empty());
-      for (const Verdict verdict : found.verdicts) ++verdicts[test::numberOf(verdict)];
+      for (const Verdict verdict : found.flags) ++verdicts[test::numberOf(verdict)];
     }
   }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);

@@ -164,7 +164,7 @@ double spacings(const Lattices& of, const Effort& effort)
 double atPoses(const Lattices& of, const Effort& effort)
 {
   const std::vector<Eigen::Isometry3d> poses(300, Eigen::Isometry3d::Identity());
-  return sum(anyCollisionAtPoses({of.a}, of.b, poses, {kClearance, effort}).verdicts);
+  return sum(anyCollisionAtPoses({of.a}, of.b, poses, {kClearance, effort}).flags);
 }
 
 Scene sceneOf(const Lattices& of, const Effort& effort)

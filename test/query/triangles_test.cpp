@@ -165,8 +165,7 @@ TEST(Triangles, AtListsOfPoses)
     std::vector<Eigen::Isometry3d> poses;
     for (int i = 0; i < 30; ++i) poses.push_back(scene.pose_b * random.pose(i % 3 == 0 ? 1e-3 : 0.5));
     const AnyRequest any{scene.clearance, {}};
-    EXPECT_EQ(anyCollisionAtPoses(a, hb, poses, any).verdicts,
-              brute_force::anyCollisionAtPoses(a, hb, poses, any).verdicts);
+    EXPECT_EQ(anyCollisionAtPoses(a, hb, poses, any).flags, brute_force::anyCollisionAtPoses(a, hb, poses, any).flags);
     EXPECT_EQ(closestPairAtPoses(a, hb, poses, {}).distances,
               brute_force::closestPairAtPoses(a, hb, poses, {}).distances);
   }

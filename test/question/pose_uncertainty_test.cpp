@@ -131,11 +131,11 @@ TEST(PoseUncertainty, HoldsOfListsOfPoses)
   for (int k = 0; k < 200; ++k) poses.push_back(random.pose(6.0));
   AnyRequest request;
   request.clearance = 0.3;
-  const auto verdicts = anyCollisionAtPoses({scan}, uncertain, poses, request).verdicts;
+  const auto verdicts = anyCollisionAtPoses({scan}, uncertain, poses, request).flags;
   for (int sample = 0; sample < 30; ++sample) {
     std::vector<Eigen::Isometry3d> others;
     for (const Eigen::Isometry3d& pose : poses) others.push_back(sampled(pose, uncertainty.pose, random));
-    expectNoContradiction(verdicts, anyCollisionAtPoses({scan}, exact, others, request).verdicts);
+    expectNoContradiction(verdicts, anyCollisionAtPoses({scan}, exact, others, request).flags);
   }
 }
 

@@ -49,12 +49,12 @@ void expectSingleAnswers(const Scene& scene, const Poses& poses, double clearanc
   for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
     const AnyAtPoses any = anyCollisionAtPoses(placed, b, poses, {clearance, {accuracy, threads}});
     const DistancesAtPoses closest = closestPairAtPoses(placed, b, poses, {accuracy, threads});
-    ASSERT_EQ(any.verdicts.size(), poses.size());
+    ASSERT_EQ(any.flags.size(), poses.size());
     ASSERT_EQ(closest.distances.size(), poses.size());
     std::size_t colliding = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const AnyResult single = anyCollision(placed, {b, poses[i]}, {clearance, accuracy});
-      ASSERT_EQ(any.verdicts[i], single.verdict) << i << ", " << accuracy.text();
+      ASSERT_EQ(any.flags[i], single.verdict) << i << ", " << accuracy.text();
       colliding += single.verdict == Verdict::colliding;
       const DistanceResult nearest = closestPair(placed, {b, poses[i]}, {accuracy});
       ASSERT_EQ(closest.distances[i], nearest.distance) << i;
@@ -89,7 +89,7 @@ TEST(AtPoses, SameAsBruteForce)
     const AnyRequest any{scene.clearance, {}};
     const AnyAtPoses expected = brute_force::anyCollisionAtPoses(placed, b, poses, any);
     const AnyAtPoses result = anyCollisionAtPoses(placed, b, poses, any);
-    EXPECT_EQ(result.verdicts, expected.verdicts) << scene.name;
+    EXPECT_EQ(result.flags, expected.flags) << scene.name;
     EXPECT_EQ(result.colliding, expected.colliding);
     const DistancesAtPoses closest = closestPairAtPoses(placed, b, poses);
     const DistancesAtPoses brute = brute_force::closestPairAtPoses(placed, b, poses);
@@ -141,7 +141,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
     const AnyAtPoses one = anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, request);
     for (std::size_t i = 0; i < bodies.poses.size(); i += 7) {
       const AnyResult single = anyCollision({bodies.a}, {bodies.b, bodies.poses[i]}, request);
-      ASSERT_EQ(one.verdicts[i], single.verdict) << i;
+      ASSERT_EQ(one.flags[i], single.verdict) << i;
     }
     if (spread > 0.001) {
       EXPECT_GT(one.colliding, 500u);
@@ -150,7 +150,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
     for (const unsigned threads : {2u, 5u}) {
       request.threads = threads;
       const AnyAtPoses several = anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, request);
-      ASSERT_EQ(several.verdicts, one.verdicts);
+      ASSERT_EQ(several.flags, one.flags);
       ASSERT_EQ(test::countsOf(several.work).at("node_pairs"), test::countsOf(one.work).at("node_pairs"));
     }
     std::vector<std::size_t> order(bodies.poses.size());
@@ -159,7 +159,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
     Poses shuffled;
     for (const std::size_t i : order) shuffled.push_back(bodies.poses[i]);
     const AnyAtPoses other = anyCollisionAtPoses({bodies.a}, bodies.b, shuffled, request);
-    for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(other.verdicts[i], one.verdicts[order[i]]);
+    for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(other.flags[i], one.flags[order[i]]);
 
     const Poses some(bodies.poses.begin(), bodies.poses.begin() + 300);
     Poses reversed(some.rbegin(), some.rend());
@@ -206,7 +206,7 @@ TEST(AtPoses, StrangersCostNoMoreThanSingleQueries)
     Work alone;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const AnyResult single = anyCollision({bodies.a}, {bodies.b, poses[i]}, request);
-      ASSERT_EQ(together.verdicts[i], single.verdict) << i;
+      ASSERT_EQ(together.flags[i], single.verdict) << i;
       alone += single.work;
     }
     EXPECT_LT(static_cast<double>(together.work.node_pairs), 1.02 * static_cast<double>(alone.node_pairs));
@@ -252,10 +252,10 @@ TEST(AtPoses, TakesAnyListAndEmptyOnes)
   const AnyRequest request{1.05, {}};
   EXPECT_EQ(anyCollisionAtPoses({a}, a, Shelf(), request).colliding, 11u);
   EXPECT_EQ(anyCollisionAtPoses({a}, a, std::deque<Eigen::Isometry3d>(3, Eigen::Isometry3d::Identity())).colliding, 3u);
-  EXPECT_TRUE(anyCollisionAtPoses({a}, a, Poses()).verdicts.empty());
+  EXPECT_TRUE(anyCollisionAtPoses({a}, a, Poses()).flags.empty());
   EXPECT_TRUE(closestPairAtPoses({a}, a, Poses()).distances.empty());
   EXPECT_EQ(anyCollisionAtPoses({a}, empty, Shelf(), request).colliding, 0u);
-  EXPECT_EQ(anyCollisionAtPoses({empty}, a, Shelf(), request).verdicts, std::vector<Verdict>(50, Verdict::free));
+  EXPECT_EQ(anyCollisionAtPoses({empty}, a, Shelf(), request).flags, std::vector<Verdict>(50, Verdict::free));
   EXPECT_TRUE(closestPairAtPoses({a}, empty, Shelf()).pairs.empty());
   EXPECT_EQ(closestPairAtPoses({a}, empty, Shelf()).distances[49], std::numeric_limits<double>::infinity());
 }
@@ -308,7 +308,7 @@ TEST(AtPoses, ACallbackStopsThemInThreads)
     for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
       const auto any = [&](const std::function<bool(double)>& progress) {
         const Effort effort(accuracy, threads, progress);
-        return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, effort}).verdicts;
+        return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, effort}).flags;
       };
       const auto closest = [&](const std::function<bool(double)>& progress) {
         const Poses some(bodies.poses.begin(), bodies.poses.begin() + 300);

@@ -166,13 +166,13 @@ TEST(OnMotions, EachIsThatOfTheMotionAloneForRandomCloudsAndThreads)
     Asked asked = anyQuestion(scene, 12, 30, random);
     asked.request.threads = static_cast<unsigned>(seed % 3) + 1;
     const AnyOnMotions found = anyCollisionOnMotions(scan, b, asked.poses, asked.motions, asked.request);
-    ASSERT_EQ(found.verdicts.size(), asked.motions.size());
+    ASSERT_EQ(found.flags.size(), asked.motions.size());
     std::size_t count = 0;
     for (std::size_t m = 0; m < asked.motions.size(); ++m) {
       const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
-      ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
+      ASSERT_EQ(found.flags[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
       ASSERT_EQ(motionBetween(from, to, {0, 0, 0}).from().matrix(), motionBetween(to, from, {0, 0, 0}).from().matrix());
-      count += found.verdicts[m] == Verdict::colliding;
+      count += found.flags[m] == Verdict::colliding;
     }
     EXPECT_EQ(found.colliding, count);
     colliding += count;
@@ -207,8 +207,8 @@ TEST(OnMotions, OfUncertainPointsEachIsThatOfTheMotionAlone)
     std::size_t counts[3] = {};
     for (std::size_t m = 0; m < asked.motions.size(); ++m) {
       const Eigen::Isometry3d &from = asked.poses[asked.motions[m].from], &to = asked.poses[asked.motions[m].to];
-      ASSERT_EQ(found.verdicts[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
-      ++counts[test::numberOf(found.verdicts[m])];
+      ASSERT_EQ(found.flags[m], verdictAlone(scan, b, from, to, asked.request)) << "motion " << m;
+      ++counts[test::numberOf(found.flags[m])];
     }
     EXPECT_EQ(found.colliding, counts[1]);
     EXPECT_EQ(found.undecided, counts[2]);
@@ -238,9 +238,9 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
     const Poses poses = {at(-2, distance, 0), at(2, distance, 0)};
     const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
     const AnyOnMotions brute = brute_force::anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}}, request);
-    EXPECT_EQ(found.verdicts, brute.verdicts) << distance;
-    EXPECT_EQ(found.verdicts[0], found.verdicts[1]);
-    return found.verdicts[0];
+    EXPECT_EQ(found.flags, brute.flags) << distance;
+    EXPECT_EQ(found.flags[0], found.flags[1]);
+    return found.flags[0];
   };
   EXPECT_EQ(pass(0.125), Verdict::colliding);
   EXPECT_EQ(pass(0.125 + 1.1e-6), Verdict::undecided);
@@ -250,7 +250,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
   const auto rest = [&](double distance) {
     const Poses poses = {at(0, distance, 0)};
     request.swept = 1e-12;
-    return anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).verdicts[0];
+    return anyCollisionOnMotions({scan}, model, poses, {{0, 0}}, request).flags[0];
   };
   EXPECT_EQ(rest(0.125), Verdict::colliding);
   EXPECT_EQ(rest(0.875), Verdict::undecided);
@@ -271,7 +271,7 @@ TEST(OnMotions, HoldsAtEachInstantAsBruteForceDoes)
       const RigidMotion motion =
           motionBetween(asked.poses[asked.motions[m].from], asked.poses[asked.motions[m].to], asked.request.pivot);
       const Instants truth = lookAt(scan, scene.a, scene.b, motion, asked.request, 40);
-      for (const Verdict verdict : {found.verdicts[m], brute.verdicts[m]}) {
+      for (const Verdict verdict : {found.flags[m], brute.flags[m]}) {
         EXPECT_GE(verdict, test::verdictIf(truth.collides)) << "motion " << m;
         EXPECT_LE(verdict, test::verdictIf(truth.nears)) << "motion " << m;
       }
@@ -328,12 +328,12 @@ TEST(OnMotions, InAnyOrderByAnyNumberOfThreads)
   EXPECT_GT(one.colliding, 50u);
   EXPECT_LT(one.colliding, map.motions.size() - 50);
   for (std::size_t m = 0; m < map.motions.size(); m += 3)
-    ASSERT_EQ(one.verdicts[m], verdictAlone({map.hall}, map.body, map.poses[map.motions[m].from],
-                                            map.poses[map.motions[m].to], map.request));
+    ASSERT_EQ(one.flags[m], verdictAlone({map.hall}, map.body, map.poses[map.motions[m].from],
+                                         map.poses[map.motions[m].to], map.request));
   for (const unsigned threads : {2u, 3u, 0u}) {
     map.request.threads = threads;
     const AnyOnMotions several = anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request);
-    EXPECT_EQ(several.verdicts, one.verdicts);
+    EXPECT_EQ(several.flags, one.flags);
     EXPECT_EQ(test::countsOf(several.work).at("node_pairs"), test::countsOf(one.work).at("node_pairs"));
   }
   std::vector<std::size_t> order(map.motions.size());
@@ -343,7 +343,7 @@ TEST(OnMotions, InAnyOrderByAnyNumberOfThreads)
   for (const std::size_t i : order) shuffled.push_back(map.motions[i]);
   for (std::size_t i = 0; i < shuffled.size(); i += 2) std::swap(shuffled[i].from, shuffled[i].to);
   const AnyOnMotions other = anyCollisionOnMotions({map.hall}, map.body, map.poses, shuffled, map.request);
-  for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(other.verdicts[i], one.verdicts[order[i]]);
+  for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(other.flags[i], one.flags[order[i]]);
 }
 
 /// Counted, not timed.
@@ -374,7 +374,7 @@ TEST(OnMotions, FindsWhatIsMetAtOneInstantOnly)
   for (int i = -97; i <= 97; ++i) {
     const Cloud post({{i / 100.0, 0, 0}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(post.view());
-    EXPECT_EQ(anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}, {0, 2}, {0, 0}}, request).verdicts,
+    EXPECT_EQ(anyCollisionOnMotions({scan}, model, poses, {{0, 1}, {1, 0}, {0, 2}, {0, 0}}, request).flags,
               test::verdictsOf({1, 1, 1, 0}));
     const Cloud beside_cloud({{i / 100.0, 0x1p-20 + 0x1p-23, 0}}, {Scalar::float64, 0, 0});
     const SphereHierarchy beside(beside_cloud.view());
@@ -436,9 +436,9 @@ TEST(OnMotions, GrazesAreRightInBatches)
     const Cloud scan_cloud({{post[0], post[1], post[2]}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(scan_cloud.view());
     const AnyOnMotions found = anyCollisionOnMotions({scan}, model, poses, motions, request);
-    EXPECT_EQ(found.verdicts[m], Verdict::colliding) << trial;
+    EXPECT_EQ(found.flags[m], Verdict::colliding) << trial;
     for (std::size_t i = 0; i < motions.size(); ++i)
-      ASSERT_EQ(found.verdicts[i], verdictAlone({scan}, model, poses[motions[i].from], poses[motions[i].to], request));
+      ASSERT_EQ(found.flags[i], verdictAlone({scan}, model, poses[motions[i].from], poses[motions[i].to], request));
   }
 }
 
@@ -475,11 +475,11 @@ TEST(OnMotions, EmptyListsAndClouds)
   const SphereHierarchy a(point.view()), empty(none.view());
   MotionsRequest request;
   request.swept = 0.1;
-  EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses(), {}, request).verdicts.empty());
-  EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses{identity}, {}, request).verdicts.empty());
-  EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::free);
-  EXPECT_EQ(anyCollisionOnMotions({empty}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::free);
-  EXPECT_EQ(anyCollisionOnMotions({a}, a, Poses{identity}, {{0, 0}}, request).verdicts[0], Verdict::colliding);
+  EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses(), {}, request).flags.empty());
+  EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses{identity}, {}, request).flags.empty());
+  EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::free);
+  EXPECT_EQ(anyCollisionOnMotions({empty}, a, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::free);
+  EXPECT_EQ(anyCollisionOnMotions({a}, a, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::colliding);
 }
 
 template <class Call>
@@ -587,8 +587,7 @@ TEST(OnMotions, ACallbackStopsItInThreads)
       EXPECT_THROW(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request), Mine);
     }
     map.request.progress = nullptr;
-    EXPECT_EQ(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request).verdicts,
-              whole.verdicts);
+    EXPECT_EQ(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request).flags, whole.flags);
   }
 }
 

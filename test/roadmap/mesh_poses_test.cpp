@@ -28,7 +28,7 @@ TEST(TrianglesAtPoses, AgreeWithBruteForce)
     any.clearance = run.scene.clearance;
     const AnyAtPoses found = anyCollisionAtPoses(placed, b, run.poses, any);
     const AnyAtPoses truth = brute_force::anyCollisionAtPoses(placed, b, run.poses, any);
-    EXPECT_EQ(found.verdicts, truth.verdicts);
+    EXPECT_EQ(found.flags, truth.flags);
     const DistancesAtPoses near = closestPairAtPoses(placed, b, run.poses);
     const DistancesAtPoses nearest = brute_force::closestPairAtPoses(placed, b, run.poses);
     EXPECT_EQ(near.distances, nearest.distances);
@@ -54,7 +54,7 @@ TEST(TrianglesOnMotions, AgreeWithBruteForce)
     request.swept = 1e-3 * (1.0 + run.scene.clearance);
     try {
       const AnyOnMotions truth = brute_force::anyCollisionOnMotions(placed, b, run.poses, motions, request);
-      EXPECT_EQ(anyCollisionOnMotions(placed, b, run.poses, motions, request).verdicts, truth.verdicts);
+      EXPECT_EQ(anyCollisionOnMotions(placed, b, run.poses, motions, request).flags, truth.flags);
       colliding += truth.colliding;
       motions_asked += motions.size();
     }

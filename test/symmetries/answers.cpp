@@ -98,7 +98,7 @@ void askMotion(const Instance& instance, const Placed& a, const SphereHierarchy&
   };
   const auto verdicts = [&](double clearance) {
     each.clearance = clearance;
-    return anyCollisionOnMotions(a, b, instance.path, edges, each).verdicts;
+    return anyCollisionOnMotions(a, b, instance.path, edges, each).flags;
   };
   const auto told = [&](const auto& ask) {
     const std::vector<Verdict> near = ask(instance.clearance),
@@ -126,7 +126,7 @@ void askAlong(const Instance& instance, const Placed& a, const SphereHierarchy& 
     answers.colliding_at.push_back(pose.undecided_points);
     answers.distance_at.push_back(pose.distance);
   }
-  answers.any_at = numbersOf(anyCollisionAtPoses(a, b, instance.path, {instance.clearance, instance.threads}).verdicts);
+  answers.any_at = numbersOf(anyCollisionAtPoses(a, b, instance.path, {instance.clearance, instance.threads}).flags);
   answers.closest_at = closestPairAtPoses(a, b, instance.path, {{}, instance.threads}).distances;
 }
 
