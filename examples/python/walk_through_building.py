@@ -51,7 +51,7 @@ pair = pcl_bsh.closest_pair(hall, walker, pose_b=pose)
 print(f"at x = {pose[0, 3]:.1f}: {flags.sum()} points within {CLEARANCE} m, the nearest at {pair.distance:.3f} m")
 
 # %% How far is each point of the building from him?
-distance, nearest = pcl_bsh.point_distances(hall, walker, max_distance=4.0, pose_b=pose)
+distance, closest_point = pcl_bsh.point_distances(hall, walker, max_distance=4.0, pose_b=pose)
 
 # %% All the way: what is touched, when first, how near it gets; Ctrl-C ends it
 run = pcl_bsh.collide_along(hall, walker, poses, CLEARANCE, distances=True, first_poses=True, closest_poses=True)

@@ -24,7 +24,7 @@ void check(const PointsView& cloud, const PointDistances& found, double beyond, 
                        "give a finite length > 0")
         .withValue(cluster_distance);
   }
-  if (found.distance.size() != cloud.count || found.nearest.size() != cloud.count) {
+  if (found.distance.size() != cloud.count || found.closest_point.size() != cloud.count) {
     throw InvalidInput(Input::result, "result",
                        "has " + counted(found.distance.size(), "value") + " for " + counted(cloud.count, "point"),
                        "ask for the distances of this cloud");
@@ -47,7 +47,7 @@ void add(FarPlace& place, std::uint32_t record, const Extent& extent, const Poin
   if (place.records.empty() || distance > place.distance) {
     place.distance = distance;
     place.point = record;
-    place.nearest = found.nearest[record];
+    place.closest_point = found.closest_point[record];
   }
   place.records.push_back(record);
 }

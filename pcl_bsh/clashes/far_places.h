@@ -14,11 +14,11 @@ namespace pcl_bsh {
 
 /// Far points that lie together. Coordinates are in the cloud's own frame, lengths in its unit.
 struct FarPlace {
-  std::vector<std::uint32_t> records; ///< its points, ascending
-  Point3 low = {}, high = {};         ///< its bounding box
-  double distance = 0.0;              ///< the greatest; infinity where a point of it has none within max_distance
-  std::uint32_t point = 0;            ///< the record that has it, of several the smallest
-  std::uint32_t nearest = kNothing;   ///< the other cloud's nearest to it; kNothing where infinite
+  std::vector<std::uint32_t> records;     ///< its points, ascending
+  Point3 low = {}, high = {};             ///< its bounding box
+  double distance = 0.0;                  ///< the greatest; infinity where a point of it has none within max_distance
+  std::uint32_t point = 0;                ///< the record that has it, of several the smallest
+  std::uint32_t closest_point = kNothing; ///< the other cloud's nearest to it; kNothing where infinite
 };
 
 /// Clusters (euclideanClusters() with that distance) of the finite points that are farther than `beyond` from the other

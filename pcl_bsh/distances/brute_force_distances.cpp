@@ -16,7 +16,7 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
   const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
   PointDistances result;
   result.distance.assign(a.hierarchy().view().count, std::numeric_limits<double>::quiet_NaN());
-  result.nearest.assign(a.hierarchy().view().count, kNothing);
+  result.closest_point.assign(a.hierarchy().view().count, kNothing);
   const std::vector<FinitePoint> others = finitePoints(b.hierarchy().view());
   for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
     const FinitePoint* nearest = nullptr;
@@ -28,7 +28,7 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
     if (!nearest) continue;
     if (distance.compare(pairWith(*nearest), request.max_distance) > 0) continue;
     result.distance[p.record] = distance.gap(pairWith(*nearest));
-    result.nearest[p.record] = nearest->record;
+    result.closest_point[p.record] = nearest->record;
   }
   findGreatest(a, b, result);
   return result;

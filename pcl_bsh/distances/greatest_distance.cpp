@@ -14,9 +14,9 @@ std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const Poin
 {
   std::optional<PointPair> greatest;
   const PointPairs pairs(a, b, 0.0);
-  for (std::uint32_t i = 0; i < result.nearest.size(); ++i) {
-    if (result.nearest[i] == kNothing) continue;
-    const PointPair pair{i, result.nearest[i]};
+  for (std::uint32_t i = 0; i < result.closest_point.size(); ++i) {
+    if (result.closest_point[i] == kNothing) continue;
+    const PointPair pair{i, result.closest_point[i]};
     if (greatest) {
       // Rounding keeps the order: only of equal doubles one may be the greater.
       if (result.distance[i] < result.distance[greatest->a]) continue;
@@ -40,7 +40,7 @@ PointPair swapped(const PointPair& pair)
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result)
 {
   result.measured = 0;
-  for (const std::uint32_t nearest : result.nearest) result.measured += nearest != kNothing;
+  for (const std::uint32_t nearest : result.closest_point) result.measured += nearest != kNothing;
   result.greatest_pair =
       greatestOf(a, b, result, [](const PointPair&, const PointPair&) { return false; }); // the first is the smallest
   result.greatest =

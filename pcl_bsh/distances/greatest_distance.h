@@ -7,7 +7,7 @@
 namespace pcl_bsh {
 
 /// Sets what is said of all points together from the distances of the single ones.
-/// @pre `distance` and `nearest` are set
+/// @pre `distance` and `closest_point` are set
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result);
 
 /// Sets the greatest of both directions and its pair from those of each, of which one may be missing.

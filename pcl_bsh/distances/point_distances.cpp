@@ -55,12 +55,12 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
 {
   PointDistances fresh;
   fresh.distance.swap(result.distance);
-  fresh.nearest.swap(result.nearest);
+  fresh.closest_point.swap(result.closest_point);
   fresh.interval.swap(result.interval);
   result = PointDistances(); // should something throw
   const SphereHierarchy& cloud = a.hierarchy();
   fresh.distance.assign(cloud.view().count, kNoDistance);
-  fresh.nearest.assign(cloud.view().count, kNothing);
+  fresh.closest_point.assign(cloud.view().count, kNothing);
   fresh.interval.clear();
   if (!request.accuracy.isExact()) {
     fresh.interval.assign(cloud.view().count, {kNoDistance, kNoDistance});
@@ -82,7 +82,8 @@ public:
            RelativeRotation(a.pose, b.pose),
            request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0,
            reached},
-    sheet_{result.distance.data(), result.nearest.data(), result.interval.empty() ? nullptr : result.interval.data()},
+    sheet_{result.distance.data(), result.closest_point.data(),
+           result.interval.empty() ? nullptr : result.interval.data()},
     progress_(progress),
     voxels_(threadCount(request.threads), result.work, progress)
   {
@@ -133,7 +134,7 @@ void finish(const Placed& a, const Placed& b, const PointDistancesRequest& reque
       if (!std::isnan(interval.lower)) interval = {request.max_distance, kInfinity};
   findGreatest(a, b, result);
   for (std::size_t i = 0; i < result.interval.size(); ++i)
-    if (result.nearest[i] == kNothing && result.interval[i].lower < request.max_distance) ++result.undecided;
+    if (result.closest_point[i] == kNothing && result.interval[i].lower < request.max_distance) ++result.undecided;
 }
 
 std::size_t stepsOf(const Placed& a, const StopRule& rule)

@@ -43,7 +43,7 @@ struct PointDistances {
   /// To the nearest point of b, in the clouds' unit, rounded to the nearest double. NaN: no point of b within
   /// max_distance, undecided, or no point of a (its record is not finite, or outside the view's subset).
   std::vector<double> distance;
-  std::vector<std::uint32_t> nearest; ///< that point's record, of several the smallest; kNothing where NaN
+  std::vector<std::uint32_t> closest_point; ///< its record, of several the smallest; kNothing where NaN
   /// Holds each point's distance for certain, whether within max_distance or not; from max_distance to infinity where
   /// it is proven to be farther than that, and NaN where the record is no point. Empty when the accuracy is exact, for
   /// then the doubles beside `distance` do the same.

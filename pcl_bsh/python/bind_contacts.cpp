@@ -38,7 +38,7 @@ Examples
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 1]]))
 >>> found = pcl_bsh.contacts(a, b, 2.0)
 >>> found.a, found.b, found.distance
-(array([0, 1], dtype=uint32), array([0, 0], dtype=uint32), array([1., 2.]))
+(array([0, 1], dtype=int32), array([0, 0], dtype=int32), array([1., 2.]))
 >>> found.normal[1]
 array([0., 0., 1.])
 )";
@@ -49,7 +49,7 @@ Parameters are those of `contacts`.
 
 Returns
 -------
-ndarray of uint32, (k, 2)
+ndarray of int32, (k, 2)
     Rows of a and b.
 
 Raises
@@ -95,9 +95,8 @@ Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optio
   });
 }
 
-py::array_t<std::uint32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
-                                         std::optional<std::size_t> most, const PoseLike& pose_a,
-                                         const PoseLike& pose_b)
+py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
+                                        std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b)
 {
   Asked asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);

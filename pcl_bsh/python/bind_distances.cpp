@@ -30,19 +30,19 @@ progress : callable, optional
 Returns
 -------
 PointDistances
-    Unpacks as ``distance, nearest``. `distance` (records of a,) is float64, NaN where there is none; `nearest` is
-    uint32, of several rows the smallest, `NO_POINT` where there is none.
+    Unpacks as ``distance, closest_point``. `distance` (records of a,) is float64, NaN where there is none; `closest_point`
+    is int32: its row in b, of several the smallest, -1 where there is none.
 
 Examples
 --------
 >>> import numpy as np, pcl_bsh
 >>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0], [9, 0, 0]]))
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 7], [0, 0, 2]]))
->>> distance, nearest = pcl_bsh.point_distances(a, b, max_distance=5.0)
+>>> distance, closest_point = pcl_bsh.point_distances(a, b, max_distance=5.0)
 >>> distance
 array([ 2., nan])
->>> nearest == pcl_bsh.NO_POINT
-array([False,  True])
+>>> closest_point
+array([ 1, -1], dtype=int32)
 )";
 
 constexpr auto kSymmetricDistances =
@@ -133,9 +133,10 @@ std::optional<py::array_t<double>> intervalArray(const py::object& self)
 
 void bindDistances(py::module_& module)
 {
-  py::class_<PointDistances>(module, "PointDistances", "The answer of `point_distances`; unpacks as distance, nearest.")
+  py::class_<PointDistances>(module, "PointDistances",
+                             "The answer of `point_distances`; unpacks as distance, closest_point.")
       .def_property_readonly("distance", column(&PointDistances::distance), "(records,) float64; NaN: none.")
-      .def_property_readonly("nearest", column(&PointDistances::nearest), "(records,) uint32; NO_POINT: none.")
+      .def_property_readonly("closest_point", column(&PointDistances::closest_point), "(records,) int32; -1: none.")
       .def_property_readonly("interval", &intervalArray,
                              "(records, 2) float64: holds each distance for certain, where the accuracy is less than "
                              "exact; else None.")
@@ -146,7 +147,9 @@ void bindDistances(py::module_& module)
       .def_readonly("work", &PointDistances::work)
       .def("__len__", [](const PointDistances&) { return 2; })
       .def("__iter__",
-           [](const py::object& self) { return py::iter(py::make_tuple(self.attr("distance"), self.attr("nearest"))); })
+           [](const py::object& self) {
+             return py::iter(py::make_tuple(self.attr("distance"), self.attr("closest_point")));
+           })
       .def("__repr__", [](const PointDistances& found) {
         return "PointDistances(" + std::to_string(found.measured) + " of " + std::to_string(found.distance.size()) +
                " measured" + (found.undecided ? ", " + std::to_string(found.undecided) + " undecided" : "") + ")";

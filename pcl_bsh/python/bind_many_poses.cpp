@@ -47,8 +47,8 @@ Parameters are those of `any_collision_at_poses`.
 Returns
 -------
 distances : ndarray of float64, (m,)
-pairs : ndarray of uint32, (m, 2)
-    Rows of a and b; `NO_POINT` when a cloud is empty.
+pairs : ndarray of int32, (m, 2)
+    Rows of a and b; -1 when a cloud is empty.
 )";
 
 constexpr auto kOnMotions =
@@ -100,10 +100,10 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
   return arrayFrom(std::move(found.flags));
 }
 
-std::pair<py::array_t<double>, py::array_t<std::uint32_t>> closestAtPosesOf(const Cloud& a, const Cloud& b,
-                                                                            const ArrayLike& poses,
-                                                                            const PoseLike& pose_a, unsigned threads,
-                                                                            const ProgressLike& progress)
+std::pair<py::array_t<double>, py::array_t<std::int32_t>> closestAtPosesOf(const Cloud& a, const Cloud& b,
+                                                                           const ArrayLike& poses,
+                                                                           const PoseLike& pose_a, unsigned threads,
+                                                                           const ProgressLike& progress)
 {
   Asked asked("a", a, pose_a, "b", b);
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));

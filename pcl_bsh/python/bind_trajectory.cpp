@@ -194,7 +194,7 @@ void bindClashes(py::module_& module)
           "'new', 'persisting' or 'resolved'.")
       .def_readonly("certain_points", &Clash::certain_points,
                     "Of its points, how many collide wherever the points truly are; the others are undecided.")
-      .def_property_readonly("records", column(&Clash::records), "uint32: its rows, ascending; empty when resolved.")
+      .def_property_readonly("records", column(&Clash::records), "int32: its rows, ascending; empty when resolved.")
       .def_readonly("points", &Clash::points)
       .def_readonly("low", &Clash::low, "The lower corner of its box.")
       .def_readonly("high", &Clash::high)
@@ -242,7 +242,7 @@ void bindTrajectory(py::module_& module)
       .def_property_readonly("closest_pose", columnWhere(&Result::closest_pose, &Request::closest_poses),
                              "int32; -1 where free.")
       .def_property_readonly("closest_point", columnWhere(&Result::closest_point, closest_point),
-                             "uint32: the row of the model; NO_POINT where free.")
+                             "int32: the row of the model; -1 where free.")
       .def_property_readonly(
           "certain_pose",
           [](const py::object& self) -> std::optional<py::array_t<std::int32_t>> {

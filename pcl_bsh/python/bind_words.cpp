@@ -71,7 +71,6 @@ void bindWords(py::module_& module)
       "What stands in arrays of flags: 0 free, 1 colliding, 2 undecided, 3 free of all points, "
       "but not scanned densely enough, 4 free, but seen by no scanner.";
   module.attr("Verdict") = verdicts();
-  module.attr("NO_POINT") = std::uint32_t{kNothing};
 
   py::register_exception_translator([](std::exception_ptr error) { // as Python says of arguments
     try {

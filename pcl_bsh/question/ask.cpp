@@ -36,7 +36,7 @@ public:
     const double distance = found_.distance[record];
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
-    const std::uint32_t nearest = found_.nearest[record];
+    const std::uint32_t nearest = found_.closest_point[record];
     if (distance < 0.0) return -exact_.compare({record, nearest}, -length); // a depth
     return exact_.compare({record, nearest}, length);
   }

@@ -28,7 +28,7 @@ struct Answer {
   TrajectoryResult collisions;
   std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
   DistanceResult closest;              ///< its pair: records of the input and of the obstacle
-  SymmetricDistances distances;        ///< `nearest` is a record of the other hierarchy; NaN beyond max_distance
+  SymmetricDistances distances;        ///< `closest_point` is a record of the other hierarchy; NaN beyond max_distance
   std::vector<Verdict> obstacle_flags; ///< where wanted or with `seen`, of the obstacle's records; along a path the
                                        ///< gravest verdict of its poses
 

@@ -146,7 +146,7 @@ void SolidObstacle::turn(PointDistances& found)
     const PointDistances measured = depths(deep);
     for (const std::uint32_t record : deep) {
       found.distance[record] = measured.distance[record];
-      found.nearest[record] = measured.nearest[record];
+      found.closest_point[record] = measured.closest_point[record];
       if (!found.interval.empty()) found.interval[record] = {measured.distance[record], measured.distance[record]};
       found.measured += !std::isnan(measured.distance[record]);
     }
@@ -162,7 +162,7 @@ void SolidObstacle::turn(PointDistances& found)
     if (!(found.distance[i] > found.greatest) && !(std::isnan(found.greatest) && !std::isnan(found.distance[i])))
       continue;
     found.greatest = found.distance[i];
-    found.greatest_pair = PointPair{i, found.nearest[i]};
+    found.greatest_pair = PointPair{i, found.closest_point[i]};
   }
 }
 

@@ -33,8 +33,8 @@ void vtkBSHDistanceFilter::Fill(const pcl_bsh::Question& question, const pcl_bsh
   else {
     const pcl_bsh::PointDistances& found = answer.distances.a;
     addPointArray<vtkDoubleArray>(*output, "distance", found.distance);
-    addPointArray<vtkIdTypeArray>(*output, "nearest", [&](std::size_t i) -> vtkIdType {
-      const std::uint32_t record = found.nearest[i];
+    addPointArray<vtkIdTypeArray>(*output, "closest_point", [&](std::size_t i) -> vtkIdType {
+      const std::uint32_t record = found.closest_point[i];
       return record == pcl_bsh::kNothing ? -1 : static_cast<vtkIdType>(record);
     });
   }

@@ -3,8 +3,8 @@
 /// @brief how far each point of a cloud is from an obstacle, at a pose or along a path
 ///
 /// Adds the point arrays `distance` (double; NaN where it is more than MaximumDistance) and, at a single pose,
-/// `nearest` (vtkIdType: the nearest point of the obstacle, of several the smallest; of a surface, the cell; -1 where
-/// there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
+/// `closest_point` (vtkIdType: the nearest point of the obstacle, of several the smallest; of a surface, the cell; -1
+/// where there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
 /// `closest_pose` (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
 ///
 /// A distance is exact, rounded to the nearest double.

@@ -159,7 +159,7 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     output->ShallowCopy(cloud);
     pcl_bsh::Answer answer = pcl_bsh::ask(question, points, other);
     if (is_surface) {
-      for (std::uint32_t& nearest : answer.distances.a.nearest)
+      for (std::uint32_t& nearest : answer.distances.a.closest_point)
         if (nearest != pcl_bsh::kNothing) nearest = kept.cells()[nearest];
     }
     for (const pcl_bsh::Warning& warning : answer.warnings) vtkWarningMacro(<< warning.text);

@@ -78,7 +78,7 @@ protected:
   virtual void Ask(pcl_bsh::Question& question) const = 0;
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
-  /// @param answer of whose distances `nearest` is a point of the obstacle or, of a surface, a cell
+  /// @param answer of whose distances `closest_point` is a point of the obstacle or, of a surface, a cell
   virtual void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output) = 0;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -139,7 +139,7 @@ TEST_F(FarPlaces, AreClustersOfFarPoints)
   EXPECT_EQ(places[1].records, (std::vector<std::uint32_t>{401, 402, 403, 404}));
   EXPECT_EQ(places[1].distance, 0.5);
   EXPECT_EQ(places[1].point, 404u);
-  EXPECT_EQ(places[1].nearest, 63u);
+  EXPECT_EQ(places[1].closest_point, 63u);
 }
 
 TEST_F(FarPlaces, HoldPointsWithoutADistance)
@@ -150,7 +150,7 @@ TEST_F(FarPlaces, HoldPointsWithoutADistance)
   EXPECT_EQ(places[1].records.size(), 3u);
   for (const FarPlace& place : places) {
     EXPECT_EQ(place.distance, infinity);
-    EXPECT_EQ(place.nearest, kNothing);
+    EXPECT_EQ(place.closest_point, kNothing);
   }
   EXPECT_EQ(places[0].point, 404u);
 }

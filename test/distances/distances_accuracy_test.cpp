@@ -41,18 +41,18 @@ protected:
     std::size_t undecided = 0;
     for (std::size_t i = 0; i < all.distance.size(); ++i) {
       const Interval& interval = found.interval[i];
-      if (all.nearest[i] == kNothing) { // no point, or nothing there
+      if (all.closest_point[i] == kNothing) { // no point, or nothing there
         EXPECT_TRUE(std::isnan(interval.lower) || interval.upper == kInfinity);
         continue;
       }
       EXPECT_LE(interval.lower, all.distance[i]) << i;
       EXPECT_GE(interval.upper, all.distance[i]) << i;
-      if (found.nearest[i] != kNothing) {
-        EXPECT_EQ(found.nearest[i], truth.nearest[i]);
+      if (found.closest_point[i] != kNothing) {
+        EXPECT_EQ(found.closest_point[i], truth.closest_point[i]);
         EXPECT_EQ(found.distance[i], truth.distance[i]);
       }
       else if (interval.lower >= max) {
-        EXPECT_EQ(truth.nearest[i], kNothing) << i;
+        EXPECT_EQ(truth.closest_point[i], kNothing) << i;
       }
       else {
         ++undecided;

@@ -15,12 +15,12 @@ namespace pcl_bsh::test {
 inline void expectSame(const PointDistances& found, const PointDistances& truth)
 {
   ASSERT_EQ(found.distance.size(), truth.distance.size());
-  EXPECT_EQ(found.nearest, truth.nearest);
+  EXPECT_EQ(found.closest_point, truth.closest_point);
   for (std::size_t i = 0; i < truth.distance.size(); ++i) {
     const double x = found.distance[i], y = truth.distance[i];
     ASSERT_TRUE((std::isnan(x) && std::isnan(y)) || x == y)
-        << "record " << i << ": " << x << ", nearest " << found.nearest[i] << "; not " << y << ", nearest "
-        << truth.nearest[i];
+        << "record " << i << ": " << x << ", nearest " << found.closest_point[i] << "; not " << y << ", nearest "
+        << truth.closest_point[i];
   }
   EXPECT_EQ(found.measured, truth.measured);
   EXPECT_EQ(found.greatest_pair, truth.greatest_pair);

@@ -30,8 +30,8 @@ HausdorffDistance truthOf(const Placed& a, const Placed& b)
   const auto take = [&](double distance, const PointPair& pair) {
     if (distance == truth.distance && !(truth.pair && *truth.pair < pair)) truth.pair = pair;
   };
-  for (std::uint32_t i = 0; i < of_a.distance.size(); ++i) take(of_a.distance[i], {i, of_a.nearest[i]});
-  for (std::uint32_t i = 0; i < of_b.distance.size(); ++i) take(of_b.distance[i], {of_b.nearest[i], i});
+  for (std::uint32_t i = 0; i < of_a.distance.size(); ++i) take(of_a.distance[i], {i, of_a.closest_point[i]});
+  for (std::uint32_t i = 0; i < of_b.distance.size(); ++i) take(of_b.distance[i], {of_b.closest_point[i], i});
   return truth;
 }
 

@@ -73,7 +73,7 @@ TEST(Outdoing, TheFartherHeapIsStillTheNearerOneToPointsAtTheSide)
         const PointDistances found = pointDistances(a, b);
         test::expectSame(found, brute_force::pointDistances(a, b));
         std::size_t to_farther = 0;
-        for (const std::uint32_t record : found.nearest) to_farther += record >= 16;
+        for (const std::uint32_t record : found.closest_point) to_farther += record >= 16;
         changes += to_farther > 0 && to_farther < 8;
       }
     }

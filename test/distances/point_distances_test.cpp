@@ -136,7 +136,7 @@ TEST(PointDistances, AreNoneWhereACloudIsEmpty)
   request.accuracy = Accuracy::level(1);
   const PointDistances found = pointDistances(full, empty, request);
   EXPECT_EQ(found.measured + found.undecided, 0u);
-  EXPECT_EQ(found.nearest, (std::vector<std::uint32_t>{kNothing, kNothing}));
+  EXPECT_EQ(found.closest_point, (std::vector<std::uint32_t>{kNothing, kNothing}));
   EXPECT_EQ(found.interval[0].lower, kInfinity);
   EXPECT_TRUE(std::isnan(found.interval[1].lower));
   EXPECT_TRUE(std::isnan(symmetricDistances(full, empty).hausdorff));
@@ -187,7 +187,7 @@ TEST(PointDistances, ReportProgressAndStop)
     request.progress = [&](double) { return ++calls < 5; };
     PointDistances result = truth;
     EXPECT_THROW(pointDistances(a, a, request, result), Cancelled);
-    EXPECT_TRUE(result.distance.empty() && result.nearest.empty() && !result.greatest_pair);
+    EXPECT_TRUE(result.distance.empty() && result.closest_point.empty() && !result.greatest_pair);
     request.progress = [](double) -> bool { throw std::runtime_error("of the caller"); };
     EXPECT_THROW(symmetricDistances(a, a, request), std::runtime_error);
   }

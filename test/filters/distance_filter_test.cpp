@@ -208,7 +208,7 @@ TEST_F(DistanceFilterTest, TellsDistancesUpToTheGreatest)
     filter_.setMaxDistance(most);
     filter_.computeDistances(found);
     const PointDistances truth = brute(Eigen::Isometry3d::Identity(), most);
-    EXPECT_EQ(found.nearest, truth.nearest);
+    EXPECT_EQ(found.closest_point, truth.closest_point);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       EXPECT_TRUE(found.distance[i] == truth.distance[i] ||
                   (std::isnan(found.distance[i]) && std::isnan(truth.distance[i])));

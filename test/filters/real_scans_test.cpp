@@ -211,13 +211,13 @@ void expectDistances(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan&
   request.max_distance = max_distance;
   request.threads = 2;
   const PointDistances found = pointDistances({a.hierarchy, pose_a}, {b.hierarchy, pose_b}, request);
-  ASSERT_EQ(found.nearest.size(), a.view().count);
+  ASSERT_EQ(found.closest_point.size(), a.view().count);
   const test::KdTree tree(b.view(), pose_b);
   const ExactDistance distance(pose_a, pose_b);
   for (std::uint32_t i = 0; i < a.view().count; i += static_cast<std::uint32_t>(step)) {
     const Eigen::Vector3d query = test::KdTree::moved(a.view(), i, pose_a);
     if (!query.allFinite()) {
-      ASSERT_EQ(found.nearest[i], kNothing);
+      ASSERT_EQ(found.closest_point[i], kNothing);
       continue;
     }
     const auto pairWith = [&](std::uint32_t j) { return ExactDistance::Pair{a.view().point(i), b.view().point(j)}; };
@@ -228,10 +228,10 @@ void expectDistances(const Scan& a, const Eigen::Isometry3d& pose_a, const Scan&
       return false;
     });
     if (distance.compare(a.view().point(i), b.view().point(nearest), max_distance) > 0) {
-      ASSERT_EQ(found.nearest[i], kNothing) << "record " << i;
+      ASSERT_EQ(found.closest_point[i], kNothing) << "record " << i;
       continue;
     }
-    ASSERT_EQ(found.nearest[i], nearest) << "record " << i;
+    ASSERT_EQ(found.closest_point[i], nearest) << "record " << i;
     ASSERT_EQ(found.distance[i], distance.gap(pairWith(nearest))) << "record " << i;
   }
 }

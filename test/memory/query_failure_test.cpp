@@ -267,16 +267,16 @@ TEST(AllocationFailure, OfPointDistancesLeavesAUsableResult)
                            pointDistances(a, b, asked, subject.result);
                          }
                          catch (const std::bad_alloc&) {
-                           EXPECT_TRUE(subject.result.distance.empty() && subject.result.nearest.empty());
+                           EXPECT_TRUE(subject.result.distance.empty() && subject.result.closest_point.empty());
                            throw;
                          }
-                         return std::tuple(subject.result.nearest, subject.result.measured, subject.result.undecided,
-                                           subject.result.greatest_pair);
+                         return std::tuple(subject.result.closest_point, subject.result.measured,
+                                           subject.result.undecided, subject.result.greatest_pair);
                        });
   }
   failEachAllocation(freshPair, [](const auto& pair) {
     const SymmetricDistances found = symmetricDistances(pair->placedA(), pair->placedB());
-    return std::tuple(found.a.nearest, found.b.nearest, found.hausdorff_pair);
+    return std::tuple(found.a.closest_point, found.b.closest_point, found.hausdorff_pair);
   });
 }
 

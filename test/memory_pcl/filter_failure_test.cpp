@@ -405,7 +405,7 @@ TEST_F(FilterAllocationFailure, OfDistances)
                      [](const auto& subject) {
                        PointDistances result;
                        subject->filter.computeDistances(result);
-                       return std::tuple(bitsOf(result.distance), result.nearest, result.greatest);
+                       return std::tuple(bitsOf(result.distance), result.closest_point, result.greatest);
                      });
 }
 

@@ -35,7 +35,7 @@ def test_along_a_path(kind):
     np.testing.assert_allclose(least[run.closest_pose[hit], hit], least.min(axis=0)[hit], rtol=1e-9, atol=1e-9)
     at = d[run.closest_pose[hit], np.flatnonzero(hit), run.closest_point[hit]]
     np.testing.assert_allclose(at, least.min(axis=0)[hit], rtol=1e-9, atol=1e-9)
-    assert (run.closest_point[~hit] == pcl_bsh.NO_POINT).all() and (run.closest_pose[~hit] == -1).all()
+    assert (run.closest_point[~hit] == -1).all() and (run.closest_pose[~hit] == -1).all()
     assert run.poses.dtype.names == ("colliding", "colliding_points", "undecided_points", "distance")
     np.testing.assert_array_equal(run.poses["colliding_points"], near.sum(axis=1))
     np.testing.assert_array_equal(run.poses["colliding"], near.any(axis=1))
@@ -137,7 +137,7 @@ def test_many_poses(kind):
         np.testing.assert_allclose(least, d.min(axis=(1, 2)), rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(d[range(len(poses)), pairs[:, 0], pairs[:, 1]], least, rtol=1e-9, atol=1e-9)
     else:
-        assert np.isinf(least).all() and (pairs == pcl_bsh.NO_POINT).all()
+        assert np.isinf(least).all() and (pairs == -1).all()
     none = np.zeros((0, 4, 4))
     assert len(pcl_bsh.any_collision_at_poses(A, B, none, 0.1)) == 0
 

@@ -77,7 +77,7 @@ def test_distances_of_points(kind_a, kind_b, pose):
         distance, nearest = found
         has = np.isfinite(least) & (least <= (np.inf if limit is None else limit))
         np.testing.assert_array_equal(np.isfinite(distance), has)
-        np.testing.assert_array_equal(nearest == pcl_bsh.NO_POINT, ~has)
+        np.testing.assert_array_equal(nearest == -1, ~has)
         np.testing.assert_allclose(distance[has], least[has], rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(d[has, nearest[has]], least[has], rtol=1e-9, atol=1e-9)
         if exact:

@@ -93,7 +93,7 @@ def test_distances(clouds):
     distance.SetObstacleData(cloud(b))
     distance.Update()
     assert np.allclose(array(distance, "distance"), gaps(a, b).min(axis=1), rtol=1e-12)
-    assert np.array_equal(array(distance, "nearest"), gaps(a, b).argmin(axis=1))
+    assert np.array_equal(array(distance, "closest_point"), gaps(a, b).argmin(axis=1))
 
 
 def test_surfaces_and_spheres(clouds):

@@ -219,7 +219,7 @@ TEST_F(Ask, DistancesAndLimits)
   question.wanted.distances = question.wanted.both_ways = true;
   const SymmetricDistances expected = symmetricDistances({a}, {b, question.pose});
   EXPECT_EQ(answer().distances.hausdorff_pair, expected.hausdorff_pair);
-  EXPECT_EQ(answer().distances.b.nearest, expected.b.nearest);
+  EXPECT_EQ(answer().distances.b.closest_point, expected.b.closest_point);
 
   question.wanted = {};
   question.wanted.distances = question.wanted.within = true;
@@ -264,7 +264,7 @@ TEST_F(Ask, PosesInAWorldAreThoseOfTheQuery)
   const FlagsResult expected = collisionFlags(input_there, obstacle_there, request);
   EXPECT_EQ(found.collisions.flags, expected.a);
   EXPECT_EQ(found.obstacle_flags, expected.b);
-  EXPECT_EQ(found.distances.a.nearest, distances.nearest);
+  EXPECT_EQ(found.distances.a.closest_point, distances.closest_point);
   EXPECT_EQ(found.within, numbersOf(expected.a));
   question.wanted = {};
   question.wanted.flags = true;
@@ -464,7 +464,7 @@ TEST_F(Ask, CanBeCancelled)
   question.progress = [](double) { return false; };
   EXPECT_THROW(answer(), Cancelled);
   question.progress = nullptr;
-  EXPECT_EQ(answer().distances.a.nearest, pointDistances({a}, {b, question.pose}).nearest);
+  EXPECT_EQ(answer().distances.a.closest_point, pointDistances({a}, {b, question.pose}).closest_point);
 }
 
 } // namespace

@@ -134,14 +134,15 @@ protected:
         const SiteDistances of_distances =
             pointDistances(site, b, most, request, [&](const Tile&, const Cloud& cloud, const PointDistances& result) {
               for (std::uint32_t i = 0; i < cloud.width; ++i)
-                found[name(cloud, i)] = {result.distance[i], double(result.nearest[i])};
+                found[name(cloud, i)] = {result.distance[i], double(result.closest_point[i])};
             });
         EXPECT_EQ(of_distances.measured, distances.measured);
         EXPECT_EQ(of_distances.greatest, distances.greatest);
         for (std::size_t i = 0; i < scene.a.size(); ++i) {
           if (std::isnan(distances.distance[i])) continue;
           ASSERT_EQ(found.count(nameOf(i)), 1U) << i;
-          EXPECT_EQ(found[nameOf(i)], (std::vector<double>{distances.distance[i], double(distances.nearest[i])})) << i;
+          EXPECT_EQ(found[nameOf(i)], (std::vector<double>{distances.distance[i], double(distances.closest_point[i])}))
+              << i;
         }
       }
 

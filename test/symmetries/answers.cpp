@@ -42,8 +42,8 @@ void askPair(const Instance& instance, const Placed& a, const Placed& b, Answers
   const SymmetricDistances distances = symmetricDistances(a, b, all);
   answers.distances_a = distances.a.distance;
   answers.distances_b = distances.b.distance;
-  answers.names.nearest_a = distances.a.nearest;
-  answers.names.nearest_b = distances.b.nearest;
+  answers.names.nearest_a = distances.a.closest_point;
+  answers.names.nearest_b = distances.b.closest_point;
   answers.hausdorff = distances.hausdorff;
   answers.names.hausdorff = distances.hausdorff_pair;
   all.max_distance = clearance;

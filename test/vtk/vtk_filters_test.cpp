@@ -258,9 +258,9 @@ TEST_P(Filters, DistancesAreThoseOfTheCore)
     filter->SetMaximumDistance(limit);
     filter->Update();
     expectSame(values(*filter->GetOutput(), "distance"), wanted.distance);
-    const std::vector<double> nearest = values(*filter->GetOutput(), "nearest");
+    const std::vector<double> nearest = values(*filter->GetOutput(), "closest_point");
     for (std::size_t i = 0; i < nearest.size(); ++i)
-      EXPECT_EQ(nearest[i], wanted.nearest[i] == kNothing ? -1.0 : wanted.nearest[i]);
+      EXPECT_EQ(nearest[i], wanted.closest_point[i] == kNothing ? -1.0 : wanted.closest_point[i]);
   }
 }
 
@@ -381,7 +381,7 @@ TEST_P(Filters, ObstaclesWithCellsAreSurfaces)
   distances->Update();
   const PointDistances wanted = pointDistances({a}, {b});
   expectSame(values(*distances->GetOutput(), "distance"), wanted.distance);
-  expectSame(values(*distances->GetOutput(), "nearest"), wanted.nearest);
+  expectSame(values(*distances->GetOutput(), "closest_point"), wanted.closest_point);
 
   ball->SetPhiResolution(9); // other triangles
   filter->Update();
@@ -434,7 +434,7 @@ TEST_P(Filters, CellsOfAllKindsCount)
   distances->SetObstacleData(things);
   distances->Update();
   // vtkPolyData numbers vertices first, then lines, polygons, strips
-  expectSame(values(*distances->GetOutput(), "nearest"), std::vector<int>{2, 2, 1, 3, 3, 0, 0, 2});
+  expectSame(values(*distances->GetOutput(), "closest_point"), std::vector<int>{2, 2, 1, 3, 3, 0, 0, 2});
 
   vtkNew<vtkCellArray> wrong;
   wrong->InsertNextCell({0, 1, 77});

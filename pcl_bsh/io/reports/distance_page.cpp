@@ -236,14 +236,14 @@ private:
       const Eigen::Vector3d at = from.placeOf(place.point);
       double size = 0;
       for (std::size_t k = 0; k < 3; ++k) size = std::max(size, place.high[k] - place.low[k]);
-      const bool known = place.nearest != kNothing;
+      const bool known = place.closest_point != kNothing;
       rows.push_back(Object{{"rank", std::to_string(i + 1)},
                             {"at", coordinate(at.x()) + ", " + coordinate(at.y()) + ", " + coordinate(at.z())},
                             {"distance", distanceText(place.distance)},
                             {"points", std::to_string(place.records.size())},
                             {"size", number(size, 3)},
                             {"point", std::to_string(place.point)},
-                            {"nearest", known ? std::to_string(place.nearest) : std::string("none")}});
+                            {"closest_point", known ? std::to_string(place.closest_point) : std::string("none")}});
     }
     const std::size_t more = from.places.size() - std::min(from.places.size(), most_far_places);
     return Object{{"rows", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};

@@ -58,11 +58,11 @@ Json toJson(const DistanceSide& side, bool is_input)
   for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
     const FarPlace& place = side.places[i];
     const Eigen::Vector3d at = side.placeOf(place.point);
-    const bool known = place.nearest != kNothing;
+    const bool known = place.closest_point != kNothing;
     json["places"].push_back({{"points", place.records.size()},
                               {"distance", lengthJson(place.distance)},
                               {side.part, place.point},
-                              {"nearest", known ? Json(place.nearest) : Json()},
+                              {"closest_point", known ? Json(place.closest_point) : Json()},
                               {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
   }
   return json;

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,47 +23,44 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
-/// An array that owns what the vector held. @param numbersIn from the vector to its first number
-template <class Number, class T>
-py::array_t<Number> arrayOwning(std::vector<T>&& values, const Number* (*numbersIn)(const std::vector<T>&))
+/// As they stand in arrays: verdicts as bytes; records, which are below 2^31, as int32, and so none as -1.
+template <class T>
+const auto* numbersIn(const T* values)
+{
+  if constexpr (std::is_same_v<T, Verdict>)
+    return reinterpret_cast<const std::uint8_t*>(values);
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return reinterpret_cast<const std::int32_t*>(values);
+  else
+    return values;
+}
+
+template <class T>
+using ArrayOf = py::array_t<std::decay_t<decltype(*numbersIn(static_cast<const T*>(nullptr)))>>;
+
+/// An array that owns what the vector held.
+template <class T>
+ArrayOf<T> arrayFrom(std::vector<T>&& values)
 {
   auto owned = std::make_unique<std::vector<T>>(std::move(values));
   const std::vector<T>& held = *owned;
   const py::capsule free(owned.release(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
-  return py::array_t<Number>(static_cast<py::ssize_t>(held.size()), numbersIn(held), free);
-}
-
-template <class T>
-py::array_t<T> arrayFrom(std::vector<T>&& values)
-{
-  return arrayOwning<T, T>(std::move(values), [](const std::vector<T>& held) { return held.data(); });
-}
-
-/// Verdicts are bytes.
-inline py::array_t<std::uint8_t> arrayFrom(std::vector<Verdict>&& verdicts)
-{
-  return arrayOwning<std::uint8_t, Verdict>(std::move(verdicts),
-                                            [](const std::vector<Verdict>& held) { return bytesOf(held); });
+  return ArrayOf<T>(static_cast<py::ssize_t>(held.size()), numbersIn(held.data()), free);
 }
 
 /// A read-only array of any shape in the memory of an object, which it keeps alive.
 template <class T>
-py::array_t<T> arrayIn(const py::handle& object, const T* data, std::vector<py::ssize_t> shape)
+ArrayOf<T> arrayIn(const py::handle& object, const T* data, std::vector<py::ssize_t> shape)
 {
-  py::array_t<T> array(std::move(shape), data, object);
+  ArrayOf<T> array(std::move(shape), numbersIn(data), object);
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
 
 template <class T>
-py::array_t<T> arrayIn(const py::handle& object, const std::vector<T>& values)
+ArrayOf<T> arrayIn(const py::handle& object, const std::vector<T>& values)
 {
   return arrayIn(object, values.data(), {static_cast<py::ssize_t>(values.size())});
-}
-
-inline py::array_t<std::uint8_t> arrayIn(const py::handle& object, const std::vector<Verdict>& verdicts)
-{
-  return arrayIn(object, bytesOf(verdicts), {static_cast<py::ssize_t>(verdicts.size())});
 }
 
 /// A read-only property: the array of one of the object's vectors.
@@ -73,13 +71,13 @@ auto column(std::vector<T> Object::*values)
 }
 
 /// (pairs, 2)
-inline py::array_t<std::uint32_t> arrayFrom(const std::vector<PointPair>& pairs)
+inline py::array_t<std::int32_t> arrayFrom(const std::vector<PointPair>& pairs)
 {
-  py::array_t<std::uint32_t> array({pairs.size(), std::size_t{2}});
-  std::uint32_t* record = array.mutable_data();
+  py::array_t<std::int32_t> array({pairs.size(), std::size_t{2}});
+  std::int32_t* record = array.mutable_data();
   for (const PointPair& pair : pairs) {
-    *record++ = pair.a;
-    *record++ = pair.b;
+    *record++ = static_cast<std::int32_t>(pair.a);
+    *record++ = static_cast<std::int32_t>(pair.b);
   }
   return array;
 }

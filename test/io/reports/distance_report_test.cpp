@@ -99,7 +99,7 @@ TEST_F(DistanceReports, TellWhatHasNoDistance)
   EXPECT_EQ(told["input_to_obstacle"]["farther"], 1);
   EXPECT_EQ(told["hausdorff"], Json()) << "not known";
   EXPECT_EQ(told["input_to_obstacle"]["places"][0]["distance"], Json());
-  EXPECT_EQ(told["input_to_obstacle"]["places"][0]["nearest"], Json());
+  EXPECT_EQ(told["input_to_obstacle"]["places"][0]["closest_point"], Json());
   EXPECT_THAT(page(), HasSubstr(">1 point has no distance: "));
   EXPECT_THAT(page(), HasSubstr("; 1 point has no distance</text>")) << "beside the histogram, too";
   EXPECT_THAT(page(), Not(HasSubstr("farther than 0.14")));

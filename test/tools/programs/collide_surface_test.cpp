@@ -85,7 +85,7 @@ TEST_F(CollideSurface, DistancesAreThoseOfTheTriangles)
   }
   const Json distances = json("report.json")["distances"];
   EXPECT_LT(distances["hausdorff_pair"][1], 12);
-  EXPECT_LT(distances["input_to_obstacle"]["places"][0]["nearest"], 12);
+  EXPECT_LT(distances["input_to_obstacle"]["places"][0]["closest_point"], 12);
   EXPECT_EQ(distances["obstacle_to_input"]["count"], 12);
   EXPECT_LT(distances["obstacle_to_input"]["farthest_pair"][1], 12);
   EXPECT_THAT(io::contentOf(folder / "page.html"), HasSubstr("a triangle of the obstacle"));
