@@ -36,7 +36,7 @@ Examples
 >>> import numpy as np, pcl_bsh
 >>> a = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0], [0, 0, 3]]))
 >>> b = pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 1]]))
->>> found = pcl_bsh.contacts(a, b, 2.0)
+>>> found = pcl_bsh.nearest_contacts(a, b, 2.0)
 >>> found.a, found.b, found.distance
 (array([0, 1], dtype=int32), array([0, 0], dtype=int32), array([1., 2.]))
 >>> found.normal[1]
@@ -45,7 +45,7 @@ array([0., 0., 1.])
 
 constexpr auto kPairsWithin = R"(The pairs of points that collide, in no particular order.
 
-Parameters are those of `contacts`.
+Parameters are those of `nearest_contacts`.
 
 Returns
 -------
@@ -55,7 +55,7 @@ ndarray of int32, (k, 2)
 Raises
 ------
 ValueError
-    As `contacts`; where there are more than `most`, too.
+    As `nearest_contacts`; where there are more than `most`, too.
 )";
 
 /// Contacts as columns.
@@ -104,7 +104,7 @@ py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double c
   const PairsWithin found = asked.answer([&] { return pairsWithin(asked.a, asked.b, request); });
   if (!found.complete)
     throw py::value_error("pairs_within: there are more than " + counted(request.most, "pair") +
-                          ": ask contacts() for the nearest, or for more");
+                          ": ask nearest_contacts() for the nearest, or for more");
   return arrayFrom(found.pairs);
 }
 
@@ -112,7 +112,7 @@ py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double c
 
 void bindContacts(py::module_& module)
 {
-  py::class_<Contacts>(module, "Contacts", "The answer of `contacts`.")
+  py::class_<Contacts>(module, "Contacts", "The answer of `nearest_contacts`.")
       .def_property_readonly("a", column(&Contacts::a))
       .def_property_readonly("b", column(&Contacts::b))
       .def_property_readonly("distance", column(&Contacts::distance))
@@ -127,7 +127,7 @@ void bindContacts(py::module_& module)
       .def("__repr__", [](const Contacts& found) {
         return "Contacts(" + std::to_string(found.a.size()) + (found.complete ? ")" : ", the nearest)");
       });
-  module.def("contacts", &contactsOf, kContacts, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
+  module.def("nearest_contacts", &contactsOf, kContacts, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
              "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());
   module.def("pairs_within", &pairsWithinOf, kPairsWithin, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
              "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());

@@ -42,7 +42,7 @@ def test_options_of_questions_have_the_words_of_all_faces():
     def words(function):
         return " ".join(function.__doc__.split())
 
-    for function in (pcl_bsh.collision_flags, pcl_bsh.contacts, pcl_bsh.collide_along, pcl_bsh.any_collision_on_motions):
+    for function in (pcl_bsh.collision_flags, pcl_bsh.nearest_contacts, pcl_bsh.collide_along, pcl_bsh.any_collision_on_motions):
         assert ("clearance : float, default 0 Greatest distance that counts as collision, touching included; "
                 "in the clouds' unit. ") in words(function)
     assert "max_distance : float, optional Greater distances are not told, but are NaN; " in words(pcl_bsh.point_distances)

@@ -58,7 +58,7 @@ def test_two_clouds(kind_a, kind_b, pose):
 
     pairs = pcl_bsh.pairs_within(A, B, clearance, pose_b=pose_b)
     assert sorted(map(tuple, pairs.tolist())) == sorted(map(tuple, np.argwhere(near).tolist()))
-    contacts = pcl_bsh.contacts(A, B, clearance, pose_b=pose_b)
+    contacts = pcl_bsh.nearest_contacts(A, B, clearance, pose_b=pose_b)
     assert contacts.complete and len(contacts) == near.sum()
     np.testing.assert_allclose(contacts.distance, np.sort(d[near]), atol=1e-9)
     assert set(zip(contacts.a.tolist(), contacts.b.tolist())) == set(map(tuple, np.argwhere(near).tolist()))
@@ -102,7 +102,7 @@ def test_distances_of_points(kind_a, kind_b, pose):
 def test_contacts_of_which_only_the_nearest_are_wanted():
     a, b = cloud("lattice", 1), cloud("lattice", 2)
     A, B = pcl_bsh.SphereHierarchy(a), pcl_bsh.SphereHierarchy(b)
-    every, few = pcl_bsh.contacts(A, B, 2.0), pcl_bsh.contacts(A, B, 2.0, most=17)
+    every, few = pcl_bsh.nearest_contacts(A, B, 2.0), pcl_bsh.nearest_contacts(A, B, 2.0, most=17)
     assert not few.complete and len(few) == 17
     np.testing.assert_array_equal(few.distance, every.distance[:17])
     np.testing.assert_array_equal(few.a, every.a[:17])
@@ -194,7 +194,7 @@ def test_accuracy_keeps_its_promises(text):
         (lambda A: pcl_bsh.any_collision(A, A, np.inf), "clearance"),
         (lambda A: pcl_bsh.any_collision(A, A, 0.1, accuracy="fine"), "fine"),
         (lambda A: pcl_bsh.closest_pair(A, A, accuracy=pcl_bsh.Accuracy.tolerance(-1)), "tolerance|length|-1"),
-        (lambda A: pcl_bsh.contacts(A, A, -1.0), "clearance"),
+        (lambda A: pcl_bsh.nearest_contacts(A, A, -1.0), "clearance"),
         (lambda A: pcl_bsh.point_distances(A, A, -1.0), "max_distance|distance"),
         (lambda A: pcl_bsh.radius_search(A, [0.0, 0, 0], -1.0), "radius"),
         (lambda A: pcl_bsh.radius_search(A, np.zeros((2, 2)), 1.0), r"queries: have shape \(2, 2\)"),
@@ -221,7 +221,7 @@ def test_arguments_of_another_type():
     for call in (lambda: pcl_bsh.collision_flags(A, cloud("random"), 0.1), lambda: pcl_bsh.collision_flags(A),
                  lambda: pcl_bsh.collision_flags(A, A, "0.1"), lambda: pcl_bsh.collision_flags(A, A, 0.1, np.eye(4)),
                  lambda: pcl_bsh.collision_flags(A, A, threads=-1), lambda: pcl_bsh.collision_flags(None, A),
-                 lambda: pcl_bsh.collision_flags(A, A, accuracy=3), lambda: pcl_bsh.contacts(A, A, most=-1),
+                 lambda: pcl_bsh.collision_flags(A, A, accuracy=3), lambda: pcl_bsh.nearest_contacts(A, A, most=-1),
                  lambda: pcl_bsh.collide_along(A, A, [np.eye(4)], swept="far"),
                  lambda: pcl_bsh.Scene().add("a", [("b", "c")]), lambda: pcl_bsh.Scene().add("a", A, motion=3),
                  lambda: pcl_bsh.any_collision_on_motions(A, A, [np.eye(4)], [[0, 0]], 0.1)):
@@ -283,7 +283,7 @@ def test_warnings_say_what_answers_do_not():
         lambda b: pcl_bsh.point_distances(a, b),
         lambda b: pcl_bsh.symmetric_distances(a, b),
         lambda b: pcl_bsh.hausdorff_distance(a, b),
-        lambda b: pcl_bsh.contacts(a, b, 2.0),
+        lambda b: pcl_bsh.nearest_contacts(a, b, 2.0),
         lambda b: pcl_bsh.pairs_within(a, b, 2.0),
         lambda b: pcl_bsh.collide_along(a, b, [np.eye(4)], 2.0),
         lambda b: pcl_bsh.any_collision_at_poses(a, b, [np.eye(4)], 2.0),
