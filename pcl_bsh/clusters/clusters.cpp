@@ -219,10 +219,10 @@ std::vector<std::uint32_t> finiteRecords(const PointsView& view)
   return records;
 }
 
-Clusters numbered(DisjointSets sets, const PointsView& view, const Work& work)
+/// @param result whose memory is used again
+void number(DisjointSets sets, const PointsView& view, Clusters& result)
 {
-  Clusters result;
-  result.work = work;
+  result.sizes.clear();
   result.of.assign(view.count, kNothing);
   for (const std::uint32_t record : finiteRecords(view)) {
     std::int32_t& root = result.of[sets.find(record)]; // the smallest of its set: comes first
@@ -233,21 +233,29 @@ Clusters numbered(DisjointSets sets, const PointsView& view, const Work& work)
     result.of[record] = root;
     ++result.sizes[static_cast<std::size_t>(root)];
   }
-  return result;
 }
 
 } // namespace
 
 Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const Effort& effort)
 {
+  Clusters result;
+  euclideanClusters(cloud, distance, result, effort);
+  return result;
+}
+
+void euclideanClusters(const SphereHierarchy& cloud, double distance, Clusters& result, const Effort& effort)
+{
   requireDistance(distance);
   checkExact(effort);
   const DefaultFloatEnvironment environment;
   Progress progress(effort.progress);
-  Work work;
-  DisjointSets sets = HWY_DYNAMIC_DISPATCH(clusterOnTarget)(cloud, distance, progress, work);
+  Clusters found = std::exchange(result, {}); // should something throw, it is empty
+  found.work = {};
+  DisjointSets sets = HWY_DYNAMIC_DISPATCH(clusterOnTarget)(cloud, distance, progress, found.work);
   progress.finish();
-  return numbered(std::move(sets), cloud.view(), work);
+  number(std::move(sets), cloud.view(), found);
+  result = std::move(found);
 }
 
 Clusters brute_force::euclideanClusters(const SphereHierarchy& cloud, double distance)
@@ -258,16 +266,17 @@ Clusters brute_force::euclideanClusters(const SphereHierarchy& cloud, double dis
   const std::vector<std::uint32_t> records = finiteRecords(view);
   const RecordDistance exact(view, Eigen::Isometry3d::Identity(), view, Eigen::Isometry3d::Identity());
   DisjointSets sets(view.count);
-  Work work;
+  Clusters result;
   for (std::size_t i = 0; i < records.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      ++work.exact_decisions;
+      ++result.work.exact_decisions;
       if (exact.compare({records[i], records[j]}, RecordDistance::Sum{distance}) <= 0) {
         sets.unite(records[i], records[j]);
       }
     }
   }
-  return numbered(std::move(sets), view, work);
+  number(std::move(sets), view, result);
+  return result;
 }
 
 } // namespace pcl_bsh

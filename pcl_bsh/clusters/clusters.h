@@ -27,6 +27,9 @@ struct Clusters {
 /// @throws std::invalid_argument unless the distance is finite and >= 0, and the accuracy exact. Cancelled.
 Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const Effort& effort = {});
 
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void euclideanClusters(const SphereHierarchy& cloud, double distance, Clusters& result, const Effort& effort = {});
+
 namespace brute_force {
 
 /// The same, pair by pair in exact arithmetic.

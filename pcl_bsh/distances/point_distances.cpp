@@ -50,14 +50,13 @@ HWY_EXPORT(farthestOfVoxelOnTarget);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoDistance = std::numeric_limits<double>::quiet_NaN();
 
-/// Empties the result, and its arrays keep their memory; begins with nothing measured.
+/// Begins with nothing measured, in the memory of an earlier result.
 void clear(PointDistances& result, const Placed& a, const PointDistancesRequest& request)
 {
   PointDistances fresh;
   fresh.distance.swap(result.distance);
   fresh.closest_point.swap(result.closest_point);
   fresh.interval.swap(result.interval);
-  result = PointDistances(); // should something throw
   const SphereHierarchy& cloud = a.hierarchy();
   fresh.distance.assign(cloud.view().count, kNoDistance);
   fresh.closest_point.assign(cloud.view().count, kNothing);
@@ -150,9 +149,8 @@ void pointDistances(const Placed& a, const Placed& b, const PointDistancesReques
   const DefaultFloatEnvironment environment;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);
-  clear(result, a, request);
-  PointDistances found;
-  std::swap(found, result); // should something throw, it is empty
+  PointDistances found = std::exchange(result, {}); // should something throw, it is empty
+  clear(found, a, request);
   if (haveAnswers(a, b)) {
     progress.begin(1.0, stepsOf(a, rule));
     Direction(a, b, request, progress, found).passes(rule, rule.node_pairs);
@@ -171,16 +169,24 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
 
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request)
 {
+  SymmetricDistances result;
+  symmetricDistances(a, b, request, result);
+  return result;
+}
+
+void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request,
+                        SymmetricDistances& result)
+{
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);
-  SymmetricDistances result;
-  clear(result.a, a, request);
-  clear(result.b, b, request);
+  SymmetricDistances found = std::exchange(result, {}); // should something throw, it is empty
+  clear(found.a, a, request);
+  clear(found.b, b, request);
   if (haveAnswers(a, b)) {
     progress.begin(1.0, stepsOf(a, rule) + stepsOf(b, rule));
-    Direction from_a(a, b, request, progress, result.a), from_b(b, a, request, progress, result.b);
+    Direction from_a(a, b, request, progress, found.a), from_b(b, a, request, progress, found.b);
     if (rule.mayStop()) {
       passBothWithin(from_a, from_b, rule);
     }
@@ -190,10 +196,10 @@ SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const Po
     }
     progress.end();
   }
-  finish(a, b, request, result.a);
-  finish(b, a, request, result.b);
-  findHausdorff(a, b, result);
-  return result;
+  finish(a, b, request, found.a);
+  finish(b, a, request, found.b);
+  findHausdorff(a, b, found);
+  result = std::move(found);
 }
 
 HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& hausdorff)

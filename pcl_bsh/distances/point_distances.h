@@ -62,7 +62,7 @@ struct PointDistances {
 ///   declaration asks for. Cancelled.
 PointDistances pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
-/// The same into the memory of an earlier result, which is empty should anything be thrown.
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
 void pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request, PointDistances& result);
 
 /// Both directions.
@@ -78,6 +78,10 @@ struct SymmetricDistances {
 /// Distances from each cloud to the other. A count of sphere tests, or a time, is for both together.
 /// @throws as pointDistances() does
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
+
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request,
+                        SymmetricDistances& result);
 
 /// What hausdorffDistance() reads. It is exact.
 struct HausdorffRequest : Effort {

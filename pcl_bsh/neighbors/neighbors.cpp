@@ -113,31 +113,82 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
   });
 }
 
-std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
-                                          const Effort& effort)
+void flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                     std::vector<std::uint8_t>& flags, const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkRadius(radius);
   checkView("queries", queries);
-  std::vector<std::uint8_t> flags(queries.size());
+  flags.assign(queries.size(), 0);
   forEachQuery(cloud.storage(), queries, effort, kUnasked, [&](std::size_t i, const Point3& query) {
     Work work;
     flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
   });
-  return flags;
 }
 
-std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, const Effort& effort)
+void anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, std::vector<std::uint8_t>& flags,
+                const Effort& effort)
 {
   checkOfPoints(cloud.view());
   checkView("balls", balls);
   if (!balls.radii) throw InvalidInput(Input::radius, "balls", "the view has no radii", "give one per record");
   for (std::size_t i = 0; i < balls.size(); ++i) checkRadius(balls.radius(balls.record(i)));
-  std::vector<std::uint8_t> flags(balls.size());
+  flags.assign(balls.size(), 0);
   forEachQuery(cloud.storage(), balls, effort, kUnasked, [&](std::size_t i, const Point3& center) {
     Work work;
     flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
   });
+}
+
+Neighbors radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, const RadiusOptions& options)
+{
+  Neighbors found;
+  radiusSearch(cloud, query, radius, found, options);
+  return found;
+}
+
+Neighbors nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k)
+{
+  Neighbors found;
+  nearestKSearch(cloud, query, k, found);
+  return found;
+}
+
+std::vector<std::int32_t> boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high)
+{
+  std::vector<std::int32_t> indices;
+  boxSearch(cloud, low, high, indices);
+  return indices;
+}
+
+NeighborLists radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                           const RadiusOptions& options, const Effort& effort)
+{
+  NeighborLists found;
+  radiusSearch(cloud, queries, radius, found, options, effort);
+  return found;
+}
+
+NeighborLists nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
+                             const Effort& effort)
+{
+  NeighborLists found;
+  nearestKSearch(cloud, queries, k, found, effort);
+  return found;
+}
+
+std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                                          const Effort& effort)
+{
+  std::vector<std::uint8_t> flags;
+  flagAnyInRadius(cloud, queries, radius, flags, effort);
+  return flags;
+}
+
+std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, const Effort& effort)
+{
+  std::vector<std::uint8_t> flags;
+  anyInBalls(cloud, balls, flags, effort);
   return flags;
 }
 

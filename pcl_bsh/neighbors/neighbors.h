@@ -2,10 +2,11 @@
 // The neighbours of a point, as pcl::search asks for them: within a radius, the k nearest, in a box.
 //
 //   SphereHierarchy scan(viewOf(xyz, n));
-//   Neighbors found;
-//   nearestKSearch(scan, {x, y, z}, 8, found);      // found.indices, found.squared_distances: nearest first
-//   radiusSearch(scan, {x, y, z}, 0.1, found);      // |p - q| <= 0.1
+//   Neighbors found = nearestKSearch(scan, {x, y, z}, 8); // found.indices, found.squared_distances: nearest first
+//   radiusSearch(scan, {x, y, z}, 0.1, found);            // |p - q| <= 0.1, in the memory of `found`
 //   bool near = anyInRadius(scan, {x, y, z}, 0.1);
+//
+// What takes a result uses its memory again.
 //
 // Neighbours and their order are those of exact arithmetic on the given numbers: by ascending distance,
 // equal distances by ascending record number. Radii that the cloud's points may have play no part. A query that is not
@@ -43,27 +44,43 @@ struct RadiusOptions {
   bool sorted = true;   ///< false: in any order, but always the same one
 };
 
-/// All points with |p - query| <= radius. @return how many.
-/// @param work when given, what the query cost is added: a node or leaf pair is one node or leaf against the query.
+/// All points with |p - query| <= radius.
 /// @throws std::invalid_argument when the radius is negative or NaN. Infinity is a radius.
+Neighbors radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius,
+                       const RadiusOptions& options = {});
+
+/// The same into a result. @return how many.
+/// @param work when given, what the query cost is added: a node or leaf pair is one node or leaf against the query.
 std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, Neighbors& found,
                          const RadiusOptions& options = {}, Work* work = nullptr);
 
-/// The k nearest points, or all when there are fewer. @return how many. `work` as above.
+/// The k nearest points, or all when there are fewer.
+Neighbors nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k);
+
+/// The same into a result. @return how many. `work` as above.
 std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found,
                            Work* work = nullptr);
 
 /// Does any point lie within the radius? Throws as radiusSearch() does. `work` as above.
 bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radius, Work* work = nullptr);
 
-/// The points with low <= p <= high on each axis, by ascending record number. @return how many. `work` as above.
+/// The points with low <= p <= high on each axis, by ascending record number.
 /// @throws std::invalid_argument when a bound is NaN. Infinite bounds are bounds; low above high is an empty box.
+std::vector<std::int32_t> boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high);
+
+/// The same into a result. @return how many. `work` as above.
 std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high,
                       std::vector<std::int32_t>& indices, Work* work = nullptr);
 
 /// The same for many queries at once, shared among threads and taken in an order that visits neighbouring places one
 /// after another. The i-th answer belongs to the i-th point that the view of queries names: bit for bit what the single
 /// query gives. @throws as the single query does; std::invalid_argument for an accuracy other than exact. Cancelled.
+NeighborLists radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                           const RadiusOptions& options = {}, const Effort& effort = {});
+NeighborLists nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
+                             const Effort& effort = {});
+
+/// The same into a result.
 void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
                   const RadiusOptions& options = {}, const Effort& effort = {});
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,
@@ -72,11 +89,15 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
 /// One flag per query, 1 = some point lies within the radius. Throws as radiusSearch() of many does.
 std::vector<std::uint8_t> flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
                                           const Effort& effort = {});
+void flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, double radius,
+                     std::vector<std::uint8_t>& flags, const Effort& effort = {});
 
 /// One flag per ball, 1 = some point lies in it, its surface included. The view's radii are the balls'.
 /// @throws std::invalid_argument when the view has no radii, or one of them is negative or NaN; as
 ///   radiusSearch() of many does.
 std::vector<std::uint8_t> anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, const Effort& effort = {});
+void anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, std::vector<std::uint8_t>& flags,
+                const Effort& effort = {});
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

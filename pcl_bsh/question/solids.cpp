@@ -70,7 +70,7 @@ void SolidObstacle::addToPath(TrajectoryResult& found, Work& work) const
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
   std::vector<std::uint32_t> first;
   if (a_.hierarchy().view().triangles) {
-    first.assign(a_.hierarchy().view().count, PosesInside::kNever);
+    first.assign(a_.hierarchy().view().count, kNothing);
     for (std::uint32_t k = 0; k < poses.size(); ++k) {
       const std::vector<std::uint8_t> at_pose = labels(poses[k], nullptr);
       for (std::size_t i = 0; i < first.size(); ++i)
@@ -87,7 +87,7 @@ void SolidObstacle::addToPath(TrajectoryResult& found, Work& work) const
     if (pose < 0 || pose > static_cast<std::int32_t>(held)) pose = static_cast<std::int32_t>(held);
   };
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] == PosesInside::kNever) continue;
+    if (first[i] == kNothing) continue;
     if (!found.flags.empty()) add(found.flags[i], !certain);
     if (!found.first_pose.empty()) takeFirst(found.first_pose[i], first[i]);
     if (certain && !found.certain_pose.empty()) takeFirst(found.certain_pose[i], first[i]);

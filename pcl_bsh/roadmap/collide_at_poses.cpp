@@ -10,6 +10,7 @@
 #include <pcl_bsh/roadmap/batches.h>
 
 #include <limits>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -66,13 +67,17 @@ void checkPoses(const PoseList& poses, const char* whose, unsigned threads)
   if (wrong < poses.size()) checkPose(plainText("pose ", wrong, " of ", whose), poses[wrong], wrong);
 }
 
-AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request)
+namespace {
+
+/// @param memory of an earlier result
+AnyAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b, const AnyRequest& request,
+                  AnyAtPoses&& memory)
 {
   checkClearance(request.clearance);
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   AnyAtPoses result;
+  result.flags.swap(memory.flags);
   result.flags.assign(T_world_b.size(), Verdict::free);
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
   if (!request.accuracy.isExact()) {
@@ -105,12 +110,16 @@ AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const 
   return result;
 }
 
-DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request)
+/// @param memory of an earlier result
+DistancesAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                        const DistanceRequest& request, DistancesAtPoses&& memory)
 {
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
   DistancesAtPoses result;
+  result.distances.swap(memory.distances);
+  result.pairs.swap(memory.pairs);
+  result.pairs.clear();
   result.distances.assign(T_world_b.size(), std::numeric_limits<double>::infinity());
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
   Progress progress(request.progress);
@@ -127,6 +136,32 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
       return found.work;
     });
   return result;
+}
+
+} // namespace
+
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request)
+{
+  return answer(a, b, T_world_b, request, {});
+}
+
+void anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                         const AnyRequest& request, AnyAtPoses& result)
+{
+  result = answer(a, b, T_world_b, request, std::exchange(result, {}));
+}
+
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request)
+{
+  return answer(a, b, T_world_b, request, {});
+}
+
+void closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                        const DistanceRequest& request, DistancesAtPoses& result)
+{
+  result = answer(a, b, T_world_b, request, std::exchange(result, {}));
 }
 
 } // namespace pcl_bsh

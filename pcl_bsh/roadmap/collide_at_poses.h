@@ -48,10 +48,18 @@ struct DistancesAtPoses {
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                const AnyRequest& request = {});
 
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                         const AnyRequest& request, AnyAtPoses& result);
+
 /// The smallest distance and the pair that realises it, b at each of the poses.
 /// @throws as anyCollisionAtPoses()
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                     const DistanceRequest& request = {});
+
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                        const DistanceRequest& request, DistancesAtPoses& result);
 
 namespace brute_force {
 

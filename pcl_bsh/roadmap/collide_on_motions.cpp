@@ -151,12 +151,16 @@ double extentAround(const Eigen::Isometry3d& middle, const RigidMotion& motion, 
   return std::isfinite(safe) ? safe : std::numeric_limits<double>::infinity();
 }
 
-AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
-                                   const std::vector<PoseMotion>& motions, const MotionsRequest& request)
+namespace {
+
+/// @param memory of an earlier result
+AnyOnMotions answer(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+                    const std::vector<PoseMotion>& motions, const MotionsRequest& request, AnyOnMotions&& memory)
 {
   check(scan, poses, motions, request);
   const DefaultFloatEnvironment environment;
   AnyOnMotions result;
+  result.flags.swap(memory.flags);
   result.flags.assign(motions.size(), Verdict::free);
   if (scan.hierarchy().empty() || model.empty() || motions.empty()) return result;
   const MotionsQuery query(scan, model, request);
@@ -204,6 +208,20 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
   result.colliding = countOf(result.flags, Verdict::colliding);
   result.undecided = countOf(result.flags, Verdict::undecided);
   return result;
+}
+
+} // namespace
+
+AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+                                   const std::vector<PoseMotion>& motions, const MotionsRequest& request)
+{
+  return answer(scan, model, poses, motions, request, {});
+}
+
+void anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+                           const std::vector<PoseMotion>& motions, const MotionsRequest& request, AnyOnMotions& result)
+{
+  result = answer(scan, model, poses, motions, request, std::exchange(result, {}));
 }
 
 } // namespace pcl_bsh

@@ -64,6 +64,10 @@ struct AnyOnMotions {
 AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
                                    const std::vector<PoseMotion>& motions, const MotionsRequest& request);
 
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
+                           const std::vector<PoseMotion>& motions, const MotionsRequest& request, AnyOnMotions& result);
+
 namespace brute_force {
 
 /// The oracle, motion by motion and pair by pair. Between clearance and clearance + `swept` its verdicts may differ.

@@ -87,7 +87,7 @@ private:
     }
     void one(std::uint32_t record, Label)
     {
-      left -= search.found_.first[record] == PosesInside::kNever;
+      left -= search.found_.first[record] == kNothing;
       search.note(record, pose);
     }
   };
@@ -102,17 +102,21 @@ private:
 
 } // namespace
 
-PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& poses, unsigned threads)
+void findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& poses, PosesInside& result,
+                     unsigned threads)
 {
   checkPose("pose of the cloud", cloud.pose);
-  if (poses.size() >= PosesInside::kNever)
+  if (poses.size() >= std::uint32_t{kNothing})
     throw InvalidInput(Input::trajectory, "poses",
                        counted(poses.size(), "pose is", "poses are") + " more than a number has");
   for (std::size_t i = 0; i < poses.size(); ++i) checkPose("pose " + std::to_string(i), poses[i], i);
   const DefaultFloatEnvironment environment;
-  PosesInside found;
-  found.first.assign(cloud.hierarchy().view().count, PosesInside::kNever);
-  if (cloud.hierarchy().empty()) return found;
+  PosesInside found{std::exchange(result, {}).first, 0, {}}; // should something throw, the result is empty
+  found.first.assign(cloud.hierarchy().view().count, kNothing);
+  if (cloud.hierarchy().empty()) {
+    result = std::move(found);
+    return;
+  }
 
   constexpr std::uint32_t kTogether = 1024; // poses whose frames are kept at a time
   for (std::uint32_t base = 0; base < poses.size(); base += kTogether) {
@@ -129,9 +133,16 @@ PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseL
                 [&](std::size_t i) { search.lookInto(search.voxels[i], work[i]); });
     for (const Work& part : work) found.work += part;
   }
-  found.inside = found.first.size() -
-                 static_cast<std::size_t>(std::count(found.first.begin(), found.first.end(), PosesInside::kNever));
-  return found;
+  found.inside =
+      found.first.size() - static_cast<std::size_t>(std::count(found.first.begin(), found.first.end(), kNothing));
+  result = std::move(found);
+}
+
+PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& poses, unsigned threads)
+{
+  PosesInside result;
+  findPosesInside(cloud, solid, poses, result, threads);
+  return result;
 }
 
 } // namespace pcl_bsh

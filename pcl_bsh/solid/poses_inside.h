@@ -15,9 +15,7 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 /// What findPosesInside() found.
 struct PosesInside {
-  static constexpr std::uint32_t kNever = ~std::uint32_t{0};
-
-  /// One per record of the cloud's view: the first pose at which the point is inside, or on the surface; or kNever.
+  /// One per record of the cloud's view: the first pose at which the point is inside, or on the surface; or kNothing.
   std::vector<std::uint32_t> first;
   std::size_t inside = 0; ///< records that have one
   Work work;              ///< of one label each where a node has one; as LabelsResult has it
@@ -29,6 +27,10 @@ struct PosesInside {
 /// @throws std::invalid_argument when a pose is not rigid
 PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& T_world_solid,
                             unsigned threads = 1);
+
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& T_world_solid, PosesInside& result,
+                     unsigned threads = 1);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

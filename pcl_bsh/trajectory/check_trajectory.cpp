@@ -57,16 +57,21 @@ bool asksForAnything(const TrajectoryRequest& request)
          request.swept;
 }
 
-TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses)
+TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses,
+                         TrajectoryResult&& memory)
 {
-  const auto sized = [records](bool asked) { return asked ? records : 0; };
   TrajectoryResult result;
-  result.flags.assign(sized(request.flags), Verdict::free);
-  result.distance.assign(sized(request.distances), std::numeric_limits<float>::quiet_NaN());
-  result.first_pose.assign(sized(request.first_poses), kNothing);
-  result.closest_pose.assign(sized(request.closest_poses), kNothing);
-  result.closest_point.assign(sized(request.distances || request.closest_poses), kNothing);
-  if (request.pose_summaries) result.poses.resize(poses);
+  const auto fill = [&](auto column, bool asked, std::size_t size, auto value) {
+    (result.*column).swap(memory.*column);
+    (result.*column).assign(asked ? size : 0, value);
+  };
+  using Result = TrajectoryResult;
+  fill(&Result::flags, request.flags, records, Verdict::free);
+  fill(&Result::distance, request.distances, records, std::numeric_limits<float>::quiet_NaN());
+  fill(&Result::first_pose, request.first_poses, records, kNothing);
+  fill(&Result::closest_pose, request.closest_poses, records, kNothing);
+  fill(&Result::closest_point, request.distances || request.closest_poses, records, kNothing);
+  fill(&Result::poses, request.pose_summaries, poses, PoseSummary());
   return result;
 }
 

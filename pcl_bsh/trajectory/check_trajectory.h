@@ -20,6 +20,7 @@ void checkPivot(const Point3& pivot);
 bool asksForAnything(const TrajectoryRequest& request);
 
 /// A result for so many records and poses, where nothing collides.
-TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses);
+TrajectoryResult allFree(const TrajectoryRequest& request, std::size_t records, std::size_t poses,
+                         TrajectoryResult&& memory = {});
 
 } // namespace pcl_bsh

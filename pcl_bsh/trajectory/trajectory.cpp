@@ -91,9 +91,10 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
 /// One walk, of points that are where `places` says. Nothing where floats cannot hold the lengths.
 std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierarchy& model,
                                           const std::vector<Eigen::Isometry3d>& model_poses,
-                                          const TrajectoryRequest& request, Places places)
+                                          const TrajectoryRequest& request, Places places,
+                                          TrajectoryResult&& memory = {})
 {
-  TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size());
+  TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size(), std::move(memory));
   if (!asksForAnything(request) || scan.hierarchy().empty() || model.empty() || model_poses.empty()) return result;
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);
@@ -129,7 +130,8 @@ void withholdPoses(std::vector<PoseSummary>& possible, const std::vector<PoseSum
 
 /// One walk for what may collide, one for what does for certain.
 TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
-                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked)
+                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
+                               TrajectoryResult&& memory)
 {
   TrajectoryRequest request = asked;
   request.flags = true;
@@ -138,7 +140,8 @@ TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
     return [&asked, begin](double fraction) { return asked.progress(begin + 0.5 * fraction); };
   };
   if (asked.progress) request.progress = share(0.0);
-  std::optional<TrajectoryResult> possible = walkAlong(scan, model, model_poses, request, Places::possible);
+  std::optional<TrajectoryResult> possible =
+      walkAlong(scan, model, model_poses, request, Places::possible, std::move(memory));
   if (!possible) return brute_force::collideAlong(scan, model, model_poses, asked);
   request.distances = request.closest_poses = false;
   if (asked.progress) request.progress = share(0.5);
@@ -158,10 +161,13 @@ TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
 }
 
 TrajectoryResult walk(const Placed& scan, const SphereHierarchy& model,
-                      const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+                      const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request,
+                      TrajectoryResult&& memory = {})
 {
-  if (areUncertain(scan, {model}) && asksForAnything(request)) return walkUncertain(scan, model, model_poses, request);
-  std::optional<TrajectoryResult> result = walkAlong(scan, model, model_poses, request, Places::measured);
+  if (areUncertain(scan, {model}) && asksForAnything(request))
+    return walkUncertain(scan, model, model_poses, request, std::move(memory));
+  std::optional<TrajectoryResult> result =
+      walkAlong(scan, model, model_poses, request, Places::measured, std::move(memory));
   return result ? std::move(*result) : brute_force::collideAlong(scan, model, model_poses, request);
 }
 
@@ -191,10 +197,10 @@ TrajectoryResult walkApart(const Placed& scan, const SphereHierarchy& model,
   return result;
 }
 
-} // namespace
-
-TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
-                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+/// @param memory of an earlier result
+TrajectoryResult answer(const Placed& scan, const SphereHierarchy& model,
+                        const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request,
+                        TrajectoryResult&& memory)
 {
   check(scan, model_poses, request);
   const DefaultFloatEnvironment environment;
@@ -202,7 +208,21 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   if (!request.swept && !StopRule(request.accuracy).mayStop() && asksForAnything(request))
     if (const std::optional<Strays> strays = findStrays(scan, model, model_poses, request.clearance))
       return walkApart(scan, model, model_poses, request, *strays);
-  return walk(scan, model, model_poses, request);
+  return walk(scan, model, model_poses, request, std::move(memory));
+}
+
+} // namespace
+
+TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
+                              const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request)
+{
+  return answer(scan, model, model_poses, request, {});
+}
+
+void collideAlong(const Placed& scan, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& model_poses,
+                  const TrajectoryRequest& request, TrajectoryResult& result)
+{
+  result = answer(scan, model, model_poses, request, std::exchange(result, {}));
 }
 
 } // namespace pcl_bsh

@@ -118,6 +118,10 @@ struct TrajectoryResult {
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
+/// The same into a result whose memory is used again; it is empty should anything be thrown.
+void collideAlong(const Placed& scan, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& model_poses,
+                  const TrajectoryRequest& request, TrajectoryResult& result);
+
 /// The pose at `fraction` in [0, 1] of the motion from one pose to the next: the pivot, a point in the frame that the
 /// poses place, moves in a straight line at constant speed, and the rotation turns at constant speed about a fixed
 /// axis, in the shorter direction. At 0 and 1 exactly the poses given; what they lack to rigid ones (1e-6 at most)

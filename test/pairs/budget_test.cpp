@@ -58,8 +58,8 @@ TEST(Budget, TimedAnySearchesAsExactDoes)
       if (hurried.verdict != Verdict::undecided) {
         EXPECT_EQ(hurried.verdict, exact.verdict);
       }
-      EXPECT_LE(hurried.distance.lower, truth);
-      EXPECT_GE(hurried.distance.upper, truth);
+      EXPECT_LE(hurried.interval.lower, truth);
+      EXPECT_GE(hurried.interval.upper, truth);
     }
   }
 }

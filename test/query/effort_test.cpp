@@ -84,7 +84,7 @@ double sum(const std::vector<Verdict>& verdicts)
 
 double any(const Lattices& of, const Effort& effort)
 {
-  return anyCollision({of.a}, {of.b}, {kClearance, effort}).distance.lower;
+  return anyCollision({of.a}, {of.b}, {kClearance, effort}).interval.lower;
 }
 double anyUncertain(const Lattices& of, const Effort& effort)
 {

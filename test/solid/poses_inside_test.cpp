@@ -25,12 +25,12 @@ TEST(PosesInside, AreThoseOfLabels)
     pose.pretranslate(Eigen::Vector3d(0.2 * i - 2, 0.3, 0));
     poses.push_back(pose);
   }
-  std::vector<std::uint32_t> first(points.size() / 3, PosesInside::kNever);
+  std::vector<std::uint32_t> first(points.size() / 3, kNothing);
   std::size_t inside = 0;
   for (std::uint32_t i = 0; i < poses.size(); ++i) {
     const LabelsResult labels = labelPoints({cloud}, {solid, poses[i]});
     for (std::size_t j = 0; j < first.size(); ++j)
-      if (labels.labels[j] != labelOf(Label::outside) && first[j] == PosesInside::kNever) first[j] = i, ++inside;
+      if (labels.labels[j] != labelOf(Label::outside) && first[j] == kNothing) first[j] = i, ++inside;
   }
   for (const unsigned threads : {1u, 2u}) {
     const PosesInside found = findPosesInside({cloud}, solid, poses, threads);
