@@ -152,6 +152,36 @@ void askQuestion(const Instance& instance, const PointsView& a, const PointsView
   answers.asked_path_flags = numbersOf(ask(question, input, obstacle).collisions.flags);
 }
 
+Answers::Surface askFaces(const Instance& instance, const PointsView& a, const TrianglesView& faces, bool solid)
+{
+  const auto ask_of = [&](const Eigen::Isometry3d& input, const Eigen::Isometry3d& obstacle, bool along) {
+    Question question;
+    question.pose_of_input = input;
+    question.pose = obstacle;
+    question.clearance = instance.clearance;
+    question.threads = instance.threads;
+    question.wanted.flags = true;
+    question.wanted.distances = question.wanted.closest = !along;
+    if (along) question.path = instance.path;
+    return question;
+  };
+  Shape points("a", a), surface("b", viewOf(faces));
+  Question question = ask_of(instance.a.pose, instance.b.pose, false);
+  question.solid = solid;
+  Answers::Surface told;
+  const Answer at_one = ask(question, points, surface);
+  told.flags = numbersOf(at_one.collisions.flags);
+  told.distances = at_one.collisions.distance;
+  told.closest = at_one.closest.distance;
+  question = ask_of(instance.a.pose, instance.b.pose, true);
+  question.solid = solid;
+  told.path_flags = numbersOf(ask(question, points, surface).collisions.flags);
+  const Answer reversed = ask(ask_of(instance.b.pose, instance.a.pose, false), surface, points);
+  told.face_flags = numbersOf(reversed.collisions.flags);
+  told.face_distances = reversed.collisions.distance;
+  return told;
+}
+
 // Comparison ------------------------------------------------------------------------------------------------------
 
 template <class Value>
@@ -229,6 +259,16 @@ Answers answersOf(const Instance& instance)
   askOwn(instance, a, answers);
   askAlong(instance, placed_a, b, answers);
   askQuestion(instance, cloud_a.view(), cloud_b.view(), answers);
+  const test::Cloud vertices(instance.b.points, {instance.b.scalar});
+  Body centres = instance.a; // how deep a ball is inside is not defined
+  centres.radii.clear();
+  const test::Cloud places = centres.cloud();
+  for (const bool solid : {false, true}) {
+    const std::vector<Triangle>& faces = solid ? instance.shell : instance.faces;
+    if (faces.empty()) continue;
+    (solid ? answers.shell : answers.surface) = askFaces(instance, (solid ? places : cloud_a).view(),
+                                                         {vertices.view(), faces.front().data(), faces.size()}, solid);
+  }
   return answers;
 }
 
@@ -282,6 +322,20 @@ std::string firstDifference(const Answers& expected, const Answers& found, const
     PCL_BSH_COMPARE(asked_distances);
     PCL_BSH_COMPARE(asked_both_ways);
     PCL_BSH_COMPARE(asked_closest);
+  }
+  if (kept.surface) {
+    PCL_BSH_COMPARE(surface.flags);
+    PCL_BSH_COMPARE(surface.path_flags);
+    PCL_BSH_COMPARE(surface.distances);
+    PCL_BSH_COMPARE(surface.face_flags);
+    PCL_BSH_COMPARE(surface.face_distances);
+    PCL_BSH_COMPARE(surface.closest);
+    PCL_BSH_COMPARE(shell.flags);
+    PCL_BSH_COMPARE(shell.path_flags);
+    PCL_BSH_COMPARE(shell.distances);
+    PCL_BSH_COMPARE(shell.face_flags);
+    PCL_BSH_COMPARE(shell.face_distances);
+    PCL_BSH_COMPARE(shell.closest);
   }
 #undef PCL_BSH_COMPARE
   return compare.text;

@@ -7,6 +7,7 @@
 #include <pcl_bsh/pairs/contacts.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,10 +60,22 @@ struct Answers {
   std::vector<float> asked_distances;
   std::vector<double> asked_both_ways;
   double asked_closest = 0.0;
+
+  /// Of ask(), where faces of b are the obstacle, or the input.
+  struct Surface {
+    std::vector<std::uint8_t> flags, path_flags; ///< of the points of a
+    std::vector<float> distances;                ///< likewise; of a shell, negative inside
+    std::vector<std::uint8_t> face_flags;        ///< of the faces, against the points of a
+    std::vector<float> face_distances;
+    double closest = 0.0;
+  } surface, shell;
 };
 
 /// Asks all of them, of hierarchies built for this.
 Answers answersOf(const Instance& instance);
+
+/// Likewise, some of them or the same through a face; the other members stay as a new Answers has them.
+using Ask = std::function<Answers(const Instance&)>;
 
 /// Which answers a symmetry keeps.
 struct Kept {
@@ -71,6 +84,7 @@ struct Kept {
   bool nearest = true;  ///< of these, the five nearest, and clusters
   bool along = true;    ///< along the path
   bool question = true; ///< of ask()
+  bool surface = true;  ///< of ask() about faces
   bool motions = false; ///< verdicts of motions, also in doubt
 };
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "fuzz/bytes.h"
+#include "support/random.h"
 #include "support/random_clouds.h"
 
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <Eigen/Geometry>
 
@@ -30,6 +32,8 @@ struct Instance {
   std::string name;
   Body a, b;
   double clearance = 0.0;
+  std::vector<Triangle> faces;             ///< of b's points: a surface
+  std::vector<Triangle> shell;             ///< likewise, closed
   std::vector<Eigen::Isometry3d> path;     ///< T_world_b; not empty
   double tolerance = 0.0;                  ///< of the motion along the path; 0: it is not asked for
   std::vector<Eigen::Isometry3d> relative; ///< T_a_b, of questions; not empty
@@ -40,6 +44,9 @@ struct Instance {
 
 /// One that the bytes choose: up to a hundred points in a world of any unit, near each other.
 Instance anyInstance(fuzz::Bytes& bytes, const std::string& name);
+
+/// Some triangles of b's points; and tetrahedra, one or several, whose faces close whatever their points are.
+void addFaces(Instance& made, double unit, test::Random& random);
 
 /// Rounds coordinates to what the scalar type holds.
 void roundTo(Scalar scalar, std::vector<Point3>& points);

@@ -199,6 +199,11 @@ bool scale(Image& image, Random& random)
   by(told.asked_closest);
   by(told.path_distances);
   by(told.asked_distances);
+  for (Answers::Surface* surface : {&told.surface, &told.shell}) {
+    by(surface->distances);
+    by(surface->face_distances);
+    by(surface->closest);
+  }
   for (Answers::Near& near : told.near) {
     for (auto& neighbor : near.within) neighbor.second = std::ldexp(neighbor.second, 2 * by.power);
     for (float& nearest : near.nearest) nearest = std::ldexp(nearest, 2 * by.power);
@@ -258,6 +263,15 @@ void takeRecords(Image& image, const Sources& from_a, const Sources& from_b)
   for (auto* poses : {&told.first_poses, &told.closest_poses}) take(*poses, from_a);
   for (auto* nearest : {&told.names.nearest_a, &told.names.closest_point}) take(*nearest, from_a);
   take(told.names.nearest_b, from_b);
+  for (Answers::Surface* surface : {&told.surface, &told.shell}) {
+    for (auto* flags : {&surface->flags, &surface->path_flags}) take(*flags, from_a);
+    take(surface->distances, from_a);
+  }
+  std::vector<std::uint32_t> new_of_b(from_b.size());
+  for (std::size_t i = from_b.size(); i-- > 0;) new_of_b[from_b[i]] = static_cast<std::uint32_t>(i);
+  for (auto* faces : {&image.instance.faces, &image.instance.shell})
+    for (Triangle& face : *faces)
+      for (std::uint32_t& corner : face) corner = new_of_b[corner];
 
   const auto old = std::move(told.contacts);
   told.contacts.clear();
@@ -338,7 +352,9 @@ void exchangeClouds(Image& image, Random&)
     if (!within) told.limited_a[i] = std::numeric_limits<double>::quiet_NaN();
   }
   image.instance.tolerance = 0.0;
-  image.kept = {false, false, false, false, false};
+  image.instance.faces.clear();
+  image.instance.shell.clear();
+  image.kept = {false, false, false, false, false, false};
 }
 
 // Paths -----------------------------------------------------------------------------------------------------------
@@ -399,10 +415,7 @@ std::uint8_t worse(std::uint8_t l, std::uint8_t r)
   return l == hit || r == hit ? hit : std::max(l, r);
 }
 
-double smaller(double l, double r)
-{
-  return std::fmin(l, r); // NaN: none
-}
+constexpr auto smaller = [](auto l, auto r) { return std::fmin(l, r); }; // NaN: none
 
 template <class Value>
 std::vector<Value> interleaved(const std::vector<Value>& even, const std::vector<Value>& odd)
@@ -483,6 +496,16 @@ Answers joinedHalves(const Answers& even, const Answers& odd)
   all.asked_distances = interleaved(even.asked_distances, odd.asked_distances);
   all.asked_both_ways = joined(even.asked_both_ways, odd.asked_both_ways, smaller);
   all.asked_closest = smaller(even.asked_closest, odd.asked_closest);
+  const auto join_surfaces = [](const Answers::Surface& l, const Answers::Surface& r) {
+    return Answers::Surface{interleaved(l.flags, r.flags),
+                            interleaved(l.path_flags, r.path_flags),
+                            interleaved(l.distances, r.distances),
+                            joined(l.face_flags, r.face_flags, worse),
+                            joined(l.face_distances, r.face_distances, smaller),
+                            smaller(l.closest, r.closest)};
+  };
+  all.surface = join_surfaces(even.surface, odd.surface);
+  all.shell = join_surfaces(even.shell, odd.shell);
   return all;
 }
 
@@ -502,9 +525,9 @@ std::string contradiction(const Answers::Motion& l, const Answers::Motion& r)
   return {};
 }
 
-void compare(const Instance& instance, const std::string& symmetry, const Image& image)
+void compare(const Instance& instance, const std::string& symmetry, const Image& image, const Ask& ask)
 {
-  Answers found = answersOf(image.instance);
+  Answers found = ask(image.instance);
   const Answers& expected = image.expected;
   if (expected.first_poses.empty()) { // not known
     found.first_poses.clear();
@@ -517,7 +540,7 @@ void compare(const Instance& instance, const std::string& symmetry, const Image&
 
 } // namespace
 
-std::size_t requireSymmetric(const Instance& instance, Random& random)
+std::size_t requireSymmetric(const Instance& instance, Random& random, const Ask& ask)
 {
   const auto always = [](void (*change)(Image&, Random&)) {
     return [change](Image& image, Random& numbers) {
@@ -538,7 +561,7 @@ std::size_t requireSymmetric(const Instance& instance, Random& random)
       {"path reversed", always(reversePath)},
       {"poses repeated", always(repeatPoses)},
   };
-  const Answers original = answersOf(instance);
+  const Answers original = ask(instance);
   require(instance, "clearance raised", contradiction(original.swept, original.swept));
   require(instance, "clearance raised", contradiction(original.motions, original.motions));
   std::size_t compared = 0;
@@ -546,10 +569,10 @@ std::size_t requireSymmetric(const Instance& instance, Random& random)
     Image image{instance, original};
     image.instance.threads = static_cast<unsigned>(random.integer(1, 3));
     if (!change(image, random)) continue;
-    compare(instance, name, image);
+    compare(instance, name, image, ask);
     ++compared;
   }
-  Answers halves = joinedHalves(answersOf(halfOf(instance, 0)), answersOf(halfOf(instance, 1)));
+  Answers halves = joinedHalves(ask(halfOf(instance, 0)), ask(halfOf(instance, 1)));
   halves.hausdorff = original.hausdorff; // the greatest of smallest distances is not that of a half
   require(instance, "a split in two", firstDifference(halves, original, {false, true, false, true, true}));
   return compared + 1;

@@ -4,14 +4,16 @@
 // of one cloud's own frame, a path reversed or its poses repeated.
 #pragma once
 
+#include "answers.h"
 #include "instance.h"
 
 namespace pcl_bsh::symmetries {
 
 /// Asks everything about the instance, and about what each symmetry makes of it.
 /// @param random which axes, powers, orders
+/// @param ask whom
 /// @return how many symmetries were compared: those that rounding would break are left out
 /// @throws fuzz::Finding that names the instance, the symmetry and the first answer that differs
-std::size_t requireSymmetric(const Instance& instance, test::Random& random);
+std::size_t requireSymmetric(const Instance& instance, test::Random& random, const Ask& ask = answersOf);
 
 } // namespace pcl_bsh::symmetries
