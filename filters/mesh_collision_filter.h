@@ -24,7 +24,7 @@ namespace pcl_bsh {
 
 /// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). The counts of
 /// undecided points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input
-/// that is a field: both are about points. What a closed mesh encloses is no part of it.
+/// that is a field: both are about points. What a closed mesh encloses is no part of it without setInputSolid().
 class MeshCollisionFilter : public CollisionSettings {
 public:
   /// The mesh that is asked about. Its vertices and polygons must not change: every use throws when they have, after a
@@ -35,6 +35,11 @@ public:
   /// Triangles wherever they are, each a polygon. They must not change. filter() needs a mesh, and throws.
   /// @throws std::invalid_argument as viewOf() does
   void setInputSurface(const TrianglesView& triangles);
+
+  /// The input counts with what its faces enclose, and they must close, as setObstacleSolid() has it: polygons of each
+  /// body that holds something of the obstacle collide. Default: false, a surface alone.
+  void setInputSolid(bool solid) { question_.input_solid = solid; }
+  bool getInputSolid() const { return question_.input_solid; }
 
   /// false (default): filter() keeps the polygons that do not collide; true: those that do, or are undecided.
   void setNegative(bool negative) { negative_ = negative; }

@@ -72,8 +72,8 @@ public:
   }
 
   /// A surface instead of a cloud: the mesh's polygons, and all that lies on them. Results name their triangles:
-  /// trianglesOf() says which polygon has each. What a closed surface encloses is no part of it. The mesh must not
-  /// change, as a cloud must not.
+  /// trianglesOf() says which polygon has each. What a closed surface encloses is no part of it without
+  /// setObstacleSolid(). The mesh must not change, as a cloud must not.
   /// @throws std::invalid_argument as viewOf() does
   void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh) { setSurface(viewOf(mesh)); }
 
@@ -94,6 +94,12 @@ public:
     question_.path.reset();
   }
   const Eigen::Isometry3d& getPose() const { return question_.pose; }
+
+  /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
+  /// and names the first open edge. What is inside collides at any clearance, its distance is negative, and limits of
+  /// distances may be. Default: false, a surface alone.
+  void setObstacleSolid(bool solid) { question_.solid = solid; }
+  bool getObstacleSolid() const { return question_.solid; }
 
   /// How sure the answer has to be: less is faster. Default: exact. Filters say what they do with one that stops early.
   void setAccuracy(const Accuracy& accuracy) { question_.accuracy = accuracy; }
@@ -223,12 +229,6 @@ public:
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
   bool getDensityGuard() const { return question_.density; }
 
-  /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
-  /// and names the first open edge. What is inside collides at any clearance, its distance is negative. Default: false,
-  /// a surface alone.
-  void setObstacleSolid(bool solid) { question_.solid = solid; }
-  bool getObstacleSolid() const { return question_.solid; }
-
   /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
   /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
   /// between the lines. Finite and >= 0. Counts with the density guard alone.
@@ -278,8 +278,9 @@ private:
 /// throws for an accuracy that stops early, because points would be left without a distance.
 class DistanceSettings : public QuestionFilter {
 public:
-  /// The distances of the points that are kept, both ends inclusive and compared exactly. 0 <= least <= most, and most
-  /// may be infinity. Default: 0 and infinity, all finite points.
+  /// The distances of the points that are kept, both ends inclusive and compared exactly. least <= most, and most may
+  /// be infinity; 0 <= least unless the obstacle is solid. Default: 0 and infinity, all finite points that are not
+  /// inside of a solid.
   void setFilterLimits(double least, double most) { question_.limits = {least, most}; }
   void getFilterLimits(double& least, double& most) const
   {

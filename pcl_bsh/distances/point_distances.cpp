@@ -167,6 +167,18 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
   return result;
 }
 
+PointDistances pointDistances(const Placed& a, const std::vector<std::uint32_t>& records, const Placed& b,
+                              const PointDistancesRequest& request)
+{
+  const std::vector<std::int32_t> subset(records.begin(), records.end());
+  static const std::int32_t none = 0;
+  PointsView view = a.hierarchy().view();
+  view.indices = subset.empty() ? &none : subset.data();
+  view.index_count = subset.size();
+  const SphereHierarchy some(view);
+  return pointDistances({some, a.pose}, b, request);
+}
+
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request)
 {
   SymmetricDistances result;

@@ -22,6 +22,7 @@
 #include <pcl_bsh/query/result.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -64,6 +65,11 @@ PointDistances pointDistances(const Placed& a, const Placed& b, const PointDista
 
 /// The same into a result whose memory is used again; it is empty should anything be thrown.
 void pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request, PointDistances& result);
+
+/// Of some records of a alone: what holds for the others is as of records that are no points.
+/// @param records of a's view
+PointDistances pointDistances(const Placed& a, const std::vector<std::uint32_t>& records, const Placed& b,
+                              const PointDistancesRequest& request = {});
 
 /// Both directions.
 struct SymmetricDistances {

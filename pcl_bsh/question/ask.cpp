@@ -6,6 +6,7 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/record_distance.h>
+#include <pcl_bsh/question/hollow.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/solids.h>
 #include <pcl_bsh/question/unseen.h>
@@ -71,7 +72,7 @@ public:
     b_(obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads), question.pose),
     a_(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input)
   {
-    if (question.solid) solid_.emplace(question, obstacle, a_, b_);
+    solids_.emplace(question, input, obstacle, a_, b_);
   }
 
   Answer answer()
@@ -80,6 +81,8 @@ public:
       followPath();
     else if (wanted_.flags || wanted_.obstacle_flags)
       flag();
+    if (wanted_.any) findAny();
+    if (wanted_.indices || wanted_.obstacle_indices) list();
     if (wanted_.closest && !closest_is_known_) findClosest();
     if (wanted_.measures() && !question_.path) measure();
     if (question_.seen && wanted_.collisions()) lookAround(question_, input_, obstacle_, answer_);
@@ -97,14 +100,52 @@ private:
                                                   : Side::a,
                          nextEffort());
     request.spacings_of_b = spacings;
-    FlagsResult found = collisionFlags(a_, b_, request);
-    answer_.work += found.work;
+    FlagsResult found = flags(std::move(request));
     answer_.sparse = found.sparse_a;
-    answer_.obstacle_flags = std::move(found.b);
+    if (wanted_.obstacle_flags) answer_.obstacle_flags = std::move(found.b);
+    if (!wanted_.flags) return;
     answer_.collisions.flags = std::move(found.a);
     answer_.collisions.colliding = found.colliding_a;
     answer_.collisions.undecided = found.undecided_a;
-    if (solid_) solid_->addTo(answer_.collisions, answer_.work);
+  }
+
+  FlagsResult flags(FlagsRequest request)
+  {
+    FlagsResult found = collisionFlags(a_, b_, solids_->request(std::move(request)));
+    if (!solids_->none()) solids_->addTo(found);
+    answer_.work += found.work;
+    return found;
+  }
+
+  void findAny()
+  {
+    answer_.any = anyCollision(a_, b_, {question_.clearance.value_or(0.0), nextEffort()});
+    solids_->addTo(answer_.any);
+    answer_.work += answer_.any.work;
+  }
+
+  void list()
+  {
+    const FlagsRequest request(question_.clearance.value_or(0.0),
+                               !wanted_.indices           ? Side::b
+                               : wanted_.obstacle_indices ? Side::both
+                                                          : Side::a,
+                               nextEffort());
+    if (solids_->none()) {
+      answer_.indices = collidingIndices(a_, b_, request);
+      answer_.work += answer_.indices.work;
+      return;
+    }
+    const FlagsResult found = flags(request);
+    const auto add = [](const std::vector<Verdict>& flags, Verdict verdict, std::vector<std::int32_t>& list) {
+      for (std::size_t i = 0; i < flags.size(); ++i)
+        if (flags[i] == verdict) list.push_back(static_cast<std::int32_t>(i));
+    };
+    if (wanted_.indices) add(found.a, Verdict::colliding, answer_.indices.a);
+    if (wanted_.indices) add(found.a, Verdict::undecided, answer_.indices.undecided_a);
+    if (wanted_.obstacle_indices) add(found.b, Verdict::colliding, answer_.indices.b);
+    if (wanted_.obstacle_indices) add(found.b, Verdict::undecided, answer_.indices.undecided_b);
+    answer_.indices.work = found.work;
   }
 
   /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
@@ -113,7 +154,8 @@ private:
   {
     const bool path = question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses;
     const bool flags = wanted_.flags || wanted_.obstacle_flags;
-    return (question_.density && flags && !path) + (path || flags) + (wanted_.closest && !path) +
+    return (question_.density && flags && !path) + (path || flags) + wanted_.any +
+           (wanted_.indices || wanted_.obstacle_indices) + (wanted_.closest && !path) +
            (wanted_.measures() && !question_.path);
   }
 
@@ -154,7 +196,7 @@ private:
     request.swept = question_.sweptTolerance();
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
-    if (solid_) solid_->addToPath(answer_.collisions, answer_.work);
+    solids_->addToPath(answer_.collisions, answer_.work);
     if (wanted_.closest) {
       answer_.closest = closestOf(answer_.collisions);
       answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
@@ -170,7 +212,7 @@ private:
     DistanceResult found = closestPair(a_, b_, effort);
     answer_.work += found.work;
     answer_.closest = std::move(found);
-    if (solid_) solid_->turn(answer_.closest);
+    solids_->turn(answer_.closest);
   }
 
   /// How far to look.
@@ -195,7 +237,7 @@ private:
       found.a = pointDistances(a_, b_, request);
     answer_.work += found.a.work;
     answer_.work += found.b.work;
-    if (solid_) solid_->turn(found.a);
+    solids_->turn(found, wanted_.both_ways);
     if (wanted_.within) compare(request.max_distance);
   }
 
@@ -223,6 +265,8 @@ private:
     const NamedCloud input = input_.facts(wanted_.spacings), obstacle = obstacle_.facts(wanted_.spacings);
     answer_.density = {input.spacing, obstacle.spacing};
     for (Warning& warning : warningsOf(question_, input, obstacle)) answer_.warnings.push_back(std::move(warning));
+    if (auto hollow = warningOfHollow(question_, answer_, input_, a_, obstacle_, obstacle.box))
+      answer_.warnings.push_back(std::move(*hollow));
   }
 
   const Question& question_;
@@ -230,7 +274,7 @@ private:
   Shape& input_;
   Shape& obstacle_;
   Placed b_, a_; ///< in this order: what is wrong with the obstacle is told first
-  std::optional<SolidObstacle> solid_;
+  std::optional<Solids> solids_;
   bool closest_is_known_ = false;
   int begun_ = 0; ///< queries that have
   Answer answer_;
@@ -261,7 +305,7 @@ void check(const Question& question)
   of_nothing.uncertainty.field.clear();
   of_nothing.obstacle_uncertainty.field.clear();
   of_nothing.sigmas = 1.0;
-  of_nothing.seen = of_nothing.solid = false;
+  of_nothing.seen = of_nothing.solid = of_nothing.input_solid = false;
   of_nothing.origin = {};
   of_nothing.seen_angle.reset();
   of_nothing.progress = nullptr;

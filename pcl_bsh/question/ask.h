@@ -5,6 +5,8 @@
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/question.h>
 #include <pcl_bsh/question/shape.h>
@@ -20,12 +22,16 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// What was wanted; the rest is as a new Answer has it. Vectors have an entry for each record of the input: a point or,
-/// where it is a surface, a triangle. What a closed surface encloses is no part of it.
+/// where it is a surface, a triangle. What a closed surface encloses is no part of it, unless it is asked as a solid:
+/// then records that are held collide, at a distance that is negative, and so do the triangles of the body that holds
+/// them.
 struct Answer {
   /// Flags, contacts (distance, first_pose, closest_pose, closest_point: a record of the obstacle), poses, and how many
   /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
   /// too.
   TrajectoryResult collisions;
+  AnyResult any; ///< its pair: of a solid, what is held, and a triangle of the body that holds it
+  CollidingIndices indices;
   std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
   DistanceResult closest;              ///< its pair: records of the input and of the obstacle
   SymmetricDistances distances;        ///< `closest_point` is a record of the other hierarchy; NaN beyond max_distance

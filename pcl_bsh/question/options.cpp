@@ -68,6 +68,9 @@ std::vector<QuestionOption> table()
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
        "alone, hollow as a tunnel that a wagon passes"},
+      {"input_solid", &Q::input_solid, Kind::any, "", "", std::nullopt,
+       "the same of an input with faces: what of the obstacle is inside collides, and so do the triangles of each body "
+       "that holds it"},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
        "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
        "input "
@@ -181,10 +184,13 @@ void checkOptions(const Question& question)
     refuse("seen", "is about poses, and the motion between them is asked about", "leave out `seen` or `swept`");
   if (!question.seen && (question.seen_angle || !question.origin.empty()))
     refuse(question.seen_angle ? "seen_angle" : "origin", "is given, but not `seen`", "give `seen`, too");
-  if (question.solid && question.vertices_only)
-    refuse("solid", "is given, but `vertices_only`, too", "give one of them");
+  for (const char* const option : {"solid", "input_solid"})
+    if (question.vertices_only && (option[0] == 's' ? question.solid : question.input_solid))
+      refuse(option, "is given, but `vertices_only`, too", "give one of them");
   if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
+  if (question.path && (wanted.any || wanted.indices || wanted.obstacle_indices))
+    refuse("path", "is given, and lists of what collides are asked for at one pose", "ask for flags");
   if (question.path && wanted.distances && wanted.collisions())
     refuse("path", "has either collisions or distances", "ask twice");
   if (question.path && wanted.distances && !question.max_distance)

@@ -25,9 +25,12 @@ namespace pcl_bsh {
 
 /// Which answers are computed. Of an input that is a surface, all that is said of points is said of its triangles.
 struct Wanted {
-  bool flags = false;          ///< which points of the input collide
-  bool obstacle_flags = false; ///< which points of the obstacle do, at one pose
-  bool contacts = false;       ///< of each that collides: its smallest distance, the first pose and the closest
+  bool flags = false;            ///< which points of the input collide
+  bool obstacle_flags = false;   ///< which points of the obstacle do, at one pose
+  bool any = false;              ///< whether anything collides, at one pose
+  bool indices = false;          ///< which points of the input collide, as a list, at one pose
+  bool obstacle_indices = false; ///< the same of the obstacle
+  bool contacts = false;         ///< of each that collides: its smallest distance, the first pose and the closest
   bool poses = false;       ///< of each pose: how many points collide, and the smallest distance; not of swept motion
   bool first_poses = false; ///< of each that collides: the first pose alone
   bool closest = false;     ///< the smallest distance and its pair: with contacts, and along a path, of what collides
@@ -39,7 +42,7 @@ struct Wanted {
 
   bool collisions() const
   {
-    return flags || obstacle_flags || contacts || poses || first_poses;
+    return flags || obstacle_flags || any || indices || obstacle_indices || contacts || poses || first_poses;
   }                                                     ///< whether a clearance counts
   bool measures() const { return distances || within; } ///< whether all distances do
 };
@@ -70,6 +73,7 @@ struct Question : Effort {
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
   bool solid = false;         ///< the obstacle counts with what its faces enclose: they must close
+  bool input_solid = false;   ///< the same of the input
   bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
   Wanted wanted = {};
 

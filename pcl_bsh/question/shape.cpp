@@ -4,10 +4,17 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
+#include <pcl_bsh/solid/enclosure.h>
 
 #include <utility>
 
 namespace pcl_bsh {
+
+struct Shape::Enclosing {
+  explicit Enclosing(const TrianglesView& triangles) : solid(triangles) {}
+  const Solid solid;
+  const SolidBodies bodies{solid};
+};
 
 Shape::Shape(std::string name, const PointsView& points, std::vector<RecordField> fields)
 : name_(std::move(name)),
@@ -59,6 +66,7 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
   options.threads = threads;
   Uncertainty built_with = uncertainty;
   hierarchy_ = std::make_shared<SphereHierarchy>(withUncertainty(view, fields, name_, uncertainty), options);
+  content_.reset();
   uncertainty_ = std::move(built_with);
   uncertainties_ = uncertainties;
   first_seen_ = seen;
@@ -87,15 +95,32 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
   return looked_->space;
 }
 
-const Solid& Shape::solid()
+const SolidBodies& Shape::solid()
 {
   try {
-    if (!solid_) solid_ = std::make_shared<const Solid>(*hierarchy_->view().triangles);
-    return *solid_;
+    if (!solid_) solid_ = std::make_shared<const Enclosing>(*hierarchy_->view().triangles);
+    return solid_->bodies;
   }
   catch (const InvalidInput& error) {
     throw InvalidInput(Input::surface, name_, error.wrong(), error.remedy());
   }
+}
+
+const SolidBodies* Shape::solidIfClosed()
+{
+  try {
+    return is_open_ ? nullptr : &solid();
+  }
+  catch (const InvalidInput&) {
+    is_open_ = true;
+    return nullptr;
+  }
+}
+
+const Content& Shape::content()
+{
+  if (!content_) content_ = std::make_shared<const Content>(*hierarchy_);
+  return *content_;
 }
 
 void Shape::setPatches(std::vector<float> spacings)

@@ -9,7 +9,6 @@
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
-#include <pcl_bsh/solid/solid.h>
 
 #include <cstdint>
 #include <functional>
@@ -21,6 +20,9 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
+
+class Content;
+class SolidBodies;
 
 /// A copy shares what is built: two threads may ask about two copies. The records of its hierarchy are the user's:
 /// points or, where the view is of triangles (viewOf(TrianglesView)), triangles: a surface.
@@ -73,7 +75,13 @@ public:
 
   /// What its faces enclose. Made once. @pre isSurface(), and hierarchy() was called
   /// @throws InvalidInput naming it, as Solid does
-  const Solid& solid();
+  const SolidBodies& solid();
+
+  /// The same, or null where it does not close, which is found out once.
+  const SolidBodies* solidIfClosed();
+
+  /// What of it solids are asked about. Made once. @pre hierarchy() was called
+  const Content& content();
 
   /// What is to be known of it beside an answer. @pre hierarchy() was called
   /// @param spacing how far its points are apart, too: measured once, for all copies; not of balls, which are taken for
@@ -108,7 +116,11 @@ private:
   };
   std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
 
-  std::shared_ptr<const Solid> solid_; ///< once it is asked for
+  /// Once they are asked for.
+  struct Enclosing;
+  std::shared_ptr<const Enclosing> solid_;
+  bool is_open_ = false; ///< it is known not to close
+  std::shared_ptr<const Content> content_;
 
   /// What SeenSpace is of.
   struct Looked {

@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/solids.h>
 
-#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/question/held.h>
 #include <pcl_bsh/question/options.h>
-#include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/solid/poses_inside.h>
-#include <pcl_bsh/solid/triangle_labels.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pcl_bsh {
 namespace {
 
-bool isHeld(std::uint8_t label)
-{
-  return label != labelOf(Label::outside);
-}
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-const Solid& solidOf(Shape& obstacle)
+const SolidBodies& solidOf(Shape& shape, const char* option)
 {
-  if (!obstacle.isSurface())
-    throw InvalidOption("solid", obstacle.name() + " has no faces", "give a mesh that closes, or leave it out");
-  return obstacle.solid();
+  if (!shape.isSurface())
+    throw InvalidOption(option, shape.name() + " has no faces", "give a mesh that closes, or leave it out");
+  return shape.solid();
 }
 
 /// What is inside at a pose touches there, no later.
@@ -32,118 +29,209 @@ void takeContact(std::optional<FirstContact>& contact, std::size_t pose)
   if (!contact || contact->pose >= pose) contact = FirstContact{pose, 0.0};
 }
 
-/// A verdict of the surface where the part is inside.
-void add(Verdict& verdict, bool uncertain)
+void count(FlagsResult& found)
 {
-  if (verdict == Verdict::free || !uncertain) verdict = Verdict::colliding;
+  found.colliding_a = countOf(found.a, Verdict::colliding);
+  found.colliding_b = countOf(found.b, Verdict::colliding);
+  found.undecided_a = countOf(found.a, Verdict::undecided);
+  found.undecided_b = countOf(found.b, Verdict::undecided);
+}
+
+/// The gravest of each.
+void merge(std::vector<Verdict>& verdicts, const std::vector<Verdict>& others)
+{
+  for (std::size_t i = 0; i < others.size(); ++i) verdicts[i] = graver(verdicts[i], others[i]);
 }
 
 } // namespace
 
-SolidObstacle::SolidObstacle(const Question& question, Shape& obstacle, const Placed& a, const Placed& b)
+Solids::Solids(const Question& question, Shape& input, Shape& obstacle, const Placed& a, const Placed& b)
 : question_(question),
-  solid_(solidOf(obstacle)),
   a_(a),
-  b_(b)
+  b_(b),
+  uncertain_(areUncertain(a, b))
 {
+  if (question.solid) pairings_.push_back({true, solidOf(obstacle, "solid"), input.content(), {}});
+  if (question.input_solid) pairings_.push_back({false, solidOf(input, "input_solid"), obstacle.content(), {}});
 }
 
-std::vector<std::uint8_t> SolidObstacle::labels(const Eigen::Isometry3d& pose, Work* work) const
+Solids::Records Solids::heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const
 {
-  if (const TrianglesView* const triangles = a_.hierarchy().view().triangles)
-    return labelTriangles(*triangles, a_.pose, {solid_, pose}, question_.threads);
-  LabelsResult found = labelPoints(a_, {solid_, pose}, question_.threads);
-  if (work) *work += found.work;
-  return std::move(found.labels);
+  return heldBy({pair.solid.whole(), poseOfSolid(pair, pose)}, pair.content, poseOfContent(pair, pose),
+                question_.threads, &work);
 }
 
-void SolidObstacle::addTo(TrajectoryResult& flags, Work& work)
+const Solids::Records& Solids::held(Pairing& pair, Work& work)
 {
-  if (flags.flags.empty()) return;
-  for (const std::uint32_t record : inside(&work)) add(flags.flags[record], question_.isUncertain());
-  flags.colliding = countOf(flags.flags, Verdict::colliding);
-  flags.undecided = countOf(flags.flags, Verdict::undecided);
+  if (!pair.held) pair.held = heldAt(pair, b_.pose, work);
+  return *pair.held;
 }
 
-void SolidObstacle::addToPath(TrajectoryResult& found, Work& work) const
+/// What one solid holds. @param found has the verdicts of the surfaces
+void Solids::add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const
+{
+  addHeld(pair.solid, poseOfSolid(pair, pose), pair.content, poseOfContent(pair, pose), held, uncertain_,
+          pair.of_obstacle ? found.a : found.b, pair.of_obstacle ? found.b : found.a, &found.work);
+}
+
+FlagsRequest Solids::request(FlagsRequest request) const
+{
+  if (uncertain_ && !none()) request.flagged = Side::both;
+  return request;
+}
+
+void Solids::addTo(FlagsResult& found)
+{
+  const std::vector<Verdict> a = found.a, b = found.b; // of the surfaces, for each of two solids
+  for (Pairing& pair : pairings_) {
+    FlagsResult of_pair;
+    of_pair.a = a;
+    of_pair.b = b;
+    add(pair, b_.pose, held(pair, found.work), of_pair);
+    found.work += of_pair.work;
+    merge(found.a, of_pair.a);
+    merge(found.b, of_pair.b);
+  }
+  count(found);
+}
+
+void Solids::addTo(AnyResult& found, const Eigen::Isometry3d& pose)
+{
+  for (const Pairing& pair : pairings_) {
+    if (found.verdict == Verdict::colliding) return;
+    const Eigen::Isometry3d of_solid = poseOfSolid(pair, pose), of_content = poseOfContent(pair, pose);
+    std::optional<PointPair> met;
+    if (uncertain_ && found.verdict == Verdict::undecided) {
+      const FlagsResult surface = flagsOfContent(pair, pose);
+      found.work += surface.work;
+      const Records certain = certainlyHeld(heldAt(pair, pose, found.work), pair.of_obstacle ? surface.a : surface.b);
+      if (!certain.empty())
+        met = PointPair{certain.front(),
+                        holderOf(pair.solid, of_solid, pair.content, of_content, certain.front(), &found.work)};
+    }
+    else {
+      met = findHeld(pair.solid, of_solid, pair.content, of_content, &found.work);
+    }
+    if (!met) continue;
+    found.verdict = Verdict::colliding;
+    found.pair = pair.of_obstacle ? *met : PointPair{met->b, met->a};
+    found.interval = {-unbounded, 0.0};
+  }
+}
+
+/// Verdicts of the surfaces, of what may be held.
+FlagsResult Solids::flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const
+{
+  return collisionFlags(a_, {b_.hierarchy(), pose},
+                        {question_.clearance.value_or(0.0), pair.of_obstacle ? Side::a : Side::b, question_.threads});
+}
+
+Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
 {
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
-  std::vector<std::uint32_t> first;
-  if (a_.hierarchy().view().triangles) {
-    first.assign(a_.hierarchy().view().count, kNothing);
-    for (std::uint32_t k = 0; k < poses.size(); ++k) {
-      const std::vector<std::uint8_t> at_pose = labels(poses[k], nullptr);
-      for (std::size_t i = 0; i < first.size(); ++i)
-        if (isHeld(at_pose[i])) first[i] = std::min(first[i], k);
-    }
-  }
-  else {
-    PosesInside inside = findPosesInside(a_, solid_, poses, question_.threads);
+  if (!uncertain_ && pair.of_obstacle && !pair.content.isSurface()) {
+    PosesInside inside = findPosesInside(a_, pair.solid.whole(), poses, question_.threads);
     work += inside.work;
-    first = std::move(inside.first);
+    return {inside.first, inside.first};
   }
-  const bool certain = !question_.isUncertain();
-  const auto takeFirst = [](auto& pose, std::uint32_t held) {
-    if (pose < 0 || pose > static_cast<std::int32_t>(held)) pose = static_cast<std::int32_t>(held);
+  const std::size_t count = a_.hierarchy().view().count;
+  FirstPoses first = {std::vector<std::uint32_t>(count, kNothing), std::vector<std::uint32_t>(count, kNothing)};
+  for (std::uint32_t k = 0; k < poses.size(); ++k) {
+    const Records held = heldAt(pair, poses[k], work);
+    if (held.empty()) continue;
+    Records certain = held;
+    if (uncertain_) {
+      const FlagsResult surface = flagsOfContent(pair, poses[k]);
+      work += surface.work;
+      certain = certainlyHeld(held, pair.of_obstacle ? surface.a : surface.b);
+    }
+    const auto note = [&](const Records& records, std::vector<std::uint32_t>& poses_of) {
+      const Records of_input =
+          pair.of_obstacle ? records : holdersOf(pair.solid, a_.pose, pair.content, poses[k], records, &work);
+      for (const std::uint32_t record : of_input) poses_of[record] = std::min(poses_of[record], k);
+    };
+    note(held, first.possible);
+    note(certain, first.certain);
+  }
+  return first;
+}
+
+void Solids::addToPath(TrajectoryResult& found, Work& work) const
+{
+  const auto takeFirst = [](std::vector<std::int32_t>& poses, std::size_t i, std::uint32_t held) {
+    if (!poses.empty() && (poses[i] < 0 || poses[i] > static_cast<std::int32_t>(held)))
+      poses[i] = static_cast<std::int32_t>(held);
   };
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] == kNothing) continue;
-    if (!found.flags.empty()) add(found.flags[i], !certain);
-    if (!found.first_pose.empty()) takeFirst(found.first_pose[i], first[i]);
-    if (certain && !found.certain_pose.empty()) takeFirst(found.certain_pose[i], first[i]);
-    const bool is_less = !found.distance.empty() && !(found.distance[i] <= 0.0f);
-    if (is_less) found.distance[i] = 0.0f;
-    if (is_less && !found.closest_pose.empty()) found.closest_pose[i] = static_cast<std::int32_t>(first[i]);
-    if (question_.swept > 0.0) takeContact(found.first_contact, first[i]);
-    if (question_.swept > 0.0 && certain && !found.certain_pose.empty()) takeContact(found.certain_contact, first[i]);
+  for (const Pairing& pair : pairings_) {
+    const FirstPoses first = firstPoses(pair, work);
+    for (std::size_t i = 0; i < first.possible.size(); ++i) {
+      if (first.possible[i] == kNothing) continue;
+      const bool certain = first.certain[i] != kNothing;
+      if (!found.flags.empty())
+        found.flags[i] = graver(found.flags[i], certain ? Verdict::colliding : Verdict::undecided);
+      takeFirst(found.first_pose, i, first.possible[i]);
+      if (certain) takeFirst(found.certain_pose, i, first.certain[i]);
+      if (!found.distance.empty() && !(found.distance[i] <= 0.0f)) {
+        found.distance[i] = 0.0f;
+        if (!found.closest_pose.empty()) found.closest_pose[i] = static_cast<std::int32_t>(first.possible[i]);
+      }
+      if (question_.swept > 0.0) takeContact(found.first_contact, first.possible[i]);
+      if (question_.swept > 0.0 && certain && !found.certain_pose.empty())
+        takeContact(found.certain_contact, first.certain[i]);
+    }
   }
   found.colliding = countOf(found.flags, Verdict::colliding);
   found.undecided = countOf(found.flags, Verdict::undecided);
-  for (std::size_t k = 0; k < found.poses.size(); ++k) { // of the union, which only all flags tell
-    FlagsResult surface =
-        collisionFlags(a_, {b_.hierarchy(), poses[k]}, {question_.clearance.value_or(0.0), Side::a, question_});
-    const std::vector<std::uint8_t> at_pose = labels(poses[k], nullptr);
-    for (std::size_t i = 0; i < at_pose.size(); ++i) {
-      if (!isHeld(at_pose[i])) continue;
-      add(surface.a[i], !certain);
-      found.poses[k].distance = std::min(found.poses[k].distance, 0.0);
-      found.poses[k].colliding = true;
-    }
-    found.poses[k].colliding_points = countOf(surface.a, Verdict::colliding);
-    found.poses[k].undecided_points = countOf(surface.a, Verdict::undecided);
+  const std::vector<Eigen::Isometry3d> poses = question_.poses();
+  for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], work);
+}
+
+/// Of the union of what is near the surface and what is held, which only all flags tell.
+void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const
+{
+  bool any = false;
+  FlagsResult joined;
+  for (const Pairing& pair : pairings_) {
+    const Records held = heldAt(pair, pose, work);
+    any |= !held.empty();
+    if (held.empty()) continue;
+    FlagsResult found = collisionFlags(a_, {b_.hierarchy(), pose},
+                                       request({question_.clearance.value_or(0.0), Side::a, question_.threads}));
+    add(pair, pose, held, found);
+    work += found.work;
+    if (joined.a.empty())
+      joined.a = std::move(found.a);
+    else
+      merge(joined.a, found.a);
   }
+  if (!any) return;
+  summary.distance = std::min(summary.distance, 0.0);
+  summary.colliding_points = countOf(joined.a, Verdict::colliding);
+  summary.undecided_points = countOf(joined.a, Verdict::undecided);
+  summary.colliding = summary.colliding_points > 0;
 }
 
-const std::vector<std::uint32_t>& SolidObstacle::inside(Work* work)
+PointDistances Solids::depths(const Pairing& pair, const Records& records) const
 {
-  if (inside_) return *inside_;
-  const std::vector<std::uint8_t> found = labels(b_.pose, work);
-  inside_.emplace();
-  for (std::uint32_t i = 0; i < found.size(); ++i)
-    if (isHeld(found[i])) inside_->push_back(i);
-  return *inside_;
-}
-
-PointDistances SolidObstacle::depths(const std::vector<std::uint32_t>& records) const
-{
-  std::vector<std::int32_t> subset(records.begin(), records.end());
-  PointsView view = a_.hierarchy().view();
-  view.indices = subset.data();
-  view.index_count = subset.size();
   PointDistancesRequest request;
   request.threads = question_.threads;
-  const SphereHierarchy held(view);
-  return pointDistances({held, a_.pose}, b_, request);
+  return pair.of_obstacle ? pointDistances(a_, records, b_, request) : pointDistances(b_, records, a_, request);
 }
 
-void SolidObstacle::turn(PointDistances& found)
+void Solids::turn(SymmetricDistances& found, bool both_ways)
 {
-  const std::vector<std::uint32_t>& records = inside(&found.work);
-  std::vector<std::uint32_t> deep; // beyond what was asked for
+  for (Pairing& pair : pairings_)
+    if (pair.of_obstacle || both_ways) turn(pair, pair.of_obstacle ? found.a : found.b);
+}
+
+void Solids::turn(Pairing& pair, PointDistances& found)
+{
+  const Records& records = held(pair, found.work);
+  Records deep; // beyond what was asked for
   for (const std::uint32_t record : records)
     if (std::isnan(found.distance[record])) deep.push_back(record);
   if (!deep.empty()) {
-    const PointDistances measured = depths(deep);
+    const PointDistances measured = depths(pair, deep);
     for (const std::uint32_t record : deep) {
       found.distance[record] = measured.distance[record];
       found.closest_point[record] = measured.closest_point[record];
@@ -166,16 +254,56 @@ void SolidObstacle::turn(PointDistances& found)
   }
 }
 
-void SolidObstacle::turn(DistanceResult& closest)
+void Solids::turn(DistanceResult& closest)
 {
-  const std::vector<std::uint32_t>& records = inside(&closest.work);
-  if (records.empty()) return;
-  const PointDistances measured = depths(records);
-  if (!(measured.greatest > 0.0)) return;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  closest.distance = -measured.greatest;
-  closest.pair = measured.greatest_pair;
-  closest.interval = {std::nextafter(closest.distance, -infinity), std::nextafter(closest.distance, infinity)};
+  for (Pairing& pair : pairings_) {
+    const Records& records = held(pair, closest.work);
+    if (records.empty()) continue;
+    const PointDistances measured = depths(pair, records);
+    if (!(measured.greatest > 0.0) || closest.distance <= -measured.greatest) continue;
+    closest.distance = -measured.greatest;
+    closest.pair = measured.greatest_pair;
+    if (!pair.of_obstacle) closest.pair = PointPair{measured.greatest_pair->b, measured.greatest_pair->a};
+    closest.interval = {std::nextafter(closest.distance, -unbounded), std::nextafter(closest.distance, unbounded)};
+  }
+}
+
+namespace {
+
+/// Calls add(solids) of both things as they are placed, where anything is solid.
+template <class Add>
+void withSolids(const Question& question, Shape& input, Shape& obstacle, const Add& add)
+{
+  if (!question.solid && !question.input_solid) return;
+  const Placed b(obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads), question.pose);
+  const Placed a(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input);
+  Solids solids(question, input, obstacle, a, b);
+  add(solids);
+}
+
+} // namespace
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found)
+{
+  withSolids(question, input, obstacle, [&](const Solids& solids) { solids.addToPath(found, found.work); });
+}
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+             std::vector<Verdict>& verdicts)
+{
+  withSolids(question, input, obstacle, [&](Solids& solids) {
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+      AnyResult at_pose;
+      at_pose.verdict = verdicts[i];
+      solids.addTo(at_pose, poses[i]);
+      verdicts[i] = at_pose.verdict;
+    }
+  });
+}
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)
+{
+  withSolids(question, input, obstacle, [&](Solids& solids) { solids.turn(closest); });
 }
 
 } // namespace pcl_bsh

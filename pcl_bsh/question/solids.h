@@ -1,40 +1,86 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an obstacle that is a solid encloses collides, and its distance is negative: added to what is found of its
-// surface.
+// What solids enclose collides, and its distance is negative: added to what is found of surfaces.
 #pragma once
 
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/solid/enclosure.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace pcl_bsh {
 
-/// What ask() adds where the obstacle is a solid, of the input a and the obstacle b, as they are placed. A part of the
-/// input is inside where a point is, or a corner of a triangle; on the surface counts.
-class SolidObstacle {
+/// What ask() adds where the obstacle, or the input, is a solid; both as they are placed. Of what a solid holds,
+/// records collide that have a place inside: a point, or a corner of a triangle; on the surface counts. Of the solid
+/// those triangles do whose body holds such a place in its inside (solid/bodies.h).
+class Solids {
 public:
-  /// @throws InvalidOption where the obstacle has no faces, InvalidInput where these do not close
-  SolidObstacle(const Question& question, Shape& obstacle, const Placed& a, const Placed& b);
+  /// @throws InvalidOption where what is to be solid has no faces, InvalidInput where these do not close
+  Solids(const Question& question, Shape& input, Shape& obstacle, const Placed& a, const Placed& b);
 
-  /// At one pose: what is inside collides. What is undecided for want of certain places stays so.
-  void addTo(TrajectoryResult& flags, Work& work);
+  bool none() const { return pairings_.empty(); } ///< nothing is solid
+
+  /// What addTo() needs of the surfaces beside what is asked for: where places are uncertain, the flags of both.
+  FlagsRequest request(FlagsRequest request) const;
+
+  /// At one pose. What is undecided for want of certain places stays so. @param found by such a request
+  void addTo(FlagsResult& found);
+  void addTo(AnyResult& found) { addTo(found, b_.pose); }
+
+  /// With the obstacle at some pose.
+  void addTo(AnyResult& found, const Eigen::Isometry3d& pose);
 
   /// Along the path: what is inside at a pose collides there, at a distance of 0.
   void addToPath(TrajectoryResult& found, Work& work) const;
 
   /// Distances of what is inside become negative, and are measured however deep.
-  void turn(PointDistances& found);
+  void turn(SymmetricDistances& found, bool both_ways);
 
-  /// The deepest, where anything is inside.
+  /// The deepest, where anything is inpair.
   void turn(DistanceResult& closest);
 
 private:
-  std::vector<std::uint8_t> labels(const Eigen::Isometry3d& pose, Work* work) const;
-  const std::vector<std::uint32_t>& inside(Work* work); ///< records at the one pose; labelled once
-  PointDistances depths(const std::vector<std::uint32_t>& records) const;
+  using Records = std::vector<std::uint32_t>;
+
+  /// One of the two that is solid, and the other.
+  struct Pairing {
+    bool of_obstacle; ///< it is the solid
+    const SolidBodies& solid;
+    const Content& content;
+    std::optional<Records> held; ///< at the one pose, once asked for
+  };
+
+  /// For each record of the input, the first pose at which it is held, or its body holds something; or kNothing.
+  struct FirstPoses {
+    std::vector<std::uint32_t> possible, certain; ///< certain: wherever places truly are
+  };
+
+  /// A path moves the obstacle.
+  Eigen::Isometry3d poseOfSolid(const Pairing& pair, const Eigen::Isometry3d& pose) const
+  {
+    return pair.of_obstacle ? pose : a_.pose;
+  }
+  Eigen::Isometry3d poseOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const
+  {
+    return pair.of_obstacle ? a_.pose : pose;
+  }
+
+  const Records& held(Pairing& pair, Work& work);
+  Records heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const;
+  void add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const;
+  FirstPoses firstPoses(const Pairing& pair, Work& work) const;
+  FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
+  void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;
+  PointDistances depths(const Pairing& pair, const Records& records) const;
+  void turn(Pairing& pair, PointDistances& found);
 
   const Question& question_;
-  const Solid& solid_;
   const Placed &a_, &b_;
-  std::optional<std::vector<std::uint32_t>> inside_;
+  const bool uncertain_;
+  std::vector<Pairing> pairings_;
 };
 
 } // namespace pcl_bsh

@@ -43,6 +43,7 @@ enum class WarningKind : std::uint8_t {
   sparse,     ///< surfaces may touch while no two points are within the clearance
   apart,      ///< boxes far from each other: not in one frame, perhaps
   unguarded,  ///< a density guard of a surface
+  hollow,     ///< faces close round what counts as free
 };
 
 /// One sentence for users, which names the cloud and says what to do.

@@ -58,13 +58,17 @@ struct Smallest {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::uint32_t record = kNone;
   bool any_will_do = false;
+  bool surface_counts = true;
 
   bool wants(std::uint32_t smallest) const { return any_will_do ? record == kNone : smallest < record; }
   void inside(const std::uint32_t* first, const std::uint32_t* last)
   {
     for (; first != last; ++first) record = std::min(record, *first);
   }
-  void one(std::uint32_t of, Label) { record = std::min(record, of); }
+  void one(std::uint32_t of, Label label)
+  {
+    if (surface_counts || label == Label::inside) record = std::min(record, of);
+  }
 };
 
 void search(LabelWalk& walk, std::uint32_t index, Smallest& found)
@@ -86,13 +90,11 @@ void search(LabelWalk& walk, std::uint32_t index, Smallest& found)
   }
 }
 
-Smallest search(const Placed& cloud, const PlacedSolid& solid, bool any_will_do, Work* work)
+Smallest search(const Placed& cloud, const PlacedSolid& solid, Smallest found, Work* work)
 {
   checkPoses(cloud.pose, solid.pose);
   const DefaultFloatEnvironment environment;
   Work own;
-  Smallest found;
-  found.any_will_do = any_will_do;
   if (!cloud.hierarchy().empty()) {
     LabelWalk walk(cloud, solid, own);
     search(walk, 0, found);
@@ -148,14 +150,19 @@ LabelsResult labelPoints(const Placed& cloud, const PlacedSolid& solid, unsigned
 
 std::optional<std::uint32_t> firstInside(const Placed& cloud, const PlacedSolid& solid, Work* work)
 {
-  const Smallest found = search(cloud, solid, false, work);
+  const Smallest found = search(cloud, solid, {}, work);
   if (found.record == Smallest::kNone) return std::nullopt;
   return found.record;
 }
 
 bool anyInside(const Placed& cloud, const PlacedSolid& solid, Work* work)
 {
-  return search(cloud, solid, true, work).record != Smallest::kNone;
+  return search(cloud, solid, {Smallest::kNone, true, true}, work).record != Smallest::kNone;
+}
+
+bool anyWithin(const Placed& cloud, const PlacedSolid& solid, Work* work)
+{
+  return search(cloud, solid, {Smallest::kNone, true, false}, work).record != Smallest::kNone;
 }
 
 Label labelPlace(const Solid& solid, const Point3& place)

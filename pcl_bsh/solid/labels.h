@@ -50,6 +50,9 @@ std::optional<std::uint32_t> firstInside(const Placed& cloud, const PlacedSolid&
 /// Whether any point is inside, or on the surface: stops at the first that it finds. As firstInside() otherwise.
 bool anyInside(const Placed& cloud, const PlacedSolid& solid, Work* work = nullptr);
 
+/// Whether any point is inside, and not only on the surface. As anyInside() otherwise.
+bool anyWithin(const Placed& cloud, const PlacedSolid& solid, Work* work = nullptr);
+
 /// Of one place of the frame in which the solid is given. Not finite: outside.
 Label labelPlace(const Solid& solid, const Point3& place);
 

@@ -5,6 +5,10 @@
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/options.h>
 
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/solid/brute_force_labels.h>
+
+#include "solid/meshes.h"
 #include "support/verdicts.h"
 
 #include <gmock/gmock.h>
@@ -21,9 +25,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// A cube from -1 to 1, and points in it, on it and about it.
-class SolidObstacleTest : public testing::Test {
+class SolidsTest : public testing::Test {
 protected:
-  SolidObstacleTest()
+  SolidsTest()
   {
     for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
     triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -60,7 +64,7 @@ protected:
   Question question;
 };
 
-TEST_F(SolidObstacleTest, WhatIsInsideCollidesAtAnyClearance)
+TEST_F(SolidsTest, WhatIsInsideCollidesAtAnyClearance)
 {
   question.wanted.flags = true;
   Answer found = answer();
@@ -75,7 +79,7 @@ TEST_F(SolidObstacleTest, WhatIsInsideCollidesAtAnyClearance)
   EXPECT_EQ(answer().collisions.flags, test::verdictsOf({1, 1, 1, 1, 1, 0}));
 }
 
-TEST_F(SolidObstacleTest, UncertainPointsNearTheSurfaceStayUndecided)
+TEST_F(SolidsTest, UncertainPointsNearTheSurfaceStayUndecided)
 {
   question.wanted.flags = true;
   question.clearance = 0.0;
@@ -83,7 +87,7 @@ TEST_F(SolidObstacleTest, UncertainPointsNearTheSurfaceStayUndecided)
   EXPECT_EQ(answer().collisions.flags, test::verdictsOf({1, 1, 2, 2, 2, 0}));
 }
 
-TEST_F(SolidObstacleTest, DistancesAreSigned)
+TEST_F(SolidsTest, DistancesAreSigned)
 {
   question.wanted.distances = question.wanted.within = question.wanted.closest = true;
   question.limits = {-0.5, 0.125};
@@ -108,7 +112,7 @@ TEST_F(SolidObstacleTest, DistancesAreSigned)
   EXPECT_THAT(answer().within, ElementsAre(0, 1, 0, 0, 0, 0));
 }
 
-TEST_F(SolidObstacleTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
+TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
 {
   const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
   points = {{0, 0, 0}, {9, 0, 0}};
@@ -132,7 +136,7 @@ TEST_F(SolidObstacleTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(found.collisions.first_contact->fraction, 0.0);
 }
 
-TEST_F(SolidObstacleTest, ASurfaceInsideCollides)
+TEST_F(SolidsTest, ASurfaceInsideCollides)
 {
   const std::vector<Point3> small = {{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}, {5, 5, 5}};
   const std::vector<Triangle> plate = {{0, 1, 2}, {1, 2, 3}, {3, 3, 3}};
@@ -142,13 +146,200 @@ TEST_F(SolidObstacleTest, ASurfaceInsideCollides)
   EXPECT_EQ(ask(question, input, obstacle).collisions.flags, test::verdictsOf({1, 1, 0}));
 }
 
-TEST_F(SolidObstacleTest, WhatDoesNotCloseIsRefused)
+TEST_F(SolidsTest, WhatDoesNotCloseIsRefused)
 {
   question.wanted.flags = true;
   triangles.pop_back();
   EXPECT_THAT(refusal(), testing::AllOf(HasSubstr("the tank"), HasSubstr("3"), HasSubstr("edge")));
   Shape input("the scan", viewOf(points[0].data(), points.size())), cloud("a cloud", viewOf(points[0].data(), 2));
   EXPECT_THROW(ask(question, input, cloud), InvalidOption);
+  question.vertices_only = true;
+  EXPECT_THROW(answer(), InvalidOption);
+}
+
+/// Two meshes, and brute force: every record against every other, every place against every triangle.
+class TwoSolidsTest : public testing::Test {
+protected:
+  struct Verdicts {
+    std::vector<Verdict> a, b;
+    bool any() const { return countOf(a, Verdict::colliding) > 0; }
+  };
+
+  Answer answer()
+  {
+    Shape input("the machine", viewOf(first.view())), obstacle("the tank", viewOf(second.view()));
+    return ask(question, input, obstacle);
+  }
+
+  /// Records with a place inside, or on the surface.
+  static std::vector<std::uint32_t> held(const test::ClosedMesh& content, const test::ClosedMesh& solid,
+                                         const Eigen::Isometry3d& pose_of_content,
+                                         const Eigen::Isometry3d& pose_of_solid)
+  {
+    const SphereHierarchy corners(content.view().vertices);
+    const auto labels =
+        brute_force::labelPoints({corners, pose_of_content}, {Solid(solid.view()), pose_of_solid}).labels;
+    std::vector<std::uint32_t> records;
+    for (std::uint32_t i = 0; i < content.view().count; ++i) {
+      const Triangle t = content.view().cornersOf(i);
+      if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return labels[v] != 0; })) records.push_back(i);
+    }
+    return records;
+  }
+
+  /// Of one body each.
+  Verdicts bruteForce(const Eigen::Isometry3d& pose) const
+  {
+    const SphereHierarchy a(viewOf(first.view())), b(viewOf(second.view()));
+    FlagsResult surfaces = collisionFlags({a, question.pose_of_input}, {b, pose}, {*question.clearance, Side::both});
+    Verdicts all{surfaces.a, surfaces.b};
+    const auto add = [](const std::vector<std::uint32_t>& content, std::vector<Verdict>& of_content,
+                        std::vector<Verdict>& of_solid) {
+      for (const std::uint32_t record : content) of_content[record] = Verdict::colliding;
+      if (!content.empty()) std::fill(of_solid.begin(), of_solid.end(), Verdict::colliding);
+    };
+    if (question.solid) add(held(first, second, question.pose_of_input, pose), all.a, all.b);
+    if (question.input_solid) add(held(second, first, pose, question.pose_of_input), all.b, all.a);
+    return all;
+  }
+
+  test::ClosedMesh first = test::boxMesh(), second = test::bumpyMesh(6, 0.2);
+  Question question;
+};
+
+TEST_F(TwoSolidsTest, FlagsListsAndAnyAreThoseOfBruteForce)
+{
+  test::Random random(7);
+  question.clearance = 0.01;
+  question.wanted.flags = question.wanted.obstacle_flags = question.wanted.any = true;
+  question.wanted.indices = question.wanted.obstacle_indices = true;
+  std::size_t held_only = 0;
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    question.solid = i % 3 != 0;
+    question.input_solid = i % 3 != 1;
+    first = test::ClosedMesh();
+    first.add(test::boxMesh(), i % 2 == 0 ? 2.0 : 0.15, {i % 2 == 0 ? -0.5 : 0.45, 0, 0.25});
+    question.pose = Eigen::Isometry3d::Identity();
+    question.pose.rotate(Eigen::AngleAxisd(random.uniform(0, 3), Eigen::Vector3d::UnitY()));
+    for (int k = 0; k < 3; ++k) question.pose.translation()[k] = random.uniform(-0.5, 0.5);
+    question.pose_of_input = Eigen::Isometry3d(Eigen::Translation3d(random.uniform(-0.2, 0.2), 0, 0));
+    const Verdicts expected = bruteForce(question.pose);
+    const Answer found = answer();
+    EXPECT_EQ(found.collisions.flags, expected.a);
+    EXPECT_EQ(found.obstacle_flags, expected.b);
+    EXPECT_EQ(found.any.verdict, test::verdictIf(expected.any()));
+    EXPECT_EQ(found.any.pair.has_value(), expected.any());
+    EXPECT_EQ(found.collisions.colliding, countOf(expected.a, Verdict::colliding));
+    EXPECT_EQ(found.indices.a.size(), countOf(expected.a, Verdict::colliding));
+    EXPECT_EQ(found.indices.b.size(), countOf(expected.b, Verdict::colliding));
+    if (found.any.pair) {
+      EXPECT_EQ(expected.a[found.any.pair->a], Verdict::colliding);
+      EXPECT_EQ(expected.b[found.any.pair->b], Verdict::colliding);
+      held_only += found.any.interval.lower < 0.0;
+    }
+  }
+  EXPECT_GT(held_only, 5u); // else the surfaces tell all
+}
+
+TEST_F(TwoSolidsTest, AlongAPathEachPoseIsThatOfBruteForce)
+{
+  test::Random random(8);
+  question.clearance = 0.0;
+  question.wanted.flags = question.wanted.contacts = question.wanted.poses = true;
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    question.solid = i % 3 != 0;
+    question.input_solid = i % 3 != 1;
+    first = test::ClosedMesh();
+    first.add(test::boxMesh(), i % 2 == 0 ? 2.0 : 0.15, {i % 2 == 0 ? -0.5 : 0.45, 0, 0.25});
+    question.path.emplace();
+    std::vector<std::int32_t> expected(12, -1);
+    for (int k = 0; k < 7; ++k) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.rotate(Eigen::AngleAxisd(random.uniform(0, 3), Eigen::Vector3d::UnitZ()));
+      for (int axis = 0; axis < 3; ++axis) pose.translation()[axis] = random.uniform(-1.5, 1.5);
+      question.path->push_back(pose);
+      const Verdicts at_pose = bruteForce(pose);
+      for (std::size_t t = 0; t < 12; ++t)
+        if (at_pose.a[t] == Verdict::colliding && expected[t] < 0) expected[t] = k;
+    }
+    const Answer found = answer();
+    EXPECT_EQ(found.collisions.first_pose, expected);
+    for (std::size_t k = 0; k < 7; ++k)
+      EXPECT_EQ(found.collisions.poses[k].colliding_points,
+                countOf(bruteForce((*question.path)[k]).a, Verdict::colliding));
+  }
+}
+
+TEST_F(TwoSolidsTest, OfWhichOneHoldsTheOtherAreAsDeepAsTheDeepestPlace)
+{
+  first = test::ClosedMesh();
+  first.add(test::boxMesh(), 4.0, {-2, -2, -2});
+  second = test::ClosedMesh();
+  second.add(test::boxMesh(), 1.0, {-1.5, -0.5, -0.5});
+  question.clearance = 0.0;
+  question.wanted.closest = question.wanted.any = question.wanted.distances = question.wanted.both_ways = true;
+  EXPECT_EQ(answer().closest.distance, 0.5);
+  EXPECT_EQ(answer().any.verdict, Verdict::free);
+  question.input_solid = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.any.verdict, Verdict::colliding);
+  EXPECT_EQ(found.closest.distance, -1.5); // of the box's far side
+  ASSERT_TRUE(found.closest.pair);
+  EXPECT_LT(found.closest.pair->a, 12u);
+  EXPECT_EQ(found.distances.b.distance[found.closest.pair->b], -1.5);
+  EXPECT_EQ(found.distances.a.distance[found.closest.pair->a], answer().distances.a.distance[found.closest.pair->a]);
+  std::swap(first, second);
+  std::swap(question.solid, question.input_solid);
+  EXPECT_EQ(answer().closest.distance, -1.5);
+  EXPECT_EQ(answer().any.verdict, Verdict::colliding);
+}
+
+TEST_F(TwoSolidsTest, UncertainPlacesLeaveUndecidedWhatMayStillBeOutside)
+{
+  first = test::ClosedMesh();
+  first.add(test::boxMesh(), 4.0, {-2, -2, -2});
+  second = test::ClosedMesh();
+  second.add(test::boxMesh(), 1.0, {-1.5, -0.5, -0.5});
+  question.clearance = 0.0;
+  question.input_solid = true;
+  question.wanted.flags = question.wanted.obstacle_flags = question.wanted.any = true;
+  question.obstacle_uncertainty.length = 0.25;
+  Answer found = answer();
+  EXPECT_EQ(countOf(found.collisions.flags, Verdict::colliding), 12u);
+  EXPECT_EQ(countOf(found.obstacle_flags, Verdict::colliding), 12u);
+  EXPECT_EQ(found.any.verdict, Verdict::colliding);
+  question.obstacle_uncertainty.length = 0.75; // what is near the wall may stand outside
+  found = answer();
+  EXPECT_EQ(countOf(found.collisions.flags, Verdict::colliding), 12u);
+  EXPECT_GT(countOf(found.obstacle_flags, Verdict::undecided), 0u);
+  EXPECT_GT(countOf(found.obstacle_flags, Verdict::colliding), 0u);
+  EXPECT_EQ(found.any.verdict, Verdict::colliding);
+  question.obstacle_uncertainty.length = 2.0;
+  found = answer();
+  EXPECT_EQ(countOf(found.collisions.flags, Verdict::undecided), 12u);
+  EXPECT_EQ(countOf(found.obstacle_flags, Verdict::undecided), 12u);
+  EXPECT_EQ(found.any.verdict, Verdict::undecided);
+  question.path = {question.pose};
+  question.wanted = {};
+  question.wanted.flags = question.wanted.first_poses = true;
+  found = answer();
+  EXPECT_EQ(found.collisions.flags, std::vector<Verdict>(12, Verdict::undecided));
+  question.obstacle_uncertainty.length = 0.75;
+  EXPECT_EQ(answer().collisions.flags, std::vector<Verdict>(12, Verdict::colliding));
+}
+
+TEST_F(TwoSolidsTest, AnInputWithoutFacesIsNoSolid)
+{
+  question.input_solid = true;
+  question.clearance = 0.0;
+  question.wanted.flags = true;
+  const double points[3] = {0, 0, 0};
+  Shape input("the scan", viewOf(points, 1)), obstacle("the tank", viewOf(second.view()));
+  EXPECT_THROW(ask(question, input, obstacle), InvalidOption);
+  first.corners.resize(first.corners.size() - 3);
+  EXPECT_THROW(answer(), InvalidInput);
   question.vertices_only = true;
   EXPECT_THROW(answer(), InvalidOption);
 }

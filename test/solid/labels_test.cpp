@@ -13,7 +13,7 @@ namespace pcl_bsh {
 namespace {
 
 using Eigen::Isometry3d;
-using test::Mesh;
+using Mesh = test::ClosedMesh;
 using test::Random;
 
 Isometry3d poseOf(double angle, const Eigen::Vector3d& shift)

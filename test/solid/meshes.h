@@ -14,7 +14,7 @@
 
 namespace pcl_bsh::test {
 
-struct Mesh {
+struct ClosedMesh {
   std::vector<double> xyz;
   std::vector<std::uint32_t> corners;
 
@@ -25,7 +25,7 @@ struct Mesh {
   }
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { corners.insert(corners.end(), {a, b, c}); }
 
-  void add(const Mesh& other, double scale = 1.0, const Point3& shift = {0, 0, 0}, bool flip = false)
+  void add(const ClosedMesh& other, double scale = 1.0, const Point3& shift = {0, 0, 0}, bool flip = false)
   {
     const auto first = static_cast<std::uint32_t>(xyz.size() / 3);
     for (std::size_t i = 0; i < other.xyz.size(); ++i) xyz.push_back(other.xyz[i] * scale + shift[i % 3]);
@@ -37,9 +37,9 @@ struct Mesh {
   TrianglesView view() const { return {viewOf(xyz.data(), xyz.size() / 3), corners.data(), corners.size() / 3}; }
 };
 
-inline Mesh boxMesh(double edge = 1.0)
+inline ClosedMesh boxMesh(double edge = 1.0)
 {
-  Mesh mesh;
+  ClosedMesh mesh;
   for (int i = 0; i < 8; ++i) mesh.vertex((i & 1) * edge, (i >> 1 & 1) * edge, (i >> 2 & 1) * edge);
   for (const auto& q : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
                         {4, 5, 7, 6},
@@ -54,9 +54,9 @@ inline Mesh boxMesh(double edge = 1.0)
 }
 
 /// A cone over a polygon of so many corners on a circle of radius 1, and the fan that closes it.
-inline Mesh fanMesh(std::uint32_t around)
+inline ClosedMesh fanMesh(std::uint32_t around)
 {
-  Mesh mesh;
+  ClosedMesh mesh;
   const std::uint32_t top = mesh.vertex(0, 0, 1), middle = mesh.vertex(0, 0, 0);
   for (std::uint32_t i = 0; i < around; ++i)
     mesh.vertex(std::cos(2 * M_PI * i / around), std::sin(2 * M_PI * i / around), 0);
@@ -69,9 +69,9 @@ inline Mesh fanMesh(std::uint32_t around)
 }
 
 /// A bumpy ball in [0, 1]^3, rows x 2 rows.
-inline Mesh bumpyMesh(std::uint32_t rows, double bumps)
+inline ClosedMesh bumpyMesh(std::uint32_t rows, double bumps)
 {
-  Mesh mesh;
+  ClosedMesh mesh;
   const std::uint32_t columns = 2 * rows;
   const std::uint32_t north = mesh.vertex(0.5, 0.5, 0.9), south = mesh.vertex(0.5, 0.5, 0.1);
   for (std::uint32_t i = 1; i < rows; ++i)
@@ -93,10 +93,10 @@ inline Mesh bumpyMesh(std::uint32_t rows, double bumps)
 
 /// Tetrahedra anywhere on a lattice of so many steps from 0 to 1, of either sense: they overlap and cross each other,
 /// share corners, and some are flat.
-inline Mesh latticeMesh(int tetrahedra, int steps, std::uint64_t seed)
+inline ClosedMesh latticeMesh(int tetrahedra, int steps, std::uint64_t seed)
 {
   Random random(seed);
-  Mesh mesh;
+  ClosedMesh mesh;
   for (int i = 0; i < tetrahedra; ++i) {
     std::uint32_t v[4];
     for (std::uint32_t& name : v) {
@@ -113,7 +113,7 @@ inline Mesh latticeMesh(int tetrahedra, int steps, std::uint64_t seed)
 }
 
 /// Points of which most are near the surface, on it, or at its corners and on its edges.
-inline std::vector<double> pointsAbout(const Mesh& mesh, std::size_t count, double spread, std::uint64_t seed)
+inline std::vector<double> pointsAbout(const ClosedMesh& mesh, std::size_t count, double spread, std::uint64_t seed)
 {
   Random random(seed);
   const TrianglesView view = mesh.view();

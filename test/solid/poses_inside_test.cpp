@@ -12,7 +12,7 @@ namespace {
 
 TEST(PosesInside, AreThoseOfLabels)
 {
-  const test::Mesh mesh = test::bumpyMesh(12, 0.3);
+  const test::ClosedMesh mesh = test::bumpyMesh(12, 0.3);
   const Solid solid(mesh.view());
   test::Random random(1);
   std::vector<double> points(3 * 20000);
@@ -42,7 +42,7 @@ TEST(PosesInside, AreThoseOfLabels)
 
 TEST(PosesInside, OfAPathThatIsFarOffCostsItsPoses)
 {
-  const test::Mesh mesh = test::boxMesh();
+  const test::ClosedMesh mesh = test::boxMesh();
   const Solid solid(mesh.view());
   std::vector<double> points(3 * 50000);
   test::Random random(2);
@@ -56,7 +56,7 @@ TEST(PosesInside, OfAPathThatIsFarOffCostsItsPoses)
 
 TEST(PosesInside, RefusePosesThatAreNotRigid)
 {
-  const test::Mesh mesh = test::boxMesh();
+  const test::ClosedMesh mesh = test::boxMesh();
   const Solid solid(mesh.view());
   const double point[3] = {0, 0, 0};
   const SphereHierarchy cloud(viewOf(point, 1));

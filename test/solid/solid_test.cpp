@@ -13,7 +13,7 @@ namespace {
 
 TEST(Solid, RefusesWhatIsOpenAndSaysWhere)
 {
-  test::Mesh open = test::boxMesh();
+  test::ClosedMesh open = test::boxMesh();
   open.corners.erase(open.corners.begin() + 3, open.corners.begin() + 6); // the second triangle of the first side
   try {
     const Solid solid(open.view());
@@ -30,15 +30,15 @@ TEST(Solid, RefusesWhatIsOpenAndSaysWhere)
 
 TEST(Solid, RefusesCornersThatAreNotThere)
 {
-  test::Mesh mesh = test::boxMesh();
+  test::ClosedMesh mesh = test::boxMesh();
   mesh.corners[7] = 8;
   EXPECT_THROW(Solid(mesh.view()), InvalidInput);
 }
 
 TEST(Solid, JoinsCornersOfEqualCoordinates)
 {
-  const test::Mesh box = test::boxMesh();
-  test::Mesh soup;
+  const test::ClosedMesh box = test::boxMesh();
+  test::ClosedMesh soup;
   for (const std::uint32_t corner : box.corners)
     soup.corners.push_back(soup.vertex(box.xyz[3 * corner], box.xyz[3 * corner + 1], box.xyz[3 * corner + 2]));
   EXPECT_NO_THROW(Solid(soup.view()));
@@ -46,7 +46,7 @@ TEST(Solid, JoinsCornersOfEqualCoordinates)
 
 TEST(Solid, TakesLittleMemory)
 {
-  const test::Mesh mesh = test::bumpyMesh(100, 0.2);
+  const test::ClosedMesh mesh = test::bumpyMesh(100, 0.2);
   const Solid solid(mesh.view());
   EXPECT_LT(static_cast<double>(solid.bytes()) / static_cast<double>(mesh.view().count), 128.0);
 }

@@ -13,9 +13,9 @@ const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 
 TEST(TriangleLabels, OfCorners)
 {
-  const test::Mesh box = test::boxMesh();
+  const test::ClosedMesh box = test::boxMesh();
   const Solid solid(box.view());
-  test::Mesh mesh;
+  test::ClosedMesh mesh;
   const std::uint32_t in = mesh.vertex(0.5, 0.5, 0.5), on = mesh.vertex(1, 0.5, 0.5), out = mesh.vertex(2, 0.5, 0.5),
                       up = mesh.vertex(2, 2, 2), nan = mesh.vertex(NAN, 0, 0);
   mesh.triangle(out, up, in);
@@ -28,10 +28,10 @@ TEST(TriangleLabels, OfCorners)
 
 TEST(TriangleLabels, OfBodiesOfWhichOneHoldsTheOther)
 {
-  test::Mesh bodies;
+  test::ClosedMesh bodies;
   bodies.add(test::boxMesh(), 1.0, {10, 0, 0});
   bodies.add(test::boxMesh(), 0.2, {0.4, 0.4, 0.4});
-  const test::Mesh tank = test::boxMesh();
+  const test::ClosedMesh tank = test::boxMesh();
   const Solid solid(tank.view());
   const std::vector<std::uint32_t> shells = firstOfShells(bodies.view());
   EXPECT_EQ(shells, (std::vector<std::uint32_t>{0, 12}));

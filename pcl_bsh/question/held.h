@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What solids hold, for who runs queries that no question has: added to what these found of the surfaces.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/question/question.h>
+#include <pcl_bsh/question/shape.h>
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// As ask() adds it along the question's path, to all that is there; nothing where neither thing is asked as a solid.
+/// @throws as ask() does of solids
+void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found);
+
+/// Of the obstacle at each of these poses, or on motions that begin there.
+/// @param verdicts of the surfaces, one for each pose: what is held collides
+void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+             std::vector<Verdict>& verdicts);
+
+/// Of the two as they stand.
+void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

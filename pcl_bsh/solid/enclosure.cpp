@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/solid/enclosure.h>
+
+#include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/solid/labels.h>
+#include <pcl_bsh/solid/triangle_labels.h>
+
+#include <algorithm>
+
+namespace pcl_bsh {
+namespace {
+
+bool isHeld(std::uint8_t label)
+{
+  return label != labelOf(Label::outside);
+}
+
+SphereHierarchy partOf(PointsView view, const std::vector<std::int32_t>& places)
+{
+  static const std::int32_t none = 0;
+  view.indices = places.empty() ? &none : places.data();
+  view.index_count = places.size();
+  return SphereHierarchy(view);
+}
+
+} // namespace
+
+Content::Content(const SphereHierarchy& thing) : thing_(thing)
+{
+  const TrianglesView* const triangles = thing.view().triangles;
+  if (!triangles) return;
+  std::vector<bool> used(triangles->vertices.count, false);
+  for (std::uint32_t i = 0; i < triangles->count; ++i) {
+    if (!isFinite(triangles->triangle(i))) continue;
+    for (const std::uint32_t corner : triangles->cornersOf(i)) used[corner] = true;
+  }
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i]) used_.push_back(static_cast<std::int32_t>(i));
+  corners_ = std::make_unique<const SphereHierarchy>(partOf(triangles->vertices, used_));
+  shells_ = firstOfShells(*triangles);
+}
+
+std::vector<std::int32_t> Content::placesOf(const std::vector<std::uint32_t>& records) const
+{
+  std::vector<std::int32_t> places;
+  for (const std::uint32_t record : records) {
+    if (!isSurface())
+      places.push_back(static_cast<std::int32_t>(record));
+    else
+      for (const std::uint32_t corner : thing_.view().triangles->cornersOf(record))
+        places.push_back(static_cast<std::int32_t>(corner));
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& content,
+                                  const Eigen::Isometry3d& T_world_content, unsigned threads, Work* work)
+{
+  const LabelsResult found = labelPoints({content.places(), T_world_content}, solid, threads);
+  if (work) *work += found.work;
+  std::vector<std::uint32_t> held;
+  if (found.inside + found.on_surface == 0) return held;
+  const PointsView& view = content.thing().view();
+  for (std::uint32_t i = 0; i < view.count; ++i) {
+    bool is_held = false;
+    if (!content.isSurface())
+      is_held = isHeld(found.labels[i]);
+    else if (isFinite(view.triangles->triangle(i)))
+      for (const std::uint32_t corner : view.triangles->cornersOf(i)) is_held |= isHeld(found.labels[corner]);
+    if (is_held) held.push_back(i);
+  }
+  return held;
+}
+
+std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                     const Content& content, const Eigen::Isometry3d& T_world_content,
+                                     const std::vector<std::uint32_t>& held, Work* work)
+{
+  std::vector<std::uint32_t> holders;
+  if (held.empty()) return holders;
+  const PointsView& view = content.places().view();
+  const std::vector<std::int32_t> places = content.placesOf(held);
+  const SphereHierarchy near = partOf(view, places);
+  const LabelsResult labels = labelPoints({near, T_world_content}, {solid.whole(), T_world_solid});
+  std::vector<std::int32_t> inside; // a hollow of the solid is inside some of its bodies, too
+  for (const std::int32_t place : places)
+    if (labels.labels[static_cast<std::size_t>(place)] == labelOf(Label::inside)) inside.push_back(place);
+  if (work) *work += labels.work;
+  if (inside.empty()) return holders;
+  const SphereHierarchy part = partOf(view, inside);
+  const std::vector<SolidBodies::Body>& bodies = solid.all();
+  for (const SolidBodies::Body& body : bodies) {
+    if (bodies.size() > 1 && !anyWithin({part, T_world_content}, {solid.solidOf(body), T_world_solid}, work)) continue;
+    holders.insert(holders.end(), body.triangles.begin(), body.triangles.end());
+  }
+  std::sort(holders.begin(), holders.end());
+  return holders;
+}
+
+std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
+                       const Eigen::Isometry3d& T_world_content, std::uint32_t held, Work* work)
+{
+  const std::vector<std::int32_t> places = content.placesOf({held});
+  const SphereHierarchy part = partOf(content.places().view(), places);
+  const std::vector<SolidBodies::Body>& bodies = solid.all();
+  const auto holder = std::find_if(bodies.begin(), bodies.end() - 1, [&](const SolidBodies::Body& body) {
+    return anyInside({part, T_world_content}, {solid.solidOf(body), T_world_solid}, work);
+  });
+  return holder->triangles.front(); // the last one, where it is no other
+}
+
+std::optional<PointPair> findHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                  const Content& content, const Eigen::Isometry3d& T_world_content, Work* work)
+{
+  const PlacedSolid whole(solid.whole(), T_world_solid);
+  std::optional<std::uint32_t> record;
+  if (!content.isSurface()) {
+    record = firstInside({content.thing(), T_world_content}, whole, work);
+  }
+  else {
+    const TrianglesView& triangles = *content.thing().view().triangles;
+    const auto shell = std::find_if(content.shells().begin(), content.shells().end(), [&](std::uint32_t triangle) {
+      return holdsAny(whole, triangles, {triangle}, T_world_content);
+    });
+    if (shell != content.shells().end()) record = *shell;
+  }
+  if (!record) return std::nullopt;
+  return PointPair{*record, holderOf(solid, T_world_solid, content, T_world_content, *record, work)};
+}
+
+std::vector<std::uint32_t> certainlyHeld(const std::vector<std::uint32_t>& held, const std::vector<Verdict>& of_content)
+{
+  std::vector<std::uint32_t> certain;
+  for (const std::uint32_t record : held)
+    if (of_content[record] == Verdict::free) certain.push_back(record);
+  return certain;
+}
+
+void addHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
+             const Eigen::Isometry3d& T_world_content, const std::vector<std::uint32_t>& held, bool uncertain,
+             std::vector<Verdict>& of_content, std::vector<Verdict>& of_solid, Work* work)
+{
+  const auto holders = [&](const std::vector<std::uint32_t>& records) {
+    return of_solid.empty() ? std::vector<std::uint32_t>()
+                            : holdersOf(solid, T_world_solid, content, T_world_content, records, work);
+  };
+  if (uncertain)
+    for (const std::uint32_t triangle : holders(held))
+      of_solid[triangle] = graver(of_solid[triangle], Verdict::undecided);
+  for (const std::uint32_t triangle : holders(uncertain ? certainlyHeld(held, of_content) : held))
+    of_solid[triangle] = Verdict::colliding;
+  if (of_content.empty()) return;
+  for (const std::uint32_t record : held)
+    if (!uncertain || of_content[record] == Verdict::free) of_content[record] = Verdict::colliding;
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a solid holds of another thing, points or triangles, and which of its bodies hold it.
+//
+//   const SolidBodies tank(solid);
+//   const Content robot(robot_hierarchy);
+//   std::vector<std::uint32_t> held = heldBy({solid, T_world_tank}, robot, T_world_robot);
+//   std::vector<std::uint32_t> holders = holdersOf(tank, T_world_tank, robot, T_world_robot, held);
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/solid/bodies.h>
+#include <pcl_bsh/solid/solid.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// What solids are asked about: a thing by what is labelled of it, its points, or the corners of its finite triangles.
+class Content {
+public:
+  /// @param thing borrowed; of triangles, their corners are sorted into voxels here
+  explicit Content(const SphereHierarchy& thing);
+
+  const SphereHierarchy& thing() const noexcept { return thing_; }
+  bool isSurface() const noexcept { return corners_ != nullptr; }
+  const SphereHierarchy& places() const noexcept { return corners_ ? *corners_ : thing_; } ///< that are labelled
+
+  /// Places of these records, ascending.
+  std::vector<std::int32_t> placesOf(const std::vector<std::uint32_t>& records) const;
+
+  /// A triangle of each of its shells, which share vertices by number. @pre isSurface()
+  const std::vector<std::uint32_t>& shells() const noexcept { return shells_; }
+
+private:
+  const SphereHierarchy& thing_;
+  std::vector<std::int32_t> used_; ///< vertices that are corners
+  std::unique_ptr<const SphereHierarchy> corners_;
+  std::vector<std::uint32_t> shells_;
+};
+
+/// Records, ascending, of which a place is inside the solid, or on its surface: points, or triangles with such a
+/// corner.
+/// @param threads 0: all of the machine's. @param work when given, what the query cost is added
+/// @throws std::invalid_argument when a pose is not rigid
+std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& content,
+                                  const Eigen::Isometry3d& T_world_content, unsigned threads = 1, Work* work = nullptr);
+
+/// The triangles, ascending, of each body that holds a place of these records in its inside, not only on its surface.
+/// What is in a hollow of the solid is held by none.
+/// @param held of heldBy() @throws likewise
+std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                     const Content& content, const Eigen::Isometry3d& T_world_content,
+                                     const std::vector<std::uint32_t>& held, Work* work = nullptr);
+
+/// A triangle of a body that holds a record, which is held.
+std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
+                       const Eigen::Isometry3d& T_world_content, std::uint32_t held, Work* work = nullptr);
+
+/// Whether the solid holds anything, where its surface is known to touch no triangle of the content: so of each shell
+/// one corner is looked at, and of points the first that is found.
+/// @return a record of the content that is held, and a triangle of a body that holds it. @throws likewise
+std::optional<PointPair> findHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                  const Content& content, const Eigen::Isometry3d& T_world_content,
+                                  Work* work = nullptr);
+
+/// Of records that are held, those that are wherever places truly are: their surface verdicts say that they cannot meet
+/// the surface. @param of_content one per record of the content
+std::vector<std::uint32_t> certainlyHeld(const std::vector<std::uint32_t>& held,
+                                         const std::vector<Verdict>& of_content);
+
+/// Turns the verdicts of two surfaces into those of a solid and its content. Held records collide, and so do the
+/// triangles of holdersOf(). With uncertain places what is undecided stays so, and of the solid collides what certainly
+/// holds something; what else may hold something is undecided.
+/// @param of_content one per record, or empty where not asked for: not so where places are uncertain
+/// @param of_solid one per triangle, or empty
+void addHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
+             const Eigen::Isometry3d& T_world_content, const std::vector<std::uint32_t>& held, bool uncertain,
+             std::vector<Verdict>& of_content, std::vector<Verdict>& of_solid, Work* work = nullptr);
+
+} // namespace pcl_bsh

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/hollow.h>
+
+#include "solid/meshes.h"
+#include "support/random.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+
+/// A hall of 40 m with a machine of 4 m, and a scan that has few points in its middle.
+class HollowTest : public testing::Test {
+protected:
+  HollowTest()
+  {
+    machine.add(test::boxMesh(), 4.0, {-2, -2, -2});
+    test::Random random(1);
+    for (int i = 0; i < 20000; ++i) { // the floor and a wall
+      add(random.uniform(-20, 20), random.uniform(-20, 20), -10);
+      add(20, random.uniform(-20, 20), random.uniform(-10, 10));
+    }
+    for (int i = 0; i < 200; ++i) // what stands in the machine's middle
+      add(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    question.clearance = 0.05;
+    question.wanted.flags = true;
+  }
+
+  void add(double x, double y, double z) { points.insert(points.end(), {x, y, z}); }
+
+  std::vector<Warning> hollow()
+  {
+    Shape input("hall.ply", viewOf(points.data(), points.size() / 3)), obstacle("robot.stl", viewOf(machine.view()));
+    std::vector<Warning> all = ask(question, input, obstacle).warnings;
+    all.erase(std::remove_if(all.begin(), all.end(), [](const Warning& w) { return w.kind != WarningKind::hollow; }),
+              all.end());
+    return all;
+  }
+
+  test::ClosedMesh machine;
+  std::vector<double> points;
+  Question question;
+};
+
+TEST_F(HollowTest, ToldWhereFacesCloseRoundFreePoints)
+{
+  const std::vector<Warning> told = hollow();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_THAT(told[0].text, testing::AllOf(HasSubstr("robot.stl: "), HasSubstr("hall.ply"), HasSubstr("`solid`")));
+  question.wanted = {};
+  for (bool Wanted::*const what : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_flags, &Wanted::closest,
+                                   &Wanted::distances, &Wanted::within, &Wanted::contacts, &Wanted::first_poses}) {
+    question.wanted.*what = true;
+    EXPECT_EQ(hollow().size(), 1u);
+    question.wanted.*what = false;
+  }
+}
+
+TEST_F(HollowTest, NotOfASolid)
+{
+  question.solid = true;
+  EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, NotWhereFacesDoNotClose)
+{
+  machine.corners.resize(machine.corners.size() - 3);
+  EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, NotWhereSomethingIsNearTheSurface)
+{
+  add(2, 0, 0);
+  EXPECT_TRUE(hollow().empty());
+  question.wanted = {};
+  question.wanted.any = true;
+  EXPECT_TRUE(hollow().empty());
+  question.wanted = {};
+  question.wanted.distances = true;
+  EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, NotOfATunnelRoundTheScan)
+{
+  machine.add(test::boxMesh(), 2.0, {-1, -1, -1}, true); // a hollow round the points
+  EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, NotWhereItStandsElsewhereButOnItsWay)
+{
+  question.pose.translation().x() = 10;
+  EXPECT_TRUE(hollow().empty());
+  const Eigen::Isometry3d there = question.pose;
+  question.path = {there, there, Eigen::Isometry3d::Identity(), there};
+  EXPECT_EQ(hollow().size(), 1u);
+  question.path->pop_back();
+  question.path->pop_back();
+  EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, ATurnedMachineIsSeenWhereItIs)
+{
+  question.pose.rotate(Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 1, 0).normalized()));
+  question.pose.pretranslate(Eigen::Vector3d(100, 200, 300));
+  question.pose_of_input.translation() = Eigen::Vector3d(100, 200, 300);
+  EXPECT_EQ(hollow().size(), 1u);
+}
+
+} // namespace
+} // namespace pcl_bsh
