@@ -49,6 +49,8 @@ void check(const SceneObject& object, const std::unordered_map<std::string, Obje
   checkPose("pose of object '" + object.name + "'", object.pose);
   for (const ScenePart& part : object.parts) {
     if (!part.hierarchy) refuse("object '" + object.name + "', part '" + part.name + "' has no hierarchy");
+    if (part.solid && !part.hierarchy->view().triangles)
+      refuse("object '" + object.name + "', part '" + part.name + "' is solid, but has no faces");
     checkPose("pose of part '" + part.name + "' of object '" + object.name + "'", part.pose);
   }
   for (const auto& [a, b] : object.adjacent)

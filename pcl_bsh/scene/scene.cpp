@@ -22,6 +22,16 @@ bool isWhole(const Eigen::Isometry3d& pose)
   return pose.matrix() == Eigen::Matrix4d::Identity();
 }
 
+void addSolid(SceneSolids& solids, const std::string& object, const ScenePart& part)
+{
+  try {
+    if (part.solid) solids.addSolid(part.hierarchy);
+  }
+  catch (const InvalidInput& error) {
+    throw InvalidInput(Input::surface, "object '" + object + "'", error.wrong(), error.remedy());
+  }
+}
+
 void checkRule(const PairRule& rule)
 {
   if (rule.clearance && !isLength(*rule.clearance))
@@ -91,6 +101,13 @@ void Scene::State::followPoints()
   }
 }
 
+void Scene::State::followSolids()
+{
+  if (solids.none()) return;
+  for (const Body& body : bodies)
+    for (const ScenePart& part : body.object.parts) solids.follow(part.hierarchy, part.solid);
+}
+
 void Scene::State::shapeChanged(ObjectId object)
 {
   Body& changed = bodies[object];
@@ -123,6 +140,7 @@ SceneResult Scene::State::step(double dt)
   }
   try {
     followPoints();
+    followSolids();
     move(dt);
     stepping = true;
     SceneResult found = query();
@@ -157,6 +175,7 @@ ObjectId Scene::add(SceneObject object)
   check(object, state_->names);
   State::checkWorld(object, object.pose);
   State& s = *state_;
+  for (const ScenePart& part : object.parts) addSolid(s.solids, object.name, part);
   const auto id = static_cast<ObjectId>(s.bodies.size());
   for (auto& [a, b] : object.adjacent)
     if (a > b) std::swap(a, b);

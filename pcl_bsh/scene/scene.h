@@ -20,6 +20,11 @@
 // wherever the points truly are: what may collide, but does not for certain, is undecided. A first contact is the first
 // that may be, SceneResult::certain_contact the first that is for certain. A response halts before what may collide.
 // Distances and contacts are those of the measured places.
+//
+// What is inside of a solid part collides, at any clearance: so do the records that it holds, and the triangles of the
+// body that holds them. Smallest distances are negative then, the depth of the deepest. A first contact of a motion
+// that begins inside is its first instant, and a response is stuck there (Outcome). Of swept motion, what is held at
+// its beginning or its end is flagged, beside what meets a surface on the way. Contacts are those of surfaces.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -43,6 +48,7 @@ struct ScenePart {
   std::string name;
   std::shared_ptr<SphereHierarchy> hierarchy;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_object_cloud
+  bool solid = false; ///< of triangles: it counts with what they enclose, and they must close
 };
 
 /// What moves as one: parts, where they stand, and how they move.
@@ -116,7 +122,8 @@ public:
   Scene& operator=(Scene&&) noexcept;
 
   /// @throws std::invalid_argument for a name that is empty or taken, an object without parts, a part without a
-  ///   hierarchy, a pose that is not rigid, a motion that check() refuses, an adjacent part that there is not.
+  ///   hierarchy, a pose that is not rigid, a motion that check() refuses, an adjacent part that there is not, a solid
+  ///   part that does not close.
   ObjectId add(SceneObject object);
 
   std::size_t size() const noexcept;                           ///< objects

@@ -28,6 +28,7 @@ SceneResult Scene::State::query()
 {
   const Effects& effects = options.effects;
   followPoints();
+  followSolids();
   if (usesSweptMotion(effects)) listSweptMotions();
   result.time = time;
   const bool of_near = effects.any || effects.flags || effects.contacts;

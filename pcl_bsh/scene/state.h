@@ -5,6 +5,7 @@
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
+#include <pcl_bsh/scene/solids.h>
 #include <pcl_bsh/scene/swept/object_motion.h>
 
 #include <chrono>
@@ -13,6 +14,8 @@
 #include <vector>
 
 namespace pcl_bsh {
+
+struct SweptPart;
 
 /// T_world_cloud of a part that is at `part` (T_object_cloud) in an object at `pose`.
 Eigen::Isometry3d worldPoseOf(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& part);
@@ -92,6 +95,20 @@ public:
     return {*bodies[object].object.parts[part].hierarchy, bodies[object].world[part]};
   }
 
+  StandingPart standing(ObjectId object, std::size_t part) const
+  {
+    return {placed(object, part), bodies[object].object.parts[part].solid};
+  }
+  bool areSolid(const PartPair& parts) const ///< one of them, at least
+  {
+    return bodies[parts.a].object.parts[parts.part_a].solid || bodies[parts.b].object.parts[parts.part_b].solid;
+  }
+
+  /// What is held of two standing parts whose surfaces have this verdict; nothing where they collide.
+  std::optional<PointPair> heldPair(const StandingPart& a, const StandingPart& b, Verdict surfaces, double clearance,
+                                    Work& work) const;
+  void followSolids(); ///< makes what queries of solids need
+
   EffectCost& cost(Effect effect) { return result.costs[static_cast<std::size_t>(effect)]; }
   Body& body(ObjectId object);
   static void checkWorld(const SceneObject& object, const Eigen::Isometry3d& pose);
@@ -117,6 +134,7 @@ public:
   mutable std::optional<Progress> progress; ///< of the query or step in progress
   double share = 0.0;                       ///< what the effect that is computed takes the whole to
   PairRules rules;
+  SceneSolids solids;
   std::vector<Body> bodies;
   std::unordered_map<std::string, ObjectId> names;
   double time = 0.0;
@@ -144,6 +162,9 @@ private:
   void findFirstContacts(EffectCost& spent);
   void findSwept(EffectCost& spent);
   void findSelf(EffectCost& spent);
+
+  void addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                 std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
 
   void decideAny(BroadPair& pair) const;
   bool remembersAny(BroadPair& pair) const;

@@ -49,10 +49,14 @@ void Scene::State::decideAny(BroadPair& pair) const
       const AnyResult found =
           anyCollision(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b), {clearance, ofParts()});
       memory.work += found.work;
+      const std::optional<PointPair> witness =
+          found.pair || !areSolid(parts) ? found.pair
+                                         : heldPair(standing(pair.a, parts.part_a), standing(pair.b, parts.part_b),
+                                                    found.verdict, clearance, memory.work);
       if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
-      if (!found.pair) return true;
+      if (!witness) return true;
       memory.undecided.reset();
-      memory.witness = {parts, *found.pair};
+      memory.witness = {parts, *witness};
       return free = false;
     });
     return !free;
@@ -79,6 +83,13 @@ void Scene::State::decideAny(BroadPair& pair) const
     --memory.patience;
   }
   memory.colliding = memory.has_witness = ask(pair.clearance);
+}
+
+std::optional<PointPair> Scene::State::heldPair(const StandingPart& a, const StandingPart& b, Verdict surfaces,
+                                                double clearance, Work& work) const
+{
+  const bool uncertain = surfaces == Verdict::undecided && areUncertain(a.placed, b.placed);
+  return solids.find(a, b, uncertain ? std::optional(clearance) : std::nullopt, work);
 }
 
 /// Whether what an earlier step found still answers.
@@ -121,8 +132,17 @@ void Scene::State::findSelf(EffectCost& spent)
                          {*whole.parts[j].hierarchy, whole.parts[j].pose}, {options.clearance, ofParts()});
         spent.work += found.work;
         ++spent.pairs;
-        if (found.pair) result.self.push_back({object, i, j, *found.pair});
-        if (found.verdict == Verdict::undecided) result.undecided.push_back({object, object, i, j});
+        std::optional<PointPair> witness = found.pair;
+        if (!witness && (whole.parts[i].solid || whole.parts[j].solid)) {
+          const auto in_object = [&](std::uint32_t part) {
+            return StandingPart{{*whole.parts[part].hierarchy, whole.parts[part].pose}, whole.parts[part].solid};
+          };
+          witness = heldPair(in_object(i), in_object(j), found.verdict, options.clearance, spent.work);
+        }
+        if (witness)
+          result.self.push_back({object, i, j, *witness});
+        else if (found.verdict == Verdict::undecided)
+          result.undecided.push_back({object, object, i, j});
       }
     progress->step();
     progress->throwIfStopped();

@@ -67,11 +67,32 @@ void Scene::State::findFlags(EffectCost& spent)
   eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
     FlagsResult flags = collisionFlags(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
                                        {pair.clearance, Side::both, ofParts()});
+    if (areSolid(parts)) solids.addTo(flags, standing(pair.a, parts.part_a), standing(pair.b, parts.part_b));
     pair.memory.work += flags.work;
     const std::size_t not_free = flags.colliding_a + flags.colliding_b + flags.undecided_a + flags.undecided_b;
     if (not_free > 0) found[k].push_back({parts, std::move(flags.a), std::move(flags.b)});
   });
   result.flags = mergedFlags(bodies, found);
+}
+
+/// What is held at an instant of the motion.
+void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                             std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
+{
+  const StandingPart at_a{a.at(s), bodies[parts.a].object.parts[parts.part_a].solid};
+  const StandingPart at_b{b.at(s), bodies[parts.b].object.parts[parts.part_b].solid};
+  FlagsResult found;
+  if (areUncertain(at_a.placed, at_b.placed)) {
+    found = collisionFlags(at_a.placed, at_b.placed, {pair.clearance, Side::both});
+  }
+  else {
+    found.a.resize(flags_a.size());
+    found.b.resize(flags_b.size());
+  }
+  solids.addTo(found, at_a, at_b);
+  pair.memory.work += found.work;
+  for (std::size_t i = 0; i < flags_a.size(); ++i) flags_a[i] = graver(flags_a[i], found.a[i]);
+  for (std::size_t i = 0; i < flags_b.size(); ++i) flags_b[i] = graver(flags_b[i], found.b[i]);
 }
 
 void Scene::State::findSwept(EffectCost& spent)
@@ -82,6 +103,8 @@ void Scene::State::findSwept(EffectCost& spent)
                   PairFlags flags{parts, std::vector<Verdict>(a.hierarchy.view().count),
                                   std::vector<Verdict>(b.hierarchy.view().count)};
                   flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
+                  if (areSolid(parts))
+                    for (const double s : {0.0, 1.0}) addHeldAt(s, a, b, parts, pair, flags.a, flags.b);
                   if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
                 });
   result.swept = mergedFlags(bodies, found);

@@ -59,7 +59,10 @@ void Scene::State::place(ObjectId object)
   ++result.broad_phase.moved;
   boxes_.assign(1, swept ? SweptObject(body).box() : body.world_box);
   boxes_.front().grow(0.5 * reach);
-  if (!swept && grid.voxelsOf(boxes_.front()) > kCoarse) {
+  // What a solid holds may be far from all of its own voxels.
+  const bool solid =
+      std::any_of(body.object.parts.begin(), body.object.parts.end(), [](const ScenePart& part) { return part.solid; });
+  if (!swept && !solid && grid.voxelsOf(boxes_.front()) > kCoarse) {
     boxes_.clear();
     for (std::size_t p = 0; p < body.world.size(); ++p) {
       const SphereHierarchy& hierarchy = *body.object.parts[p].hierarchy;

@@ -233,7 +233,26 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
         encounters_.push_back(e);
       }
     }
+  outcome.stuck = isHeldWith(other);
   return true;
+}
+
+/// Whether the object begins inside of the other one, or round it. It has not met its surface since, so it is asked
+/// once.
+bool Mover::isHeldWith(ObjectId other)
+{
+  if (state_.solids.none() || std::find(unheld_.begin(), unheld_.end(), other) != unheld_.end()) return false;
+  for (std::uint32_t i = 0; i < body_.world.size(); ++i)
+    for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
+      if (!state_.areSolid({object_, other, i, j})) continue;
+      if (!state_.solids.find(state_.standing(object_, i), state_.standing(other, j), std::nullopt, cost_.work))
+        continue;
+      outcome.touched = true;
+      outcome.against = other;
+      return true;
+    }
+  unheld_.push_back(other);
+  return false;
 }
 
 /// Takes the pose, unless any of the pairs that can have met does collide there, in exact arithmetic.

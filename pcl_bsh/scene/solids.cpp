@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/scene/solids.h>
+
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/uncertain.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pcl_bsh {
+
+SceneSolids::Known& SceneSolids::known(const std::shared_ptr<SphereHierarchy>& hierarchy)
+{
+  Known& found = known_[hierarchy.get()];
+  found.hierarchy = hierarchy;
+  const std::uint64_t now = hierarchy->storage().revision;
+  if (std::exchange(found.revision, now) != now) {
+    found.bodies.reset();
+    found.solid.reset();
+    found.content.reset();
+  }
+  return found;
+}
+
+void SceneSolids::addSolid(const std::shared_ptr<SphereHierarchy>& hierarchy)
+{
+  Known& found = known(hierarchy);
+  if (found.bodies) return;
+  found.solid = std::make_unique<const Solid>(*hierarchy->view().triangles);
+  found.bodies = std::make_unique<const SolidBodies>(*found.solid);
+  any_ = true;
+}
+
+void SceneSolids::follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool solid)
+{
+  if (solid) addSolid(hierarchy);
+  Known& found = known(hierarchy);
+  if (!found.content) found.content = std::make_unique<const Content>(*hierarchy);
+}
+
+std::optional<PointPair> SceneSolids::find(const StandingPart& a, const StandingPart& b, std::optional<double> within,
+                                           Work& work) const
+{
+  const auto held_by = [&](const StandingPart& solid, const StandingPart& other) -> std::optional<PointPair> {
+    if (!solid.solid) return std::nullopt;
+    const SolidBodies& bodies = bodiesOf(solid);
+    const Content& content = contentOf(other);
+    const Eigen::Isometry3d &of_solid = solid.placed.pose, &of_other = other.placed.pose;
+    if (!within) return findHeld(bodies, of_solid, content, of_other, &work);
+    const FlagsResult surface = collisionFlags(other.placed, solid.placed, {*within, Side::a});
+    work += surface.work;
+    const auto held = heldBy({bodies.whole(), of_solid}, content, of_other, 1, &work);
+    const auto certain = certainlyHeld(held, surface.a);
+    if (certain.empty()) return std::nullopt;
+    return PointPair{certain.front(), holderOf(bodies, of_solid, content, of_other, certain.front(), &work)};
+  };
+  if (const auto pair = held_by(b, a)) return pair;
+  if (const auto pair = held_by(a, b)) return PointPair{pair->b, pair->a};
+  return std::nullopt;
+}
+
+void SceneSolids::addTo(FlagsResult& found, const StandingPart& a, const StandingPart& b) const
+{
+  const bool uncertain = areUncertain(a.placed, b.placed);
+  const std::vector<Verdict> of_a = found.a, of_b = found.b; // of the surfaces, for each of two solids
+  const auto add = [&](const StandingPart& solid, const StandingPart& other, std::vector<Verdict>& of_other,
+                       std::vector<Verdict>& of_solid, std::vector<Verdict> surface_of_other,
+                       std::vector<Verdict> surface_of_solid) {
+    if (!solid.solid) return;
+    const SolidBodies& bodies = bodiesOf(solid);
+    const Content& content = contentOf(other);
+    const auto held = heldBy({bodies.whole(), solid.placed.pose}, content, other.placed.pose, 1, &found.work);
+    addHeld(bodies, solid.placed.pose, content, other.placed.pose, held, uncertain, surface_of_other, surface_of_solid,
+            &found.work);
+    for (std::size_t i = 0; i < of_other.size(); ++i) of_other[i] = graver(of_other[i], surface_of_other[i]);
+    for (std::size_t i = 0; i < of_solid.size(); ++i) of_solid[i] = graver(of_solid[i], surface_of_solid[i]);
+  };
+  add(a, b, found.b, found.a, of_b, of_a);
+  add(b, a, found.a, found.b, of_a, of_b);
+  found.colliding_a = countOf(found.a, Verdict::colliding);
+  found.colliding_b = countOf(found.b, Verdict::colliding);
+  found.undecided_a = countOf(found.a, Verdict::undecided);
+  found.undecided_b = countOf(found.b, Verdict::undecided);
+}
+
+void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto deepest = [&](const StandingPart& solid, const StandingPart& other) -> std::optional<PointPair> {
+    if (!solid.solid) return std::nullopt;
+    const auto held =
+        heldBy({bodiesOf(solid).whole(), solid.placed.pose}, contentOf(other), other.placed.pose, 1, &found.work);
+    if (held.empty()) return std::nullopt;
+    const PointDistances depths = pointDistances(other.placed, held, solid.placed);
+    found.work += depths.work;
+    if (!(depths.greatest > 0.0) || found.distance <= -depths.greatest) return std::nullopt;
+    found.distance = -depths.greatest;
+    found.interval = {std::nextafter(found.distance, -infinity), std::nextafter(found.distance, infinity)};
+    return depths.greatest_pair;
+  };
+  if (const auto pair = deepest(b, a)) found.pair = pair;
+  if (const auto pair = deepest(a, b)) found.pair = PointPair{pair->b, pair->a};
+}
+
+} // namespace pcl_bsh

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What solid parts of a scene hold: added to what its effects find of surfaces.
+#pragma once
+
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/solid/enclosure.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+
+namespace pcl_bsh {
+
+/// A part where it stands.
+struct StandingPart {
+  Placed placed;
+  bool solid;
+};
+
+/// The solids among a scene's hierarchies, and what of the others they are asked about. Nothing is kept of a scene
+/// without solids. Queries of one state may run side by side.
+class SceneSolids {
+public:
+  bool none() const noexcept { return !any_; }
+
+  /// Makes what is not made yet of a solid. @throws InvalidInput as Solid does
+  void addSolid(const std::shared_ptr<SphereHierarchy>& hierarchy);
+
+  /// Before queries, of each part's hierarchy: makes what they need, anew where points have changed since. Once a
+  /// scene has a solid. @throws likewise
+  void follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool solid);
+
+  /// A record of a and one of b of which the one is held, and the other is a triangle of a body that holds it, where
+  /// the surfaces are known not to touch.
+  /// @param within for parts whose places are uncertain, the clearance: only what is held wherever they truly are;
+  ///   none: what is held as measured
+  std::optional<PointPair> find(const StandingPart& a, const StandingPart& b, std::optional<double> within,
+                                Work& work) const;
+
+  /// To the verdicts of both surfaces, at a pose. @param found both sides' flags
+  void addTo(FlagsResult& found, const StandingPart& a, const StandingPart& b) const;
+
+  /// The deepest that is held.
+  void turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const;
+
+private:
+  struct Known {
+    std::shared_ptr<SphereHierarchy> hierarchy; ///< kept, so that no other one gets its place
+    std::uint64_t revision = 0;                 ///< of its points
+    std::unique_ptr<const Solid> solid;
+    std::unique_ptr<const SolidBodies> bodies;
+    std::unique_ptr<const Content> content;
+  };
+
+  Known& known(const std::shared_ptr<SphereHierarchy>& hierarchy);
+  const SolidBodies& bodiesOf(const StandingPart& part) const { return *known_.at(&part.placed.hierarchy()).bodies; }
+  const Content& contentOf(const StandingPart& part) const { return *known_.at(&part.placed.hierarchy()).content; }
+
+  bool any_ = false;
+  std::unordered_map<const SphereHierarchy*, Known> known_;
+};
+
+} // namespace pcl_bsh
