@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What PCL's faces, pipelines, sites and programs answer about an instance, as the symmetries of the queries compare
+// it. Clouds have neither radii nor uncertainties; a's frame is the one that poses are given in.
+#pragma once
+
+#include "symmetries/answers.h"
+
+#include <filesystem>
+
+namespace pcl_bsh::symmetries {
+
+/// By CollisionFilter, DistanceFilter and MeshCollisionFilter.
+Answers askFilters(const Instance& instance);
+
+/// By the stages filters.bsh_flag and filters.bsh_distance, of clouds in memory.
+Answers askPipelines(const Instance& instance);
+
+/// Of a as a site, in a new folder within `folder`.
+/// @param tile_points at most in a tile
+Answers askSite(const Instance& instance, const std::filesystem::path& folder, std::uint64_t tile_points);
+
+/// By pcl_bsh_collide, with files in `folder`. @throws std::runtime_error when it fails
+Answers askProgram(const Instance& instance, const std::filesystem::path& folder);
+
+} // namespace pcl_bsh::symmetries
