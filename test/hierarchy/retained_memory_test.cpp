@@ -76,6 +76,22 @@ TEST_F(RetainedMemory, OfAVastSearchIsNoThreadsOwn)
   EXPECT_LE(retainedMemory(), 17 * kMegabyte);
 }
 
+/// A buffer that ends is kept only where what threads keep as scratch leaves room for it.
+TEST_F(RetainedMemory, OfBuffersAndScratchTogetherIsWithinTheLimit)
+{
+  const Cloud cloud = someCloud(500'000);
+  const SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll();
+  releaseRetainedMemory();
+  searchEverything(hierarchy);
+  const std::size_t scratch = retainedMemory();
+  ASSERT_GT(scratch, 3 * kMegabyte);
+  setRetainedMemoryLimit(scratch + 4 * kMegabyte);
+  EXPECT_EQ(retainedMemory(), scratch);
+  makeBuffer<char>(6 * kMegabyte).reset();
+  EXPECT_LE(retainedMemory(), scratch + 4 * kMegabyte);
+}
+
 TEST_F(RetainedMemory, IsGivenBackAltogether)
 {
   const Cloud cloud = someCloud(300'000), small = someCloud(2'000);
