@@ -6,7 +6,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/stop_rule.h>
-#include <pcl_bsh/trajectory/box_tree.h>
+#include <pcl_bsh/trajectory/boxes/box_tree.h>
 #include <pcl_bsh/trajectory/pose_path.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

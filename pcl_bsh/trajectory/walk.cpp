@@ -15,9 +15,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/trajectory/boxes/oriented_boxes-inl.h>
 #include <pcl_bsh/trajectory/leaf/leaf-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_probing-inl.h>
-#include <pcl_bsh/trajectory/oriented_boxes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {

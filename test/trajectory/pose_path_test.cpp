@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bounds of a path, each attacked by a search that climbs towards the place where it is tight.
-#include <pcl_bsh/trajectory/box_tree.h>
+#include <pcl_bsh/trajectory/boxes/box_tree.h>
 #include <pcl_bsh/trajectory/pose_path.h>
 
 #include "support/allocations.h"

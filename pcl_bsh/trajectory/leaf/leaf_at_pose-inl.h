@@ -8,8 +8,8 @@
 #define PCL_BSH_TRAJECTORY_LEAF_LEAF_AT_POSE_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
-#include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/model_descent.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 #include <pcl_bsh/traversal/uncertain_points-inl.h>

@@ -8,7 +8,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
 
 #include <algorithm>
 

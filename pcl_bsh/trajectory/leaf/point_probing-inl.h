@@ -8,7 +8,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_POINT_PROBING_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {

@@ -8,11 +8,11 @@
 #define PCL_BSH_TRAJECTORY_LEAF_SWEPT_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
-#include <pcl_bsh/trajectory/model_boxes-inl.h>
 #include <pcl_bsh/trajectory/voxel_results.h>
 
 #include <optional>

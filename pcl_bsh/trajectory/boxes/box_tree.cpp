@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/trajectory/box_tree.h>
+#include <pcl_bsh/trajectory/boxes/box_tree.h>
 
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/trajectory/boxed_part.h>
+#include <pcl_bsh/trajectory/boxes/boxed_part.h>
 
 #include <pcl_bsh/geometry/triangle/vector3.h>
 

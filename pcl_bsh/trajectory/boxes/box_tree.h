@@ -5,7 +5,7 @@
 
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/result.h>
-#include <pcl_bsh/trajectory/boxed_part.h>
+#include <pcl_bsh/trajectory/boxes/boxed_part.h>
 
 #include <array>
 #include <memory>
