@@ -18,6 +18,25 @@ Asked::Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b,
   question.pose = b.pose = poseOf("pose_b", pose_b);
 }
 
+bool isOfHierarchies(const QuestionOption& option, QuestionKind kind)
+{
+  const auto is = [&](auto member) { return option.member == OptionMember(member); };
+  return isOf(option.kind, kind) && !is(&Question::vertices_only) && !is(&Question::uncertainty) &&
+         !is(&Question::obstacle_uncertainty) && !is(&Question::pose_uncertainty) && !is(&Question::sigmas);
+}
+
+void Asked::set(const py::kwargs& options, QuestionKind kind)
+{
+  for (const auto& [key, value] : options) {
+    const std::string name = py::str(key);
+    const QuestionOption* const option = questionOption(name);
+    if (!option || !isOfHierarchies(*option, kind)) throw py::type_error("there is no argument '" + name + "'");
+    if (value.is_none()) continue;
+    const std::string text = py::str(value);
+    setOption(question, name, py::isinstance<py::bool_>(value) ? text == "True" ? "true" : "false" : text);
+  }
+}
+
 Answer Asked::answer()
 {
   Answer found = unlocked([&] { return ask(question, input, obstacle); });

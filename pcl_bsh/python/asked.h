@@ -5,6 +5,7 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/threads/callback.h>
 #include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/options.h>
 
 #include <memory>
 #include <string>
@@ -31,6 +32,9 @@ private:
   Shape shape_{"", itself()};
 };
 
+/// Whether a question about hierarchies has an option: not what decides how they are built.
+bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
+
 /// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
 /// clouds thousands of times: how far their points are apart is measured once.
 struct Asked {
@@ -39,6 +43,10 @@ struct Asked {
 
   /// The arguments a, pose_a, b and pose_b.
   Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
+
+  /// Options by their names in the table, of a kind of question: faces have them without a word of their own.
+  /// @throws py::type_error for a name or a value that is none
+  void set(const py::kwargs& options, QuestionKind kind);
 
   /// What ask() answers, computed without the interpreter's lock; its warnings are told.
   Answer answer();

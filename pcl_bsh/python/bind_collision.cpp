@@ -29,6 +29,7 @@ side : {"a", "b", "both"}
     Whose points are flagged.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
+**options of collisions
 spacings_of_b : ndarray of float32, (records of b,), optional
     How far the samples of b's surface are apart (`patch_spacings`): what is free of points, but not of a patch of this
     width, is `Verdict.SPARSE`.
@@ -157,7 +158,7 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
 template <class Sides>
 auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
                       const Sides& side, const AccuracyLike& accuracy, unsigned threads,
-                      const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b)
+                      const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b, const py::kwargs& options)
 {
   Asked asked(a, pose_a, b, pose_b);
   const Side flagged = sideOf(side.template cast<std::string>());
@@ -165,6 +166,7 @@ auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const Po
   question.clearance = clearance;
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
+  asked.set(options, QuestionKind::collisions);
   question.wanted.flags = flagged != Side::b;
   question.wanted.obstacle_flags = flagged != Side::a;
   question.wanted.spacings = true;

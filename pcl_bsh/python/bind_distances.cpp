@@ -24,6 +24,7 @@ pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
 accuracy : Accuracy or str, default exact
     A tolerance, or a budget: then `interval` has what is certain of each point.
 threads : int, default 1
+**options of distances
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
@@ -87,12 +88,14 @@ Examples
 )";
 
 SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<double> max_distance,
-                               const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress)
+                               const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
+                               const py::kwargs& options)
 {
   Question& question = asked.question;
   question.max_distance = max_distance;
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
+  asked.set(options, QuestionKind::distances);
   question.progress = progressOf(progress);
   question.wanted.distances = question.wanted.intervals = true;
   question.wanted.both_ways = both_ways;
@@ -101,16 +104,16 @@ SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<doub
 
 PointDistances pointDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
                                 const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
-                                unsigned threads, const ProgressLike& progress)
+                                unsigned threads, const ProgressLike& progress, const py::kwargs& options)
 {
-  return distancesOf({a, pose_a, b, pose_b}, false, max_distance, accuracy, threads, progress).a;
+  return distancesOf({a, pose_a, b, pose_b}, false, max_distance, accuracy, threads, progress, options).a;
 }
 
 SymmetricDistances symmetricDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
                                         const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
-                                        unsigned threads, const ProgressLike& progress)
+                                        unsigned threads, const ProgressLike& progress, const py::kwargs& options)
 {
-  return distancesOf({a, pose_a, b, pose_b}, true, max_distance, accuracy, threads, progress);
+  return distancesOf({a, pose_a, b, pose_b}, true, max_distance, accuracy, threads, progress, options);
 }
 
 HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,

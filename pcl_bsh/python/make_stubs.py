@@ -28,6 +28,7 @@ WORDS = [  # pybind11's to those of Python's typing
     (r"numpy\.ndarray\[numpy\.(\w+)\]", r"npt.NDArray[np.\1]"),
     (r"numpy\.ndarray\[[\w:]+\]", "npt.NDArray[np.void]"),  # records
     (r"numpy\.ndarray\b", "npt.NDArray[Any]"),
+    (r"\*\*kwargs", "**options: Any"),
     (r"\[\d+\]", ""),  # of an array of fixed length
     (r"\bdict\b", "Dict[str, Any]"),
     (r"\bIterator\b", "Iterator[Any]"),

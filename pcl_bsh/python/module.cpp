@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
+#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/threads/computing.h>
 #include <pcl_bsh/question/options.h>
@@ -38,6 +39,7 @@ std::string withoutTypes(std::string_view typed)
     }
     if (ends) break;
   }
+  if (const std::size_t at = plain.find("**kwargs"); at != plain.npos) plain.replace(at, 8, "**options");
   return plain;
 }
 
@@ -60,13 +62,33 @@ std::string sentenceOf(const QuestionOption& option)
   return py::str(fill(text, "width"_a = 116, "initial_indent"_a = "    ", "subsequent_indent"_a = "    "));
 }
 
-/// Parameters without a description are options of questions.
+/// The options of a kind of question that a docstring does not name, as parameters.
+std::string otherOptions(const std::string& doc, QuestionKind kind)
+{
+  std::string text;
+  for (const QuestionOption& option : questionOptions())
+    if (isOfHierarchies(option, kind) && doc.find("\n" + std::string(option.name) + " : ") == doc.npos) {
+      const bool is_switch = std::holds_alternative<bool Question::*>(option.member);
+      const bool is_text = std::holds_alternative<ScanOrigins Question::*>(option.member);
+      text += std::string(option.name) + " : " + (is_switch ? "bool" : is_text ? "str" : "float") + ", optional\n";
+      text += sentenceOf(option) + '\n';
+    }
+  return text;
+}
+
+/// Parameters without a description are options of questions; `**options of` a kind stands for all others.
 std::string described(const std::string& doc)
 {
   std::istringstream lines(doc);
   std::string text, line;
   const QuestionOption* option = nullptr; // of the last line
   while (std::getline(lines, line)) {
+    if (line.rfind("**options of ", 0) == 0) {
+      if (option) text += sentenceOf(*option) + '\n';
+      option = nullptr;
+      text += otherOptions(doc, line == "**options of distances" ? QuestionKind::distances : QuestionKind::collisions);
+      continue;
+    }
     if (option && line.rfind("    ", 0) != 0) text += sentenceOf(*option) + '\n';
     const std::size_t colon = line.find(" : ");
     option = colon == line.npos ? nullptr : questionOption(line.substr(0, colon));

@@ -2,6 +2,7 @@
 #include <pcl_bsh/question/options.h>
 
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/question/text_numbers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,60 @@ std::string optionOf(const InvalidInput& error, const Question& question)
   if (names.size() == 1) return names.front();
   if (error.input() == Input::pose || error.input() == Input::trajectory) return question.path ? "path" : "pose";
   return {};
+}
+
+void setOption(Question& question, const std::string& name, const std::string& text)
+{
+  const QuestionOption* const option = questionOption(name);
+  if (!option) throw InvalidInput(Input::result, name, "is no option of a question", "see the table of options");
+  const auto numbers = numbersOf(text);
+  const std::optional<double> number = numbers && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
+  const auto refuse = [&](const std::string& remedy) { throw InvalidOption(name, "`" + text + "`", remedy); };
+  std::visit(
+      [&](const auto member) {
+        auto& value = question.*member;
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (is_text_option<Value>) {
+          value = Value::parse(text);
+        }
+        else if constexpr (std::is_same_v<Value, bool>) {
+          if (text != "true" && text != "false") refuse("give true or false");
+          value = text == "true";
+        }
+        else if constexpr (std::is_same_v<Value, Uncertainty>) {
+          value = number ? Uncertainty(*number) : Uncertainty(text, 1.0);
+        }
+        else {
+          if (!number || !option->accepts(*number) ||
+              (std::is_same_v<Value, unsigned> && *number != std::floor(*number)))
+            refuse(option->remedy());
+          value = static_cast<std::conditional_t<std::is_same_v<Value, unsigned>, unsigned, double>>(*number);
+        }
+      },
+      option->member);
+}
+
+std::string textOf(const QuestionOption& option, const Question& question)
+{
+  const auto write = [](const auto& value) -> std::string {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (is_text_option<Value>)
+      return value.text();
+    else if constexpr (std::is_same_v<Value, bool>)
+      return value ? "true" : "false";
+    else if constexpr (std::is_same_v<Value, Uncertainty>)
+      return value.field.empty() ? textOfNumbers(value.length) : value.field;
+    else if constexpr (std::is_same_v<Value, std::optional<double>>)
+      return value ? textOfNumbers(*value) : std::string();
+    else
+      return textOfNumbers(static_cast<double>(value));
+  };
+  return std::visit(
+      [&](const auto member) {
+        std::string text = write(question.*member);
+        return text == write(Question().*member) ? std::string() : text;
+      },
+      option.member);
 }
 
 void checkOptions(const Question& question)

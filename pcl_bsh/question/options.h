@@ -74,6 +74,14 @@ private:
 /// The option that an error is about, or `pose` or `path`; empty: none.
 std::string optionOf(const InvalidInput& error, const Question& question);
 
+/// Sets an option as text has it: numbers, true or false, or what the option's type parses. Faces whose users name
+/// options have them all by this, and no word of their own.
+/// @throws InvalidOption for a name that is none, and for a text that is no value of the option
+void setOption(Question& question, const std::string& name, const std::string& text);
+
+/// What setOption() reads, empty where it is the default: reports state by it what was asked.
+std::string textOf(const QuestionOption& option, const Question& question);
+
 /// Refuses numbers that their options do not accept, and options that do not go together. Poses are for queries to
 /// refuse. @throws InvalidOption
 void checkOptions(const Question& question);

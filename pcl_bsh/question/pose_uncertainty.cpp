@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 
 namespace pcl_bsh {
 namespace {
@@ -83,7 +82,7 @@ PoseUncertainty PoseUncertainty::parse(const std::string& text)
 std::string PoseUncertainty::text() const
 {
   if (isZero()) return {};
-  return plainText(std::setprecision(17), length, ',', angle, ',', about[0], ',', about[1], ',', about[2]);
+  return textOfNumbers(length, angle, about[0], about[1], about[2]);
 }
 
 } // namespace pcl_bsh

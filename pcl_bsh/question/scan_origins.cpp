@@ -7,7 +7,6 @@
 #include <pcl_bsh/question/text_numbers.h>
 
 #include <algorithm>
-#include <iomanip>
 #include <memory>
 #include <utility>
 
@@ -22,7 +21,7 @@ namespace {
 
 std::string textOf(const Point3& p)
 {
-  return plainText(std::setprecision(17), p[0], ',', p[1], ',', p[2]);
+  return textOfNumbers(p[0], p[1], p[2]);
 }
 
 /// Subsets of a cloud, and what they are of.

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -33,6 +34,19 @@ inline std::optional<std::vector<double>> numbersOf(std::string_view text)
     numbers.push_back(number);
   }
   return numbers;
+}
+
+/// Numbers with commas between them, each with the fewest digits that read back to the same bits.
+template <class... Numbers>
+std::string textOfNumbers(const Numbers&... numbers)
+{
+  std::string text;
+  const auto add = [&text](double number) {
+    char digits[32];
+    text.append(text.empty() ? "" : ",").append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+  };
+  (add(numbers), ...);
+  return text;
 }
 
 } // namespace pcl_bsh

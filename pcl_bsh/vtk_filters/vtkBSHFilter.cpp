@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/options.h>
 #include <pcl_bsh/vtk_filters/kept_shape.h>
 #include <pcl_bsh/vtk_filters/pose_table.h>
 
@@ -61,7 +62,25 @@ void vtkBSHFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Transform: " << static_cast<void*>(this->Transform) << '\n'
      << indent << "NumberOfThreads: " << this->NumberOfThreads << '\n'
-     << indent << "HierarchiesBuilt: " << this->GetHierarchiesBuilt() << '\n';
+     << indent << "Options:";
+  for (const auto& [name, value] : this->Options) os << ' ' << name << '=' << value;
+  os << '\n' << indent << "HierarchiesBuilt: " << this->GetHierarchiesBuilt() << '\n';
+}
+
+void vtkBSHFilter::SetOption(const char* name, const char* value)
+{
+  if (!name || !*name) return;
+  if (value && *value)
+    this->Options[name] = value;
+  else
+    this->Options.erase(name);
+  this->Modified();
+}
+
+void vtkBSHFilter::ClearOptions()
+{
+  this->Options.clear();
+  this->Modified();
 }
 
 void vtkBSHFilter::SetObstacleData(vtkPolyData* obstacle)
@@ -147,10 +166,11 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     }
     for (const std::string& warning : warnings) vtkWarningMacro(<< warning);
     question.threads = static_cast<unsigned>(this->NumberOfThreads);
+    for (const auto& [name, value] : this->Options) pcl_bsh::setOption(question, name, value);
     this->Ask(question);
     question.wanted.spacings = question.wanted.collisions();
 
-    const bool is_surface = pcl_bsh::vtk::isSurface(*obstacle);
+    const bool is_surface = pcl_bsh::vtk::isSurface(*obstacle) && !question.vertices_only;
     question.progress = report;
     pcl_bsh::vtk::KeptShape& kept = this->Inputs->obstacle;
     pcl_bsh::Shape& other = is_surface ? kept.ofSurface(*obstacle) : kept.ofPoints(*obstacle);

@@ -24,7 +24,9 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 namespace pcl_bsh {
 struct Answer;
@@ -64,6 +66,14 @@ public:
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
+  ///@{
+  /// Any other option of a question, by its name in the table that all faces share (pipelines' STAGES.md lists it), and
+  /// its value as text: SetOption("solid", "true"). Empty text: its default. A wrong one is told by vtkErrorMacro on
+  /// execution.
+  void SetOption(const char* name, const char* value);
+  void ClearOptions();
+  ///@}
+
   /// How many hierarchies this filter has built, of both inputs.
   vtkIdType GetHierarchiesBuilt();
 
@@ -88,6 +98,7 @@ protected:
 
   vtkLinearTransform* Transform = nullptr;
   int NumberOfThreads = 1;
+  std::map<std::string, std::string> Options; ///< by name
 
 private:
   vtkBSHFilter(const vtkBSHFilter&) = delete;

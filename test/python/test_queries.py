@@ -160,6 +160,30 @@ def test_density_guard():
         pcl_bsh.collision_flags(P, W, 0.05, spacings_of_b=spacings[:3])
 
 
+def test_options_of_questions_are_arguments():
+    corners = np.array(list(itertools.product([0.0, 1], repeat=3)))
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]  # facing outward
+    box = pcl_bsh.SphereHierarchy.of_triangles(corners, [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))])
+    inside = pcl_bsh.SphereHierarchy(np.array([[0.5, 0.5, 0.25], [3, 3, 3]]))
+    assert pcl_bsh.collision_flags(inside, box, 0.1).tolist() == [0, 0]
+    assert pcl_bsh.collision_flags(inside, box, 0.1, solid=True).tolist() == [1, 0]
+    assert pcl_bsh.point_distances(inside, box, 1.0, solid=True).distance[0] == -0.25
+    grid = pcl_bsh.SphereHierarchy(np.array([[x, y, 0.0] for x in range(9) for y in range(9)]))
+    above = pcl_bsh.SphereHierarchy(np.array([[4.5, 4.5, 0.1]]))
+    assert pcl_bsh.collision_flags(above, grid, 0.2, density=True, widest_gap=2.0).tolist() == [pcl_bsh.Verdict.SPARSE]
+    assert pcl_bsh.collision_flags(above, grid, 0.2, density=False, widest_gap=None).tolist() == [0]
+    seen = pcl_bsh.collision_flags(grid, above, 0.05, side="b", seen=True, origin="4.5,4.5,-5")
+    assert seen.tolist() == [pcl_bsh.Verdict.UNSEEN]  # beyond what stopped the beams
+    with pytest.raises(ValueError, match="density"):
+        pcl_bsh.collision_flags(above, grid, 0.2, widest_gap=2.0)
+    for name in ("swept_by", "vertices_only", "uncertainty", "max_distance"):
+        with pytest.raises(TypeError, match=name):
+            pcl_bsh.collision_flags(above, grid, **{name: 1.0})
+    with pytest.raises(TypeError, match="density"):
+        pcl_bsh.point_distances(above, grid, density=True)
+    assert "solid : bool, optional\n    An obstacle with faces counts" in pcl_bsh.collision_flags.__doc__
+
+
 @pytest.mark.parametrize("text", ["exact", "tolerance=0.05", "level=0", "level=3", "pairs=20", "time=0.001"])
 def test_accuracy_keeps_its_promises(text):
     a, b = cloud("random", 1, 400), cloud("random", 2, 300)

@@ -53,6 +53,16 @@ bool setNumber(const QuestionOption& row, Question& question, double number)
       row.member);
 }
 
+/// A value that is not the default, as text.
+std::string exampleOf(const QuestionOption& row)
+{
+  if (std::holds_alternative<bool Question::*>(row.member)) return "true";
+  if (std::holds_alternative<Accuracy Question::*>(row.member)) return "level=2";
+  if (std::holds_alternative<ScanOrigins Question::*>(row.member)) return "1,2,3";
+  if (std::holds_alternative<PoseUncertainty Question::*>(row.member)) return "0.05,0.1,1.5,0,0";
+  return "7";
+}
+
 /// So that no other rule is broken.
 Question consistent()
 {
@@ -111,6 +121,46 @@ TEST(QuestionOptions, EachRefusesWhatIsOutsideItsLimits)
   Question question;
   question.threads = 1025;
   EXPECT_EQ(refusalOf(question), "threads: 1025: give a number from 0 to 1024");
+}
+
+TEST(QuestionOptions, AreSetByText)
+{
+  const auto refusal = [](const std::string& name, const std::string& text) -> std::string {
+    Question question;
+    try {
+      setOption(question, name, text);
+    }
+    catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const QuestionOption& row : questionOptions()) {
+    SCOPED_TRACE(row.name);
+    EXPECT_EQ(refusal(row.name, exampleOf(row)), "");
+    EXPECT_EQ(refusal(row.name, "1,").empty(), std::holds_alternative<Uncertainty Question::*>(row.member));
+    Question asked;
+    EXPECT_EQ(textOf(row, asked), "");
+    setOption(asked, row.name, exampleOf(row));
+    EXPECT_EQ(textOf(row, asked), exampleOf(row));
+  }
+  EXPECT_EQ(refusal("clearance", "-1"), "clearance: `-1`: give a finite length >= 0");
+  EXPECT_EQ(refusal("threads", "1.5"), "threads: `1.5`: give a number from 0 to 1024");
+  EXPECT_EQ(refusal("solid", "yes"), "solid: `yes`: give true or false");
+  EXPECT_THAT(refusal("clearances", "1"), HasSubstr("clearances: is no option"));
+  Question question;
+  setOption(question, "clearance", "0.25");
+  setOption(question, "seen", "true");
+  setOption(question, "threads", "3");
+  setOption(question, "uncertainty", "sigma");
+  setOption(question, "obstacle_uncertainty", "0.5");
+  setOption(question, "accuracy", "pairs=7");
+  EXPECT_EQ(question.clearance, 0.25);
+  EXPECT_TRUE(question.seen);
+  EXPECT_EQ(question.threads, 3u);
+  EXPECT_EQ(question.uncertainty.field, "sigma");
+  EXPECT_EQ(question.obstacle_uncertainty.length, 0.5);
+  EXPECT_EQ(question.accuracy.text(), "pairs=7");
 }
 
 TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)

@@ -388,6 +388,30 @@ TEST_P(Filters, ObstaclesWithCellsAreSurfaces)
   EXPECT_EQ(filter->GetHierarchiesBuilt(), 3);
 }
 
+TEST_P(Filters, OptionsHaveTheirNamesInTheTable)
+{
+  vtkNew<vtkSphereSource> ball;
+  ball->SetRadius(0.6);
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleConnection(ball->GetOutputPort());
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0) << "hollow";
+  filter->SetOption("solid", "true");
+  filter->Update();
+  EXPECT_GT(filter->GetNumberOfCollidingPoints(), 100) << "enclosed";
+  filter->SetOption("vertices_only", "true");
+  expectFailure(*filter, "solid");
+  filter->SetOption("solid", "");
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
+  filter->SetOption("clearances", "1");
+  expectFailure(*filter, "clearances");
+  filter->ClearOptions();
+  filter->SetOption("threads", "few");
+  expectFailure(*filter, "threads: `few`: give a number from 0 to 1024");
+}
+
 TEST_P(Filters, CellsOfAllKindsCount)
 {
   // A square, a segment, a strip and a point: each is near one point of the cloud, far from all corners but the

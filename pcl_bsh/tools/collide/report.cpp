@@ -4,6 +4,7 @@
 #include <pcl_bsh/tools/cli/json_output.h>
 
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/question/options.h>
 
 #include <cmath>
 #include <tuple>
@@ -70,13 +71,14 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["clearance"] = clearance;
   json["colliding"] = colliding;
   json["undecided"] = undecided;
-  json["not_scanned_densely_enough"] = answer.sparse;
+  json["sparse"] = answer.sparse;
   json["free"] = report.input.finite - colliding - undecided - answer.sparse;
   json["unseen"] = nullptr;
   if (question.seen) json["unseen"] = toJson(answer.unseen);
-  json["pose_uncertainty"] = nullptr;
-  if (const PoseUncertainty& pose = question.pose_uncertainty; !pose.isZero())
-    json["pose_uncertainty"] = {{"length", pose.length}, {"angle", pose.angle}, {"about", pose.about}};
+  json["options"] = nlohmann::ordered_json::object(); // that were given and change answers, as text
+  for (const QuestionOption& option : questionOptions())
+    if (std::string text = textOf(option, question); !text.empty() && option.name != std::string("threads"))
+      json["options"][option.name] = std::move(text);
   json["uncertainty"] = {{"input", io::uncertaintyJson(question.uncertaintyOfInput())},
                          {"obstacle", io::uncertaintyJson(question.uncertaintyOfObstacle())}};
   json["distance"] = nullptr;
