@@ -13,8 +13,8 @@ namespace pcl_bsh {
 void CollisionFilter<pcl::PCLPointCloud2>::applyFilter(pcl::PCLPointCloud2& output)
 {
   if (keep_flagged_) {
-    output = getTrajectory() ? withFields(*input_, fieldsOf(alongTrajectory(inputShape())))
-                             : withField(*input_, collision_field_name, collisionFlags(inputShape()));
+    output = question_.path ? withFields(*input_, fieldsOf(alongTrajectory(inputShape())))
+                            : withField(*input_, collision_field_name, collisionFlags(inputShape()));
     removed_indices_->clear();
     return;
   }

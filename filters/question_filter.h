@@ -54,7 +54,7 @@ PointsView viewOf(const pcl::PolygonMesh::ConstPtr& mesh);
 /// The settings of a question. A setting without a meaning makes filtering throw. Lengths are in the clouds' own unit.
 class QuestionFilter {
 public:
-  /// All settings at once, also those that have no setter here. `wanted` is for filters to say.
+  /// All settings at once, and what they are; also of those that have no setter here. `wanted` is for filters to say.
   void setQuestion(const Question& question) { question_ = question; }
   const Question& getQuestion() const { return question_; }
 
@@ -93,21 +93,17 @@ public:
     question_.pose.matrix() = pose.template cast<double>();
     question_.path.reset();
   }
-  const Eigen::Isometry3d& getPose() const { return question_.pose; }
 
   /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
   /// and names the first open edge. What is inside collides at any clearance, its distance is negative, and limits of
   /// distances may be. Default: false, a surface alone.
   void setObstacleSolid(bool solid) { question_.solid = solid; }
-  bool getObstacleSolid() const { return question_.solid; }
 
   /// How sure the answer has to be: less is faster. Default: exact. Filters say what they do with one that stops early.
   void setAccuracy(const Accuracy& accuracy) { question_.accuracy = accuracy; }
-  const Accuracy& getAccuracy() const { return question_.accuracy; }
 
   /// Default 1; 0: all of the machine's. The answer is the same for any number.
   void setNumberOfThreads(unsigned threads) { question_.threads = threads; }
-  unsigned getNumberOfThreads() const { return question_.threads; }
 
   /// For distances, and along a trajectory: called now and then, by the thread that filters, with the fraction done in
   /// [0, 1], ascending. False: stop, filtering throws Cancelled (pcl_bsh/base/cancelled.h). What it throws itself
@@ -195,18 +191,15 @@ class CollisionSettings : public QuestionFilter {
 public:
   /// Greatest distance at which two points collide; touching counts. Finite and >= 0 (default 0).
   void setClearance(double clearance) { question_.clearance = clearance; }
-  double getClearance() const { return question_.clearance.value_or(0.0); }
 
   /// The obstacle moves: its poses in the input's frame, one after another, each rigid as setPose() asks. A point
   /// collides if it does at any of them. At least one pose. Replaces setPose(), and the other way round.
   void setTrajectory(const std::vector<Eigen::Isometry3d>& poses) { question_.path = poses; }
-  const std::optional<std::vector<Eigen::Isometry3d>>& getTrajectory() const { return question_.path; }
 
   /// > 0: points collide with the motion between consecutive poses of the trajectory too (straight for the obstacle's
   /// origin, the rotation spherically interpolated), to this tolerance: those within clearance do, those beyond
   /// clearance + tolerance do not. 0 (default): at the poses alone. Finite and >= 0; not at one pose.
   void setSwept(double tolerance) { question_.swept = tolerance; }
-  double getSwept() const { return question_.swept; }
 
   /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
   /// collides where it does wherever all points truly are, it is free where it cannot collide, and else it is
@@ -218,8 +211,6 @@ public:
   {
     set(question_.obstacle_uncertainty, "the obstacle", uncertainty);
   }
-  const Uncertainty& getInputUncertainty() const { return question_.uncertainty; }
-  const Uncertainty& getObstacleUncertainty() const { return question_.obstacle_uncertainty; }
 
   /// The density guard: a point that is free of all of the obstacle's points, but not of its surface between them, is
   /// undecided with the reason *not scanned densely enough*: its flag is 3, and it counts as colliding wherever points
@@ -227,7 +218,6 @@ public:
   /// holes between the obstacle's points are taken to be. These are measured once for an obstacle. At one pose: along a
   /// trajectory, filtering throws. A surface has no holes, and nothing to guard. Default: false.
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
-  bool getDensityGuard() const { return question_.density; }
 
   /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
   /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
@@ -236,25 +226,20 @@ public:
   {
     question_.widest_gap = widest_gap == 0.0 ? std::nullopt : std::optional(widest_gap);
   }
-  double getWidestGap() const { return question_.widest_gap.value_or(0.0); }
 
   /// Points of the obstacle that are free count as unseen where no scanner of the input saw that the space within the
   /// clearance about them is empty (pcl_bsh/seen/seen_space.h says when it did, and to what that is blind). Needs
   /// setScanOrigins(). Not with swept motion. Flags of the input stay as they are. Default: false.
   void setSeenOnly(bool seen_only) { question_.seen = seen_only; }
-  bool getSeenOnly() const { return question_.seen; }
 
   /// Where the input's scanners stood, in its frame; with setSeenOnly() alone.
   void setScanOrigins(const ScanOrigins& origins) { question_.origin = origins; }
-  const ScanOrigins& getScanOrigins() const { return question_.origin; }
 
   /// The angle for which a beam speaks, in radians, in [1e-4, 0.25]; 0 (default): measured of each scan.
   void setSeenAngle(double angle) { question_.seen_angle = angle == 0.0 ? std::nullopt : std::optional(angle); }
-  double getSeenAngle() const { return question_.seen_angle.value_or(0.0); }
 
   /// How far the obstacle's pose, or each of its trajectory, may truly be from what is given. Default: not at all.
   void setPoseUncertainty(const PoseUncertainty& uncertainty) { question_.pose_uncertainty = uncertainty; }
-  const PoseUncertainty& getPoseUncertainty() const { return question_.pose_uncertainty; }
 
 protected:
   CollisionSettings() { question_.clearance = 0.0; }
@@ -282,16 +267,10 @@ public:
   /// be infinity; 0 <= least unless the obstacle is solid. Default: 0 and infinity, all finite points that are not
   /// inside of a solid.
   void setFilterLimits(double least, double most) { question_.limits = {least, most}; }
-  void getFilterLimits(double& least, double& most) const
-  {
-    least = question_.limits.least;
-    most = question_.limits.most;
-  }
 
   /// Greater distances are not told but as NaN; which points are kept does not depend on it. >= 0, inclusive. Default:
   /// infinity, no limit. A small one is faster.
   void setMaxDistance(double max_distance) { question_.max_distance = max_distance; }
-  double getMaxDistance() const { return question_.max_distance.value_or(std::numeric_limits<double>::infinity()); }
 
 protected:
   PointDistances distances(Shape input);

@@ -349,7 +349,7 @@ TEST_F(CollisionFilterTest, ObstacleOfAnyCloudType)
 TEST_F(CollisionFilterTest, PoseOfAnyEigenType)
 {
   const Eigen::Isometry3f pose = pose_.cast<float>();
-  const auto expectPose = [&] { EXPECT_EQ(filter_.getPose().matrix(), pose.matrix().cast<double>()); };
+  const auto expectPose = [&] { EXPECT_EQ(filter_.getQuestion().pose.matrix(), pose.matrix().cast<double>()); };
   const auto reset = [&] { filter_.setPose(Eigen::Isometry3d::Identity()); };
   filter_.setPose(pose);
   expectPose();
@@ -438,7 +438,7 @@ TEST_F(CollisionFilterTest, ThreadsChangeNothing)
 
 TEST_F(CollisionFilterTest, UndecidedPointsAreNeverKeptAsFree)
 {
-  EXPECT_TRUE(filter_.getAccuracy().isExact());
+  EXPECT_TRUE(filter_.getQuestion().accuracy.isExact());
   std::vector<Verdict> flags;
   std::size_t undecided = 0;
   for (const char* setting : {"exact", "level=0", "level=1", "level=2", "level=9", "pairs=0", "pairs=300", "time=0"}) {
@@ -456,7 +456,7 @@ TEST_F(CollisionFilterTest, UndecidedPointsAreNeverKeptAsFree)
     EXPECT_EQ(filter_.getUndecidedCount(), counted);
     undecided += counted;
 
-    if (filter_.getAccuracy().mode == Accuracy::Mode::time) continue; // another run decides other points
+    if (filter_.getQuestion().accuracy.mode == Accuracy::Mode::time) continue; // another run decides other points
     for (const bool negative : {false, true}) {
       filter_.setNegative(negative);
       EXPECT_EQ(filtered(), where(colliding_side, negative, points_));
@@ -582,7 +582,7 @@ TEST_F(CollisionFilterTest, PoseAndTrajectoryReplaceEachOther)
 {
   filter_.setTrajectory(somePath(pose_));
   filter_.setPose(pose_);
-  EXPECT_FALSE(filter_.getTrajectory());
+  EXPECT_FALSE(filter_.getQuestion().path);
   std::vector<Verdict> flags;
   filter_.computeFlags(flags);
   EXPECT_EQ(flags, flags_);

@@ -184,7 +184,7 @@ TEST_F(CollisionFilterUncertainty, RefusesWhatIsNoLength)
     EXPECT_THAT([&] { filter_.setObstacleUncertainty(Uncertainty("intensity", wrong)); },
                 refusedWith("the obstacle: number of sigmas "));
   }
-  EXPECT_EQ(filter_.getInputUncertainty().length, 0.01) << "an error changes nothing";
+  EXPECT_EQ(filter_.getQuestion().uncertainty.length, 0.01) << "an error changes nothing";
 
   filter_.setInputUncertainty(Uncertainty("sigma", 1.0));
   EXPECT_THAT([&] { flags(); },

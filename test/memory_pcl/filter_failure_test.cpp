@@ -368,7 +368,7 @@ void failAssignments(const std::function<std::shared_ptr<AnyCloud>()>& input)
         EXPECT_NE(to.filter.getIndices(), from.filter.getIndices());
         EXPECT_EQ(to.filter.getInputCloud(), thrown ? to.input : from.input);
         EXPECT_EQ(to.filter.getNegative(), thrown);
-        EXPECT_EQ(to.filter.getTrajectory().has_value(), !thrown);
+        EXPECT_EQ(to.filter.getQuestion().path.has_value(), !thrown);
         to.filter.filter(to.kept);
         EXPECT_EQ(to.kept, thrown ? to_kept : from_kept);
         EXPECT_EQ(*from.filter.getRemovedIndices(), from_removed);

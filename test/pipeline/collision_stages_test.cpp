@@ -150,7 +150,7 @@ TEST_F(CollisionStages, AccuracyIsTheFilters)
     std::vector<Verdict> flags;
     direct.computeFlags(flags);
     const auto undecided = static_cast<std::size_t>(std::count(flags.begin(), flags.end(), Verdict::undecided));
-    EXPECT_EQ(undecided > 0, direct.getAccuracy().stopsEarly()) << accuracy;
+    EXPECT_EQ(undecided > 0, direct.getQuestion().accuracy.stopsEarly()) << accuracy;
 
     const std::string options = at_pose + '"' + accuracy + '"';
     const PipelineResult result = runStage(scan, stage("filters.bsh_flag", options), model);
