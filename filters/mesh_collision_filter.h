@@ -39,7 +39,6 @@ public:
   /// The input counts with what its faces enclose, and they must close, as setObstacleSolid() has it: polygons of each
   /// body that holds something of the obstacle collide. Default: false, a surface alone.
   void setInputSolid(bool solid) { question_.input_solid = solid; }
-  bool getInputSolid() const { return question_.input_solid; }
 
   /// false (default): filter() keeps the polygons that do not collide; true: those that do, or are undecided.
   void setNegative(bool negative) { negative_ = negative; }

@@ -2,6 +2,7 @@
 #include <pcl_bsh/filters/question_filter.h>
 
 #include <pcl_bsh/hierarchy/polygon_triangles.h>
+#include <pcl_bsh/question/options.h>
 
 #include <pcl/console/print.h>
 
@@ -38,11 +39,7 @@ Answer QuestionFilter::answer(Shape input, const Wanted& wanted)
   Question question = question_;
   question.wanted = wanted;
   question.wanted.spacings = wanted.collisions() && !measured_;
-  if (!question.density) question.widest_gap.reset(); // a setting that waits
-  if (!question.seen) {
-    question.origin = {};
-    question.seen_angle.reset();
-  }
+  leaveOutWaiting(question);
   Answer found = ask(question, input, obstacle_);
   measured_ |= question.wanted.spacings;
   for (const Warning& warning : warnings_.unheard(std::move(found.warnings))) {

@@ -306,8 +306,7 @@ void check(const Question& question)
   of_nothing.obstacle_uncertainty.field.clear();
   of_nothing.sigmas = 1.0;
   of_nothing.seen = of_nothing.solid = of_nothing.input_solid = false;
-  of_nothing.origin = {};
-  of_nothing.seen_angle.reset();
+  leaveOutWaiting(of_nothing);
   of_nothing.progress = nullptr;
   of_nothing.wanted.spacings = false;
   checkOptions(question);

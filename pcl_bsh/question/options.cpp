@@ -50,18 +50,19 @@ std::vector<QuestionOption> table()
       {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
        "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
        "median distance between its neighbouring points, too little where lines of a scan are farther apart",
-       Range::above_zero},
+       Range::above_zero, false, nullptr, "density"},
       {"seen", &Q::seen, Kind::collisions, "", "", std::nullopt,
        "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
        "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
        "edges; not with swept motion"},
       {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
        "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
-       "the field that numbers them; without it, what the input's file says"},
+       "the field that numbers them; without it, what the input's file says",
+       Range::from_zero, false, nullptr, "seen"},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
        "with `seen`: up to this angle from its own direction a beam tells what is empty, from 0.0001 to 0.25; without "
        "it, one and a half times the angle between the scan's beams as measured",
-       Range::above_zero},
+       Range::above_zero, false, nullptr, "seen"},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity},
@@ -104,6 +105,12 @@ std::optional<double> numberOf(const QuestionOption& option, const Question& que
           return static_cast<double>(question.*member);
       },
       option.member);
+}
+
+/// Whether its switch is off.
+bool isWaiting(const QuestionOption& option, const Question& question)
+{
+  return option.with && !(question.*std::get<bool Question::*>(questionOption(option.with)->member));
 }
 
 } // namespace
@@ -212,11 +219,22 @@ std::string textOf(const QuestionOption& option, const Question& question)
       option.member);
 }
 
+void leaveOutWaiting(Question& question)
+{
+  for (const QuestionOption& option : questionOptions())
+    if (isWaiting(option, question))
+      std::visit([&](const auto member) { question.*member = Question().*member; }, option.member);
+}
+
 void checkOptions(const Question& question)
 {
   for (const QuestionOption& option : questionOptions()) {
     const std::optional<double> number = numberOf(option, question);
     if (number && !option.accepts(*number)) throw InvalidOption(option.name, plainText(*number), option.remedy());
+    if (isWaiting(option, question) && !textOf(option, question).empty()) {
+      const std::string with = std::string("`") + option.with + '`';
+      throw InvalidOption(option.name, "is given, but not " + with, "give " + with + ", too");
+    }
   }
   const auto refuse = [](const char* option, const std::string& wrong, const char* remedy) {
     throw InvalidOption(option, wrong, remedy);
@@ -233,12 +251,8 @@ void checkOptions(const Question& question)
   if (question.density && (question.path || wanted.contacts || wanted.poses || wanted.first_poses))
     refuse("density", "is about which points collide at one pose",
            "leave out the path, the list of clashes, or `density`");
-  if (question.widest_gap && !question.density)
-    refuse("widest_gap", "is given, but not `density`", "give `density`, too");
   if (question.seen && question.swept > 0.0)
     refuse("seen", "is about poses, and the motion between them is asked about", "leave out `seen` or `swept`");
-  if (!question.seen && (question.seen_angle || !question.origin.empty()))
-    refuse(question.seen_angle ? "seen_angle" : "origin", "is given, but not `seen`", "give `seen`, too");
   for (const char* const option : {"solid", "input_solid"})
     if (question.vertices_only && (option[0] == 's' ? question.solid : question.input_solid))
       refuse(option, "is given, but `vertices_only`, too", "give one of them");

@@ -49,6 +49,7 @@ struct QuestionOption {
   OptionRange range = OptionRange::from_zero;
   bool required = false;                ///< of questions of its kind alone
   const char* name_of_stages = nullptr; ///< where pipelines call it as PCL does
+  const char* with = nullptr;           ///< the switch without which it means nothing, and is refused
 
   bool accepts(double number) const; ///< whether it is in range
   double most() const;               ///< that is accepted
@@ -81,6 +82,9 @@ void setOption(Question& question, const std::string& name, const std::string& t
 
 /// What setOption() reads, empty where it is the default: reports state by it what was asked.
 std::string textOf(const QuestionOption& option, const Question& question);
+
+/// Sets options whose switch is off to their defaults: for who keeps them until it is on.
+void leaveOutWaiting(Question& question);
 
 /// Refuses numbers that their options do not accept, and options that do not go together. Poses are for queries to
 /// refuse. @throws InvalidOption

@@ -123,8 +123,7 @@ void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
   if (!all.measures()) return;
   wanted = {};
   question.seen = false; // that is answered
-  question.origin = {};
-  question.seen_angle.reset();
+  leaveOutWaiting(question);
   wanted.distances = wanted.both_ways = wanted.spacings = true;
   Answer measured =
       askInStep("Measuring distances", question, input, obstacle, report.seconds.distances, [&](const Answer& found) {

@@ -163,6 +163,20 @@ TEST(QuestionOptions, AreSetByText)
   EXPECT_EQ(question.accuracy.text(), "pairs=7");
 }
 
+TEST(QuestionOptions, WaitForTheirSwitch)
+{
+  Question question = {};
+  question.widest_gap = 2.0;
+  question.origin = ScanOrigins::parse("1,2,3");
+  EXPECT_EQ(refusalOf(question), "widest_gap: is given, but not `density`: give `density`, too");
+  question.density = true;
+  EXPECT_EQ(refusalOf(question), "origin: is given, but not `seen`: give `seen`, too");
+  leaveOutWaiting(question);
+  EXPECT_EQ(refusalOf(question), "");
+  EXPECT_EQ(question.widest_gap, 2.0);
+  EXPECT_TRUE(question.origin.empty());
+}
+
 TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
 {
   const auto refusal = [](const auto& change) {
