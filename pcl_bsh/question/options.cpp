@@ -5,6 +5,8 @@
 #include <pcl_bsh/question/text_numbers.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -169,9 +171,11 @@ void setOption(Question& question, const std::string& name, const std::string& t
 {
   const QuestionOption* const option = questionOption(name);
   if (!option) throw InvalidInput(Input::result, name, "is no option of a question", "see the table of options");
-  const auto numbers = numbersOf(text);
-  const std::optional<double> number = numbers && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
-  const auto refuse = [&](const std::string& remedy) { throw InvalidOption(name, "`" + text + "`", remedy); };
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  const bool accepted = is_number && option->accepts(number);
+  const auto refuse = [&](const std::string& remedy) { throw InvalidOption(name, "'" + text + "'", remedy); };
   std::visit(
       [&](const auto member) {
         auto& value = question.*member;
@@ -184,13 +188,16 @@ void setOption(Question& question, const std::string& name, const std::string& t
           value = text == "true";
         }
         else if constexpr (std::is_same_v<Value, Uncertainty>) {
-          value = number ? Uncertainty(*number) : Uncertainty(text, 1.0);
+          const std::size_t at = text.find_first_not_of("+-.");
+          const bool is_name =
+              !is_number && (at == text.npos || std::isdigit(static_cast<unsigned char>(text[at])) == 0);
+          if (!accepted && !is_name) refuse("give a finite length >= 0, or the name of a field");
+          value = is_name ? Uncertainty(text, 1.0) : Uncertainty(number);
         }
         else {
-          if (!number || !option->accepts(*number) ||
-              (std::is_same_v<Value, unsigned> && *number != std::floor(*number)))
-            refuse(option->remedy());
-          value = static_cast<std::conditional_t<std::is_same_v<Value, unsigned>, unsigned, double>>(*number);
+          constexpr bool is_count = std::is_same_v<Value, unsigned>;
+          if (!accepted || (is_count && number != std::floor(number))) refuse(option->remedy());
+          value = static_cast<std::conditional_t<is_count, unsigned, double>>(number);
         }
       },
       option->member);

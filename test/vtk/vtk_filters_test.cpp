@@ -409,7 +409,7 @@ TEST_P(Filters, OptionsHaveTheirNamesInTheTable)
   expectFailure(*filter, "clearances");
   filter->ClearOptions();
   filter->SetOption("threads", "few");
-  expectFailure(*filter, "threads: `few`: give a number from 0 to 1024");
+  expectFailure(*filter, "threads: 'few': give a number from 0 to 1024");
 }
 
 TEST_P(Filters, CellsOfAllKindsCount)

@@ -4,34 +4,22 @@
 #include "command_line.h"
 
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/io/text/parse_number.h>
 #include <pcl_bsh/question/ask.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <type_traits>
 
 namespace pcl_bsh::cli {
 namespace {
 
-Uncertainty uncertaintyOf(const std::string& option, const std::string& text)
-{
-  if (!io::isNumber(text) && !io::looksLikeNumber(text)) return {text, 1.0};
-  const double length = io::isNumber(text) ? io::parseNumber<double>(text) : -1.0;
-  if (!(length >= 0.0 && std::isfinite(length)))
-    throw UsageError(option + ": '" + text + "': give a finite length >= 0, or the name of a field");
-  return length;
-}
-
-template <typename T>
-T parsed(const std::string& option, const std::string& text)
+void set(Question& question, const std::string& name, const std::string& text)
 {
   try {
-    return T::parse(text);
+    setOption(question, name, text);
   }
   catch (const InvalidInput& error) {
-    throw UsageError(option + ": " + error.advice());
+    throw UsageError(asOption(name) + ": " + error.advice());
   }
 }
 
@@ -61,12 +49,9 @@ void add(CLI::App& app, Question& question, const QuestionOption& row)
         CLI::Option* added = nullptr;
         if constexpr (std::is_same_v<Value, bool>)
           added = app.add_flag(option, value, doc);
-        else if constexpr (is_text_option<Value>)
+        else if constexpr (is_text_option<Value> || std::is_same_v<Value, Uncertainty>)
           added = app.add_option_function<std::string>(
-              option, [&value, option](const std::string& text) { value = parsed<Value>(option, text); }, doc);
-        else if constexpr (std::is_same_v<Value, Uncertainty>)
-          added = app.add_option_function<std::string>(
-              option, [&value, option](const std::string& text) { value = uncertaintyOf(option, text); }, doc);
+              option, [&question, &row](const std::string& text) { set(question, row.name, text); }, doc);
         else if constexpr (std::is_same_v<Value, unsigned>)
           added = app.add_option(option, value, doc)->transform(number<unsigned>(row.remedy(), [&row](unsigned n) {
             return row.accepts(n);
@@ -117,7 +102,9 @@ void addQuestionOptions(CLI::App& app, Question& question, QuestionKind kind, co
 
 Accuracy parseAccuracy(const std::string& text)
 {
-  return parsed<Accuracy>("--accuracy", text);
+  Question question;
+  set(question, "accuracy", text);
+  return question.accuracy;
 }
 
 std::string advice(const InvalidInput& error, const Question& question, const std::vector<std::string>& names_of_poses)
