@@ -265,7 +265,7 @@ private:
     const NamedCloud input = input_.facts(wanted_.spacings), obstacle = obstacle_.facts(wanted_.spacings);
     answer_.density = {input.spacing, obstacle.spacing};
     for (Warning& warning : warningsOf(question_, input, obstacle)) answer_.warnings.push_back(std::move(warning));
-    if (auto hollow = warningOfHollow(question_, answer_, input_, a_, obstacle_, obstacle.box))
+    if (auto hollow = warningOfHollow(question_, answer_, input_, a_, obstacle_, b_.hierarchy(), obstacle.box))
       answer_.warnings.push_back(std::move(*hollow));
   }
 

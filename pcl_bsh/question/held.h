@@ -2,7 +2,10 @@
 // What solids hold, for who runs queries that no question has: added to what these found of the surfaces.
 #pragma once
 
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/question.h>
 #include <pcl_bsh/question/shape.h>
@@ -26,6 +29,11 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
 
 /// Of the two as they stand.
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest);
+void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances); ///< of the input
+void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult& found);
+
+/// @param found has the flags of both sides where places are uncertain
+void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

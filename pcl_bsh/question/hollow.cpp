@@ -3,9 +3,9 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/geometry/triangle/winding.h>
 #include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/solid/bodies.h>
-#include <pcl_bsh/solid/point_labels.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_poses = 16;
 constexpr std::size_t most_records = 256; // of a pose
-constexpr std::size_t most_labels = 16;   // likewise
+constexpr std::size_t most_samples = 8;   // of all poses that are looked at, or one of each
 constexpr double near_share = 0.01;       // of the box's diagonal, where no clearance says what is near
 
 /// Spread over a list: `most` of its places at most.
@@ -81,34 +81,66 @@ std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const Spher
   return records;
 }
 
+/// A place of the input.
+struct Sample {
+  Point3 given, in_obstacle;
+  int turns = 0; ///< of the surface round it
+  bool touches = false;
+};
+
+/// How often the triangles wind round each sample: all are looked at once, few of them closely.
+void windRound(std::vector<Sample>& samples, const TrianglesView& triangles)
+{
+  const Winding winding(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), 0);
+  for (std::uint32_t i = 0; i < triangles.count; ++i) {
+    const Triangle3 t = triangles.triangle(i);
+    const auto [low_y, high_y] = std::minmax({t[0][1], t[1][1], t[2][1]});
+    const auto [low_z, high_z] = std::minmax({t[0][2], t[1][2], t[2][2]});
+    const double high_x = std::max({t[0][0], t[1][0], t[2][0]});
+    for (Sample& sample : samples) {
+      const Point3& p = sample.in_obstacle;
+      if (!(p[1] >= low_y && p[1] <= high_y && p[2] >= low_z && p[2] <= high_z && p[0] <= high_x)) continue;
+      if (!isFinite(t)) continue;
+      const Winding::Crossing met = winding.crossing(p, t);
+      sample.turns += met.turns;
+      sample.touches |= met.on_surface;
+    }
+  }
+}
+
 } // namespace
 
 std::optional<Warning> warningOfHollow(const Question& question, const Answer& answer, const Shape& input,
-                                       const Placed& placed_input, Shape& obstacle, const Eigen::AlignedBox3d& box)
+                                       const Placed& placed_input, Shape& obstacle, const SphereHierarchy& surface,
+                                       const Eigen::AlignedBox3d& box)
 {
   if (!obstacle.isSurface() || question.solid || box.isEmpty() || placed_input.hierarchy().empty()) return std::nullopt;
   if (isNear(question, answer, near_share * box.diagonal().norm())) return std::nullopt;
   const DefaultFloatEnvironment environment;
-  const std::vector<Eigen::Isometry3d> poses = question.poses();
-  for (const std::size_t k : spread(poses.size(), most_poses)) {
-    const std::vector<std::uint32_t> records =
-        recordsIn(box, placed_input.hierarchy(), poses[k].inverse() * placed_input.pose);
-    if (records.empty()) continue;
-    const SolidBodies* const solid = obstacle.solidIfClosed();
-    if (!solid) return std::nullopt;
-    PointLabels labels(placed_input.pose, {solid->whole(), poses[k]});
-    std::uint64_t exact_decisions = 0;
-    for (const std::size_t i : spread(records.size(), most_labels)) {
-      const Point3 p = placed_input.hierarchy().view().point(records[i]);
-      if (labels.label(labels.frameAt(p, 0.0), p, exact_decisions) != Label::inside) continue;
-      return Warning{WarningKind::hollow,
-                     plainText(obstacle.name(), ": its faces close round places of ", input.name(), ", as (", p[0],
-                               ", ", p[1], ", ", p[2],
-                               "), with none near them: without `solid` what a mesh encloses is free: give it if this "
-                               "is not hollow")};
+  const SphereHierarchy& scan = placed_input.hierarchy();
+  const std::vector<Eigen::Isometry3d> all_poses = question.poses();
+  const std::vector<std::size_t> poses = spread(all_poses.size(), most_poses);
+  std::vector<Sample> samples; // whose places in the obstacle are rounded: what is deep inside stays so
+  for (const std::size_t k : poses) {
+    const Eigen::Isometry3d T_obstacle_input = all_poses[k].inverse() * placed_input.pose;
+    const std::vector<std::uint32_t> records = recordsIn(box, scan, T_obstacle_input);
+    for (const std::size_t i : spread(records.size(), std::max<std::size_t>(1, most_samples / poses.size()))) {
+      const Point3 p = scan.view().point(records[i]);
+      const Eigen::Vector3d q = T_obstacle_input * Eigen::Vector3d(p[0], p[1], p[2]);
+      samples.push_back({p, {q[0], q[1], q[2]}});
     }
   }
-  return std::nullopt;
+  if (samples.empty()) return std::nullopt;
+  windRound(samples, *surface.view().triangles);
+  const auto held = std::find_if(samples.begin(), samples.end(),
+                                 [](const Sample& sample) { return sample.turns != 0 && !sample.touches; });
+  if (held == samples.end() || !obstacle.isClosed()) return std::nullopt;
+  const Point3& p = held->given;
+  return Warning{WarningKind::hollow,
+                 plainText(obstacle.name(), ": its faces close round places of ", input.name(), ", as (", p[0], ", ",
+                           p[1], ", ", p[2],
+                           "), with none near them: without `solid` what a mesh encloses is free: give it if this is "
+                           "not hollow")};
 }
 
 } // namespace pcl_bsh

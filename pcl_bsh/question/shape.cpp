@@ -2,6 +2,7 @@
 #include <pcl_bsh/question/shape.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/triangle/open_edges.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/solid/enclosure.h>
@@ -106,15 +107,15 @@ const SolidBodies& Shape::solid()
   }
 }
 
-const SolidBodies* Shape::solidIfClosed()
+bool Shape::isClosed()
 {
-  try {
-    return is_open_ ? nullptr : &solid();
+  if (!is_closed_) {
+    const TrianglesView& triangles = *hierarchy_->view().triangles;
+    is_closed_ = solid_ || findOpenEdges(triangles.count, [&](std::size_t i) {
+                             return triangles.triangle(static_cast<std::uint32_t>(i));
+                           }).closed();
   }
-  catch (const InvalidInput&) {
-    is_open_ = true;
-    return nullptr;
-  }
+  return *is_closed_;
 }
 
 const Content& Shape::content()

@@ -77,8 +77,8 @@ public:
   /// @throws InvalidInput naming it, as Solid does
   const SolidBodies& solid();
 
-  /// The same, or null where it does not close, which is found out once.
-  const SolidBodies* solidIfClosed();
+  /// Whether its faces close: found out once, for a few hundred instructions a triangle. @pre as of solid()
+  bool isClosed();
 
   /// What of it solids are asked about. Made once. @pre hierarchy() was called
   const Content& content();
@@ -119,7 +119,7 @@ private:
   /// Once they are asked for.
   struct Enclosing;
   std::shared_ptr<const Enclosing> solid_;
-  bool is_open_ = false; ///< it is known not to close
+  std::optional<bool> is_closed_; ///< once it is asked for
   std::shared_ptr<const Content> content_;
 
   /// What SeenSpace is of.

@@ -156,12 +156,25 @@ Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
   return first;
 }
 
+/// For a record of the input: a triangle of the body that holds it, or what of the obstacle its body holds.
+std::uint32_t Solids::otherOf(const Pairing& pair, std::uint32_t record, const Eigen::Isometry3d& pose,
+                              Work& work) const
+{
+  if (pair.of_obstacle) return holderOf(pair.solid, pose, pair.content, a_.pose, record, &work);
+  for (const std::uint32_t held : heldAt(pair, pose, work)) {
+    const Records holders = holdersOf(pair.solid, a_.pose, pair.content, pose, {held}, &work);
+    if (std::binary_search(holders.begin(), holders.end(), record)) return held;
+  }
+  return kNothing;
+}
+
 void Solids::addToPath(TrajectoryResult& found, Work& work) const
 {
   const auto takeFirst = [](std::vector<std::int32_t>& poses, std::size_t i, std::uint32_t held) {
     if (!poses.empty() && (poses[i] < 0 || poses[i] > static_cast<std::int32_t>(held)))
       poses[i] = static_cast<std::int32_t>(held);
   };
+  const std::vector<Eigen::Isometry3d> poses = question_.poses();
   for (const Pairing& pair : pairings_) {
     const FirstPoses first = firstPoses(pair, work);
     for (std::size_t i = 0; i < first.possible.size(); ++i) {
@@ -174,6 +187,8 @@ void Solids::addToPath(TrajectoryResult& found, Work& work) const
       if (!found.distance.empty() && !(found.distance[i] <= 0.0f)) {
         found.distance[i] = 0.0f;
         if (!found.closest_pose.empty()) found.closest_pose[i] = static_cast<std::int32_t>(first.possible[i]);
+        if (!found.closest_point.empty())
+          found.closest_point[i] = otherOf(pair, static_cast<std::uint32_t>(i), poses[first.possible[i]], work);
       }
       if (question_.swept > 0.0) takeContact(found.first_contact, first.possible[i]);
       if (question_.swept > 0.0 && certain && !found.certain_pose.empty())
@@ -182,7 +197,6 @@ void Solids::addToPath(TrajectoryResult& found, Work& work) const
   }
   found.colliding = countOf(found.flags, Verdict::colliding);
   found.undecided = countOf(found.flags, Verdict::undecided);
-  const std::vector<Eigen::Isometry3d> poses = question_.poses();
   for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], work);
 }
 
@@ -304,6 +318,26 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.turn(closest); });
+}
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances)
+{
+  withSolids(question, input, obstacle, [&](Solids& solids) {
+    SymmetricDistances both;
+    both.a = std::move(distances);
+    solids.turn(both, false);
+    distances = std::move(both.a);
+  });
+}
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult& found)
+{
+  withSolids(question, input, obstacle, [&](Solids& solids) { solids.addTo(found); });
+}
+
+void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found)
+{
+  withSolids(question, input, obstacle, [&](Solids& solids) { solids.addTo(found); });
 }
 
 } // namespace pcl_bsh

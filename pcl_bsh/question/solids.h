@@ -71,6 +71,7 @@ private:
   const Records& held(Pairing& pair, Work& work);
   Records heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const;
   void add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const;
+  std::uint32_t otherOf(const Pairing& pair, std::uint32_t record, const Eigen::Isometry3d& pose, Work& work) const;
   FirstPoses firstPoses(const Pairing& pair, Work& work) const;
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;

@@ -123,6 +123,7 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(found.collisions.flags, test::verdictsOf({1, 1}));
   EXPECT_THAT(found.collisions.first_pose, ElementsAre(1, 0));
   EXPECT_THAT(found.collisions.distance, ElementsAre(0.0f, 0.0f));
+  for (const std::uint32_t triangle : found.collisions.closest_point) EXPECT_LT(triangle, 12u) << "of the body";
   ASSERT_EQ(found.collisions.poses.size(), 3u);
   EXPECT_EQ(found.collisions.poses[0].colliding_points, 1u);
   EXPECT_EQ(found.collisions.poses[1].colliding_points, 1u);
@@ -266,6 +267,10 @@ TEST_F(TwoSolidsTest, AlongAPathEachPoseIsThatOfBruteForce)
     }
     const Answer found = answer();
     EXPECT_EQ(found.collisions.first_pose, expected);
+    for (std::size_t t = 0; t < 12; ++t)
+      if (expected[t] >= 0) {
+        EXPECT_LT(found.collisions.closest_point[t], second.view().count);
+      }
     for (std::size_t k = 0; k < 7; ++k)
       EXPECT_EQ(found.collisions.poses[k].colliding_points,
                 countOf(bruteForce((*question.path)[k]).a, Verdict::colliding));
