@@ -115,7 +115,8 @@ def test_stubs_name_what_the_module_has():
     for name, node in named.items():
         value = getattr(pcl_bsh, name)
         if isinstance(node, ast.FunctionDef):
-            arguments = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
+            rest = [node.args.kwarg] if node.args.kwarg else []
+            arguments = [argument.arg for argument in node.args.args + node.args.kwonlyargs + rest]
             assert arguments == list(inspect.signature(value).parameters), name
             optional = {p.name for p in inspect.signature(value).parameters.values() if p.default is not p.empty}
             positional = [a.arg for a in node.args.args][len(node.args.args) - len(node.args.defaults):]
