@@ -138,7 +138,9 @@ private:
     if (reader.has("adjacent")) parseAdjacent(reader.at("adjacent"), object);
     read(reader, "group", object.group);
     object.pose = poseIn(reader, "pose");
+    object.place = reader.place();
     read(reader, "fixed", object.fixed);
+    read(reader, "solid", object.solid);
     if (reader.has("motion")) object.motion = parseMotion(reader.at("motion"));
     if (object.fixed && !std::holds_alternative<NoMotion>(object.motion))
       reader.fail("is fixed and moves", "leave 'fixed' or 'motion' out");

@@ -54,9 +54,11 @@ struct ObjectEntry {
   std::vector<PartEntry> parts;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   bool fixed = false;
+  bool solid = false; ///< all of its parts are
   Motion motion;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent;
   std::optional<Wave> wave; ///< with the effect deform
+  std::string place;        ///< in the document
 };
 
 struct RuleEntry {

@@ -229,9 +229,18 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
         hierarchy = std::make_shared<SphereHierarchy>(movedView(waving->now, hierarchy->view()));
         waving_.push_back(std::move(waving));
       }
-      object.parts.push_back({part.name, std::move(hierarchy), part.pose});
+      if (entry.solid && !surface(part.cloud))
+        throw JsonError(file.path.string(), entry.place + ".solid", "cloud '" + part.cloud + "' has no faces",
+                        "give a mesh that closes, or leave it out");
+      object.parts.push_back({part.name, std::move(hierarchy), part.pose, entry.solid});
     }
-    scene_->add(std::move(object));
+    try {
+      scene_->add(std::move(object));
+    }
+    catch (const InvalidInput& error) {
+      if (error.input() != Input::surface) throw;
+      throw JsonError(file.path.string(), entry.place + ".solid", error.wrong(), error.remedy());
+    }
   }
   setRules(*scene_, file.rules);
   deform(0.0);
