@@ -47,8 +47,11 @@ void addShape(LinkBody& body, const Shape& shape)
       [&](const auto& form) {
         if constexpr (std::is_constructible_v<Solid, decltype(form)>)
           addSolid(body, form, shape.pose);
-        else
+        else {
+          const std::size_t first = body.surface.triangles.size();
           body.surface.add(surfaceOf(shape, any));
+          body.meshes.push_back({form.path, first, body.surface.triangles.size() - first});
+        }
       },
       shape.form);
 }
@@ -60,6 +63,12 @@ PointsView Balls::view() const
   PointsView view = viewOf(centers.empty() ? nullptr : centers[0].data(), centers.size());
   view.radii = radii.data();
   return view;
+}
+
+TrianglesView LinkBody::trianglesOf(const Mesh& mesh) const
+{
+  return {viewOf(surface.vertices.front().data(), surface.vertices.size()), surface.triangles[mesh.first].data(),
+          mesh.count};
 }
 
 bool LinkBody::hasWithin(double padding, const Eigen::Vector3d& point) const

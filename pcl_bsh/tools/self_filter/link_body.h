@@ -7,6 +7,8 @@
 
 #include <pcl_bsh/hierarchy/points_view.h>
 
+#include <cstddef>
+#include <filesystem>
 #include <variant>
 #include <vector>
 
@@ -44,11 +46,21 @@ struct PlacedSolid {
   Eigen::Isometry3d T_solid_link;
 };
 
-/// In the link's frame. Boxes, cylinders and spheres are solid; what a mesh encloses is no part of it.
+/// In the link's frame.
 struct LinkBody {
+  /// A file of a mesh, some of the surface's triangles.
+  struct Mesh {
+    std::filesystem::path file;
+    std::size_t first = 0, count = 0;
+  };
+
   std::vector<PlacedSolid> solids;
   Balls enclosing; ///< what is within a length of a solid is within that length of one of these
   Surface surface; ///< of the meshes
+  std::vector<Mesh> meshes;
+
+  /// This object must outlive what is built on it.
+  TrianglesView trianglesOf(const Mesh& mesh) const;
 
   /// Whether a point in the link's frame is within the padding of a solid. It errs to that side, by a few roundings of
   /// double.

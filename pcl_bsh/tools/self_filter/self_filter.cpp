@@ -1,18 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "self_filter.h"
 
+#include <pcl_bsh/base/invalid_input.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 namespace pcl_bsh::self_filter {
 
-SelfFilter::Part::Part(LinkBody link_body, unsigned threads)
+SelfFilter::Part::Part(LinkBody link_body, const std::string& link, unsigned threads,
+                       std::vector<std::string>& warnings)
 : body(std::move(link_body)),
   enclosing(body.enclosing.view()),
   surface(body.surface.view())
 {
   surface.buildAll(threads);
+  for (const LinkBody::Mesh& mesh : body.meshes) {
+    try {
+      enclosed.emplace_back(body.trianglesOf(mesh));
+    }
+    catch (const InvalidInput& error) {
+      warnings.push_back("link '" + link + "': " + mesh.file.string() + ": " + error.wrong() +
+                         ": it is a surface alone, and what is inside of it is not cut out: close it");
+    }
+  }
 }
 
 SelfFilter::SelfFilter(Robot robot, const Settings& settings) : robot_(std::move(robot))
@@ -23,7 +35,8 @@ SelfFilter::SelfFilter(Robot robot, const Settings& settings) : robot_(std::move
         "': has no body, so that nothing would be cut out: give its links <collision> or <visual>");
   request_.clearance = settings.padding;
   request_.threads = settings.threads;
-  for (const Link& link : robot_.links) parts_.push_back(std::make_unique<const Part>(bodyOf(link), settings.threads));
+  for (const Link& link : robot_.links)
+    parts_.push_back(std::make_unique<const Part>(bodyOf(link), link.name, settings.threads, warnings_));
 }
 
 std::size_t SelfFilter::triangles() const
@@ -36,7 +49,7 @@ std::size_t SelfFilter::triangles() const
 std::size_t SelfFilter::solids() const
 {
   std::size_t sum = 0;
-  for (const auto& part : parts_) sum += part->body.solids.size();
+  for (const auto& part : parts_) sum += part->body.solids.size() + part->enclosed.size();
   return sum;
 }
 
@@ -55,6 +68,16 @@ void SelfFilter::flagSolids(const SphereHierarchy& points, const Part& part, con
   }
 }
 
+void SelfFilter::flagEnclosed(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link)
+{
+  for (const pcl_bsh::Solid& solid : part.enclosed) {
+    labelPoints({points}, {solid, T_scan_link}, labels_, request_.threads);
+    if (labels_.inside + labels_.on_surface == 0) continue;
+    for (std::size_t i = 0; i < labels_.labels.size(); ++i)
+      if (labels_.labels[i] != labelOf(Label::outside)) flags_[i] = Verdict::colliding;
+  }
+}
+
 const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
                                               const JointValues& values)
 {
@@ -66,6 +89,7 @@ const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eige
     const Part& part = *parts_[link];
     const Eigen::Isometry3d T_scan_link = T_scan_root * poses[link];
     flagSolids(points, part, T_scan_link);
+    flagEnclosed(points, part, T_scan_link);
     collidingIndices({points}, {part.surface, T_scan_link}, request_, hit_);
     for (const std::int32_t record : hit_.a) flags_[static_cast<std::size_t>(record)] = Verdict::colliding;
   }

@@ -4,8 +4,8 @@
 //   SelfFilter filter(readRobot("arm.urdf"), {});
 //   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
-// A point is flagged where it is within the padding of the robot. Boxes, cylinders and spheres are solid: what lies in
-// them is flagged. Meshes are surfaces.
+// A point is flagged where it is within the padding of the robot, or inside of it. Boxes, cylinders, spheres and meshes
+// that close are solid. A mesh that does not close is its surface, and a warning.
 #pragma once
 
 #include "link_body.h"
@@ -14,10 +14,12 @@
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/solid/labels.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::self_filter {
@@ -35,7 +37,10 @@ public:
 
   const Robot& robot() const { return robot_; }
   std::size_t triangles() const; ///< of the meshes of all links
-  std::size_t solids() const;    ///< of all links
+  std::size_t solids() const;    ///< of all links: boxes, cylinders, spheres and meshes that close
+
+  /// What users should know of the links, a sentence each: meshes that do not close.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// One per record of the scan: colliding where it is the robot, else free. Valid until the next call.
   /// @param T_scan_root where the robot's root is in the scan's frame
@@ -47,20 +52,25 @@ public:
   const NamedCloud& scan() const { return scan_; }
 
 private:
-  /// A body, and hierarchies of the balls about its solids and of its triangles.
+  /// A body, hierarchies of the balls about its solids and of its triangles, and what its meshes enclose.
   struct Part {
-    explicit Part(LinkBody link_body, unsigned threads);
+    /// @param warnings gets one for each mesh that does not close
+    Part(LinkBody link_body, const std::string& link, unsigned threads, std::vector<std::string>& warnings);
 
     LinkBody body;
     SphereHierarchy enclosing, surface;
+    std::vector<pcl_bsh::Solid> enclosed; ///< of each mesh that closes
   };
 
   void flagSolids(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link);
+  void flagEnclosed(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link);
 
   Robot robot_;
   FlagsRequest request_;
   std::vector<std::unique_ptr<const Part>> parts_; ///< for each link
+  std::vector<std::string> warnings_;
   CollidingIndices hit_;
+  LabelsResult labels_;
   std::vector<Verdict> flags_;
   NamedCloud scan_;
 };

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,7 +35,21 @@ double distanceToTriangle(const Vector3d& p, const Vector3d& a, const Vector3d& 
   return std::min({toSegment(a, b), toSegment(b, c), toSegment(c, a)});
 }
 
-/// A shape as it truly is: a solid box, cylinder or sphere, or triangles.
+/// How often triangles wind round a point, by their solid angles (Van Oosterom and Strackee, The Solid Angle of a Plane
+/// Triangle, 1983).
+long windingOf(const Surface& surface, const Vector3d& p)
+{
+  double sum = 0.0;
+  for (const Triangle& t : surface.triangles) {
+    const auto corner = [&](std::size_t k) -> Vector3d { return Vector3d(surface.vertices[t[k]].data()) - p; };
+    const Vector3d a = corner(0), b = corner(1), c = corner(2);
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return std::lround(sum / (4 * M_PI));
+}
+
+/// A shape as it truly is: a solid box, cylinder or sphere, or triangles and what they enclose.
 class TrueShape {
 public:
   explicit TrueShape(const Shape& shape)
@@ -54,6 +69,7 @@ public:
     }
     if (const auto* box = std::get_if<Box>(&shape_.form))
       if ((2 * p.array().abs() <= box->size.array()).all()) return 0.0;
+    if (std::holds_alternative<MeshFile>(shape_.form) && windingOf(surface_, p) != 0) return 0.0;
     double least = std::numeric_limits<double>::infinity();
     const auto corner = [&](std::uint32_t i) { return Vector3d(surface_.vertices[i].data()); };
     for (const Triangle& t : surface_.triangles)
@@ -130,6 +146,39 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
   EXPECT_GT(flagged, 150U);
   EXPECT_LT(flagged, 500U);
   EXPECT_GT(near, 5U);
+}
+
+TEST(SelfFilterOfMeshes, TheInsideIsTheRobotWhereAMeshCloses)
+{
+  const io::TemporaryFolder folder;
+  const std::string box = "OFF\n8 6 0\n-1 -1 -1\n1 -1 -1\n-1 1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n"
+                          "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n";
+  folder.write("closed.off", box + "4 1 3 7 5\n");
+  folder.write("open.off", box.substr(0, 6) + "5" + box.substr(7)); // five faces
+  const auto robotOf = [&](const char* file, double scale) {
+    Robot robot;
+    robot.name = "robot";
+    Link link;
+    link.name = "shoulder";
+    link.shapes.push_back({MeshFile{folder / file, {scale, 1, 1}}, Eigen::Isometry3d(Eigen::Translation3d(0, 5, 0))});
+    robot.links.push_back(link);
+    return robot;
+  };
+  const std::vector<double> scan = {0, 0, 0, 0.9, 0, 0, 1.25, 0, 0, 1.26, 0, 0, 0, 0, 3};
+  const Eigen::Isometry3d T_scan_root(Eigen::Translation3d(0, -5, 0));
+  for (const double scale : {1.0, -1.0}) { // mirrored, too
+    SelfFilter closed(robotOf("closed.off", scale), {0.25, 1});
+    EXPECT_TRUE(closed.warnings().empty());
+    EXPECT_EQ(closed.solids(), 1u);
+    EXPECT_EQ(closed.flags(viewOf(scan.data(), 5), T_scan_root, {}), test::verdictsOf({1, 1, 1, 0, 0}));
+  }
+  SelfFilter open(robotOf("open.off", 1.0), {0.25, 1});
+  ASSERT_EQ(open.warnings().size(), 1u);
+  EXPECT_THAT(open.warnings()[0],
+              testing::AllOf(testing::StartsWith("link 'shoulder': "), testing::HasSubstr("open.off"),
+                             testing::HasSubstr("4 edges are open, the first from (1, ")));
+  EXPECT_EQ(open.solids(), 0u);
+  EXPECT_EQ(open.flags(viewOf(scan.data(), 5), T_scan_root, {}), test::verdictsOf({0, 0, 0, 0, 0}));
 }
 
 TEST_F(SelfFilterTest, CutsOutWhatTheCameraSeesOfTheRobot)
@@ -213,13 +262,13 @@ TEST_F(SelfFilterOfOneBody, RoundsEdgesByThePadding)
   }
 }
 
-TEST_F(SelfFilterOfOneBody, KeepsWhatLiesInsideOfAMesh)
+TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfAMesh)
 {
   const io::TemporaryFolder folder;
   writeMadeRobot(folder.path());
   const std::vector<Vector3d> points = {pose * Vector3d(0, 0, 0.1), pose * Vector3d(0.12, 0, 0.1)};
   EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 1}, points),
-            pcl_bsh::test::verdictsOf({0, 1}));
+            pcl_bsh::test::verdictsOf({1, 1}));
 }
 
 TEST(SelfFilterOfNothing, IsAnError)
