@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include "picture.h"
+#include "rivals.h"
 #include <pcl_bsh/tools/cli/json_output.h>
 
 #include <pcl_bsh/geometry/counted.h>
@@ -66,6 +67,11 @@ nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject
                                       {"certified_error", m.certified_error},
                                       {"actual_error", m.actual_error},
                                       {"wrong", m.wrong}});
+  report["rivals"] = Json::array();
+  for (const Rival& rival : rivalsOf(study))
+    report["rivals"].push_back({{"peer", rival.peer->knob + ' ' + rival.peer->setting},
+                                {"ours", rival.ours ? Json(rival.ours->setting) : Json()},
+                                {"met", rival.isMet()}});
   for (const FitMeasurement& m : study.fits)
     report["fits"].push_back({{"fit", m.fit},
                               {"build", spread(m.build)},
@@ -93,6 +99,35 @@ void writeTable(std::ostream& out, const Study& study, const std::string& query)
         << (m.peer ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
         << " |\n";
   }
+}
+
+/// Each of PCL's ways, and what is certified to its error: the rows that we lose are named.
+void writeRivals(std::ostream& out, const Study& study)
+{
+  const std::vector<Rival> rivals = rivalsOf(study);
+  if (!rivals.empty()) {
+    out << "\n### Against PCL's ways\n\nFor each of them, the fastest setting that is certified to at most the error "
+           "measured of it.\n\n"
+        << "| PCL | error measured [unit] | time [ms] | pcl_bsh | error at most [unit] | time [ms] | sooner |\n"
+        << "|---|---:|---:|---|---:|---:|---|\n";
+    for (const Rival& rival : rivals) {
+      const Measurement& peer = *rival.peer;
+      out << "| " << peer.knob << " `" << peer.setting << "` | " << format("%.3g", peer.actual_error) << " | "
+          << milliseconds(peer.seconds.median) << " | ";
+      if (rival.ours)
+        out << '`' << rival.ours->setting << "` | " << format("%.3g", rival.ours->certified_error) << " | "
+            << milliseconds(rival.ours->seconds.median);
+      else
+        out << "none | - | -";
+      out << " | " << (rival.isMet() ? "pcl_bsh" : "**PCL**") << " |\n";
+    }
+  }
+  const std::vector<Beaten> beaten = beatenOf(study);
+  if (beaten.empty()) return;
+  out << "\nSettings that another one beats, being no wider and more than 5 % faster:";
+  for (const Beaten& b : beaten)
+    out << (&b == &beaten.front() ? " `" : ", `") << b.setting->setting << "` (`" << b.by->setting << "`)";
+  out << ".\n";
 }
 
 /// Where the frontier bends: farthest below the straight line between its ends, both axes logarithmic.
@@ -156,6 +191,7 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
          "The answer is an interval that holds the exact distance. Its width, the largest over the poses, is the "
          "error.\n\n";
   writeTable(out, study, "distance");
+  writeRivals(out, study);
   out << "\n## Flags per point\n\nAn undecided point is called neither free nor colliding. The "
          "wrong answers of a tolerance are those that it allows.\n\n";
   writeTable(out, study, "flags");
