@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/typed.h>
+#include <pcl_bsh/question/held.h>
 
 #include <string>
 #include <type_traits>
@@ -116,7 +115,8 @@ Parameters are those of `collision_flags`.
 Returns
 -------
 ClosestPair
-    `distance` (less the points' radii; infinity when a cloud is empty), rows `a` and `b` (None when there is no pair; of
+    `distance` (less the points' radii; negative of what a solid holds, the depth of the deepest; infinity when a cloud is
+    empty), rows `a` and `b` (None when there is no pair; of
     several pairs the smallest), and the `interval` that holds the distance for certain.
 
 Examples
@@ -181,33 +181,41 @@ auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const Po
 
 template <class Sides>
 auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
-                        const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads)
+                        const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads,
+                        bool solid, bool input_solid)
 {
   Asked asked(a, pose_a, b, pose_b);
-  asked.question.clearance = clearance;
-  FlagsRequest request;
-  request.clearance = clearance;
-  request.flagged = sideOf(side.template cast<std::string>());
-  request.accuracy = accuracyOf(accuracy);
-  request.threads = threads;
-  CollidingIndices found = asked.answer([&] { return collidingIndices(asked.a, asked.b, request); });
+  const Side flagged = sideOf(side.template cast<std::string>());
+  Question& question = asked.question;
+  question.clearance = clearance;
+  question.accuracy = accuracyOf(accuracy);
+  question.threads = threads;
+  question.solid = solid;
+  question.input_solid = input_solid;
+  question.wanted.indices = flagged != Side::b;
+  question.wanted.obstacle_indices = flagged != Side::a;
+  CollidingIndices found = asked.answer().indices;
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
     throw InvalidInput(Input::accuracy, "colliding_indices",
                        counted(undecided, "point is", "points are") + " undecided",
                        "ask collision_flags(), whose answer says which");
-  return arraysOf<Sides>(std::move(found.a), std::move(found.b), request.flagged);
+  return arraysOf<Sides>(std::move(found.a), std::move(found.b), flagged);
 }
 
 AnyResult anyCollisionOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
-                         const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads)
+                         const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads, bool solid,
+                         bool input_solid)
 {
   Asked asked(a, pose_a, b, pose_b);
-  AnyRequest request;
-  asked.question.clearance = request.clearance = clearance;
-  request.accuracy = accuracyOf(accuracy);
-  request.threads = threads;
-  return asked.answer([&] { return anyCollision(asked.a, asked.b, request); });
+  Question& question = asked.question;
+  question.clearance = clearance;
+  question.accuracy = accuracyOf(accuracy);
+  question.threads = threads;
+  question.solid = solid;
+  question.input_solid = input_solid;
+  question.wanted.any = true;
+  return asked.answer().any;
 }
 
 bool isColliding(const AnyResult& result)
@@ -219,13 +227,19 @@ bool isColliding(const AnyResult& result)
 }
 
 DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
-                             const AccuracyLike& accuracy, unsigned threads)
+                             const AccuracyLike& accuracy, unsigned threads, bool solid, bool input_solid)
 {
   Asked asked(a, pose_a, b, pose_b);
+  asked.question.solid = solid;
+  asked.question.input_solid = input_solid;
   DistanceRequest request;
   request.accuracy = accuracyOf(accuracy);
-  request.threads = threads;
-  return asked.answer([&] { return closestPair(asked.a, asked.b, request); });
+  request.threads = asked.question.threads = threads;
+  return asked.answer([&] {
+    DistanceResult found = closestPair(asked.a, asked.b, request);
+    addHeld(asked.question, asked.input, asked.obstacle, found);
+    return found;
+  });
 }
 
 /// A property for one of the pair's rows.
@@ -281,12 +295,14 @@ void bindCollision(py::module_& module)
   };
   define("collision_flags", &collisionFlagsOf<OneSide>, kCollisionFlags, "side"_a = "a", "spacings_of_b"_a = none);
   define("collision_flags", &collisionFlagsOf<BothSides>, "", "side"_a, "spacings_of_b"_a = none);
-  define("colliding_indices", &collidingIndicesOf<OneSide>, kCollidingIndices, "side"_a = "a");
-  define("colliding_indices", &collidingIndicesOf<BothSides>, "", "side"_a);
+  define("colliding_indices", &collidingIndicesOf<OneSide>, kCollidingIndices, "side"_a = "a", "solid"_a = false,
+         "input_solid"_a = false);
+  define("colliding_indices", &collidingIndicesOf<BothSides>, "", "side"_a, "solid"_a = false, "input_solid"_a = false);
   module.def("any_collision", &anyCollisionOf, kAnyCollision, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
-             "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
+             "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false,
+             "input_solid"_a = false);
   module.def("closest_pair", &closestPairOf, kClosestPair, "a"_a, "b"_a, py::kw_only(), "pose_a"_a = none,
-             "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
+             "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false, "input_solid"_a = false);
 }
 
 } // namespace pcl_bsh::python

@@ -2,6 +2,7 @@
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/question/held.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 
@@ -23,6 +24,8 @@ pose_a : array_like, (4, 4) or (3, 4), optional
 accuracy : Accuracy or str, default exact
     None that stops early.
 threads : int, default 1
+solid, input_solid : bool, default False
+    b, or a, is a mesh that counts with what its faces enclose: what is inside collides.
 progress : callable, optional
     Called now and then with the fraction done; False stops the query, which raises `Cancelled`.
 
@@ -68,6 +71,8 @@ pose_scan : array_like, (4, 4) or (3, 4), optional
 pivot : array_like, (3,), optional
     The point of the model that moves in straight lines; default its origin.
 threads : int, default 1
+solid, input_solid : bool, default False
+    The model, or the scan, is a mesh that counts with what its faces enclose: what is inside collides.
 progress : callable, optional
 
 Returns
@@ -87,16 +92,22 @@ array([0, 1], dtype=uint8)
 
 py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const ArrayLike& poses, double clearance,
                                        const PoseLike& pose_a, const AccuracyLike& accuracy, unsigned threads,
-                                       const ProgressLike& progress)
+                                       bool solid, bool input_solid, const ProgressLike& progress)
 {
   Asked asked("a", a, pose_a, "b", b);
+  asked.question.solid = solid;
+  asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   AnyRequest request;
   asked.question.clearance = request.clearance = clearance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyAtPoses found = asked.answer([&] { return anyCollisionAtPoses(asked.a, b, list, request); });
+  AnyAtPoses found = asked.answer([&] {
+    AnyAtPoses of_surfaces = anyCollisionAtPoses(asked.a, b, list, request);
+    addHeld(asked.question, asked.input, asked.obstacle, list, of_surfaces.flags);
+    return of_surfaces;
+  });
   return arrayFrom(std::move(found.flags));
 }
 
@@ -116,9 +127,11 @@ std::pair<py::array_t<double>, py::array_t<std::int32_t>> closestAtPosesOf(const
 py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, const ArrayLike& poses,
                                       const ArrayLike& motions, double clearance, double swept,
                                       const PoseLike& pose_scan, const OptionalArray& pivot, unsigned threads,
-                                      const ProgressLike& progress)
+                                      bool solid, bool input_solid, const ProgressLike& progress)
 {
   Asked asked("scan", scan, pose_scan, "model", model);
+  asked.question.solid = solid;
+  asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   const std::vector<std::uint32_t> ends = recordsOf("motions", motions, 2);
   std::vector<PoseMotion> edges;
@@ -129,7 +142,13 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyOnMotions found = asked.answer([&] { return anyCollisionOnMotions(asked.a, model, list, edges, request); });
+  AnyOnMotions found = asked.answer([&] {
+    AnyOnMotions of_surfaces = anyCollisionOnMotions(asked.a, model, list, edges, request);
+    std::vector<Eigen::Isometry3d> starts;
+    for (const PoseMotion& edge : edges) starts.push_back(list[edge.from]);
+    addHeld(asked.question, asked.input, asked.obstacle, starts, of_surfaces.flags);
+    return of_surfaces;
+  });
   return arrayFrom(std::move(found.flags));
 }
 
@@ -138,13 +157,13 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
 void bindManyPoses(py::module_& module)
 {
   module.def("any_collision_at_poses", &anyAtPosesOf, kAnyAtPoses, "a"_a, "b"_a, "poses"_a, "clearance"_a = 0.0,
-             py::kw_only(), "pose_a"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,
-             "progress"_a = py::none());
+             py::kw_only(), "pose_a"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1, "solid"_a = false,
+             "input_solid"_a = false, "progress"_a = py::none());
   module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, "a"_a, "b"_a, "poses"_a, py::kw_only(),
              "pose_a"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
   module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, "scan"_a, "model"_a, "poses"_a, "motions"_a,
              "clearance"_a = 0.0, py::kw_only(), "swept"_a, "pose_scan"_a = py::none(), "pivot"_a = py::none(),
-             "threads"_a = 1, "progress"_a = py::none());
+             "threads"_a = 1, "solid"_a = false, "input_solid"_a = false, "progress"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

@@ -180,12 +180,13 @@ std::vector<ScenePart> partsOf(const std::string& name, const CloudLike& cloud)
 
 ObjectId addObject(SharedScene& shared, const std::string& name, const CloudLike& cloud, const PoseLike& pose,
                    bool fixed, const std::string& group, const MotionLike& motion,
-                   std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent)
+                   std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent, bool solid)
 {
   SceneObject object;
   object.name = name;
   object.group = group;
   object.parts = partsOf(name, cloud);
+  for (ScenePart& part : object.parts) part.solid = solid;
   object.pose = poseOf("pose", pose);
   object.fixed = fixed;
   object.motion = motionOf(motion);
@@ -261,10 +262,11 @@ void bindScene(py::module_& module)
            "test_pairs"_a = true, "accuracy"_a = none, "tolerance"_a = 1e-4, "voxel_edge"_a = 0.0, "threads"_a = 1,
            "deform"_a = none)
       .def("add", &addObject, "name"_a, "cloud"_a, "pose"_a = none, py::kw_only(), "fixed"_a = false, "group"_a = "",
-           "motion"_a = none, "adjacent"_a = std::vector<std::pair<std::uint32_t, std::uint32_t>>{},
+           "motion"_a = none, "adjacent"_a = std::vector<std::pair<std::uint32_t, std::uint32_t>>{}, "solid"_a = false,
            "Adds an object, and returns its number. `cloud` is a SphereHierarchy, or a list of parts: (name, "
            "hierarchy) or "
-           "(name, hierarchy, pose). `adjacent` lists pairs of parts that self_collisions does not compare.")
+           "(name, hierarchy, pose). `adjacent` lists pairs of parts that self_collisions does not compare. "
+           "`solid`: its meshes count with what their faces enclose, and they must close.")
       .def("__len__", [](SharedScene& s) { return inTurn(s, [](Scene& scene) { return scene.size(); }); })
       .def_property_readonly(
           "time", [](SharedScene& s) { return inTurn(s, [](Scene& scene) { return scene.time(); }); },

@@ -4,6 +4,7 @@
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/question/held.h>
 
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -41,6 +42,9 @@ pivot : array_like, (3,), optional
     Swept: the point of the model that moves in straight lines; default its origin.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
+solid, input_solid : bool, default False
+    The model, or the scan, is a mesh that counts with what its faces enclose, and they must close: what is inside at a
+    pose collides there, at a distance of 0.
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
@@ -86,12 +90,16 @@ ValueError
 TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayLike& poses, double clearance,
                              const PoseLike& pose_scan, bool flags, bool distances, bool first_poses,
                              bool closest_poses, bool pose_summaries, std::optional<double> swept,
-                             const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads,
-                             const ProgressLike& progress)
+                             const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads, bool solid,
+                             bool input_solid, const ProgressLike& progress)
 {
   Asked asked("scan", scan, pose_scan, "model", model);
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   asked.question.clearance = clearance;
+  asked.question.solid = solid;
+  asked.question.input_solid = input_solid;
+  asked.question.swept = swept.value_or(0.0);
+  asked.question.threads = threads;
   asked.question.wanted.spacings = true;
   TrajectoryRun run;
   TrajectoryRequest& request = run.request;
@@ -106,7 +114,11 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  run.result = asked.answer([&] { return collideAlong(asked.a, model, list, request); });
+  run.result = asked.answer([&] {
+    TrajectoryResult found = collideAlong(asked.a, model, list, request);
+    addHeld(asked.question, asked.input, asked.obstacle, found);
+    return found;
+  });
   request.progress = nullptr; // it refers to an argument of this call
   return run;
 }
@@ -267,7 +279,8 @@ void bindTrajectory(py::module_& module)
   module.def("collide_along", &collideAlongOf, kCollideAlong, "scan"_a, "model"_a, "poses"_a, "clearance"_a = 0.0,
              py::kw_only(), "pose_scan"_a = py::none(), "flags"_a = true, "distances"_a = false,
              "first_poses"_a = false, "closest_poses"_a = false, "pose_summaries"_a = false, "swept"_a = py::none(),
-             "pivot"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
+             "pivot"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1, "solid"_a = false,
+             "input_solid"_a = false, "progress"_a = py::none());
   module.def("pose_between", &poseBetweenOf, kPoseBetween, "start"_a, "end"_a, "fraction"_a, "pivot"_a = py::none());
   bindClashes(module);
 }

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes that count with what they enclose, against formulas of a box."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import pcl_bsh
+from clouds import turned
+
+CORNERS = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
+FACES = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
+                  [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
+
+
+def box(scale=1.0):
+    return pcl_bsh.SphereHierarchy.of_triangles(CORNERS * scale, FACES)
+
+
+def signed(points, pose):
+    """Distances from the box at a pose; negative inside."""
+    q = np.abs((points - pose[:3, 3]) @ pose[:3, :3]) - 1.0
+    return np.where((q <= 0).all(axis=1), q.max(axis=1), np.linalg.norm(np.maximum(q, 0), axis=1))
+
+
+@pytest.fixture
+def points():
+    return np.random.default_rng(3).uniform(-2, 2, (500, 3))
+
+
+@pytest.mark.parametrize("pose", [np.eye(4), turned(1), turned(2)])
+def test_points_in_a_box(points, pose):
+    scan, tank = pcl_bsh.SphereHierarchy(points), box()
+    d = signed(points, pose)
+    flags = pcl_bsh.collision_flags(scan, tank, 0.1, pose_b=pose, solid=True)
+    np.testing.assert_array_equal(flags, d <= 0.1)
+    np.testing.assert_array_equal(pcl_bsh.colliding_indices(scan, tank, 0.1, pose_b=pose, solid=True),
+                                  np.flatnonzero(d <= 0.1))
+    np.testing.assert_allclose(pcl_bsh.point_distances(scan, tank, pose_b=pose, solid=True).distance, d, atol=1e-12)
+    closest = pcl_bsh.closest_pair(scan, tank, pose_b=pose, solid=True)
+    assert closest.distance == pytest.approx(d.min()) and closest.a == d.argmin()
+    deep = pcl_bsh.SphereHierarchy(points[d < -0.3])
+    assert not pcl_bsh.any_collision(pcl_bsh.SphereHierarchy(points[d > 0.1]), tank, 0.1, pose_b=pose, solid=True)
+    assert pcl_bsh.any_collision(deep, tank, 0.1, pose_b=pose, solid=True)
+    with pytest.warns(UserWarning, match="`solid`"):
+        assert not pcl_bsh.any_collision(deep, tank, 0.1, pose_b=pose)
+    run = pcl_bsh.collide_along(scan, tank, [np.diag([1, 1, 1, 1.0]) + np.eye(4, k=3) * 9, pose], 0.1, solid=True,
+                                first_poses=True, distances=True, pose_summaries=True)
+    np.testing.assert_array_equal(run.first_pose, np.where(d <= 0.1, 1, -1))
+    np.testing.assert_array_equal(run.distance == 0, d <= 0)
+    assert run.poses["colliding_points"].tolist() == [0, (d <= 0.1).sum()]
+
+
+def test_two_solids_of_which_one_holds_the_other():
+    tank, robot = box(4.0), box()
+    for a, b, words in ((tank, robot, {"input_solid": True}), (robot, tank, {"solid": True})):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            assert not pcl_bsh.any_collision(a, b)
+        assert pcl_bsh.any_collision(a, b, **words)
+        for flags in pcl_bsh.collision_flags(a, b, side="both", **words):
+            assert flags.tolist() == [1] * 12
+        assert pcl_bsh.closest_pair(a, b, **words).distance == -3.0
+        away = np.eye(4)
+        away[0, 3] = 20
+        poses = [away, np.eye(4)]
+        assert pcl_bsh.any_collision_at_poses(a, b, poses, **words).tolist() == [0, 1]
+        still = [[0, 0], [1, 1]]
+        assert pcl_bsh.any_collision_on_motions(a, b, poses, still, swept=0.01, **words).tolist() == [0, 1]
+    both = pcl_bsh.symmetric_distances(tank, robot, input_solid=True)
+    assert both.b.distance.tolist() == [-3.0] * 12 and (both.a.distance > 0).all()
+
+
+def test_scenes(points):
+    for solid in (False, True):
+        scene = pcl_bsh.Scene(any=True, flags=True, first_contact=True, response="stop")
+        scene.add("tank", box(4.0), solid=solid)
+        scene.add("probe", box(0.25), motion=pcl_bsh.VelocityMotion([1.0, 0, 0]))
+        found = scene.query()
+        assert [(pair["a"], pair["b"]) for pair in found.any] == ([(0, 1)] if solid else [])
+        assert sum(part["colliding"] for part in found.flags) == (24 if solid else 0)
+        assert scene.step(1.0).outcomes[0]["stuck"] == solid
+    with pytest.raises(ValueError, match="object 'open': 3 edges are open"):
+        scene.add("open", pcl_bsh.SphereHierarchy.of_triangles(CORNERS, FACES[:-1]), solid=True)
+
+
+def test_what_does_not_close_is_refused(points):
+    open_box = pcl_bsh.SphereHierarchy.of_triangles(CORNERS, FACES[:-1])
+    with pytest.raises(ValueError, match="b: 3 edges are open"):
+        pcl_bsh.any_collision(pcl_bsh.SphereHierarchy(points), open_box, solid=True)
+    with pytest.raises(ValueError, match="a has no faces"):
+        pcl_bsh.any_collision(pcl_bsh.SphereHierarchy(points), open_box, input_solid=True)
