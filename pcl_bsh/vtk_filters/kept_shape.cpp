@@ -84,7 +84,8 @@ CellTriangles trianglesOf(vtkPolyData& data, const PointsView& view)
       if (n > 2) addTriangles(view, records.data(), n, found.triangles);
       break;
     default:
-      for (std::size_t i = 0; i + 2 < n; ++i) found.triangles.push_back({records[i], records[i + 1], records[i + 2]});
+      for (std::size_t i = 0; i + 2 < n; ++i) // every other one is turned over, so that all face one side
+        found.triangles.push_back({records[i + i % 2], records[i + 1 - i % 2], records[i + 2]});
     }
     found.cells.resize(found.triangles.size(), static_cast<std::uint32_t>(cell));
   });

@@ -7,7 +7,8 @@
 /// where there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
 /// `closest_pose` (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
 ///
-/// A distance is exact, rounded to the nearest double.
+/// A distance is exact, rounded to the nearest double. With Solid it is negative inside of the obstacle, at a single
+/// pose, however deep; along a path it is 0 there.
 ///
 /// vtkBSHFilter has the inputs, what they mean, and what happens where something fails.
 #pragma once

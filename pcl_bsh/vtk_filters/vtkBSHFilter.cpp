@@ -77,6 +77,17 @@ void vtkBSHFilter::SetOption(const char* name, const char* value)
   this->Modified();
 }
 
+void vtkBSHFilter::SetSolid(bool solid)
+{
+  if (solid != this->GetSolid()) this->SetOption("solid", solid ? "true" : "");
+}
+
+bool vtkBSHFilter::GetSolid() const
+{
+  const auto found = this->Options.find("solid");
+  return found != this->Options.end() && found->second == "true";
+}
+
 void vtkBSHFilter::ClearOptions()
 {
   this->Options.clear();

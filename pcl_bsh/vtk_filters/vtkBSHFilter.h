@@ -74,6 +74,13 @@ public:
   void ClearOptions();
   ///@}
 
+  ///@{
+  /// The option `solid` as a switch, for panels: an obstacle with faces counts with what they enclose.
+  void SetSolid(bool solid);
+  bool GetSolid() const;
+  vtkBooleanMacro(Solid, bool);
+  ///@}
+
   /// How many hierarchies this filter has built, of both inputs.
   vtkIdType GetHierarchiesBuilt();
 

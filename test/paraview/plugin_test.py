@@ -96,6 +96,15 @@ surface.UpdatePipeline()
 true = np.linalg.norm(np.maximum(np.abs(tunnel.astype(np.float64)) - 1.0, 0.0), axis=1)
 assert np.allclose(array(surface, "distance"), true, rtol=1e-12)
 
+# Solid: what is inside of the box has a negative distance, and collides.
+inner = simple.OpenDataFile(save(cloud(np.float32([[0, 0, 0.25], [0.5, 0, 0], [3, 0, 0]])), "inner.vtp"))
+depth = PointCloudDistance(Input=inner, Obstacle=box, Solid=1)  # noqa: F821
+depth.UpdatePipeline()
+assert np.array_equal(array(depth, "distance"), [-0.75, -0.5, 2.0])
+held = PointCloudCollision(Input=inner, Obstacle=box, Solid=1)  # noqa: F821
+held.UpdatePipeline()
+assert np.array_equal(array(held, "collision"), [1, 1, 0])
+
 spheres = BoundingSpheres(Input=scan, Level=1)  # noqa: F821
 spheres.UpdatePipeline()
 assert servermanager.Fetch(spheres).GetNumberOfCells() > 0
