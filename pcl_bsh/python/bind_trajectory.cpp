@@ -41,10 +41,10 @@ swept : float, optional
 pivot : array_like, (3,), optional
     Swept: the point of the model that moves in straight lines; default its origin.
 accuracy : Accuracy or str, default exact
-threads : int, default 1
 solid, input_solid : bool, default False
     The model, or the scan, is a mesh that counts with what its faces enclose, and they must close: what is inside at a
     pose collides there, at a distance of 0.
+threads : int, default 1
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
