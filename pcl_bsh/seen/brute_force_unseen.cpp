@@ -8,6 +8,7 @@
 #include <pcl_bsh/seen/direction_cells.h>
 #include <pcl_bsh/seen/model_ball.h>
 #include <pcl_bsh/seen/storage.h>
+#include <pcl_bsh/seen/triangle_parts.h>
 
 #include <algorithm>
 #include <string>
@@ -85,14 +86,16 @@ UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const
   }
   const PointsView& view = model.hierarchy().view();
   UnseenResult result;
+  const auto sees_ball = [&](const PosedPlace& place, double radius) {
+    bool seen = false;
+    for (std::size_t s = 0; s < scans.size(); ++s)
+      seen = seen || sees(scans[s], holes[s], angle, {scans[s].origin, place.at, place.magnitude, radius});
+    return seen;
+  };
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
     if (!isFinite(view.point(record)) || verdicts[record] != Verdict::free) continue;
-    const ModelBall ball(model, record, request.clearance);
-    bool seen = false;
-    for (std::size_t s = 0; s < scans.size(); ++s)
-      seen = seen || sees(scans[s], holes[s], angle, ball.from(scans[s].origin));
-    if (seen) continue;
+    if (RecordSight(model, request.clearance, sees_ball)(record)) continue;
     verdicts[record] = Verdict::unseen;
     ++result.unseen;
   }

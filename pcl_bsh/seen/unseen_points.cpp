@@ -8,6 +8,7 @@
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/seen/model_ball.h>
 #include <pcl_bsh/seen/storage.h>
+#include <pcl_bsh/seen/triangle_parts.h>
 
 #include <algorithm>
 #include <atomic>
@@ -103,9 +104,21 @@ private:
   {
     if (verdicts_[record] != Verdict::free) return;
     if (!unseen) {
-      const ModelBall ball(model_, record, clearance_);
-      for (const SeenScan* scan : scans)
-        if (scan->sees(ball.from(scan->origin()), result.work.node_pairs)) return;
+      const auto sees = [&](const PosedPlace& place, double radius) {
+        const auto of_scan = [&](const SeenScan* scan) {
+          return scan->sees({scan->origin(), place.at, place.magnitude, radius}, result.work.node_pairs);
+        };
+        // What sees a place mostly sees its neighbours.
+        const bool asked = std::find(scans.begin(), scans.end(), last_) != scans.end();
+        if (asked && of_scan(last_)) return true;
+        for (const SeenScan* scan : scans) {
+          if ((asked && scan == last_) || !of_scan(scan)) continue;
+          last_ = scan;
+          return true;
+        }
+        return false;
+      };
+      if (RecordSight(model_, clearance_, sees)(record)) return;
     }
     mark(record);
   }
@@ -123,6 +136,7 @@ private:
   const double clearance_;
   std::vector<Verdict>& verdicts_;
   Scans all_;
+  const SeenScan* last_ = nullptr; ///< that saw something
 };
 
 } // namespace

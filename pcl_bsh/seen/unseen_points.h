@@ -32,7 +32,9 @@ struct UnseenResult {
   Work work;              ///< node_pairs: spheres of the model, and of directions, that were tested
 };
 
-/// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay.
+/// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. Of a
+/// triangle all places must be seen, each by one scanner: it is halved until balls about its parts are, down to an
+/// eighth of the clearance and its uncertainty, and to 14 times.
 /// @param model at T_scans_model. @param verdicts one per record of its view, such as FlagsResult::b
 /// @throws std::invalid_argument naming the value: a clearance, a pose, or a number of verdicts. Cancelled
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,

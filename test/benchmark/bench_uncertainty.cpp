@@ -8,7 +8,10 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/question/uncertainty.h>
 #include <pcl_bsh/trajectory/trajectory.h>
+
+#include <Eigen/Geometry>
 
 #include <array>
 #include <cstdint>
@@ -28,8 +31,8 @@ struct Options : ProgramOptions {
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
 
-enum class Kind { plain, one_length, each_point };
-constexpr std::array<const char*, 3> kNames = {"plain", "one length", "a length per point"};
+enum class Kind { plain, one_length, each_point, pose };
+constexpr std::array<const char*, 4> kNames = {"plain", "one length", "a length per point", "the pose"};
 
 /// Lengths up to a tenth of the clearance.
 std::vector<float> lengths(std::size_t count, double clearance, std::uint64_t seed)
@@ -37,6 +40,18 @@ std::vector<float> lengths(std::size_t count, double clearance, std::uint64_t se
   std::vector<float> drawn(count);
   for (std::size_t i = 0; i < count; ++i) drawn[i] = static_cast<float>(0.1 * clearance * unit(mix(seed + i)));
   return drawn;
+}
+
+/// Of the pose of a cloud: the farthest of its points move by a tenth of the clearance, those about its middle by half
+/// of that.
+Uncertainty ofPose(const Points& points, double clearance)
+{
+  Eigen::AlignedBox3d box;
+  for (const Point& p : points) box.extend(Eigen::Vector3d(p.x, p.y, p.z));
+  const Eigen::Vector3d middle = box.center();
+  Uncertainty uncertainty;
+  uncertainty.pose = {0.05 * clearance, 0.1 * clearance / box.diagonal().norm(), {middle.x(), middle.y(), middle.z()}};
+  return uncertainty;
 }
 
 struct Cloud {
@@ -52,7 +67,7 @@ struct Cloud {
     PointsView view = pcl_bsh::viewOf(&points.data()->x, points.size(), sizeof(Point));
     if (kind == Kind::one_length) view.uncertainty = 0.05 * clearance;
     if (kind == Kind::each_point) view.uncertainties = each.data();
-    return view;
+    return kind == Kind::pose ? withUncertainty(view, {}, "cloud", ofPose(points, clearance)) : view;
   }
 
   std::vector<float> each;
@@ -154,7 +169,8 @@ int main(int argc, char** argv)
   CLI::App app(
       "Questions about a scan whose points may be elsewhere: by up to a tenth of the clearance, drawn for each point "
       "of "
-      "both clouds,\nor by half of that for all. One thread, hierarchies built. Ratios are of the smallest times, "
+      "both clouds,\nor by half of that for all, or because the poses of both are uncertain, by as much. One thread, "
+      "hierarchies built. Ratios are of the smallest times, "
       "to the plain query.",
       "bench_uncertainty");
   app.footer("Example: bench_uncertainty --scene terrain,lion --clock cpu --csv uncertainty.csv");

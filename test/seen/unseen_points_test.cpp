@@ -188,12 +188,93 @@ TEST(MarkUnseen, KeepsItsPromiseInARoomOfPillars)
       EXPECT_GT(room.distance(place), clearance) << place.transpose();
     }
     if (seen && i % 64 == 0) expectSeenByOne(scans, space.angle(0), place, clearance);
-    if (!room.shows(origins[0], place, clearance, 40) && !room.shows(origins[1], place, clearance, 40)) continue;
+    if (!shows(room, origins[0], place, clearance, 40) && !shows(room, origins[1], place, clearance, 40)) continue;
     ++visible;
     recognised += seen;
   }
   EXPECT_GT(visible, 700u);
   EXPECT_GT(recognised, visible / 2); // beams of 30 mrad, half a metre apart at the far wall
+}
+
+/// A pillar hides the middle of a room from one scanner, and another sees it from behind.
+class UnseenTriangles : public testing::Test {
+protected:
+  UnseenTriangles()
+  {
+    room.boxes.emplace_back(Eigen::Vector3d(3, 2.5, 0), Eigen::Vector3d(3.5, 3.5, 3));
+    Random random(1);
+    for (const double x : {1.0, 7.0}) {
+      origins.emplace_back(x, 3.0, 1.5);
+      made.push_back(makeScan(room, {origins.back(), 0.08, -1.57, 1.57}, random));
+    }
+    for (std::size_t s = 0; s < made.size(); ++s) scans.push_back(made[s].scan(origins[s]));
+  }
+
+  Verdicts found(const std::vector<float>& corners, std::size_t scanners, double clearance) const
+  {
+    std::vector<std::uint32_t> faces(corners.size() / 3);
+    for (std::uint32_t i = 0; i < faces.size(); ++i) faces[i] = i;
+    TrianglesView triangles;
+    triangles.vertices = viewOf(corners.data(), faces.size());
+    triangles.corners = faces.data();
+    triangles.count = faces.size() / 3;
+    const SphereHierarchy model(viewOf(triangles));
+    const std::vector<ScanBeams> used(scans.begin(), scans.begin() + static_cast<std::ptrdiff_t>(scanners));
+    const Verdicts verdicts = verdictsOf(spaceOf(used, 0.16), {model}, clearance);
+    EXPECT_EQ(verdicts, bruteForce(used, 0.16, {model}, clearance));
+    return verdicts;
+  }
+
+  MadeRoom room{{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(8, 6, 3)}, {}};
+  std::vector<Eigen::Vector3d> origins;
+  std::vector<MadeScan> made;
+  std::vector<ScanBeams> scans;
+};
+
+TEST_F(UnseenTriangles, AreSeenInParts)
+{
+  // Long and thin, beside the pillar: the ball about it holds the pillar and the walls.
+  const std::vector<float> beside = {1.0f, 1.0f, 1.5f, 3.5f, 1.0f, 1.5f, 3.5f, 1.05f, 1.6f};
+  EXPECT_EQ(found(beside, 1, 0.05), (Verdicts{Verdict::free}));
+  // Its far end is too near to the pillar's edge, as each of both scanners sees it.
+  const std::vector<float> around = {1.0f, 1.0f, 1.5f, 7.0f, 1.0f, 1.5f, 7.0f, 1.05f, 1.6f};
+  EXPECT_EQ(found(around, 1, 0.05), (Verdicts{Verdict::unseen}));
+  EXPECT_EQ(found(around, 2, 0.05), (Verdicts{Verdict::free}));
+}
+
+TEST_F(UnseenTriangles, AreUnseenWhereOneOfTheirPlacesIs)
+{
+  Random random(2);
+  std::size_t seen = 0, unseen = 0;
+  std::vector<float> corners;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d at(random.uniform(0.5, 7.5), random.uniform(0.5, 5.5), random.uniform(0.5, 2.5));
+    for (int c = 0; c < 3; ++c)
+      for (Eigen::Index k = 0; k < 3; ++k) corners.push_back(static_cast<float>(at[k] + random.uniform(-0.5, 0.5)));
+  }
+  const double clearance = 0.05;
+  const Verdicts verdicts = found(corners, 1, clearance);
+  const SeenSpace space = spaceOf({scans[0]}, 0.16);
+  for (std::size_t t = 0; t < verdicts.size(); ++t) {
+    std::vector<double> places;
+    for (int sample = 0; sample < 50; ++sample) {
+      double u = random.uniform(0, 1), w = random.uniform(0, 1);
+      if (u + w > 1) u = 1 - u, w = 1 - w;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double a = corners[9 * t + k], b = corners[9 * t + 3 + k], c = corners[9 * t + 6 + k];
+        places.push_back(a + u * (b - a) + w * (c - a));
+      }
+    }
+    const SphereHierarchy points(viewOf(places.data(), 50));
+    const Verdicts of_places = verdictsOf(space, {points}, clearance * (1.0 - 1e-6));
+    const auto missed = std::count(of_places.begin(), of_places.end(), kUnseen);
+    if (verdicts[t] == Verdict::free) {
+      EXPECT_EQ(missed, 0) << t;
+    }
+    (verdicts[t] == Verdict::free ? seen : unseen) += 1;
+  }
+  EXPECT_GT(seen, 5u);
+  EXPECT_GT(unseen, 5u);
 }
 
 TEST(MarkUnseen, SettlesWholeSpheres)

@@ -42,26 +42,6 @@ struct MadeRoom {
     return nearest;
   }
 
-  /// Whether beams in all directions of the ball's cone leave the ball before they meet a surface: of as many as are
-  /// asked for, the outermost and others.
-  bool shows(const Eigen::Vector3d& origin, const Eigen::Vector3d& center, double radius, int directions) const
-  {
-    const Eigen::Vector3d way = center - origin;
-    const double distance = way.norm();
-    if (distance <= radius) return false;
-    const Eigen::Vector3d axis = way / distance, side = axis.unitOrthogonal(), up = axis.cross(side);
-    for (int i = 0; i <= directions; ++i) {
-      const double turn = 2.399963 * i, share = i % 2 == 0 ? 1.0 : std::sqrt(static_cast<double>(i) / directions);
-      const double angle = share * std::asin(radius / distance);
-      const Eigen::Vector3d d =
-          std::cos(angle) * axis + std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * up);
-      const double off = distance * std::sin(angle);
-      const double leaves = distance * std::cos(angle) + std::sqrt(std::max(0.0, radius * radius - off * off));
-      if (cast(origin, d) <= leaves) return false;
-    }
-    return true;
-  }
-
 private:
   static std::pair<double, double> spanIn(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction)
@@ -71,6 +51,36 @@ private:
     return {a.min(b).maxCoeff(), a.max(b).minCoeff()};
   }
 };
+
+/// Whether beams in all directions of the ball's cone leave the ball before they meet a surface: of as many as are
+/// asked for, the outermost and others.
+/// @param inside whether the scanner turns to a direction
+template <class Room, class Inside>
+bool shows(const Room& room, const Eigen::Vector3d& origin, const Eigen::Vector3d& center, double radius,
+           int directions, const Inside& inside)
+{
+  const Eigen::Vector3d way = center - origin;
+  const double distance = way.norm();
+  if (distance <= radius) return false;
+  const Eigen::Vector3d axis = way / distance, side = axis.unitOrthogonal(), up = axis.cross(side);
+  for (int i = 0; i <= directions; ++i) {
+    const double turn = 2.399963 * i, share = i % 2 == 0 ? 1.0 : std::sqrt(static_cast<double>(i) / directions);
+    const double angle = share * std::asin(radius / distance);
+    const Eigen::Vector3d d = std::cos(angle) * axis + std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * up);
+    const double off = distance * std::sin(angle);
+    const double leaves = distance * std::cos(angle) + std::sqrt(std::max(0.0, radius * radius - off * off));
+    if (!inside(d) || room.cast(origin, d) <= leaves) return false;
+  }
+  return true;
+}
+
+/// The same of a scanner that turns all round.
+template <class Room>
+bool shows(const Room& room, const Eigen::Vector3d& origin, const Eigen::Vector3d& center, double radius,
+           int directions)
+{
+  return shows(room, origin, center, radius, directions, [](const Eigen::Vector3d&) { return true; });
+}
 
 /// A hall of so many metres with pillars between a scanner's places, and a machine's length of free way.
 inline MadeRoom hallOfPillars(double length = 20.0, double width = 12.0, double height = 5.0, double step = 4.0)
@@ -87,8 +97,18 @@ struct MadeScanner {
   Eigen::Vector3d origin;
   double step = 0.01;                                     ///< between beams of a row, and between rows
   double lowest = -1.0, highest = 1.3;                    ///< elevation
+  double first = 0.0, last = 2.0 * kPi;                   ///< azimuth
   double noise = 0.0;                                     ///< sigma of ranges, cut off at three
   double range = std::numeric_limits<double>::infinity(); ///< from farther away nothing returns
+
+  /// Whether a direction is no farther out than its outermost beams. @pre last - first <= 2 pi
+  bool turnsTo(const Eigen::Vector3d& direction) const
+  {
+    const double up = std::asin(std::clamp(direction.z() / direction.norm(), -1.0, 1.0));
+    double around = std::atan2(direction.y(), direction.x());
+    while (around < first) around += 2.0 * kPi;
+    return lowest <= up && up <= highest && around <= last;
+  }
 };
 
 /// Coordinates of returns, in a row, and of the ends of beams without a return.
@@ -104,15 +124,17 @@ struct MadeScan {
   }
 };
 
-inline MadeScan makeScan(const MadeRoom& room, const MadeScanner& scanner, Random& random)
+template <class Room>
+MadeScan makeScan(const Room& room, const MadeScanner& scanner, Random& random)
 {
   MadeScan made;
   const auto rows = static_cast<int>((scanner.highest - scanner.lowest) / scanner.step);
   for (int row = 0; row <= rows; ++row) {
     const double elevation = scanner.lowest + scanner.step * row;
-    const auto columns = static_cast<int>(std::ceil(2.0 * kPi / scanner.step));
+    const double turn = scanner.last - scanner.first;
+    const auto columns = static_cast<int>(std::ceil(turn / scanner.step));
     for (int column = 0; column < columns; ++column) {
-      const double azimuth = 2.0 * kPi * column / columns;
+      const double azimuth = scanner.first + turn * column / columns;
       const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                               std::sin(elevation));
       double range = room.cast(scanner.origin, d);
