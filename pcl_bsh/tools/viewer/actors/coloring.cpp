@@ -232,8 +232,9 @@ void mark(CloudActors clouds, ValueBar& bar, const ViewContent& content, const S
   else {
     if (coloring == Coloring::collision) requireCollisions(collisions, "collision");
     const std::vector<Verdict>& flags = collisions.flags[0];
-    clouds[0]->mark(maskOf(flags, false),
-                    collisions.undecided + collisions.sparse > 0 ? colorsOfVerdicts(flags) : std::vector<Color>());
+    clouds[0]->mark(maskOf(flags, false), collisions.undecided + collisions.sparse + collisions.unseen > 0
+                                              ? colorsOfVerdicts(flags)
+                                              : std::vector<Color>());
   }
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->mark(maskOf(collisions.flags[i], false));
 }
