@@ -26,10 +26,10 @@ Point3 middleOf(const Clash& clash)
   return middle;
 }
 
-std::string idAt(const Point3& place, double cell)
+std::string idAt(const char* letter, const Point3& place, double cell)
 {
   const auto number = [&](std::size_t axis) { return static_cast<long long>(std::floor(place[axis] / cell)); };
-  return plainText("C", number(0), "_", number(1), "_", number(2));
+  return plainText(letter, number(0), "_", number(1), "_", number(2));
 }
 
 /// Ids that are taken.
@@ -52,7 +52,7 @@ private:
   std::map<std::string, int> last_; ///< the last number that was tried behind an id
 };
 
-void giveIds(std::vector<Clash>& clashes, double cluster_distance)
+void giveIds(std::vector<Clash>& clashes, const char* letter, double cluster_distance)
 {
   const double cell = std::exp2(std::ceil(std::log2(4 * cluster_distance)));
   std::vector<Clash*> by_place;
@@ -61,7 +61,7 @@ void giveIds(std::vector<Clash>& clashes, double cluster_distance)
     return std::tie(a->low, a->high) < std::tie(b->low, b->high);
   });
   TakenIds taken;
-  for (Clash* clash : by_place) clash->id = taken.free(idAt(middleOf(*clash), cell));
+  for (Clash* clash : by_place) clash->id = taken.free(idAt(letter, middleOf(*clash), cell));
 }
 
 void add(Clash& clash, std::uint32_t record, const PointsView& scan, const TrajectoryResult& found)
@@ -111,8 +111,8 @@ double squaredDistance(const Point3& p, const Point3& q)
 
 const char* nameOf(ClashStatus status) noexcept
 {
-  constexpr std::array<const char*, clash_statuses> names = {"new", "persisting", "resolved", "not_visited",
-                                                             "not_scanned"};
+  constexpr std::array<const char*, clash_statuses> names = {"new",         "persisting",  "resolved",
+                                                             "not_visited", "not_scanned", "unseen"};
   return names[static_cast<std::size_t>(status)];
 }
 
@@ -146,11 +146,19 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 
 void nameClashes(std::vector<Clash>& clashes, double cluster_distance)
 {
-  giveIds(clashes, cluster_distance);
+  giveIds(clashes, "C", cluster_distance);
   std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
     const bool perhaps_a = !a.isCertain(), perhaps_b = !b.isCertain();
     return std::tie(perhaps_a, a.distance, b.points, a.id) < std::tie(perhaps_b, b.distance, a.points, b.id);
   });
+}
+
+void nameUnseenPlaces(std::vector<Clash>& places, double cluster_distance)
+{
+  for (Clash& place : places) place.place = middleOf(place);
+  giveIds(places, "U", cluster_distance);
+  std::sort(places.begin(), places.end(),
+            [](const Clash& a, const Clash& b) { return std::tie(b.points, a.id) < std::tie(a.points, b.id); });
 }
 
 std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)
@@ -167,8 +175,9 @@ std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<
       continue;
     }
     now.visitNear({earlier[j].low, earlier[j].high}, nearness, [&](std::size_t i) {
+      if (clashes[i].wasNoClash() != earlier[j].wasNoClash()) return false;
       pairs.emplace_back(squaredDistance(middleOf(clashes[i]), middleOf(earlier[j])), j, i);
-      clashes[i].status = ClashStatus::persisting;
+      if (!clashes[i].wasNoClash()) clashes[i].status = ClashStatus::persisting;
       there_still[j] = true;
       return false;
     });
@@ -188,7 +197,7 @@ std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<
   }
 
   for (std::size_t j = 0; j < earlier.size(); ++j) {
-    if (there_still[j]) continue;
+    if (there_still[j] || earlier[j].wasNoClash()) continue;
     clashes.push_back(earlier[j]);
     clashes.back().status = ClashStatus::resolved;
     clashes.back().records.clear(); // of an earlier scan

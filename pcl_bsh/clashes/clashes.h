@@ -7,6 +7,7 @@
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,12 +16,13 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
-/// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited), or
-/// nothing at all of the scan lies near it (not_scanned): see FormerPlaces.
-enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned };
-inline constexpr std::size_t clash_statuses = 5; ///< how many there are
+/// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited),
+/// nothing at all of the scan lies near it (not_scanned), or the model is unseen there: see FormerPlaces. What is
+/// unseen and was no clash before has an entry of its own (findUnseenPlaces()).
+enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
+inline constexpr std::size_t clash_statuses = 6; ///< how many there are
 
-/// new, persisting, resolved, not_visited or not_scanned.
+/// new, persisting, resolved, not_visited, not_scanned or unseen.
 const char* nameOf(ClashStatus status) noexcept;
 
 /// Whether a clash of this status is there now.
@@ -38,13 +40,15 @@ struct Clash {
   std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
   Point3 low = {}, high = {};     ///< its bounding box
   Point3 place = {};              ///< where its point of the closest pair is; of a triangle, its middle
-  double distance = 0.0;          ///< the smallest, less radii
+  double distance = 0.0;          ///< the smallest, less radii; NaN of what is unseen and was no clash
   std::uint32_t scan_point = 0;   ///< the pair that realises it; of several, that of the smallest record of the scan
   std::uint32_t model_point = 0;  ///< at the closest pose
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
 
   bool isCertain() const { return certain_points > 0; } ///< else it collides only perhaps
+
+  bool wasNoClash() const { return std::isnan(distance); } ///< unseen, and nothing else is known of it
 };
 
 /// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
@@ -65,10 +69,14 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 /// @param cluster_distance finite, > 0
 void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
 
+/// The same of what is unseen and was no clash.
+void nameUnseenPlaces(std::vector<Clash>& places, double cluster_distance);
+
 /// Tells which clashes were there before: those whose box comes within `nearness` (per axis) of an earlier one's box
 /// are persisting, and each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to
 /// one, so that a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are
-/// appended as resolved, which FormerPlaces then judges; those that were resolved then already are forgotten.
+/// appended as resolved, which FormerPlaces then judges; those that were resolved then already are forgotten. What is
+/// unseen and was no clash gets ids from its like alone, and is forgotten where it is not found again.
 /// @return how many boxes were compared
 std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
 

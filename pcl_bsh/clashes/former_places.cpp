@@ -38,8 +38,10 @@ struct FormerPlaces::Places {
   : clashes(resolvedOf(of)),
     reach(reachOf(clashes, clearance, cluster_distance)),
     not_scanned(boxesOf(clashes)),
+    not_unseen(not_scanned),
     is_visited(clashes.size(), false),
-    is_scanned(clashes.size(), false)
+    is_scanned(clashes.size(), false),
+    is_unseen(clashes.size(), false)
   {
   }
 
@@ -49,8 +51,8 @@ struct FormerPlaces::Places {
 
   std::vector<Clash*> clashes;
   double reach;
-  mutable NearBoxes not_scanned;
-  std::vector<bool> is_visited, is_scanned;
+  mutable NearBoxes not_scanned, not_unseen;
+  std::vector<bool> is_visited, is_scanned, is_unseen;
 };
 
 FormerPlaces::FormerPlaces(std::vector<Clash>& clashes, double clearance, double cluster_distance)
@@ -126,6 +128,15 @@ void FormerPlaces::scan(const PointsView& points)
   }
 }
 
+void FormerPlaces::unsee(const Extent& box)
+{
+  if (places_->not_unseen.left() == 0) return;
+  places_->not_unseen.visitNear(box, places_->reach, [&](std::size_t place) {
+    places_->is_unseen[place] = true;
+    return true;
+  });
+}
+
 bool FormerPlaces::mayScan(const Extent& box) const
 {
   bool near = false;
@@ -141,6 +152,8 @@ void FormerPlaces::judge()
   for (std::size_t i = 0; i < places_->clashes.size(); ++i) {
     if (!places_->is_visited[i])
       places_->clashes[i]->status = ClashStatus::not_visited;
+    else if (places_->is_unseen[i])
+      places_->clashes[i]->status = ClashStatus::unseen;
     else if (!places_->is_scanned[i])
       places_->clashes[i]->status = ClashStatus::not_scanned;
   }

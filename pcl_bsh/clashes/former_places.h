@@ -11,7 +11,7 @@
 // visited if the model comes within the reach of the point that was the clash's nearest, at a pose or during swept
 // motion. It was scanned if a finite point of the scan lies within the reach, along each axis, of the clash's box. A
 // wall that is removed with all that is near it leaves no points either: of such a place the scan says nothing, and
-// not_scanned is the honest answer.
+// not_scanned is the honest answer. It is unseen if something of the model is, at a pose, within the reach of the box.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -41,13 +41,16 @@ public:
   /// The scan has these points.
   void scan(const PointsView& points);
 
+  /// Something of the model was unseen in this box.
+  void unsee(const Extent& box);
+
   /// Whether visit() of points within this box may tell anything.
   bool mayVisit(const Extent& box, const std::vector<Eigen::Isometry3d>& poses, const TrajectoryRequest& motion) const;
 
   /// Whether scan() of points within this box may tell anything.
   bool mayScan(const Extent& box) const;
 
-  /// Gives those that were not visited, or else not scanned, that status.
+  /// Gives those that were not visited, or else are unseen, or else not scanned, that status.
   void judge();
 
 private:

@@ -44,6 +44,14 @@ struct Answer {
     std::vector<std::size_t> at_poses;     ///< at each
     std::optional<std::size_t> first_pose; ///< with any
     std::vector<double> angles;            ///< of each scan: what its beams speak for, in radians
+    std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, which; empty where none are
+
+    /// Of a solid, at each pose: the volume of cubes that hold what it encloses and in which not all is seen. They
+    /// collide with nothing, and are at least 1/48 of its longest side.
+    std::vector<double> inside;
+
+    /// What was found at the next pose. @param gravest of all poses, one per record
+    void addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest);
   };
   Unseen unseen;
   std::vector<std::uint8_t> within; ///< 1: within the limits

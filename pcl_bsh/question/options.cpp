@@ -46,6 +46,8 @@ std::vector<QuestionOption> table()
        "radians about a place in the obstacle's frame, its origin without one; or `covariance=SIGMAS:` and the 36 "
        "numbers of a registration's; a point then moves by at most T + 2 sin(W / 2) times its distance from the place, "
        "and verdicts are those of uncertain points"},
+      {"input_pose_uncertainty", &Q::input_pose_uncertainty, Kind::collisions, "T,W,X,Y,Z", "m", Input::uncertainty,
+       "the same for the input's own pose, all of whose points move together, about a place in its frame"},
       {"density", &Q::density, Kind::collisions, "", "", Input::density,
        "a point that is free of the obstacle's points, but within the clearance of the surface in a hole between them, "
        "is undecided: not scanned densely enough; at one pose"},

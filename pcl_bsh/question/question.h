@@ -31,14 +31,15 @@ struct Wanted {
   bool indices = false;          ///< which points of the input collide, as a list, at one pose
   bool obstacle_indices = false; ///< the same of the obstacle
   bool contacts = false;         ///< of each that collides: its smallest distance, the first pose and the closest
-  bool poses = false;       ///< of each pose: how many points collide, and the smallest distance; not of swept motion
-  bool first_poses = false; ///< of each that collides: the first pose alone
-  bool closest = false;     ///< the smallest distance and its pair: with contacts, and along a path, of what collides
-  bool distances = false;   ///< of each point of the input to the obstacle; along a path the smallest
-  bool both_ways = false;   ///< distances also of the obstacle's points, at one pose
-  bool within = false;      ///< which points of the input have a distance within the limits, at one pose
-  bool intervals = false;   ///< distances that an early stop leaves open are answers, too: their intervals tell
-  bool spacings = false;    ///< how far points are apart, for the warning of holes: builds a few voxels
+  bool poses = false;         ///< of each pose: how many points collide, and the smallest distance; not of swept motion
+  bool first_poses = false;   ///< of each that collides: the first pose alone
+  bool closest = false;       ///< the smallest distance and its pair: with contacts, and along a path, of what collides
+  bool distances = false;     ///< of each point of the input to the obstacle; along a path the smallest
+  bool both_ways = false;     ///< distances also of the obstacle's points, at one pose
+  bool within = false;        ///< which points of the input have a distance within the limits, at one pose
+  bool intervals = false;     ///< distances that an early stop leaves open are answers, too: their intervals tell
+  bool unseen_places = false; ///< with `seen`: which of the obstacle are unseen at each pose
+  bool spacings = false;      ///< how far points are apart, for the warning of holes: builds a few voxels
 
   bool collisions() const
   {
@@ -63,10 +64,11 @@ struct Question : Effort {
   double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
   std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
   Uncertainty uncertainty = {}, obstacle_uncertainty = {};
-  PoseUncertainty pose_uncertainty = {};   ///< of every pose, in the obstacle's frame
-  double sigmas = 1.0;                     ///< times those of both uncertainties, where they are fields
-  bool density = false;                    ///< the density guard (FlagsRequest::spacings_of_b)
-  std::optional<double> widest_gap = {};   ///< of the guard; none: usualGap()
+  PoseUncertainty pose_uncertainty = {};       ///< of every pose, in the obstacle's frame
+  PoseUncertainty input_pose_uncertainty = {}; ///< of the input's own, in its frame
+  double sigmas = 1.0;                         ///< times those of both uncertainties, where they are fields
+  bool density = false;                        ///< the density guard (FlagsRequest::spacings_of_b)
+  std::optional<double> widest_gap = {};       ///< of the guard; none: usualGap()
   bool seen = false;                       ///< what is free and nobody saw is unseen: of the obstacle (Answer::unseen)
   ScanOrigins origin = {};                 ///< where the input was scanned from
   std::optional<double> seen_angle = {};   ///< SeenOptions::angle
@@ -81,26 +83,18 @@ struct Question : Effort {
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
   /// None: the poses alone.
   std::optional<double> sweptTolerance() const { return swept > 0.0 ? std::optional(swept) : std::nullopt; }
-  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty); } ///< with `sigmas`
-
-  /// Likewise, and with that of its pose.
-  Uncertainty uncertaintyOfObstacle() const
-  {
-    Uncertainty all = scaled(obstacle_uncertainty);
-    all.pose = pose_uncertainty;
-    return all;
-  }
+  /// With `sigmas`, and that of its pose.
+  Uncertainty uncertaintyOfInput() const { return scaled(uncertainty, input_pose_uncertainty); }
+  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty, pose_uncertainty); } ///< likewise
 
   /// Whether a point may be elsewhere than it is given.
-  bool isUncertain() const
-  {
-    return !uncertainty.isZero() || !obstacle_uncertainty.isZero() || !pose_uncertainty.isZero();
-  }
+  bool isUncertain() const { return !uncertaintyOfInput().isZero() || !uncertaintyOfObstacle().isZero(); }
 
 private:
-  Uncertainty scaled(Uncertainty one) const
+  Uncertainty scaled(Uncertainty one, const PoseUncertainty& pose_of_it) const
   {
     one.sigmas *= sigmas;
+    one.pose = pose_of_it;
     return one;
   }
 };

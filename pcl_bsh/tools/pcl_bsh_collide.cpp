@@ -109,12 +109,13 @@ Answer askInStep(const std::string& what, Question question, Shape& input, Shape
 }
 
 /// What collides first, then all distances: each tells how long it takes.
-void answer(Shape& input, Shape& obstacle, cli::CollisionReport& report)
+void answer(Shape& input, Shape& obstacle, bool lists_clashes, cli::CollisionReport& report)
 {
   Question question = report.question;
   Wanted& wanted = question.wanted;
   const Wanted all = wanted;
   wanted.distances = wanted.both_ways = false;
+  wanted.unseen_places = question.seen && lists_clashes;
   wanted.spacings = !all.measures(); // at last, for it builds voxels
   report.answer = askInStep(question.path ? "Following " + counted(question.path->size(), "pose") : "Comparing",
                             question, input, obstacle, report.seconds.query, [](const Answer& found) {
@@ -161,7 +162,9 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, const 
                        .survey = {poses, extentOf(a.view())},
                        .unit = options.unit,
                        .coordinate_system = report.coordinate_system,
-                       .surface = report.surface ? &*report.surface : nullptr};
+                       .surface = report.surface ? &*report.surface : nullptr,
+                       .unseen = report.question.seen ? &report.answer.unseen : nullptr};
+  io::listUnseen(list);
   if (earlier) {
     TrajectoryRequest motion;
     motion.swept = question.swept;
@@ -247,7 +250,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
     report.obstacle.points = vertices.count;
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
-  answer(scan, other, report);
+  answer(scan, other, !options.clashes.empty(), report);
   report.voxels_total = a.statistics().voxels + b.statistics().voxels;
   for (const std::string& remark : input.facts.remarks)
     addOnce(options.input.string() + ": " + remark, report.warnings);

@@ -2,6 +2,7 @@
 #include <pcl_bsh/question/scan_origins.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
 
 #include "support/made_scans.h"
@@ -11,6 +12,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -122,6 +124,67 @@ TEST_F(Unseen, UncertainPointsStayUndecided)
   model_ = {2, 3, 1.5, 5, 3, 1.5, 2.85, 3, 1.5}; // the last may be within the clearance
   question.obstacle_uncertainty = 0.08;
   EXPECT_EQ(asked(first_).obstacle_flags, test::verdictsOf({0, 4, 2}));
+}
+
+TEST_F(Unseen, HoldsWhereverTheScanTrulyIs)
+{
+  model_ = {2, 3, 1.5, 2.7, 3, 1.5, 2.7, 3, 1.5}; // the pillar begins at 3
+  const auto flags = [&] { return asked(first_).obstacle_flags; };
+  EXPECT_EQ(flags(), test::verdictsOf({0, 0, 0}));
+  question.input_pose_uncertainty = {0.15};
+  EXPECT_EQ(flags(), test::verdictsOf({0, 4, 4})) << "free all the same, but not seen up to the pillar";
+  question.input_pose_uncertainty = {0.0, 0.08, {1, 3, 1.5}};
+  EXPECT_EQ(flags(), test::verdictsOf({0, 4, 4})) << "turned about the scanner";
+  question.input_pose_uncertainty = {0.0, 0.01, {2.7, 3, 1.5}};
+  EXPECT_EQ(flags()[1], Verdict::free) << "turned about the place";
+  question.input_pose_uncertainty = {0.25};
+  EXPECT_EQ(flags()[1], Verdict::undecided);
+}
+
+TEST_F(Unseen, IsAskedOfScansThatStandInAWorld)
+{
+  question.pose_of_input = Eigen::Translation3d(10, 20, 30) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
+  question.pose = question.pose_of_input;
+  model_ = {2, 3, 1.5, 5, 3, 1.5, 2.95, 3, 1.5};
+  EXPECT_EQ(asked(first_).obstacle_flags, test::verdictsOf({0, 4, 1}));
+}
+
+/// A box before the pillar that holds nothing; one about the pillar, whose walls are all seen by one scanner or
+/// another.
+TEST_F(Unseen, IsTheInsideOfASolidToo)
+{
+  const auto inside = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    std::vector<double> corners;
+    for (int i = 0; i < 8; ++i)
+      for (int k = 0; k < 3; ++k) corners.push_back((i >> k & 1) ? high[k] : low[k]);
+    const std::vector<std::uint32_t> faces = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                              2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    TrianglesView triangles;
+    triangles.vertices = viewOf(corners.data(), 8);
+    triangles.corners = faces.data();
+    triangles.count = 12;
+    question.solid = true;
+    Shape room = shapeOf(both_), box("box", viewOf(triangles));
+    const Answer found = ask(question, room, box);
+    EXPECT_EQ(found.unseen.inside.size(), 1u);
+    return std::pair(found.unseen.count, found.unseen.inside.at(0));
+  };
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  question.clearance = 0.05;
+  const auto [free_walls, free_inside] = inside({1.5, 1.0, 1.0}, {2.5, 2.0, 2.0});
+  EXPECT_EQ(free_walls, 0u);
+  EXPECT_EQ(free_inside, 0.0);
+  const auto [walls, hidden] = inside({2.6, 2.1, 0.8}, {3.9, 3.9, 2.2});
+  EXPECT_GT(hidden, 0.1); // of the pillar's 0.7
+  EXPECT_LT(hidden, 2.0);
+}
+
+TEST_F(Unseen, TellsWhichAtEachPose)
+{
+  question.path = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0, -1.5, 0))};
+  question.wanted.unseen_places = true;
+  const Answer found = asked(first_);
+  EXPECT_THAT(found.unseen.where, ElementsAre(std::vector{false, true, false}, std::vector<bool>()));
 }
 
 TEST_F(Unseen, NeedsToKnowWhereScannersStood)

@@ -21,7 +21,7 @@ struct ClashWriter : Stage, QuestionStage {
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
     Wanted wanted;
-    wanted.flags = wanted.contacts = wanted.poses = true;
+    wanted.flags = wanted.contacts = wanted.poses = wanted.unseen_places = true;
     QuestionStage::plan(inputs[0], wanted, *this);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
@@ -78,7 +78,9 @@ private:
                            .survey = {poses, extentOf(input.view())},
                            .unit = unit,
                            .coordinate_system = coordinate_system,
-                           .surface = found.compared.isSurface() ? &found.compared : nullptr};
+                           .surface = found.compared.isSurface() ? &found.compared : nullptr,
+                           .unseen = question.seen ? &found.answer.unseen : nullptr};
+    io::listUnseen(report);
     if (previous) {
       TrajectoryRequest motion;
       motion.swept = report.question.swept;
@@ -116,9 +118,10 @@ StageType clashWriter()
               "colliding points farther apart are two clashes; null: computed from clearance and spacing")
       .unit("m")
       .above(0)
-      .option(&ClashWriter::previous, "previous",
-              "the .json of an earlier run with the same clearance, uncertainties and accuracy: tells clashes that are "
-              "new, persisting, resolved, or not visited by the path or not scanned any more; may be `filename`")
+      .option(
+          &ClashWriter::previous, "previous",
+          "the .json of an earlier run with the same clearance, uncertainties and accuracy: tells clashes that are "
+          "new, persisting, resolved, or not visited by the path, unseen or not scanned any more; may be `filename`")
       .replaceable()
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");

@@ -73,7 +73,10 @@ Clash clashFrom(const JsonReader& entry)
   clash.low = box.low;
   clash.high = box.high;
   clash.place = placeFrom(entry, clash);
-  clash.distance = entry.at("distance").number(-largest, largest);
+  const JsonReader distance = entry.at("distance");
+  clash.distance = clash.status == ClashStatus::unseen && distance.json().is_null()
+                       ? std::numeric_limits<double>::quiet_NaN()
+                       : distance.number(-largest, largest);
   clash.first_pose = static_cast<std::int32_t>(entry.at("first_pose").whole(0, last_pose));
   clash.closest_pose = static_cast<std::int32_t>(entry.at("closest_pose").whole(0, last_pose));
   return clash;
@@ -82,7 +85,17 @@ Clash clashFrom(const JsonReader& entry)
 Uncertainty uncertaintyFrom(const JsonReader& reader)
 {
   if (!reader.json().is_object()) return reader.number(0, largest);
-  return {reader.at("field").text(), reader.at("sigmas").number(0, largest)};
+  Uncertainty uncertainty;
+  if (reader.has("length"))
+    uncertainty = reader.at("length").number(0, largest);
+  else
+    uncertainty = {reader.at("field").text(), reader.at("sigmas").number(0, largest)};
+  if (reader.has("pose")) {
+    const JsonReader pose = reader.at("pose");
+    uncertainty.pose = {pose.at("length").number(0, largest), pose.at("angle").number(0, largest),
+                        pointFrom(pose.at("about"))};
+  }
+  return uncertainty;
 }
 
 Accuracy accuracyFrom(const JsonReader& reader)
@@ -129,7 +142,7 @@ std::optional<Survey> surveyFrom(const JsonReader& reader)
 bool isSame(const Uncertainty& a, const Uncertainty& b)
 {
   if (a.field != b.field) return false;
-  return a.field.empty() ? a.length == b.length : a.sigmas == b.sigmas;
+  return a.pose == b.pose && (a.field.empty() ? a.length == b.length : a.sigmas == b.sigmas);
 }
 
 std::string boxText(const std::optional<Extent>& box)
@@ -176,19 +189,24 @@ std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
 ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question)
 {
   return {std::move(input),  std::move(obstacle),           question.clearance.value_or(0.0), question.sweptTolerance(),
-          question.accuracy, question.uncertaintyOfInput(), question.uncertaintyOfObstacle()};
+          question.accuracy, question.uncertaintyOfInput(), question.uncertaintyOfObstacle(), question.seen};
 }
 
 std::string uncertaintyText(const Uncertainty& uncertainty)
 {
-  if (uncertainty.field.empty()) return numberText(uncertainty.length);
-  return numberText(uncertainty.sigmas) + " x field " + uncertainty.field;
+  std::string text = numberText(uncertainty.length);
+  if (!uncertainty.field.empty()) text = numberText(uncertainty.sigmas) + " x field " + uncertainty.field;
+  return uncertainty.pose.isZero() ? text : text + " and of poses " + uncertainty.pose.text();
 }
 
 Json uncertaintyJson(const Uncertainty& uncertainty)
 {
-  if (uncertainty.field.empty()) return uncertainty.length;
-  return {{"field", uncertainty.field}, {"sigmas", uncertainty.sigmas}};
+  const PoseUncertainty& pose = uncertainty.pose;
+  if (uncertainty.field.empty() && pose.isZero()) return uncertainty.length;
+  Json json = {{"length", uncertainty.length}};
+  if (!uncertainty.field.empty()) json = {{"field", uncertainty.field}, {"sigmas", uncertainty.sigmas}};
+  if (!pose.isZero()) json["pose"] = {{"length", pose.length}, {"angle", pose.angle}, {"about", pose.about}};
+  return json;
 }
 
 Survey::Survey(const std::vector<Eigen::Isometry3d>& all_poses, const std::optional<Extent>& of_scan)

@@ -22,7 +22,8 @@ struct ClashQuestion {
   double clearance = 0;
   std::optional<double> swept;
   Accuracy accuracy;
-  Uncertainty input_uncertainty, obstacle_uncertainty;
+  Uncertainty input_uncertainty, obstacle_uncertainty; ///< the latter with that of its poses
+  bool seen = false;                                   ///< whether what is unseen is listed, too
 
   /// Whether clashes may be uncertain.
   bool isUncertain() const { return !input_uncertainty.isZero() || !obstacle_uncertainty.isZero(); }
@@ -31,10 +32,10 @@ struct ClashQuestion {
 /// What a user's question is to a list. @param input and @param obstacle file names
 ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question);
 
-/// A length, or `K x field NAME`.
+/// A length, or `K x field NAME`; with that of poses behind it.
 std::string uncertaintyText(const Uncertainty& uncertainty);
 
-/// A length, or a field and how many of its sigmas count.
+/// A length, or a field and how many of its sigmas count, or an object of one of them and that of poses.
 Json uncertaintyJson(const Uncertainty& uncertainty);
 
 /// Where a run looked.

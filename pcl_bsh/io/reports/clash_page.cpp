@@ -51,8 +51,10 @@ private:
   std::string headline() const
   {
     const std::size_t perhaps = report_.question.isUncertain() ? report_.perhaps() : 0;
-    const std::string certain = counted(report_.present() - perhaps, "clash", "clashes");
-    return report_.question.isUncertain() ? certain + ", " + std::to_string(perhaps) + " perhaps" : certain;
+    std::string line = counted(report_.present() - perhaps, "clash", "clashes");
+    if (report_.question.isUncertain()) line += ", " + std::to_string(perhaps) + " perhaps";
+    if (report_.unseen) line += ", " + std::to_string(report_.count(ClashStatus::unseen)) + " unseen";
+    return line;
   }
 
   /// What is uncertain, where anything is.
@@ -166,21 +168,28 @@ private:
             {"class", nameOf(clash.status)},
             {"status", inWords(clash.status)},
             {"perhaps", !clash.isCertain()},
-            {"distance", number(clash.distance)},
+            {"distance", clash.wasNoClash() ? std::string() : number(clash.distance)},
             {"points", std::to_string(clash.points)},
             {"points_noun", nounOf(clash.points, "point")},
             {"first_pose", std::to_string(clash.first_pose)},
             {"closest_pose", std::to_string(clash.closest_pose)}};
   }
 
-  /// Those that collide only perhaps have a table of their own.
-  Data rowsOf(bool perhaps) const
+  enum class Table { certain, perhaps, unseen }; ///< each kind of clash has its own
+
+  static Table tableOf(const Clash& clash)
+  {
+    if (clash.wasNoClash()) return Table::unseen;
+    return clash.isCertain() ? Table::certain : Table::perhaps;
+  }
+
+  Data rowsOf(Table table) const
   {
     List rows;
     std::size_t cards = 0;
     for (const Clash& clash : report_.clashes) {
       const bool has_card = isPresent(clash.status) && cards++ < most_pictures;
-      if (clash.isCertain() == perhaps) continue;
+      if (tableOf(clash) != table) continue;
       Object row = factsOf(clash);
       row["size"] = number(longestSide(clash), 3);
       row["linked"] = has_card;
@@ -192,11 +201,14 @@ private:
   List tables() const
   {
     List tables;
-    for (const bool perhaps : {false, true}) {
-      Data rows = rowsOf(perhaps);
+    for (const auto& [table, title] :
+         {std::pair{Table::certain, "By severity"}, {Table::perhaps, "Perhaps"}, {Table::unseen, "Unseen"}}) {
+      Data rows = rowsOf(table);
       if (rows.is_false()) continue;
-      tables.push_back(
-          Object{{"title", perhaps ? "Perhaps" : "By severity"}, {"perhaps_only", perhaps}, {"rows", rows}});
+      tables.push_back(Object{{"title", title},
+                              {"perhaps_only", table == Table::perhaps},
+                              {"unseen_only", table == Table::unseen},
+                              {"rows", rows}});
     }
     return tables;
   }

@@ -24,6 +24,7 @@ Json toJson(const std::optional<Extent>& box)
 
 const char* certaintyOf(const Clash& clash)
 {
+  if (clash.wasNoClash()) return "unseen";
   return clash.isCertain() ? "certain" : "perhaps";
 }
 
@@ -41,7 +42,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"certain_points", clash.certain_points},
                {"box", toJson(Extent{clash.low, clash.high})},
                {"place", clash.place},
-               {"distance", clash.distance},
+               {"distance", clash.wasNoClash() ? Json() : Json(clash.distance)},
                {"first_pose", clash.first_pose},
                {"closest_pose", clash.closest_pose}};
   if (!isPresent(clash.status)) return json;
@@ -80,6 +81,15 @@ Json surfaceJson(const Obstacle* surface)
   return {{"triangles", surface->triangles()->size()}, {"promise", promiseOf(*surface)}};
 }
 
+Json unseenJson(const Answer::Unseen& unseen)
+{
+  return {{"obstacle_points", unseen.count},
+          {"at_poses", unseen.at_poses},
+          {"first_pose", unseen.first_pose ? Json(*unseen.first_pose) : Json()},
+          {"angles_of_scans", unseen.angles},
+          {"inside", unseen.inside.empty() ? Json() : Json(unseen.inside)}};
+}
+
 std::string clashJson(const ClashReport& report)
 {
   const ClashQuestion& question = report.question;
@@ -96,6 +106,7 @@ std::string clashJson(const ClashReport& report)
                 {{"input", uncertaintyJson(question.input_uncertainty)},
                  {"obstacle", uncertaintyJson(question.obstacle_uncertainty)}}},
                {"accuracy", question.accuracy.text()},
+               {"seen", question.seen},
                {"cluster_distance", report.cluster_distance},
                {"poses", report.poses.size()},
                {"swept", question.swept ? Json(*question.swept) : Json()},
@@ -116,14 +127,14 @@ std::string clashCsv(const ClashReport& report)
                     (report.model_source_of ? "source,obstacle_record" : report.partName()) +
                     ",obstacle_x,obstacle_y,obstacle_z,"
                     "certainty,certain_points,clearance,input_uncertainty,obstacle_uncertainty,sigmas,accuracy,unit,"
-                    "coordinate_system\n";
+                    "coordinate_system,pose_uncertainty\n";
   const ClashQuestion& question = report.question;
   const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
   for (const Clash& clash : report.clashes) {
     cell(csvText(clash.id));
     cell(nameOf(clash.status));
     cell(std::to_string(clash.points));
-    cell(numberText(clash.distance));
+    cell(clash.wasNoClash() ? "" : numberText(clash.distance));
     cell(std::to_string(clash.first_pose));
     cell(std::to_string(clash.closest_pose));
     for (const Point3& corner : {clash.low, clash.high})
@@ -155,6 +166,7 @@ std::string clashCsv(const ClashReport& report)
     cell(question.accuracy.text());
     cell(csvText(report.unit));
     cell(csvText(report.coordinate_system));
+    cell(csvText(question.obstacle_uncertainty.pose.text()));
     csv += '\n';
   }
   return csv;
@@ -165,6 +177,7 @@ std::string clashCounts(const ClashReport& report)
   const std::size_t present = report.present(), perhaps = report.perhaps();
   std::string text = counted(present - perhaps, "clash", "clashes");
   if (report.question.isUncertain()) text += ", " + std::to_string(perhaps) + " perhaps";
+  if (report.unseen) text += ", " + std::to_string(report.count(ClashStatus::unseen)) + " unseen";
   if (!report.previous) return text;
   for (const auto& [status, name] : {std::pair{ClashStatus::resolved, "resolved"},
                                      {ClashStatus::not_visited, "not visited"},
@@ -175,6 +188,13 @@ std::string clashCounts(const ClashReport& report)
   return text;
 }
 
+void listUnseen(ClashReport& report)
+{
+  if (!report.unseen) return;
+  for (Clash& place : findUnseenPlaces({report.model, report.poses, report.unseen->where}, report.cluster_distance))
+    report.clashes.push_back(std::move(place));
+}
+
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const std::function<void(FormerPlaces&)>& look)
 {
@@ -183,6 +203,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
   FormerPlaces former(report.clashes, report.question.clearance, report.cluster_distance);
   if (!former.empty()) {
     look(former);
+    if (report.unseen) tellUnseen(former, {report.model, report.poses, report.unseen->where});
     former.judge();
   }
   return surveyWarnings(file, earlier, report.survey, report.question.clearance + report.cluster_distance);

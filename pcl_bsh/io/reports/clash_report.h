@@ -4,10 +4,12 @@
 
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clashes/former_places.h>
+#include <pcl_bsh/clashes/unseen_places.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/neighbors/spacing.h>
+#include <pcl_bsh/question/ask.h>
 
 #include <Eigen/Geometry>
 
@@ -40,6 +42,7 @@ struct ClashReport {
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
   std::optional<std::string> previous = {}; ///< file name
   const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
+  const Answer::Unseen* unseen = nullptr;   ///< of a question with `seen` and `unseen_places`
   /// Of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
   /// The same of a point of `model`.
@@ -84,6 +87,9 @@ private:
 /// What an obstacle is compared as: null where that is its points.
 Json surfaceJson(const Obstacle* surface);
 
+/// What of an obstacle is unseen, without `where`.
+Json unseenJson(const Answer::Unseen& unseen);
+
 /// One object per clash, with its closest pair if it is there now.
 std::string clashJson(const ClashReport& report);
 
@@ -104,8 +110,12 @@ void requireClashFormat(const std::filesystem::path& path);
 /// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
 std::string clashCounts(const ClashReport& report);
 
+/// Appends what of the obstacle is unseen along the path (findUnseenPlaces()), where that was asked. Before lists are
+/// compared.
+void listUnseen(ClashReport& report);
+
 /// Tells which of the report's clashes were in the earlier list, and appends those that are not found again: resolved,
-/// or not visited or scanned.
+/// or not visited, unseen or not scanned.
 /// @param file that the earlier list was read from
 /// @param look tells FormerPlaces the model and the scan of this run; not called where nothing is resolved
 /// @return warnings of surveyWarnings()

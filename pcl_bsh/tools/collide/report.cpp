@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace pcl_bsh::cli {
 namespace {
@@ -26,15 +27,6 @@ nlohmann::ordered_json toJson(const CloudReport& cloud)
 nlohmann::ordered_json toJson(const Spacing& spacing)
 {
   return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
-}
-
-/// Of the obstacle.
-nlohmann::ordered_json toJson(const Answer::Unseen& unseen)
-{
-  return {{"obstacle_points", unseen.count},
-          {"at_poses", unseen.at_poses},
-          {"first_pose", unseen.first_pose ? nlohmann::ordered_json(*unseen.first_pose) : nlohmann::ordered_json()},
-          {"angles_of_scans", unseen.angles}};
 }
 
 nlohmann::ordered_json pathJson(const Question& question, const TrajectoryResult& found)
@@ -74,7 +66,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["sparse"] = answer.sparse;
   json["free"] = report.input.finite - colliding - undecided - answer.sparse;
   json["unseen"] = nullptr;
-  if (question.seen) json["unseen"] = toJson(answer.unseen);
+  if (question.seen) json["unseen"] = io::unseenJson(answer.unseen);
   json["options"] = nlohmann::ordered_json::object(); // that were given and change answers, as text
   for (const QuestionOption& option : questionOptions())
     if (std::string text = textOf(option, question); !text.empty() && option.name != std::string("threads"))

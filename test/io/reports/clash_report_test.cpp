@@ -234,6 +234,76 @@ TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
     EXPECT_EQ(occurrences(page, "#" + clash.id + "\""), occurrences(page, "id=\"" + clash.id + "\"")) << clash.id;
 }
 
+TEST_F(ClashReports, WhatIsUnseenIsAStateOfItsOwn)
+{
+  ClashReport list = twoClashes();
+  Answer::Unseen unseen;
+  unseen.where = {{}, {true}, {}, {}};
+  list.unseen = &unseen;
+  list.question.seen = true;
+  listUnseen(list);
+  ASSERT_EQ(list.clashes.size(), 3U);
+  EXPECT_EQ(clashCounts(list), "2 clashes, 1 unseen");
+  const std::string json = clashJson(list);
+  const Json entry = Json::parse(json)["clashes"][2];
+  EXPECT_EQ(Json::parse(json)["seen"], true);
+  EXPECT_EQ(entry["status"], "unseen");
+  EXPECT_EQ(entry["certainty"], "unseen");
+  EXPECT_TRUE(entry["distance"].is_null());
+  EXPECT_FALSE(entry.contains("closest_pair"));
+  const ClashList read = parseClashes(json, "list.json");
+  EXPECT_TRUE(read.clashes[2].wasNoClash());
+  EXPECT_EQ(read.clashes[2].low, (Point3{4, 5, 1234567.25}));
+  const auto rows = cellsOf(clashCsv(list));
+  EXPECT_EQ(rows[3][1], "unseen");
+  EXPECT_EQ(rows[3][3], "");
+  ASSERT_EQ(rows[3].size(), rows[0].size());
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  EXPECT_TRUE(has(page, "<h1>2 clashes, 1 unseen</h1>"));
+  EXPECT_TRUE(has(page, "<h2>Unseen</h2>"));
+  EXPECT_TRUE(has(page, "<span class=\"badge unseen\">unseen</span></td><td></td><td>1</td><td>1</td><td>1</td>"));
+  EXPECT_EQ(occurrences(page, "<section class=\"card\""), 2U);
+}
+
+TEST_F(ClashReports, AClashThatIsNotFoundAgainMayBeUnseen)
+{
+  const ClashReport earlier = twoClashes();
+  const ClashList before = parseClashes(clashJson(earlier), "list.json");
+  ClashReport now = report();
+  now.clashes.clear();
+  Answer::Unseen unseen;
+  unseen.where = {{true}, {}, {}, {}}; // where the probe was near the first clash
+  now.unseen = &unseen;
+  compareWithList(now, "list.json", before, [&](FormerPlaces& former) {
+    former.visit(SphereHierarchy(model()), poses, TrajectoryRequest());
+    former.scan(scan());
+  });
+  ASSERT_EQ(now.clashes.size(), 2U);
+  EXPECT_EQ(now.clashes[0].status, ClashStatus::resolved);
+  EXPECT_EQ(now.clashes[1].status, ClashStatus::unseen);
+  EXPECT_EQ(clashCounts(now), "0 clashes, 1 unseen, 1 resolved");
+  EXPECT_EQ(parseClashes(clashJson(now), "list.json").clashes[1].distance, before.clashes[1].distance);
+}
+
+TEST_F(ClashReports, UncertaintiesOfPosesAreComparedToo)
+{
+  ClashReport list = twoClashes();
+  list.question.obstacle_uncertainty.pose = {0.01, 0.002, {1, 2, 3}};
+  const ClashList read = parseClashes(clashJson(list), "list.json");
+  EXPECT_EQ(read.question.obstacle_uncertainty, list.question.obstacle_uncertainty);
+  EXPECT_EQ(cellsOf(clashCsv(list))[0].back(), "pose_uncertainty");
+  EXPECT_THAT(clashCsv(list), HasSubstr("\"0.01,0.002,1,2,3\""));
+  EXPECT_NO_THROW(requireComparable("list.json", read, list.question));
+  ClashQuestion other = list.question;
+  other.obstacle_uncertainty.pose.angle = 0.003;
+  EXPECT_THROW(requireComparable("list.json", read, other), files::FileError);
+  list.question.obstacle_uncertainty = Uncertainty("sigma", 3.0);
+  list.question.obstacle_uncertainty.pose = {0.01, 0.0, {0, 0, 0}};
+  EXPECT_EQ(parseClashes(clashJson(list), "list.json").question.obstacle_uncertainty,
+            list.question.obstacle_uncertainty);
+}
+
 TEST_F(ClashReports, ManyClashesAreAllInTheTable)
 {
   std::vector<std::array<double, 2>> stops;
@@ -290,8 +360,8 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
   list.clashes[1].status = ClashStatus::resolved;
   const auto rows = cellsOf(clashCsv(list));
   ASSERT_EQ(rows.size(), 3U);
-  ASSERT_EQ(rows[0].size(), 29U);
-  ASSERT_EQ(rows[1].size(), 29U);
+  ASSERT_EQ(rows[0].size(), 30U);
+  ASSERT_EQ(rows[1].size(), 30U);
   EXPECT_EQ(rows[1][0], "C4_0_617283");
   EXPECT_EQ(numberIn(rows[1][3]), list.clashes[0].distance);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -302,7 +372,7 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
     EXPECT_EQ(numberIn(rows[1][17 + k]), list.modelPoint(list.clashes[0])[axis]);
   }
   EXPECT_EQ(rows[1][12], "32");
-  ASSERT_EQ(rows[2].size(), 29U);
+  ASSERT_EQ(rows[2].size(), 30U);
   for (std::size_t k = 12; k < 20; ++k) EXPECT_EQ(rows[2][k], "") << "a resolved one has no pair";
   for (std::size_t i = 1; i < 3; ++i) {
     EXPECT_EQ(rows[i][20], "certain");
@@ -406,7 +476,7 @@ TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
   const auto rows = cellsOf(clashCsv(list));
   EXPECT_EQ(rows[1][20], "certain");
   EXPECT_EQ(std::vector<std::string>(rows[2].begin() + 20, rows[2].end()),
-            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", ""}));
+            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", "", ""}));
 }
 
 TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
@@ -424,7 +494,7 @@ TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
   EXPECT_EQ(json["program"], "pcl_bsh " PCL_BSH_VERSION_TEXT);
   EXPECT_EQ(json["unit"], "m");
   EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
-  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N\n"));
+  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N,\n"));
   for (const char* wrong : {"yesterday", "", "-1", "1e99", "999999999999"}) {
     setenv("SOURCE_DATE_EPOCH", wrong, 1);
     EXPECT_THROW(clashPage(list), std::runtime_error) << wrong;

@@ -201,6 +201,13 @@ TEST_F(Collide, TellsWhatOfTheObstacleNobodySaw)
     EXPECT_EQ(report()["unseen"]["first_pose"], 0);
     EXPECT_NEAR(report()["unseen"]["angles_of_scans"][0], 0.075, 0.01);
   }
+  folder.write("path.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0.1 0 1 0 0 0 0 1 0\n");
+  expectDone("{scan.pcd}" + rest + "--trajectory {path.txt} --clashes {clashes.json} --cluster-distance 0.5");
+  const Json list = Json::parse(io::contentOf(folder / "clashes.json"))["clashes"];
+  ASSERT_GE(list.size(), 2u);
+  EXPECT_EQ(list.back()["status"], "unseen"); // of the point behind the pillar
+  EXPECT_EQ(list.back()["points"], 1);
+  EXPECT_EQ(list.back()["box"]["min"], (Json{3, 0, 1}));
   expectFailure("{scan.xyz}" + rest, 1, "scan.xyz: does not say where its scanner stood: give --origin, as X,Y,Z");
   expectFailure("{scan.pcd}" + rest + "--seen-angle 1", 1, "--seen-angle: 1 radians: give one in [0.0001, 0.25]");
   expectFailure("{scan.pcd}" + rest + "--origin 1,2", 2, "--origin: '1,2' is none: give X,Y,Z");

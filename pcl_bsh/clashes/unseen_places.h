@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a model comes along a path and nobody saw that there is nothing, place by place: entries of a list of clashes
+// with the status unseen.
+#pragma once
+
+#include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/clashes/former_places.h>
+
+#include <cstdint>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// What of a model is unseen at each pose of its path. Borrowed.
+struct UnseenAlong {
+  const PointsView& model;                      ///< points or triangles
+  const std::vector<Eigen::Isometry3d>& poses;  ///< T_scan_model
+  const std::vector<std::vector<bool>>& unseen; ///< of each pose, one per record; empty: none
+};
+
+/// Clusters of the records, as placed, that are unseen at any pose: places in one cell, or in cells that touch, of a
+/// grid through the origin lie together, and so do the corners of a triangle. The cells are as long as the smallest
+/// power of two that is at least the cluster distance. Most points first, then by id.
+///
+/// Of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `closest_pose`, at which most of
+/// its records are unseen, the first of several; `points`, how many these are; `place`, the middle of its box;
+/// `first_pose`; and no distance (NaN).
+/// @param cluster_distance finite, > 0
+/// @throws std::invalid_argument for another distance
+std::vector<Clash> findUnseenPlaces(const UnseenAlong& along, double cluster_distance);
+
+/// Tells which of the former places the model was at unseen. @param former before it judges
+void tellUnseen(FormerPlaces& former, const UnseenAlong& along);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END
