@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -60,6 +63,55 @@ TEST(OpenEdges, NamesTheFirst)
   Soup broken = box;
   broken[2][1][0] = std::nan("");
   EXPECT_EQ(find(broken).count, 3u);
+}
+
+/// Each directed edge against each other: what is left over.
+std::vector<std::array<Point3, 2>> openByHand(const Soup& soup)
+{
+  std::vector<std::array<Point3, 2>> edges;
+  for (const Triangle3& t : soup)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<Point3, 2> edge = {t[k], t[(k + 1) % 3]}, back = {edge[1], edge[0]};
+      if (edge[0] == edge[1]) continue;
+      const auto met = std::find(edges.begin(), edges.end(), back);
+      if (met != edges.end())
+        edges.erase(met);
+      else
+        edges.push_back(edge);
+    }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+TEST(OpenEdges, AllAreListed)
+{
+  const Soup box = boxOf({0, 0, 0}, {2, 2, 2});
+  std::vector<Soup> soups = {box, both(box, {box[0]}), both(box, {box[0], box[0], box[5]}), {box[3]}, {}};
+  for (std::size_t i = 0; i < box.size(); ++i) {
+    soups.push_back(box);
+    soups.back().erase(soups.back().begin() + static_cast<std::ptrdiff_t>(i));
+    soups.push_back(soups.back());
+    std::swap(soups.back()[i % 11][0], soups.back()[i % 11][1]);
+  }
+  for (const Soup& soup : soups) {
+    std::vector<OpenEdge> all = {{7, {}, {}}};
+    const OpenEdges found = findOpenEdges(
+        soup.size(), [&](std::size_t i) { return soup[i]; }, &all);
+    EXPECT_EQ(all.size(), found.count);
+    std::vector<std::array<Point3, 2>> edges;
+    for (const OpenEdge& edge : all) {
+      edges.push_back({edge.from, edge.to});
+      const Triangle3& t = soup.at(edge.triangle);
+      const auto from = std::find(t.begin(), t.end(), edge.from);
+      ASSERT_NE(from, t.end());
+      EXPECT_EQ(t[static_cast<std::size_t>(from - t.begin() + 1) % 3], edge.to);
+    }
+    std::sort(edges.begin(), edges.end());
+    EXPECT_EQ(edges, openByHand(soup));
+    if (!all.empty()) {
+      EXPECT_EQ(all.front().triangle, found.triangle);
+    }
+  }
 }
 
 } // namespace

@@ -64,8 +64,10 @@ struct Edge {
 
 } // namespace
 
-OpenEdges findOpenEdges(std::size_t count, const std::function<Triangle3(std::size_t)>& triangle)
+OpenEdges findOpenEdges(std::size_t count, const std::function<Triangle3(std::size_t)>& triangle,
+                        std::vector<OpenEdge>* all)
 {
+  if (all) all->clear();
   if (count >= std::size_t{1} << 31)
     throw std::invalid_argument("triangles: " + std::to_string(count) + ": edges are compared of less than 2^31");
   std::vector<std::array<Id, 3>> corners(count, {kNone, kNone, kNone});
@@ -110,11 +112,27 @@ OpenEdges findOpenEdges(std::size_t count, const std::function<Triangle3(std::si
         const auto left =
             std::find_if(group, next, [&](const Edge& e) { return ((e.triangle & 1) == 0) == (net > 0); });
         least = std::min(least, left->triangle / 2);
+        // Of several that are alike, the first ones are as good as the others.
+        for (auto e = left; all && net != 0 && e != next; ++e) {
+          if (((e->triangle & 1) == 0) != (net > 0)) continue;
+          net += net > 0 ? -1 : 1;
+          const std::size_t name = e->triangle / 2;
+          const Id low = static_cast<Id>(i), from = (e->triangle & 1) == 0 ? low : e->other,
+                   to = (e->triangle & 1) == 0 ? e->other : low;
+          std::size_t k = 0;
+          while (corners[name][k] != from || corners[name][(k + 1) % 3] != to) ++k;
+          const Triangle3 t = triangle(name);
+          all->push_back({name, t[k], t[(k + 1) % 3]});
+        }
       }
       group = next;
     }
   }
   if (open.count == 0) return open;
+  if (all) {
+    std::stable_sort(all->begin(), all->end(),
+                     [](const OpenEdge& x, const OpenEdge& y) { return x.triangle < y.triangle; });
+  }
 
   // Which of its edges: the first that is open.
   open.triangle = least;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -20,10 +21,19 @@ struct OpenEdges {
   bool closed() const noexcept { return count == 0; }
 };
 
+/// One of them, as its triangle has it.
+struct OpenEdge {
+  std::size_t triangle;
+  Point3 from, to;
+};
+
 /// Of up to 2^31 - 1 triangles. Corners are one where their coordinates are equal (0 equals -0). Triangles that are not
 /// finite count for nothing, and edges of no length cancel themselves. Memory: about 36 bytes for a triangle.
-/// @param triangle called with 0 .. count - 1, twice for most. @throws std::invalid_argument for more triangles
+/// @param triangle called with 0 .. count - 1, twice for most
+/// @param all gets each open edge, by their triangles, where it is not null
+/// @throws std::invalid_argument for more triangles
 PCL_BSH_EXPORT_INTERNAL OpenEdges findOpenEdges(std::size_t count,
-                                                const std::function<Triangle3(std::size_t)>& triangle);
+                                                const std::function<Triangle3(std::size_t)>& triangle,
+                                                std::vector<OpenEdge>* all = nullptr);
 
 } // namespace pcl_bsh

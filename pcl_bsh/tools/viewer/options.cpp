@@ -19,7 +19,8 @@ namespace {
 
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A file with faces is a surface, drawn as one:
-its triangles are compared, coloured and picked; what a closed one encloses is no part of it.
+its triangles are compared, coloured and picked. What a closed one encloses counts with --solid: distances
+are signed, and inside they are orange to red. What does not close is refused: --open-edges shows why.
 A cloud that holds the fields collision, distance or first_pose, or a .ply whose faces have such
 properties, shows these as they are.
 Of a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
@@ -36,6 +37,8 @@ Examples:
   pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
   pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
   pcl_bsh_view machine.stl --model hall.las --pose 1.5,2,0,0,0,1.57 --clearance 0.05
+  pcl_bsh_view hall.ply --model press.stl --pose 1.5,2,0,0,0,0 --solid --color distance --screenshot depth.png
+  pcl_bsh_view press.stl --open-edges
   pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
   pcl_bsh_view valley --budget 20M
   pcl_bsh_view marked.pcd --camera colliding --screenshot marked.png --size 1600x1000
@@ -131,6 +134,8 @@ void checkScene(const Options& options)
   if (options.model) refuse("--model");
   if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
+  if (options.question.solid) refuse("--solid");
+  if (options.question.input_solid) refuse("--input-solid");
   if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
   if (options.cut) throw UsageError("--cut: cuts a cloud: give clouds in place of --scene");
   if (options.color && *options.color != Coloring::collision)
@@ -147,6 +152,9 @@ void checkClouds(const Options& options)
   const bool obstacles = options.model || options.clouds.size() > 1;
   if (options.question.clearance && !obstacles)
     throw UsageError("--clearance: there is nothing to collide with: give a second cloud or --model");
+  if ((options.question.solid || options.question.input_solid) && !obstacles)
+    throw UsageError(std::string(options.question.solid ? "--solid" : "--input-solid") +
+                     ": there is nothing to collide with: give a second cloud or --model");
   if (!options.question.clearance && obstacles && options.color &&
       (*options.color == Coloring::collision || *options.color == Coloring::first_pose))
     throw UsageError("--clearance: is missing: this --color asks what collides");
@@ -167,6 +175,9 @@ void checkSite(const Options& options)
   if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
   if (options.question.clearance) refuse("--clearance");
+  if (options.question.solid) refuse("--solid");
+  if (options.question.input_solid) refuse("--input-solid");
+  if (options.open_edges) refuse("--open-edges");
   if (options.trace) refuse("--trace");
   if (options.closest) refuse("--closest");
   if (options.export_to) throw UsageError("--export: of a site: give pcl_bsh_site export SITE FILE.pvtp");
@@ -217,7 +228,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(cli::number<unsigned>("give the number of a pose or step, from 0"));
   options.question.threads = 0;
-  cli::addQuestionOptions(app, options.question, {"clearance", "vertices_only", "threads"});
+  cli::addQuestionOptions(app, options.question, {"clearance", "solid", "input_solid", "vertices_only", "threads"});
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--color", options.color,
@@ -251,6 +262,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   app.add_flag("--voxels", options.voxels, "draw the voxels");
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
   app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
+  app.add_flag("--open-edges", options.open_edges, "draw the edges of surfaces that no other triangle closes, in red");
   app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
   app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
   app.add_option("--screenshot", options.screenshot, "write a picture instead of opening a window; needs no display")

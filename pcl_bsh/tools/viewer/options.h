@@ -46,7 +46,7 @@ struct Options {
   std::optional<Cut> cut;      ///< of the first cloud
   std::optional<unsigned> level;
   unsigned step = 0; ///< of the trajectory or the scene
-  bool voxels = false, cells = false, trace = false, closest = false;
+  bool voxels = false, cells = false, trace = false, closest = false, open_edges = false;
   std::string unit; ///< of lengths, for titles
   std::optional<std::filesystem::path> screenshot;
   int width = 1280, height = 960;

@@ -38,7 +38,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
         makeCloudActor(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
                        viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color));
   if (options.cut) clouds_[0]->cut(*options.cut);
-  extras_ = {options.level, options.voxels, options.cells, options.trace};
+  extras_ = {options.level, options.voxels, options.cells, options.trace, options.open_edges};
   collisions_ = content.collisions(options.step);
   coloring_ = coloringOf(content, collisions_);
   step_ = options.step;
@@ -102,6 +102,13 @@ void RenderView::writeTexts()
   std::string title = content_.heading(collisions_, step_);
   if (collisions_.closest)
     title += "\nsmallest distance " + lengthOf(collisions_.closest->distance, content_.options().unit);
+  if (extras_.open_edges) {
+    if (!open_edges_) {
+      open_edges_ = 0;
+      for (const ViewedCloud& viewed : content_.viewedClouds()) *open_edges_ += openEdgesOf(viewed);
+    }
+    title += "\n" + groupedCount(*open_edges_, "edge is open", "edges are open");
+  }
   if (tiles_) title += "\n" + tiles_->text();
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   vtkIdType left_out = 0;
@@ -142,6 +149,7 @@ std::vector<LegendEntry> RenderView::legend() const
   if (collisions_.closest) add("closest pair", segment_color);
   if (extras_.level) add("spheres", sphere_color);
   if (extras_.voxels) add("voxels", voxel_color);
+  if (extras_.open_edges) add("open edges", open_edge_color);
   if (extras_.cells) add("octree cells", cell_color);
   if (extras_.trace) {
     add("query: pruned", fate_colors[0]);

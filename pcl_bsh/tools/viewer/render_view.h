@@ -70,6 +70,7 @@ private:
   Coloring coloring_;
   std::optional<TileActors> tiles_; ///< of a site
   Extras extras_;
+  std::optional<std::size_t> open_edges_; ///< counted once they are drawn
   StepCollisions collisions_;
   std::size_t step_ = 0;
 };

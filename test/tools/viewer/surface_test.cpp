@@ -194,6 +194,59 @@ TEST_F(SurfaceViewTest, AreExportedWithWhatIsKnownOfThem)
   ASSERT_NE(reader->GetOutput()->GetCellData()->GetArray("distance"), nullptr);
 }
 
+TEST_F(SurfaceViewTest, DistancesFromASolidAreSigned)
+{
+  Options solid = options(false);
+  solid.clouds = {folder.write("deep.xyz", "0 0 1\n0.5 0 1\n0 0 3\n")};
+  solid.question.clearance.reset();
+  solid.question.solid = true;
+  solid.color = Coloring::distance;
+  const CloudsContent content(solid);
+  EXPECT_EQ(content.allDistances(0), (std::vector<double>{-1.0, -0.5, 1.0}));
+  EXPECT_THAT(content.details(0, 0, 0), HasSubstr("distance -1"));
+  solid.question.clearance = 0.125;
+  EXPECT_EQ(CloudsContent(solid).collisions(0).flags[0], test::verdictsOf({1, 1, 0}));
+  solid.question.solid = false;
+  EXPECT_EQ(CloudsContent(solid).collisions(0).flags[0], test::verdictsOf({0, 0, 0}));
+}
+
+TEST(Palette, DepthsHaveColoursOfTheirOwn)
+{
+  const auto of = [](double low, double value) {
+    const auto table = colorTable(low, 2.0, false);
+    const unsigned char* const c = table->MapValue(value);
+    return Color{c[0], c[1], c[2]};
+  };
+  const Color deep = of(-1.0, -1.0), shallow = of(-1.0, -0.01), near = of(-1.0, 0.02), far = of(-1.0, 2.0);
+  EXPECT_GT(deep[0], deep[2] + 100) << "red";
+  EXPECT_GT(shallow[0], shallow[2] + 100) << "orange";
+  EXPECT_GT(shallow[1], deep[1]);
+  EXPECT_GT(near[2], near[0]) << "violet";
+  EXPECT_EQ(far, of(0.0, 2.0)) << "as without depths";
+}
+
+TEST_F(SurfaceViewTest, OpenEdgesAreDrawnOnRequest)
+{
+  std::string open = crateOff();
+  open.replace(open.find("8 6 0"), 5, "8 5 0"); // without its right side
+  Options made;
+  made.clouds = {folder.write("open.off", open)};
+  made.question.threads = 1;
+  made.width = 500;
+  made.height = 400;
+  made.camera = {Camera::Kind::given, {6, -5, 3}, {0, 0, 1}, {0, 0, 1}};
+  const std::size_t without = OffscreenView(made).draw().count(open_edge_color, 20);
+  made.open_edges = true;
+  OffscreenView view(made);
+  EXPECT_GT(view.draw().count(open_edge_color, 20), without + 300);
+  const double edge[3] = {1, -1, 1};
+  const auto [x, y] = view.seen(edge);
+  EXPECT_GT(view.draw().countNear(open_edge_color, x, y, 4, 20), 5u);
+  made.clouds = {folder.write("closed.off", crateOff())};
+  OffscreenView closed(made);
+  EXPECT_LT(closed.draw().countNear(open_edge_color, x, y, 4, 20), 5u);
+}
+
 TEST_F(SurfaceViewTest, HaveTheMeanColourAndHeightOfTheirCorners)
 {
   Options coloured;

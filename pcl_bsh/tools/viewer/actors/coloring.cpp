@@ -194,8 +194,12 @@ bool paintDistances(CloudActors clouds, ValueBar& bar, ValueHistogram& histogram
   // Outliers should not take all colours for themselves.
   const double own_end = options.range.value_or(statistics.count > 0 ? statistics.percentiles.back() : 1.0);
   const ColorRange* const shared = sharedRange(content);
-  const auto table = colorTable(0.0, shared ? shared->high : own_end, false);
-  const std::string title = lengthTitle("distance", options);
+  const auto deepest = std::min_element(distances.begin(), distances.end(), [](double l, double r) {
+    return std::isnan(r) ? !std::isnan(l) : l < r; // what is no number is greater than all
+  });
+  const double low = *deepest < 0.0 ? *deepest : 0.0;
+  const auto table = colorTable(low, shared ? shared->high : own_end, false);
+  const std::string title = lengthTitle(low < 0.0 ? "signed distance" : "distance", options);
   std::vector<Color> colors(distances.size(), scan_color);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     if (std::isnan(distances[i])) continue;
@@ -206,6 +210,7 @@ bool paintDistances(CloudActors clouds, ValueBar& bar, ValueHistogram& histogram
   for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->paint(compared_color);
   if (shared) return true;
   bar.show(*table, title, false);
+  if (low < 0.0) return true; // a histogram begins at 0
   histogram.show(distances, *table, "distance [" + (options.unit.empty() ? "cloud's unit" : options.unit) + "]",
                  content);
   return true;

@@ -4,6 +4,8 @@
 #include "caption.h"
 #include "text.h"
 
+#include <pcl_bsh/geometry/triangle/open_edges.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
@@ -14,6 +16,7 @@
 #include <vtkMapper.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkTextProperty.h>
@@ -103,7 +106,44 @@ void addTraced(PropGroup& group, const std::vector<TracedSphere>& all, const Eig
   }
 }
 
+std::vector<OpenEdge> listOpenEdges(const ViewedCloud& viewed)
+{
+  std::vector<OpenEdge> edges;
+  if (const TrianglesView* const triangles = viewed.points().triangles) {
+    findOpenEdges(
+        triangles->count, [&](std::size_t i) { return triangles->triangle(static_cast<std::uint32_t>(i)); }, &edges);
+  }
+  return edges;
+}
+
+/// In front of all else: an open edge lies in a surface, or behind it.
+void addOpenEdges(PropGroup& group, const ViewedCloud& viewed, const Eigen::Isometry3d& pose)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  for (const OpenEdge& edge : listOpenEdges(viewed)) {
+    const vtkIdType from = points->InsertNextPoint(edge.from.data());
+    lines->InsertNextCell({from, points->InsertNextPoint(edge.to.data())});
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(lines);
+  const auto actor = actorOf(data);
+  setColor(*actor, open_edge_color);
+  actor->GetProperty()->SetLineWidth(4.0f);
+  actor->GetMapper()->SetResolveCoincidentTopologyToPolygonOffset();
+  actor->GetMapper()->SetRelativeCoincidentTopologyLineOffsetParameters(0.0, -66000.0);
+  actor->SetUserMatrix(matrixOf(pose));
+  group.add(actor);
+}
+
 } // namespace
+
+std::size_t openEdgesOf(const ViewedCloud& viewed)
+{
+  return listOpenEdges(viewed).size();
+}
 
 void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step)
 {
@@ -112,6 +152,7 @@ void addExtras(PropGroup& group, const ViewContent& content, const Extras& extra
     const Eigen::Isometry3d pose = content.poseOf(i, step);
     if (extras.level) addSpheres(group, *vtk::sphereData(hierarchy, *extras.level), pose, sphere_color, 0.16);
     if (extras.voxels) addWires(group, *vtk::voxelBoxes(hierarchy), pose, voxel_color);
+    if (extras.open_edges) addOpenEdges(group, content.viewedClouds()[i], pose);
     if (extras.cells) addWires(group, *vtk::cellBoxes(hierarchy, extras.level.value_or(1)), pose, cell_color);
   }
   if (!extras.trace) return;

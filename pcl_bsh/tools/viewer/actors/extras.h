@@ -14,11 +14,15 @@ namespace pcl_bsh::viewer {
 struct Extras {
   std::optional<unsigned> level; ///< of the spheres
   bool voxels = false, cells = false, trace = false;
+  bool open_edges = false; ///< of surfaces
 };
 
 /// Adds what shows the algorithm at work: spheres of a level, voxels and octree cells as wire boxes, and what a query
 /// tested and pruned.
 void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step);
+
+/// How many edges of its triangles nothing closes; 0 of points.
+std::size_t openEdgesOf(const ViewedCloud& viewed);
 
 /// Adds a closest pair as a segment, with its distance.
 void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit);

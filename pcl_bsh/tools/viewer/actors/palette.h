@@ -28,6 +28,7 @@ inline constexpr Color sphere_color = {86, 180, 233};
 inline constexpr Color voxel_color = {0, 158, 115};
 inline constexpr Color cell_color = {204, 121, 167};
 inline constexpr Color segment_color = {240, 228, 66};
+inline constexpr Color open_edge_color = {255, 64, 64};
 inline constexpr Color path_color = {204, 121, 167};
 
 /// By SphereFate.
@@ -38,20 +39,34 @@ inline std::array<double, 3> fractions(const Color& color)
   return {color[0] / 255.0, color[1] / 255.0, color[2] / 255.0};
 }
 
-/// Dark to bright through violet, teal and yellow; `reversed`: bright to dark.
+/// A color on a way through some, from 0 to 1.
+template <std::size_t N>
+std::array<double, 3> between(const std::array<std::array<double, 3>, N>& stops, double share_of_way)
+{
+  const double at = share_of_way * (N - 1.0);
+  const auto from = std::min(static_cast<std::size_t>(at), N - 2);
+  std::array<double, 3> c;
+  for (std::size_t k = 0; k < 3; ++k)
+    c[k] = std::lerp(stops[from][k], stops[from + 1][k], at - static_cast<double>(from)) / 255.0;
+  return c;
+}
+
+/// Dark to bright through violet, teal and yellow; `reversed`: bright to dark. Where `low` is below 0, so are the
+/// colours of what is above it, and depths go from pale orange to dark red.
 inline vtkSmartPointer<vtkLookupTable> colorTable(double low, double high, bool reversed)
 {
   constexpr std::array<std::array<double, 3>, 6> stops = {
       {{122, 88, 196}, {72, 116, 186}, {38, 148, 150}, {60, 185, 115}, {160, 218, 57}, {253, 231, 37}}};
+  constexpr std::array<std::array<double, 3>, 3> depths = {{{255, 176, 102}, {255, 106, 0}, {150, 20, 20}}};
   constexpr int count = 256;
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   table->SetNumberOfTableValues(count);
   for (int i = 0; i < count; ++i) {
-    const double at = (reversed ? count - 1 - i : i) / (count - 1.0) * (stops.size() - 1.0);
-    const auto from = std::min(static_cast<std::size_t>(at), stops.size() - 2);
-    const double share = at - static_cast<double>(from);
-    std::array<double, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) c[k] = std::lerp(stops[from][k], stops[from + 1][k], share) / 255.0;
+    const double share = (reversed ? count - 1 - i : i) / (count - 1.0);
+    const double value = low + share * (high - low);
+    const std::array<double, 3> c = !(low < 0.0)  ? between(stops, share)
+                                    : value < 0.0 ? between(depths, value / low)
+                                                  : between(stops, high > 0.0 ? value / high : 0.0);
     table->SetTableValue(i, c[0], c[1], c[2]);
   }
   table->SetTableRange(low, high > low ? high : low + 1.0);

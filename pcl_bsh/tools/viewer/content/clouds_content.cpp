@@ -2,6 +2,7 @@
 #include "clouds_content.h"
 
 #include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
@@ -62,13 +63,9 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
     viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
   }
   if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
+  for (std::size_t i = 0; i < viewed_clouds_.size(); ++i)
+    shapes_.emplace_back(viewed_clouds_[i].file.string(), viewed_clouds_[i].hierarchy);
   warnOfQuestions();
-}
-
-Shape CloudsContent::shapeOf(std::size_t cloud) const
-{
-  const ViewedCloud& viewed = viewed_clouds_[cloud];
-  return {viewed.file.string(), viewed.hierarchy};
 }
 
 void CloudsContent::warnOfQuestions() const
@@ -78,7 +75,7 @@ void CloudsContent::warnOfQuestions() const
   question.clearance = options_.question.clearance;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     question.path = pathOf(other);
-    addTexts(warningsOf(question, shapeOf(0).facts(true), shapeOf(other).facts(true)), told);
+    addTexts(warningsOf(question, shapes_[0].facts(true), shapes_[other].facts(true)), told);
   }
   cli::warn(program, told);
 }
@@ -93,13 +90,17 @@ std::vector<Eigen::Isometry3d> CloudsContent::pathOf(std::size_t cloud) const
   return cloud == model_ ? poses_ : std::vector{poseOf(cloud, 0)};
 }
 
-Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question) const
+Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question, Shape* input) const
 {
   question.clearance = options_.question.clearance;
   question.threads = options_.question.threads;
+  question.solid = options_.question.solid;
+  question.input_solid = options_.question.input_solid;
   question.pose = poseOf(other, step);
-  Shape input = shapeOf(0), obstacle = shapeOf(other);
-  return ask(question, input, obstacle);
+  Answer answer = cli::named([&] { return ask(question, input ? *input : shapes_[0], shapes_[other]); }, question);
+  for (const Warning& warning : answer.warnings)
+    if (warning.kind == WarningKind::hollow && hollow_.insert(warning.text).second) cli::warn(program, {warning.text});
+  return answer;
 }
 
 StepCollisions CloudsContent::collisions(std::size_t step) const
@@ -166,10 +167,12 @@ std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t 
   PointsView view = scan().points();
   view.indices = &record;
   view.index_count = 1;
-  const SphereHierarchy alone(view);
+  Shape alone(viewed_clouds_[0].file.string(), view);
+  Question question;
+  question.wanted.closest = true;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
-    nearest = std::min(nearest, closestPair({alone}, placed(other, step)).distance);
+    nearest = std::min(nearest, asked(other, step, question, &alone).closest.distance);
   return nearest;
 }
 

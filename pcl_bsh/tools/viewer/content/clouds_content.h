@@ -8,6 +8,9 @@
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include <set>
+#include <string>
+
 namespace pcl_bsh::viewer {
 
 class CloudsContent final : public FieldContent {
@@ -43,15 +46,16 @@ private:
   {
     return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
   }
-  Shape shapeOf(std::size_t cloud) const;
   std::vector<Eigen::Isometry3d> pathOf(std::size_t cloud) const; ///< all its poses, one after another
   void warnOfQuestions() const;                                   ///< of the scan and each other cloud
 
-  /// Asks the scan and another cloud at a step.
-  Answer asked(std::size_t other, std::size_t step, Question question) const;
+  /// Asks the scan and another cloud at a step. @param input part of the scan; null: all of it
+  Answer asked(std::size_t other, std::size_t step, Question question, Shape* input = nullptr) const;
   std::optional<ClosestPair> closest(std::size_t step) const;
   std::optional<double> distanceOf(std::uint32_t part, std::size_t step) const;
 
+  mutable std::vector<Shape> shapes_;    ///< of the viewed clouds, with what is kept of them
+  mutable std::set<std::string> hollow_; ///< warnings that were told
   std::optional<std::size_t> model_;
   std::vector<Eigen::Isometry3d> poses_;
   mutable std::optional<std::vector<std::int32_t>> first_poses_;
