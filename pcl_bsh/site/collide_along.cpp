@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/site/answers/held.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
@@ -123,11 +124,12 @@ SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const P
   Inquiry inquiry(site, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
+    addHeldOf(request, {hierarchy}, {model}, found, &poses);
     if (sink) sink(tile, cloud, found);
     return sum.numbersOf(tile, cloud, found);
   };
   const std::vector<std::uint32_t> tiles =
-      tilesAlong(site, CloudBoxes(model.view()), poses, pathReach(request), request.uncertainty);
+      tilesAlong(site, boxesOf(model.view(), request.solid != nullptr), poses, pathReach(request), request.uncertainty);
   const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
   SitePassage result = sum.ofAllRanks();
   result.tiles = read;

@@ -2,6 +2,7 @@
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/site/answers/comparison.h>
+#include <pcl_bsh/site/answers/held.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/records.h>
 
@@ -71,7 +72,11 @@ template <typename Other>
 SiteAny anyOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
 {
   const auto wanted = wantedOf<AnyRequest>(request);
-  const auto query = [&](const Placed& x, const Placed& y) { return pcl_bsh::anyCollision(x, y, wanted).verdict; };
+  const auto query = [&](const Placed& x, const Placed& y) {
+    AnyResult found = pcl_bsh::anyCollision(x, y, wanted);
+    addHeldOf(request, x, y, found);
+    return found.verdict;
+  };
   refuse(asked.pose, b, query);
   Comparison<Other> comparison(asked, b, request);
   bool collides = false, is_undecided = false;
@@ -101,7 +106,7 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
   SiteFlags result;
   const bool of_b = flagged != Side::a;
   auto wanted = wantedOf<FlagsRequest>(request);
-  wanted.flagged = of_b ? Side::both : Side::a;
+  wanted.flagged = of_b || request.solid ? Side::both : Side::a;
   refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::collisionFlags(x, y, wanted); });
   if constexpr (std::is_same_v<Other, Placed>)
     if (of_b) result.b.assign(b.hierarchy().view().count, Verdict::free);
@@ -118,6 +123,7 @@ SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const S
         tile, [&] { return request.clearance; },
         [&](const pcl::PCLPointCloud2&, const Placed& other) {
           pcl_bsh::collisionFlags(a, other, wanted, found);
+          addHeldOf(request, a, other, found);
           join(all.a, found.a);
           all.work += found.work;
         });
@@ -158,7 +164,11 @@ template <typename Other>
 SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
 {
   auto wanted = wantedOf<DistanceRequest>(request);
-  const auto query = [&](const Placed& x, const Placed& y) { return pcl_bsh::closestPair(x, y, wanted); };
+  const auto query = [&](const Placed& x, const Placed& y) {
+    DistanceResult found = pcl_bsh::closestPair(x, y, wanted);
+    addHeldOf(request, x, y, found);
+    return found;
+  };
   refuse(asked.pose, b, query);
   Comparison<Other> comparison(asked, b, request);
   double least = infinity, lower = infinity;
@@ -179,7 +189,10 @@ SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest
         });
   };
   SiteClosest result;
-  result.tiles = comparison.visit(infinity, ask, [&] { return least = leastOfAllRanks(least); });
+  result.tiles = comparison.visit(infinity, ask, [&] {
+    least = leastOfAllRanks(least);
+    return request.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
+  });
   result.tiles_b = comparison.readOfOther();
 
   // Distances that round to the same double may differ: the nearest of each tile are compared once more, exactly.
@@ -221,6 +234,7 @@ SiteDistances distancesOf(const PlacedSite& asked, const Other& b, double max_di
         tile, [&] { return nearer.max_distance; },
         [&](const pcl::PCLPointCloud2&, const Placed& others) {
           PointDistances found = pcl_bsh::pointDistances(points, others, nearer);
+          addHeldOf(request, points, others, found);
           if constexpr (std::is_same_v<Other, Placed>) {
             all = std::move(found);
             return;

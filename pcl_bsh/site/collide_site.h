@@ -27,6 +27,7 @@
 #include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
+#include <pcl_bsh/question/shape.h>
 #include <pcl_bsh/site/site.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -73,6 +74,10 @@ struct SiteRequest : Effort {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
   /// Of flags, distances and paths: tiles that are known are not read, and their sinks not called. ResultSite has some.
   TileAnswers* answers = nullptr;
+
+  /// b in memory, a mesh, as a shape that counts with what its faces enclose, and they must close: what is inside
+  /// collides, its distance is negative. Its hierarchy is that of b. Null: b is its surface alone.
+  Shape* solid = nullptr;
 };
 
 /// What a tile has cost, in seconds of the clock on the wall.

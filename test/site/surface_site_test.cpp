@@ -190,6 +190,57 @@ TEST_F(SurfaceSite, PathsAreThoseOfMemory)
   }
 }
 
+TEST_F(SurfaceSite, SolidsAreThoseOfMemory)
+{
+  const Json flags = expectedOf("--clearance 0.2 --solid");
+  EXPECT_EQ(json("r.json")["colliding"], flags["colliding"]);
+  expectSame("out", "m.pcd", "collision");
+  const Json hollow = expectedOf("--clearance 0.2");
+  EXPECT_GT(flags["colliding"].get<int>(), hollow["colliding"].get<int>() + 20) << "those in the middle";
+
+  expectedOf("--distances --solid");
+  expectSame("out", "m.pcd", "distance");
+  for (const char* pose : {"0,0,0,0,0,0", "0,0,0.5,0.3,0,0", "0,0,40,0,0,0"}) {
+    const std::string at = std::string("--solid --pose ") + pose;
+    ASSERT_EQ(
+        run("pcl_bsh_collide", "scan.pcd crate.off m.pcd --clearance 0 --report m.json " + at, folder.path()).exit_code,
+        0);
+    ASSERT_EQ(ask("--closest --report r.json " + at).exit_code, 0);
+    const Json found = json("r.json"), wanted = json("m.json");
+    EXPECT_EQ(found["distance"], wanted["distance"]);
+    EXPECT_EQ(found["distance"].get<double>() < 0.0, std::string(pose).find("40") == std::string::npos);
+    ASSERT_EQ(ask("--any --clearance 0 --report r.json " + at).exit_code, 0);
+    EXPECT_EQ(json("r.json")["collides"], wanted["colliding"].get<int>() > 0);
+  }
+  expectedOf("--clearance 0.05 --trajectory poses.txt --solid");
+  for (const char* field : {"collision", "first_pose"}) expectSame("out", "m.pcd", field);
+}
+
+/// Of a tile in the middle of a solid, no box about parts of its surface knows.
+TEST_F(SurfaceSite, TilesInTheMiddleOfALargeSolidAreAskedAbout)
+{
+  std::string large = crate_text;
+  for (std::size_t at = large.find('2', 10); at != std::string::npos && at < large.find("\n4");
+       at = large.find('2', at + 1))
+    large.replace(at, 1, "9000");
+  folder.write("large.off", large);
+  const std::string about = "collide site large.off --pose=-4500,-4500,-4500,0,0,0 --clearance 0 --report r.json";
+  ASSERT_EQ(run("pcl_bsh_site", about + " --solid", folder.path()).exit_code, 0);
+  EXPECT_EQ(json("r.json")["colliding"], 8000);
+  ASSERT_EQ(run("pcl_bsh_site", about, folder.path()).exit_code, 0);
+  EXPECT_EQ(json("r.json")["colliding"], 0);
+}
+
+TEST_F(SurfaceSite, RefusesSolidsThatDoNotClose)
+{
+  std::string open = crate_text;
+  folder.write("crate.off", open.replace(open.find("8 6 0"), 5, "8 5 0"));
+  const Outcome refused = ask("--clearance 0.2 --solid --report r.json");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("crate.off: 4 edges are open"));
+  EXPECT_EQ(run("pcl_bsh_site", "collide site site --clearance 1 --solid --report r.json", folder.path()).exit_code, 2);
+}
+
 TEST_F(SurfaceSite, TellsOfLooseVerticesAsMemoryDoes)
 {
   std::string loose = crate_text;

@@ -17,9 +17,10 @@ namespace pcl_bsh::site {
 /// A cloud that a site is compared with: all of it is near, where any is.
 class ObstacleCloud {
 public:
-  ObstacleCloud(const Placed& cloud, std::uint64_t /*memory*/)
+  /// @param solid it counts with what it encloses, far from all of its parts, perhaps
+  ObstacleCloud(const Placed& cloud, bool solid)
   : cloud_(cloud),
-    boxes_(cloud.hierarchy().view()),
+    boxes_(boxesOf(cloud.hierarchy().view(), solid)),
     parts_(placedParts(boxes_, cloud.pose))
   {
   }
@@ -55,7 +56,7 @@ public:
   Comparison(const PlacedSite& asked, const Other& other, const SiteRequest& request)
   : asked_(asked),
     inquiry_(asked.site, request),
-    other_(other, request.memory - std::min(request.memory, inquiry_.bytesForLargest()))
+    other_(othersOf(other, request))
   {
     requireUncertainty(asked.site, asked.uncertainty);
   }
@@ -92,6 +93,14 @@ public:
   TilesRead readOfOther() const { return other_.read(); }
 
 private:
+  auto othersOf(const Other& other, const SiteRequest& request) const
+  {
+    if constexpr (std::is_same_v<Other, Placed>)
+      return ObstacleCloud(other, request.solid != nullptr);
+    else
+      return ObstacleTiles(other, request.memory - std::min(request.memory, inquiry_.bytesForLargest()));
+  }
+
   using Tiles = std::vector<std::pair<double, std::uint32_t>>;
 
   /// Where the points of a tile may truly be, in the common frame.

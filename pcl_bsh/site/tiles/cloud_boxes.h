@@ -67,4 +67,11 @@ private:
   double largest_radius_ = 0.0;
 };
 
+/// The same, or one box where what lies between the parts counts, too.
+inline CloudBoxes boxesOf(const PointsView& points, bool whole)
+{
+  CloudBoxes boxes(points);
+  return whole && !boxes.empty() ? CloudBoxes(boxes.whole()) : boxes;
+}
+
 } // namespace pcl_bsh::site

@@ -71,7 +71,17 @@ public:
     placed_(hierarchy_, asking.options.question.pose)
   {
     asking.report["surface"] = io::surfaceJson(surface_);
+    if (!asking.options.question.solid) return;
+    solid_ = Shape(file.obstacle.shape(asking.options.obstacle.string()).name(),
+                   std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &hierarchy_));
+    cli::named([&] {
+      if (!solid_.isSurface())
+        throw InvalidOption("solid", solid_.name() + " has no faces", "give a mesh that closes, or leave it out");
+      solid_.solid(); // refused before a tile is read
+    });
+    asking.request.solid = &solid_;
   }
+  FileObstacle(const FileObstacle&) = delete;
 
   const Placed& placed() const { return placed_; }
 
@@ -111,6 +121,7 @@ private:
   Shape shape_;
   const SphereHierarchy& hierarchy_;
   Placed placed_;
+  Shape solid_;
 };
 
 /// Another site.

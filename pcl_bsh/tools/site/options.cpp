@@ -112,7 +112,7 @@ struct CollideTexts {
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     addQuestionOptions(app, options.question,
                        {"clearance", "swept", "accuracy", "uncertainty", "obstacle_uncertainty", "sigmas",
-                        "max_distance", "vertices_only", "threads"});
+                        "max_distance", "solid", "vertices_only", "threads"});
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -164,6 +164,8 @@ struct CollideTexts {
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
     const bool two_sites = options.obstacleIsSite();
+    if (two_sites && question.solid)
+      throw UsageError("--solid: OBSTACLE is a site, which has no faces: give a mesh that closes, or leave it out");
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
       requireOutside(options.site, "SITE", option, file);
       if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);

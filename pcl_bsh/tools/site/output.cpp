@@ -89,6 +89,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                              {"accuracy", asked.accuracy.text()},
                              {"max_distance", asked.max_distance.value_or(unlimited)},
                              {"swept", asked.sweptTolerance().value_or(-1.0)},
+                             {"solid", asked.solid ? 1.0 : 0.0},
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
