@@ -30,6 +30,17 @@ std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const Poin
   return greatest;
 }
 
+/// Whether each point has a distance. A subset may name one twice.
+bool allMeasured(const Placed& cloud, const PointDistances& result)
+{
+  const PointsView& view = cloud.hierarchy().view();
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::uint32_t record = view.record(i);
+    if (result.closest_point[record] == kNothing && isFinite(view.point(record))) return false;
+  }
+  return true;
+}
+
 PointPair swapped(const PointPair& pair)
 {
   return {pair.b, pair.a};
@@ -69,8 +80,8 @@ void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result)
 {
   result.hausdorff = std::numeric_limits<double>::quiet_NaN();
   result.hausdorff_pair.reset();
-  const bool all = result.a.measured == a.hierarchy().size() && result.b.measured == b.hierarchy().size();
-  if (all && result.a.greatest_pair && result.b.greatest_pair) findGreatestOfBoth(a, b, result);
+  if (!result.a.greatest_pair || !result.b.greatest_pair) return;
+  if (allMeasured(a, result.a) && allMeasured(b, result.b)) findGreatestOfBoth(a, b, result);
 }
 
 } // namespace pcl_bsh

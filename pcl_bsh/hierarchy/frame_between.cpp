@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/frame_between.h>
+
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,12 @@ bool belongsAtZero(double low, double high, double half)
 
 LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin)
 {
+  return frameBetween(low, high, float_origin, 0.0f);
+}
+
+LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin,
+                        float largest_radius)
+{
   LocalFrame frame;
   double half = 0.0; // of the largest extent: the extent itself might overflow
   double largest = 0.0;
@@ -41,10 +48,12 @@ LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<doubl
     half = std::max(half, high[k] / 2 - low[k] / 2);
     largest = std::max({largest, std::abs(low[k]), std::abs(high[k])});
   }
-  // Squares of coordinates must neither overflow nor vanish in float, nor may the origin overflow in double.
+  // Squares of coordinates must neither overflow nor vanish in float, nor may radii overflow there, or the origin in
+  // double.
   if (half > 0.0 && (half < 0x1p-30 || half > 0x1p59)) {
     const int least = std::max(-1000, std::ilogb(largest) - 1000);
-    frame.unit = std::exp2(std::clamp(std::ilogb(half) + 1, least, 1000));
+    const int of_radii = largest_radius > 0.0f ? std::ilogb(largest_radius) - 100 : -1000;
+    frame.unit = std::exp2(std::clamp(std::max(std::ilogb(half) + 1, of_radii), least, 1000));
   }
   frame.lossless = float_origin && frame.unit == 1.0;
   const double inverse = 1.0 / frame.unit;

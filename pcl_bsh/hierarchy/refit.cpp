@@ -4,6 +4,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/hierarchy/bounds.h>
+#include <pcl_bsh/hierarchy/frame_between.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
@@ -125,13 +126,14 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   // What may throw comes first, and changes nothing.
   std::vector<LocalFrame> frames(s.voxel_count);
   std::uint32_t most_points = 0;
+  const float largest_of_all = largestRadiusOf(now);
   double sum = 0.0, strayed = 0.0;
   Bounds all;
   for (std::size_t v = 0; v < s.voxel_count; ++v) {
     Bounds bounds;
     float largest_radius = 0.0f;
     if (!readBounds(s.voxels[v], now, bounds, largest_radius)) return sortAnew();
-    frames[v] = frameBetween(bounds.low, bounds.high, now.scalar == Scalar::float32);
+    frames[v] = frameBetween(bounds.low, bounds.high, now.scalar == Scalar::float32, largest_radius);
     sum += static_cast<double>(radiusOf(frames[v], largest_radius)) * frames[v].unit;
     all.add(bounds.low, bounds.high);
     strayed = std::max(strayed, s.strayOf(s.voxels[v].key, bounds.low, bounds.high));
@@ -139,7 +141,8 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   }
   report.looseness = s.extent > 0.0 ? sum / s.extent : 1.0;
   if (report.looseness > most_growth) return sortAnew();
-  const LocalFrame frame = s.size > 0 ? frameBetween(all.low, all.high, now.scalar == Scalar::float32) : LocalFrame();
+  const LocalFrame frame =
+      s.size > 0 ? frameBetween(all.low, all.high, now.scalar == Scalar::float32, largest_of_all) : LocalFrame();
   std::vector<PointRecord> points(most_points);
   const std::vector<Voxel*> voxels = s.list();
 

@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/build/cell_numbers-inl.h>
+#include <pcl_bsh/hierarchy/frame_between.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 
@@ -76,7 +77,7 @@ void eachPoint(const PointsView& view, const std::vector<std::uint32_t>& records
 }
 
 /// Fills a voxel that holds these records.
-void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* block, float* radii)
+void fill(Voxel& voxel, const Touched& from, const PointsView& view, float largest_radius, float* block, float* radii)
 {
   voxel.key = from.key;
   voxel.count = static_cast<std::uint32_t>(from.records.size());
@@ -85,7 +86,7 @@ void fill(Voxel& voxel, const Touched& from, const PointsView& view, float* bloc
   voxel.radii = radii;
   Bounds bounds;
   for (const Point3& p : from.points) bounds.add(p);
-  voxel.frame = frameBetween(bounds.low, bounds.high, view.scalar == Scalar::float32);
+  voxel.frame = frameBetween(bounds.low, bounds.high, view.scalar == Scalar::float32, largest_radius);
   auto* stored = reinterpret_cast<PointRecord*>(block);
   for (std::size_t i = 0; i < from.points.size(); ++i)
     *stored++ = storedIn(voxel.frame, from.points[i], from.records[i]);
@@ -116,7 +117,7 @@ void compact(SphereHierarchy::Storage& storage)
 }
 
 /// Around all voxels' points.
-LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
+LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float largest_radius)
 {
   Bounds bounds;
   for (const Voxel* voxel : voxels) {
@@ -130,7 +131,7 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar)
     }
     bounds.add(low, high);
   }
-  return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32);
+  return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32, largest_radius);
 }
 
 /// Whether a voxel was made for other lengths of its points than they have now, though none of them moved: other
@@ -287,6 +288,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   // whatever throws, the hierarchy and this update are as they were.
   LargeBuffer<float> buffer = makeBuffer<float>(std::max<std::size_t>(floats, 1));
   std::unique_ptr<float[]> radii = now.radii ? std::make_unique<float[]>(report.points_read) : nullptr;
+  const float largest_radius = largestRadiusOf(now);
   float* next_block = buffer.get();
   float* next_radii = radii.get();
   std::size_t count = storage.voxel_count;
@@ -317,14 +319,14 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     if (t.records.empty()) continue;
     ++report.volumes_built;
     Voxel& voxel = voxels[after.size()];
-    fill(voxel, t, now, next_block, next_radii);
+    fill(voxel, t, now, largest_radius, next_block, next_radii);
     measureVoxel(voxel, now);
     next_block += voxel.blockSize();
     if (next_radii) next_radii += voxel.count;
     after.push_back(&voxel);
   }
   takeUntil(storage.voxels.get() + storage.voxel_count);
-  const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar) : LocalFrame();
+  const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar, largest_radius) : LocalFrame();
   SphereHierarchy::Storage::Above above = SphereHierarchy::Storage::raise(after, frame, {});
   report.volumes_built += countChildren(above.top);
   storage.buffers.reserve(storage.buffers.size() + 1);

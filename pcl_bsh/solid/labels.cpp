@@ -24,6 +24,7 @@ struct LabelArray {
   }
   void one(std::uint32_t record, Label label)
   {
+    if (labels[record] == labelOf(label)) return; // a subset may name a record twice
     labels[record] = labelOf(label);
     ++(label == Label::inside ? inside_count : on_surface);
   }

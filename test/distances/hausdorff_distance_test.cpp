@@ -106,6 +106,17 @@ TEST(HausdorffDistance, OfManyEqualOnesIsTheSmallestPair)
   }
 }
 
+TEST(HausdorffDistance, OfSubsetsThatNameAPointTwice)
+{
+  Cloud twice({{0, 0, 0}, {4, 0, 0}, {NAN, 0, 0}});
+  twice.restrictTo({1, 2, 1, 0});
+  const Cloud other({{1, 0, 0}});
+  const SphereHierarchy ha(twice.view()), hb(other.view());
+  EXPECT_EQ(symmetricDistances({ha}, {hb}).hausdorff, 3.0);
+  EXPECT_EQ(symmetricDistances({hb}, {ha}).hausdorff, 3.0);
+  expectTruth({ha}, {hb});
+}
+
 TEST(HausdorffDistance, OfBallsThatOverlap)
 {
   Random random(22);

@@ -42,10 +42,13 @@ Eigen::Matrix3d cubeTurn(Random& random)
 
 } // namespace
 
-World::World(Bytes& bytes) : kind(static_cast<Kind>(bytes.below(static_cast<unsigned>(Kind::kinds))))
+World::World(Bytes& bytes, bool with_surfaces)
+: kind(static_cast<Kind>(bytes.below(static_cast<unsigned>(Kind::kinds)))),
+  surfaces(with_surfaces)
 {
   constexpr double units[] = {1, 1, 1, 0x1p-10, 0x1p10, 0x1p100, 0x1p-100, 0x1p-130, 0x1p125, 0x1p1000, 0x1p-1000};
   unit = units[bytes.below(std::size(units))];
+  if (surfaces && unit > 0x1p64) unit = 1; // triangles that a float32 radius does not tell are refused
 }
 
 std::string World::text() const
@@ -107,6 +110,7 @@ ChangingCloud::Memory::~Memory()
   std::fill(bytes.begin(), bytes.end(), 0xff); // NaN
   std::fill(radii.begin(), radii.end(), std::numeric_limits<float>::quiet_NaN());
   std::fill(indices.begin(), indices.end(), -1);
+  std::fill(triangles.begin(), triangles.end(), Triangle{~0u, ~0u, ~0u});
 }
 
 ChangingCloud::ChangingCloud(const World& world, Random& random)
@@ -119,8 +123,15 @@ ChangingCloud::ChangingCloud(const World& world, Random& random)
   tail_(random.chance(0.5) ? 0 : static_cast<std::size_t>(random.integer(0, 8)))
 {
   constexpr int counts[] = {0, 1, 2, 7, 16, 17, 20, 33, 33, 50};
-  const int count = random.chance(0.03) ? 80 : random.pick(counts);
+  int count = random.chance(0.03) ? 80 : random.pick(counts);
   for (int i = 0; i < count; ++i) append(placeOrNone(random), random);
+  if (world.surfaces && random.chance(0.75)) {
+    kind_ = random.chance(0.5) ? Kind::triangles : Kind::tetrahedra;
+    with_radii_ = false;
+    count = random.pick(counts);
+    while (static_cast<int>(triangles_.size()) < count) appendTriangles(random);
+    count = static_cast<int>(triangles_.size());
+  }
   for (int i = 0; with_subset_ && i < count; ++i)
     if (random.chance(0.6)) indices_.push_back(random.chance(0.02) ? random.integer(0, count - 1) : count - 1 - i);
   store();
@@ -139,6 +150,29 @@ void ChangingCloud::append(const Point3& point, Random& random)
 {
   points_.push_back(point);
   radii_.push_back(narrow(random.chance(0.3) ? 0.0 : std::min(world_.unit / 16 * random.integer(0, 2), 0x1p127)));
+}
+
+/// One of any corners, sometimes once more in either sense; or the four of a tetrahedron. Of vertices that there are,
+/// or of new ones.
+void ChangingCloud::appendTriangles(Random& random)
+{
+  std::array<std::uint32_t, 4> corners;
+  const bool of_new = points_.empty() || random.chance(0.2);
+  for (std::uint32_t& corner : corners) {
+    if (of_new) append(placeOrNone(random), random);
+    corner = static_cast<std::uint32_t>(
+        of_new ? points_.size() - 1
+               : static_cast<std::size_t>(random.integer(0, static_cast<int>(points_.size()) - 1)));
+  }
+  const auto [a, b, c, d] = corners;
+  if (kind_ == Kind::tetrahedra) {
+    triangles_.insert(triangles_.end(), {{a, c, b}, {a, b, d}, {b, c, d}, {c, a, d}});
+    return;
+  }
+  triangles_.push_back({a, b, c});
+  if (random.chance(0.1)) triangles_.push_back({a, b, c});
+  if (random.chance(0.1)) triangles_.push_back({c, b, a});
+  if (random.chance(0.05)) triangles_.insert(triangles_.end(), 20, {a, b, c});
 }
 
 ChangingCloud::Old ChangingCloud::store()
@@ -164,6 +198,9 @@ ChangingCloud::Old ChangingCloud::store()
   memory->radii = radii_;
   memory->radii.push_back(0.0f);
   if (with_radii_) view.radii = memory->radii.data();
+  memory->triangles = triangles_;
+  memory->triangles.push_back({});
+  if (isSurface()) view = viewOf(TrianglesView{view, memory->triangles.front().data(), triangles_.size()});
   memory->indices = indices_;
   memory->indices.push_back(0);
   if (with_subset_) view.indices = memory->indices.data();
@@ -179,6 +216,15 @@ HierarchyOptions ChangingCloud::options(Random& random) const
   options.fit = static_cast<SphereFit>(random.integer(0, 2));
   options.threads = static_cast<unsigned>(random.integer(1, 3));
   return options;
+}
+
+std::string ChangingCloud::text() const
+{
+  return std::to_string(view().count) +
+         (kind_ == Kind::points      ? " points"
+          : kind_ == Kind::triangles ? " triangles"
+                                     : " triangles of tetrahedra") +
+         (doubles_ ? ", doubles" : ", floats") + (with_radii_ ? ", radii" : "") + (with_subset_ ? ", subset" : "");
 }
 
 std::string ChangingCloud::buildAnew(Random& random)
@@ -271,6 +317,7 @@ std::string ChangingCloud::refit(Random& random)
 std::string ChangingCloud::update(Random& random)
 {
   if (with_subset_) return "no update of a subset";
+  if (isSurface()) return updateTriangles(random);
   std::vector<std::int32_t> records;
   const double share = random.chance(0.2) ? 1.0 : random.uniform(0, 0.3);
   const double beyond = world_.unit * random.uniform(-1, 2);
@@ -295,6 +342,43 @@ std::string ChangingCloud::update(Random& random)
   const UpdateReport report = update.commit(view());
   return "update of " + std::to_string(records.size()) + " records, kind " + std::to_string(kind) +
          (report.sorted_anew ? ", sorted anew" : "");
+}
+
+/// Vertices move, and all triangles that name them change; some are of other corners, some are new.
+std::string ChangingCloud::updateTriangles(Random& random)
+{
+  const std::size_t before = triangles_.size(), in_one = kind_ == Kind::tetrahedra ? 4 : 1;
+  const double share = random.chance(0.2) ? 0.5 : random.uniform(0, 0.1);
+  std::vector<Point3> moved = points_;
+  std::vector<bool> moves(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    moves[i] = random.chance(share);
+    if (moves[i]) moved[i] = placeOrNone(random);
+  }
+  std::vector<Triangle> others = triangles_;
+  for (std::size_t i = 0; i < before; i += in_one) { // takes the place of another, or is turned over
+    if (!random.chance(share)) continue;
+    const auto other = in_one * static_cast<std::size_t>(random.integer(0, static_cast<int>(before / in_one) - 1));
+    for (std::size_t k = i; k < std::min(i + in_one, before); ++k) {
+      others[k] = triangles_[other + k - i];
+      if (other == i) std::swap(others[k][0], others[k][1]);
+    }
+  }
+  std::vector<std::int32_t> records;
+  for (std::size_t i = 0; i < before; ++i) {
+    const bool at_moved = std::any_of(others[i].begin(), others[i].end(), [&](auto corner) { return moves[corner]; }) ||
+                          std::any_of(triangles_[i].begin(), triangles_[i].end(), [&](auto c) { return moves[c]; });
+    if (at_moved || others[i] != triangles_[i] || random.chance(0.05)) records.push_back(static_cast<std::int32_t>(i));
+  }
+  triangles_ = std::move(others);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (moves[i]) points_[i] = moved[i];
+  for (int i = random.chance(0.5) ? random.integer(0, 5) : 0; i > 0; --i) appendTriangles(random);
+  for (std::size_t i = before; i < triangles_.size(); ++i) records.push_back(static_cast<std::int32_t>(i));
+  HierarchyUpdate update(*hierarchy_, records.data(), records.size()); // the memory is as it was
+  const Old memory = store();
+  const UpdateReport report = update.commit(view());
+  return "update of " + std::to_string(records.size()) + " triangles" + (report.sorted_anew ? ", sorted anew" : "");
 }
 
 } // namespace pcl_bsh::fuzz

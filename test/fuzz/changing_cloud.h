@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud that changes under its hierarchy: it is moved, refitted, updated and built anew, its records lie elsewhere in
-// memory each time, and what they were before is overwritten.
+// A cloud, of points or of triangles, that changes under its hierarchy: it is moved, refitted, updated and built anew,
+// its records lie elsewhere in memory each time, and what they were before is overwritten.
 #pragma once
 
 #include "bytes.h"
 #include "support/random.h"
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <Eigen/Geometry>
 
@@ -29,7 +30,8 @@ struct World {
     kinds
   };
 
-  explicit World(Bytes& bytes);
+  /// @param surfaces some of its clouds are of triangles
+  explicit World(Bytes& bytes, bool surfaces = false);
 
   Point3 place(test::Random& random) const;
   double edge(test::Random& random) const; ///< of voxels; 0: their own choice
@@ -38,13 +40,15 @@ struct World {
 
   Kind kind;
   double unit;
+  bool surfaces;
 };
 
 class ChangingCloud {
 public:
   ChangingCloud(const World& world, test::Random& random);
 
-  PointsView view() const { return now_->view; }
+  PointsView view() const { return now_->view; } ///< its records are points or triangles
+  std::string text() const;
   const std::shared_ptr<SphereHierarchy>& shared() const { return hierarchy_; }
   const SphereHierarchy& hierarchy() const { return *hierarchy_; }
 
@@ -73,6 +77,7 @@ private:
     std::vector<unsigned char> bytes;
     std::vector<float> radii;
     std::vector<std::int32_t> indices;
+    std::vector<Triangle> triangles;
     PointsView view;
   };
   using Old = std::unique_ptr<Memory>;
@@ -82,14 +87,25 @@ private:
   std::string movePoints(test::Random& random);
   Point3 placeOrNone(test::Random& random) const;
   void append(const Point3& point, test::Random& random);
+  void appendTriangles(test::Random& random);
+  std::string updateTriangles(test::Random& random);
+  bool isSurface() const { return kind_ != Kind::points; }
   Old store(); ///< writes the records elsewhere; @return where they were
 
+  enum class Kind : std::uint8_t {
+    points,
+    triangles,  ///< of any of the points, twice where chance will have it
+    tetrahedra, ///< four triangles each, which close
+  };
+
   World world_;
+  Kind kind_ = Kind::points;
   bool doubles_, with_radii_, with_subset_;
   std::size_t head_, tail_;
   std::vector<Point3> points_;
   std::vector<float> radii_;
   std::vector<std::int32_t> indices_;
+  std::vector<Triangle> triangles_; ///< records of points_
   std::unique_ptr<Memory> now_;
   std::shared_ptr<SphereHierarchy> hierarchy_;
 };

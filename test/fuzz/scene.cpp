@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/query/record_distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,13 @@ Kind anyKind(Bytes& bytes)
   return static_cast<Kind>(bytes.below(6));
 }
 
+float narrowed(double value)
+{
+  if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
+  if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())) return static_cast<float>(value);
+  return value > 0 ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
+}
+
 bool finite(const Point3& p)
 {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
@@ -90,10 +98,7 @@ FuzzedCloud::FuzzedCloud(Bytes& bytes, unsigned most_repeats)
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint8_t* to = records_.data() + i * layout_.stride + layout_.offset[k];
       const double value = points[i % distinct][k] + static_cast<double>(i / distinct) * step[k];
-      const float narrow = std::abs(value) <= std::numeric_limits<float>::max() ? static_cast<float>(value)
-                           : value > 0                                          ? std::numeric_limits<float>::infinity()
-                           : value < 0 ? -std::numeric_limits<float>::infinity()
-                                       : std::numeric_limits<float>::quiet_NaN();
+      const float narrow = narrowed(value);
       if (doubles)
         std::memcpy(to, &value, sizeof value);
       else
@@ -154,6 +159,56 @@ std::optional<SphereHierarchy> FuzzedCloud::hierarchy() const
   return built;
 }
 
+FuzzedMesh::FuzzedMesh(Bytes& bytes)
+{
+  const auto flags = bytes.take<std::uint8_t>();
+  const Kind kind = anyKind(bytes);
+  of_floats_ = (flags & 1) != 0;
+  doubles_.resize(3 * bytes.below(17));
+  for (double& x : doubles_) x = coordinate(bytes, kind);
+  for (const double x : doubles_) floats_.push_back(narrowed(x));
+  const auto vertices = static_cast<unsigned>(doubles_.size() / 3);
+  const bool closed = (flags & 6) == 2, wrong = (flags & 0xf8) == 0;
+  const auto corner = [&]() -> std::uint32_t {
+    return wrong ? bytes.take<std::uint8_t>() : bytes.below(std::max(vertices, 1u));
+  };
+  for (unsigned i = bytes.below(closed ? 7 : 25); i > 0 && vertices > 0; --i) {
+    const std::uint32_t a = corner(), b = corner(), c = corner();
+    corners_.insert(corners_.end(), {a, b, c});
+    if (!closed) continue;
+    const std::uint32_t d = corner();
+    corners_.insert(corners_.end(), {a, d, b, b, d, c, c, d, a});
+  }
+  options_.fit = static_cast<SphereFit>(bytes.below(3));
+  options_.threads = 1 + bytes.below(2);
+}
+
+TrianglesView FuzzedMesh::triangles() const
+{
+  static constexpr std::uint32_t none = 0;
+  return {of_floats_ ? viewOf(floats_.data(), floats_.size() / 3) : viewOf(doubles_.data(), doubles_.size() / 3),
+          corners_.empty() ? &none : corners_.data(), corners_.size() / 3};
+}
+
+std::optional<SphereHierarchy> FuzzedMesh::hierarchy() const
+{
+  const TrianglesView view = triangles();
+  const auto named = [&](std::uint32_t corner) { return corner < view.vertices.count; };
+  const bool sensible = std::all_of(corners_.begin(), corners_.end(), named);
+  const auto large = [](double x) { return std::isfinite(x) && std::abs(x) > 1e37; }; // radii may be no floats
+  const bool may_be_large = std::any_of(doubles_.begin(), doubles_.end(), large);
+  std::optional<SphereHierarchy> built;
+  try {
+    built.emplace(viewOf(view), options_);
+  }
+  catch (const std::invalid_argument&) {
+    require(!sensible || may_be_large, "a sensible mesh was refused");
+    return std::nullopt;
+  }
+  require(sensible, "a mesh that makes no sense was accepted");
+  return built;
+}
+
 Eigen::Isometry3d anyPose(Bytes& bytes)
 {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -189,7 +244,10 @@ double anyClearance(Bytes& bytes, const Placed& a, const Placed& b)
   const std::uint32_t record_p = p.record(i % p.size()), record_q = q.record(j % q.size());
   if (!finite(p.point(record_p)) || !finite(q.point(record_q))) return 1.0;
   const DefaultFloatEnvironment environment;
-  const double tie = std::max(0.0, ExactDistance(a.pose, b.pose).gap({p.point(record_p), q.point(record_q)}));
+  const RecordDistance distance(p, a.pose, q, b.pose);
+  const double tie =
+      std::max(0.0, distance.ofTriangles() ? distance.gap(PointPair{record_p, record_q})
+                                           : ExactDistance(a.pose, b.pose).gap({p.point(record_p), q.point(record_q)}));
   if (!std::isfinite(tie)) return std::numeric_limits<double>::max();
   return mode == 4 ? std::nextafter(tie, 0.0) : mode == 5 ? std::nextafter(tie, infinity) : tie;
 }

@@ -5,6 +5,7 @@
 #include "bytes.h"
 
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <cstdint>
 #include <optional>
@@ -31,6 +32,23 @@ private:
   std::vector<float> radii_;
   bool subset_ = false;
   HierarchyOptions options_;
+};
+
+/// Up to 24 triangles of up to 16 vertices, or tetrahedra, which close.
+class FuzzedMesh {
+public:
+  explicit FuzzedMesh(Bytes& bytes);
+
+  TrianglesView triangles() const;
+  /// None when the mesh is refused; refusing a good one or accepting a bad one is a Finding.
+  std::optional<SphereHierarchy> hierarchy() const;
+
+private:
+  std::vector<double> doubles_;
+  std::vector<float> floats_;
+  std::vector<std::uint32_t> corners_;
+  HierarchyOptions options_;
+  bool of_floats_ = false;
 };
 
 /// Mostly rigid, sometimes nearly, sometimes not at all.

@@ -4,9 +4,10 @@
 
 #include "changing_cloud.h"
 #include "questions.h"
+#include "surface_questions.h"
 #include "target.h"
 
-#include <pcl_bsh/geometry/exact_distance.h>
+#include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -119,9 +120,7 @@ private:
   {
     const PointsView &p = a.hierarchy().view(), &q = b.hierarchy().view();
     require(pair.a < p.count && pair.b < q.count, "scene: a witness that there is not");
-    require(ExactDistance(a.pose, b.pose)
-                    .compare(p.point(pair.a), q.point(pair.b), clearance_, p.radius(pair.a), q.radius(pair.b)) <= 0,
-            "scene: the witness does not collide");
+    require(RecordDistance(p, a.pose, q, b.pose).compare(pair, clearance_) <= 0, "scene: the witness does not collide");
   }
 
   std::deque<ChangingCloud>& clouds_;
@@ -132,16 +131,14 @@ private:
 
 class Sequence {
 public:
-  explicit Sequence(Bytes& bytes) : bytes_(bytes), world_(bytes)
+  Sequence(Bytes& bytes, bool surfaces) : bytes_(bytes), world_(bytes, surfaces)
   {
     log_ = world_.text();
     Random random(bytes.take<std::uint16_t>());
     const unsigned count = 2 + bytes.below(2);
     for (unsigned i = 0; i < count; ++i) {
       clouds_.emplace_back(world_, random);
-      note("cloud " + std::to_string(i) + " of " + std::to_string(clouds_.back().view().count) + " points" +
-           (clouds_.back().view().scalar == Scalar::float64 ? ", doubles" : ", floats") +
-           (clouds_.back().view().radii ? ", radii" : "") + (clouds_.back().view().indices ? ", subset" : ""));
+      note("cloud " + std::to_string(i) + " of " + clouds_.back().text());
     }
   }
 
@@ -176,6 +173,8 @@ private:
     note("asked: kinds " + std::to_string(kinds) + " of cloud " +
          std::to_string(&a == &clouds_[which] ? which : first) + " and cloud " + std::to_string(second));
     questions_.ask({a.hierarchy(), a.pose}, {b.hierarchy(), b.pose}, world_.unit, kinds & asked(random), random);
+    if ((kinds & 0x2000) != 0) askDistances({a.hierarchy(), a.pose}, {b.hierarchy(), b.pose}, world_.unit, random);
+    if ((kinds & 0x1000) != 0) askSolid({a.hierarchy(), a.pose}, {b.hierarchy(), b.pose}, world_.unit, random);
     if ((kinds & 0x8000) != 0) {
       note("scenes asked");
       for (SharedScene& scene : scenes_) scene.compare();
@@ -278,9 +277,9 @@ private:
 
 } // namespace
 
-std::size_t runSequence(Bytes& bytes)
+std::size_t runSequence(Bytes& bytes, bool surfaces)
 {
-  return Sequence(bytes).run();
+  return Sequence(bytes, surfaces).run();
 }
 
 } // namespace pcl_bsh::fuzz

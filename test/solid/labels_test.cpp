@@ -181,6 +181,24 @@ TEST(Labels, OfWholeNodesTakeFewTests)
   EXPECT_EQ(in.work.voxels_built, 0u);
 }
 
+TEST(Labels, CountAPointThatIsNamedTwiceOnce)
+{
+  const Mesh box = test::boxMesh();
+  const Solid solid(box.view());
+  const std::vector<double> points = {0.5, 0.5, 0.5, 2, 2, 2, 1, 0.5, 0.5};
+  const std::vector<std::int32_t> twice = {2, 0, 1, 0, 2};
+  PointsView view = viewOf(points.data(), 3);
+  view.indices = twice.data();
+  view.index_count = twice.size();
+  const SphereHierarchy cloud(view);
+  for (const bool built : {false, true}) {
+    if (built) cloud.buildAll();
+    const LabelsResult found = labelPoints({cloud}, {solid});
+    EXPECT_EQ(found.inside, 1u);
+    EXPECT_EQ(found.on_surface, 1u);
+  }
+}
+
 TEST(Labels, OfPointsThatAreNotFinite)
 {
   const Mesh box = test::boxMesh();

@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/build/voxel_edge.h>
+#include <pcl_bsh/hierarchy/frame_between.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
@@ -256,6 +257,7 @@ private:
     }
     std::uint32_t* list = result_.lists.get();
 
+    const float largest_radius = largestRadiusOf(view_);
     std::size_t point = 0;
     Bounds all;
     auto entry = entries.begin();
@@ -275,10 +277,10 @@ private:
         widen(bounds, *entry->bin);
         widen(all, *entry->bin);
       }
-      voxel.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>);
+      voxel.frame = frameBetween(bounds.low, bounds.high, std::is_same_v<T, float>, largest_radius);
       point += voxel.count;
     }
-    if (result_.size > 0) result_.frame = frameBetween(all.low, all.high, std::is_same_v<T, float>);
+    if (result_.size > 0) result_.frame = frameBetween(all.low, all.high, std::is_same_v<T, float>, largest_radius);
   }
 
   /// Every voxel's records, in the order of the view.

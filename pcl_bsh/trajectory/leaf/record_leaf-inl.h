@@ -67,14 +67,14 @@ public:
   {
     if (!query_.scan.hierarchy().view().triangles) return points;
     const BoxEnds ends(box);
-    float half = 0.0f;
+    double half = 0.0; // squares of tiny floats are no floats
     Point3 middle;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float side = 0.5f * (ends.high[axis] - ends.low[axis]);
-      middle[axis] = 0.5 * (static_cast<double>(ends.low[axis]) + ends.high[axis]);
+      const double low = ends.low[axis], high = ends.high[axis], side = 0.5 * (high - low);
+      middle[axis] = 0.5 * (low + high);
       half += side * side;
     }
-    const double radius = std::sqrt(static_cast<double>(half)) * (1.0 + kRadiusMargin);
+    const double radius = std::sqrt(half) * (1.0 + kFewDoubleRoundings);
     std::uint32_t met = points;
     for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
