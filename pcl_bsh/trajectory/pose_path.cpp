@@ -12,7 +12,6 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr double kRounding = 0x1p-45;        ///< of the bounds below: a few dozen operations in double
 constexpr double kExcessRounding = 0x1p-48;  ///< of R'R - I, whose entries are sums of products up to 1
 constexpr double kStretchRounding = 0x1p-50; ///< of differences of stretches, which are about 1
 constexpr double kRigid = 0x1p-47;           ///< what a stretch that rounding makes does not exceed
@@ -128,8 +127,8 @@ double PosePath::plan(const std::vector<Eigen::Isometry3d>& model_poses, const s
     step.begin = carried(model_poses[k], sweep.pivot);
     step.end = carried(model_poses[k + 1], sweep.pivot);
     const double turned = step.turn.norm();
-    const double angle = turned == 0.0 ? 0.0 : turned * (1.0 + kRounding) + kRounding;
-    const double way = distance(step.begin, step.end) * (1.0 + kRounding);
+    const double angle = turned == 0.0 ? 0.0 : turned * (1.0 + kMotionRounding) + kMotionRounding;
+    const double way = distance(step.begin, step.end) * (1.0 + kMotionRounding);
     if (isHalfTurn(step.turn)) {
       throw InvalidInput(Input::swept, "swept motion",
                          plainText("from pose ", k, " to the next the model turns by half a turn (", angle,
@@ -249,10 +248,10 @@ void PosePath::bound(PathInterval& interval) const
     }
     extent = std::max(extent, distance(poses[k].center, pivot));
   }
-  interval.turn = std::sqrt(line[0]) * (1.0 + kRounding) + (last > first ? kRounding : 0.0);
-  interval.drift = std::sqrt(line[1]) * (1.0 + kRounding) + kRounding * extent;
-  interval.bend_turn = std::sqrt(bend[0]) * (1.0 + kRounding) + (last > first ? 4 * kRounding : 0.0);
-  interval.bend_drift = std::sqrt(bend[1]) * (1.0 + kRounding) + 4 * kRounding * extent;
+  interval.turn = std::sqrt(line[0]) * (1.0 + kMotionRounding) + (last > first ? kMotionRounding : 0.0);
+  interval.drift = std::sqrt(line[1]) * (1.0 + kMotionRounding) + kMotionRounding * extent;
+  interval.bend_turn = std::sqrt(bend[0]) * (1.0 + kMotionRounding) + (last > first ? 4 * kMotionRounding : 0.0);
+  interval.bend_drift = std::sqrt(bend[1]) * (1.0 + kMotionRounding) + 4 * kMotionRounding * extent;
   if (!is_swept || first == last) return;
   double bow_drift = 0.0, bow_turn = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
@@ -264,12 +263,12 @@ void PosePath::bound(PathInterval& interval) const
     bow_drift = std::max(bow_drift, step.bow.drift + step.bow.turn * away);
     bow_turn = std::max(bow_turn, step.bow.turn);
   }
-  interval.drift += bow_drift * (1.0 + kRounding);
-  interval.turn += bow_turn * (1.0 + kRounding);
+  interval.drift += bow_drift * (1.0 + kMotionRounding);
+  interval.turn += bow_turn * (1.0 + kMotionRounding);
   // From one pose to the next, the parabola itself bows by a share of its own bow.
-  const double share = (1.0 + kRounding) / (4.0 * (last - first) * (last - first));
-  interval.bend_drift += (bow_drift + std::sqrt(bow_squared[1]) * share) * (1.0 + kRounding);
-  interval.bend_turn += (bow_turn + std::sqrt(bow_squared[0]) * share) * (1.0 + kRounding);
+  const double share = (1.0 + kMotionRounding) / (4.0 * (last - first) * (last - first));
+  interval.bend_drift += (bow_drift + std::sqrt(bow_squared[1]) * share) * (1.0 + kMotionRounding);
+  interval.bend_turn += (bow_turn + std::sqrt(bow_squared[0]) * share) * (1.0 + kMotionRounding);
   if (stretches_.empty()) return;
   const double stretch = stretchStray(first, last);
   interval.drift += stretch;
@@ -289,7 +288,7 @@ double PosePath::stretchStray(std::uint32_t first, std::uint32_t last) const
     }
     most = std::max(most, squared);
   }
-  return (std::sqrt(most) * (1.0 + kRounding) + kStretchRounding) * size_;
+  return (std::sqrt(most) * (1.0 + kMotionRounding) + kStretchRounding) * size_;
 }
 
 } // namespace pcl_bsh

@@ -19,6 +19,14 @@ namespace pcl_bsh {
 /// What these parts of a query along a path take its progress to; the walks do the rest.
 inline constexpr double kPathDone = 0.05, kBroadPhaseDone = 0.1;
 
+/// What the C library's sine and cosine of an angle up to a turn are taken to err by: four units in the last place
+/// of 1. test/trajectory/sine_test.cpp holds the library against an enclosure in rational numbers.
+inline constexpr double kSineError = 0x1p-51;
+
+/// Of bounds of motion, and of turns between the ends of a motion: a few dozen operations in double, and what sine and
+/// cosine err by (test/proof/turns.g).
+inline constexpr double kMotionRounding = 0x1p-45;
+
 /// Seen by the model at this pose, point x of the world is at R' (x - center), from the model's centre. Of a swept path
 /// R is the rotation nearest to the pose's linear part.
 struct PathPose {

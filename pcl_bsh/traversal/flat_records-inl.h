@@ -89,9 +89,6 @@ struct LanesNear {
   std::uint32_t inside = 0; ///< of those all of which is within the length of one triangle, for certain
 };
 
-/// Rounding of what follows: the shares of squaredToTriangle() and of its square, 20 u, and four products and sums.
-inline constexpr float kFlatMargin = 0x1p-18f;
-
 /// @param x, y, z, r of the spheres, r stretched. @param lanes those asked for. @param reach beyond which nothing is
 /// near, with the frame's error. @param sure_reach within which it is, less that; negative: nobody asks
 /// @param balls of the leaf: its triangles'. @param inverse of its voxel's unit

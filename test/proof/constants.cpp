@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The constants that the code uses, as Gappa reads numbers: "name value" in each line.
 #include <pcl_bsh/distances/bound_margin.h>
+#include <pcl_bsh/geometry/exact/compensated_sum.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/geometry/triangle/flat_triangle.h>
+#include <pcl_bsh/geometry/triangle/separation.h>
 #include <pcl_bsh/simd/roundings.h>
+#include <pcl_bsh/trajectory/pose_path.h>
 
 #include <cstdio>
 
@@ -28,6 +31,13 @@ int main()
   PCL_BSH_PRINT(kBoundMargin);
   PCL_BSH_PRINT(kNeighborShare);
   PCL_BSH_PRINT(kNeighborMargin);
+  PCL_BSH_PRINT(kSlabMargin);
+  PCL_BSH_PRINT(kSeparationError);
+  PCL_BSH_PRINT(kFlatMargin);
+  PCL_BSH_PRINT(kFlatShare);
+  PCL_BSH_PRINT(kSineError);
+  PCL_BSH_PRINT(kMotionRounding);
+  std::printf("kCompensatedError %a\n", pcl_bsh::CompensatedSum::kError);
   std::printf("kFlatTriangleError %a\n", pcl_bsh::kFlatTriangleUnits * pcl_bsh::kFloatUnit);
   std::printf("kFlatSkewOfFloats %a\n", pcl_bsh::kFlatSkew<float>);
 }

@@ -8,10 +8,11 @@
 namespace pcl_bsh {
 
 /// A sum kept with its rounding errors (Ogita, Rump, Oishi: Accurate Sum and Dot Product, 2005, Dot2), and the sum of
-/// the absolute terms. Of up to 16 terms and products, the errors themselves are summed with an error of less than (16
-/// v)^2 of the absolute sum; rounding value() adds half a unit in its last place. Barring underflow.
+/// the absolute terms. Of up to 16 terms, each of which may be a product, the errors themselves are summed with an
+/// error of less than kError of the absolute sum (test/proof/compensated_sums.g); rounding value() adds half a unit in
+/// its last place. Barring underflow.
 struct CompensatedSum {
-  static constexpr double kError = 4 * (16 * kDoubleUnit) * (16 * kDoubleUnit); ///< four times what is needed
+  static constexpr double kError = 2 * (16 * kDoubleUnit) * (16 * kDoubleUnit);
 
   double sum = 0.0, errors = 0.0, absolute = 0.0;
 

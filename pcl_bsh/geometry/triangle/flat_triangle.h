@@ -30,6 +30,10 @@ template <class Number>
 inline constexpr double kFlatRelative = (kFlatTriangleUnits * kFlatUnit<Number> + kFlatSkew<Number>)*(1.0 + 0x1p-16);
 inline constexpr double kFlatShare = kFlatRelative<float>;
 
+/// Relative margin of lengths that are compared with such distances in float, and of bounds made of these: their share,
+/// the root or the square, and a few products and sums; proved in test/proof/flat_margin.g.
+inline constexpr float kFlatMargin = 0x1p-19f;
+
 /// Lays a triangle flat. Then |sqrt(s) - D| <= kFlatRelative D + error, where D is the distance of a point of its frame
 /// from the given triangle, and s what squaredToTriangle() says, but for kSquaredDistanceError of s.
 ///

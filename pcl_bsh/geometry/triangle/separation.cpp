@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/triangle/separation.h>
 
-#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 
 #include <algorithm>
@@ -13,10 +12,7 @@ namespace {
 
 constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
 
-/// Of a distance of two places, or of a span along a direction, relative to the largest coordinate. Two places that are
-/// combinations of corners err by less than 20 v of it on each axis together; two dot products with a direction, and
-/// what makes them of corners that move, by less than 30 v.
-constexpr double kSeparationError = 64 * kDoubleUnit;
+constexpr double kVanishing = 0x1p-500; ///< shorter lengths have squares that underflow
 
 double clampedShare(double part, double whole)
 {
@@ -222,7 +218,7 @@ public:
   void offer(const Point3& along)
   {
     const double length = lengthOf(along);
-    if (!(length > 0.0)) return;
+    if (!(length > kVanishing)) return; // its direction would not be of length 1
     const Point3 unit = (1.0 / length) * along;
     double low_a = kInfinitelyFar, high_b = -kInfinitelyFar;
     for (std::size_t i = 0; i < a_.count; ++i) low_a = std::min(low_a, dot(unit, a_.at[i]));
@@ -247,7 +243,7 @@ Separation separationOf(const Corners& a, const Corners& b)
   for (const Corners* corners : {&a, &b})
     for (std::size_t i = 0; i < corners->count; ++i)
       for (const double x : corners->at[i]) largest = std::max(largest, std::abs(x));
-  const double error = kSeparationError * largest, length = std::sqrt(nearest.squared());
+  const double error = kSeparationError * largest + kVanishing, length = std::sqrt(nearest.squared());
   apart.high = length * (1.0 + kFewDoubleRoundings) + error;
   if (!(length > 0.0)) return apart;
   // Where faces or edges are parallel, many places are as near as these, to rounding; of directions between them those
@@ -303,7 +299,7 @@ double leastApart(const Point3& direction, const MovingCorners& a, const MovingC
       for (std::size_t axis = 0; axis < 3; ++axis)
         largest = std::max(largest, std::abs(corners->from[i][axis]) + std::abs(corners->way[i][axis]) +
                                         std::abs(corners->bow[i][axis]));
-  return low_a - high_b - kSeparationError * largest;
+  return low_a - high_b - (kSeparationError * largest + kVanishing);
 }
 
 Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest)

@@ -4,11 +4,16 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 
 #include <cstdint>
 
 namespace pcl_bsh {
+
+/// Of a distance of two places, or of a span along a direction, relative to the largest coordinate: proved in
+/// test/proof/separation.g. Squares of lengths below 2^-500 vanish: as much is added.
+inline constexpr double kSeparationError = 48 * kDoubleUnit;
 
 /// What stands for a point, or for a closed triangle: all that lies between its corners.
 struct Corners {
