@@ -20,7 +20,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-SurfaceMesh toCgal(const test::Mesh& mesh)
+SurfaceMesh toCgal(const test::ClosedMesh& mesh)
 {
   SurfaceMesh made;
   std::vector<SurfaceMesh::Vertex_index> vertices;
@@ -34,7 +34,7 @@ SurfaceMesh toCgal(const test::Mesh& mesh)
 /// How many are outside, inside and on the surface.
 using Counts = std::array<std::size_t, 3>;
 
-void expectAsCgal(const test::Mesh& mesh, const std::vector<double>& points, Counts& counts)
+void expectAsCgal(const test::ClosedMesh& mesh, const std::vector<double>& points, Counts& counts)
 {
   const SurfaceMesh other = toCgal(mesh);
   ASSERT_EQ(other.number_of_faces(), mesh.corners.size() / 3);
@@ -70,15 +70,15 @@ TEST(SolidLabels, AreThoseOfCgal)
   expectAsCgal(test::boxMesh(), grid(-0.5, 1.5, 16), counts);
   expectAsCgal(test::fanMesh(300), test::pointsAbout(test::fanMesh(300), 3000, 1e-3, 1), counts);
   for (const std::uint32_t rows : {4u, 12u, 40u}) {
-    const test::Mesh bumpy = test::bumpyMesh(rows, 0.2);
+    const test::ClosedMesh bumpy = test::bumpyMesh(rows, 0.2);
     expectAsCgal(bumpy, test::pointsAbout(bumpy, 3000, 1e-2, rows), counts);
     expectAsCgal(bumpy, test::pointsAbout(bumpy, 1500, 1e-12, rows + 1), counts);
     expectAsCgal(bumpy, grid(0, 1, 12), counts);
   }
-  test::Mesh far; // small edges at georeferenced coordinates
+  test::ClosedMesh far; // small edges at georeferenced coordinates
   far.add(test::bumpyMesh(12, 0.2), 1e-3, {513449.75, 5402650.25, 300.125});
   expectAsCgal(far, test::pointsAbout(far, 3000, 1e-4, 9), counts);
-  test::Mesh nested; // a body in a hollow in a body
+  test::ClosedMesh nested; // a body in a hollow in a body
   nested.add(test::boxMesh());
   nested.add(test::boxMesh(), 0.5, {0.25, 0.25, 0.25}, true);
   nested.add(test::boxMesh(), 0.25, {0.375, 0.375, 0.375});
