@@ -239,6 +239,9 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
   };
   static constexpr std::size_t kMost = 256;
   Doubtful doubtful[kMost];
+  const bool of_triangles = query.a.hierarchy().view().triangles != nullptr;
+  CarriedTriangles own;
+  bool is_carried = false;
   std::size_t count = 0;
   const auto decide = [&] { // once floats have found what they can
     for (const Doubtful* pair = doubtful; pair != doubtful + count && hit != open; ++pair)
@@ -264,6 +267,18 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
                      }
                      near &= ~hit & ~aboveEach(squared, limits);
                      if (near == 0) return false;
+                     if (of_triangles) {
+                       if (!is_carried) own.carry(query.a.hierarchy().view(), leaf, obstacle.frame);
+                       is_carried = true;
+                       const double error = own.error + triangle.error(obstacle.frame);
+                       const double least = query.surePairs().reach.least;
+                       const LanesVerdict found =
+                           compareWithTriangle(triangle.flat, own.leaf, near, obstacle.reach + roundUp(error),
+                                               least > 0.0 ? obstacle.frame.band(least, error, kFlatShare).hit : -1.0f);
+                       hit |= found.within;
+                       near &= ~found.within & ~found.apart;
+                       if (near == 0) return hit == open;
+                     }
                      doubtful[count++] = {record, near};
                      if (count == kMost) decide();
                      return hit == open;

@@ -26,4 +26,10 @@ inline constexpr int kFlatUnderRoundings = 3; ///< of the height of a side above
 /// What these amount to together, in units of (distance + longest side): proved in test/proof/triangles.g.
 inline constexpr int kFlatTriangleUnits = 15;
 
+/// Of a gap between a flat triangle and one in a lane, along a direction, for each unit of its length: as many u of the
+/// greatest distance of a corner from the flat one's origin, and of its longest side. And the share of what is
+/// compared. Derived in triangle_pair_lanes-inl.h, proved in test/proof/triangle_pairs.g.
+inline constexpr int kTrianglePairUnits = 8;
+inline constexpr float kTrianglePairMargin = 0x1p-18f;
+
 } // namespace pcl_bsh

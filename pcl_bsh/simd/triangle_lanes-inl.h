@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -65,17 +66,23 @@ static_assert(along(Roundings{}, Roundings{}, Roundings{1}, Roundings{}, Roundin
 static_assert(Mul(Roundings{1}, Roundings{1}) == Roundings{kFlatUnderRoundings},
               "the end less x, times a slope that was rounded once");
 
-/// The square of the distance in a plane of (x, y) from the side (side_x, side_y), which begins at the origin.
-template <class Vector>
-HWY_INLINE Vector squaredToSide(Vector side_x, Vector side_y, Vector inverse, Vector zero, Vector one, Vector x,
-                                Vector y)
+/// A point of some frame, turned into the triangle's. @param spread makes a vector of a number. @param take called with
+/// its coordinates
+template <class Number, class Vector, class Spread, class Take>
+HWY_INLINE void turnToTriangle(const FlatTriangle<Number>& triangle, const Spread& spread, Vector px, Vector py,
+                               Vector pz, const Take& take)
 {
-  const Vector t = Min(Max(along(side_x, side_y, inverse, x, y), zero), one);
-  const Vector rest_x = Sub(x, Mul(t, side_x)), rest_y = Sub(y, Mul(t, side_y));
-  return Add(Mul(rest_x, rest_x), Mul(rest_y, rest_y));
+  px = Sub(px, spread(triangle.origin[0]));
+  py = Sub(py, spread(triangle.origin[1]));
+  pz = Sub(pz, spread(triangle.origin[2]));
+  const auto row = [&](std::size_t k) HWY_ATTR {
+    const Number* r = triangle.rows + 3 * k;
+    return turned(spread(r[0]), spread(r[1]), spread(r[2]), px, py, pz);
+  };
+  take(row(0), row(1), row(2));
 }
 
-/// The squared distance of (x, y, z) from the triangle. @param spread makes a vector of a number
+/// Calls candidate(dx, dy) with what is left of (x, y) in the triangle's plane beyond three places of it.
 ///
 /// Why it holds for any shape: no angle, normal or area is divided by. In its plane the nearest place of the triangle
 /// is on one of the two sides at the apex, or it is found as follows. x is clamped to the longest side, and y to what
@@ -97,29 +104,35 @@ HWY_INLINE Vector squaredToSide(Vector side_x, Vector side_y, Vector inverse, Ve
 /// The worst of the three is 5 u (D + L) + 2 u L; with the turn less than 11.93 u D + 13.93 u L, of kFlatTriangleUnits.
 /// - The sum of three squares of rounded differences: kSquaredDistanceError.
 /// Sides whose square is too small for its inverse are taken for points (flatten() counts their length).
+template <class Number, class Vector, class Spread, class Candidate>
+HWY_INLINE void beyondPlaces(const FlatTriangle<Number>& triangle, const Spread& spread, Vector x, Vector y,
+                             const Candidate& candidate)
+{
+  const Vector zero = spread(Number{0}), one = spread(Number{1});
+  const Vector length = spread(triangle.length), height = spread(triangle.apex_y);
+  const Vector on_longest = Min(Max(x, zero), length);
+  const Vector top = Min(Mul(on_longest, spread(triangle.rise)), Mul(Sub(length, on_longest), spread(triangle.fall)));
+  candidate(Sub(x, on_longest), Sub(y, Max(Min(y, top), zero)));
+  const auto beyondSide = [&](Vector side_x, Number inverse, Vector from) HWY_ATTR { // a side to the apex
+    const Vector t = Min(Max(along(side_x, height, spread(inverse), from, y), zero), one);
+    candidate(Sub(from, Mul(t, side_x)), Sub(y, Mul(t, height)));
+  };
+  beyondSide(spread(triangle.apex_x), triangle.to_start, x);
+  beyondSide(spread(static_cast<Number>(triangle.apex_x - triangle.length)), triangle.to_end, Sub(x, length));
+}
+
+/// The squared distance of (x, y, z) from the triangle.
 template <class Number, class Vector, class Spread>
 HWY_INLINE Vector squaredToTriangle(const FlatTriangle<Number>& triangle, const Spread& spread, Vector px, Vector py,
                                     Vector pz)
 {
-  const Vector zero = spread(Number{0}), one = spread(Number{1});
-  px = Sub(px, spread(triangle.origin[0]));
-  py = Sub(py, spread(triangle.origin[1]));
-  pz = Sub(pz, spread(triangle.origin[2]));
-  const auto row = [&](std::size_t k) HWY_ATTR {
-    const Number* r = triangle.rows + 3 * k;
-    return turned(spread(r[0]), spread(r[1]), spread(r[2]), px, py, pz);
-  };
-  const Vector x = row(0), y = row(1), z = row(2);
-  const Vector length = spread(triangle.length), height = spread(triangle.apex_y);
-
-  const Vector on_longest = Min(Max(x, zero), length);
-  const Vector top = Min(Mul(on_longest, spread(triangle.rise)), Mul(Sub(length, on_longest), spread(triangle.fall)));
-  const Vector aside = Sub(x, on_longest), above = Sub(y, Max(Min(y, top), zero));
-  Vector squared = Add(Mul(aside, aside), Mul(above, above));
-  squared = Min(squared, squaredToSide(spread(triangle.apex_x), height, spread(triangle.to_start), zero, one, x, y));
-  squared = Min(squared, squaredToSide(spread(static_cast<Number>(triangle.apex_x - triangle.length)), height,
-                                       spread(triangle.to_end), zero, one, Sub(x, length), y));
-  return Add(squared, Mul(z, z));
+  Vector squared = spread(std::numeric_limits<Number>::infinity());
+  turnToTriangle(triangle, spread, px, py, pz, [&](Vector x, Vector y, Vector z) HWY_ATTR {
+    beyondPlaces(triangle, spread, x, y,
+                 [&](Vector dx, Vector dy) HWY_ATTR { squared = Min(squared, Add(Mul(dx, dx), Mul(dy, dy))); });
+    squared = Add(squared, Mul(z, z));
+  });
+  return squared;
 }
 
 /// Squared distances of `count` points (rounded up to whole vectors; the arrays reach that far) to a triangle in their

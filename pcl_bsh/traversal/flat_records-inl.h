@@ -12,6 +12,7 @@
 #include <pcl_bsh/geometry/triangle/flat_triangle.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/simd/triangle_lanes-inl.h>
+#include <pcl_bsh/simd/triangle_pair_lanes-inl.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 #include <cmath>
@@ -80,6 +81,37 @@ private:
 
   std::vector<FlatRecord> slots_;
   std::uint64_t revision_ = 0; ///< of the cloud; none has 0
+};
+
+/// The triangles of a leaf of a in the frame of a voxel of b.
+struct CarriedTriangles {
+  LeafCorners leaf;
+  double error = 0.0; ///< of corners, beside the frame's: they may lie beyond its reach; in the voxel's unit
+
+  /// What carrying a corner takes of its coordinates, as a vector: its storing, and what RelativeFrame counts of
+  /// products.
+  static constexpr double kError = 1.7321 * (kStoringError + kCarriedProductError + kFewDoubleRoundings);
+
+  void carry(const PointsView& view, const LeafRange& of_a, const RelativeFrame& frame)
+  {
+    const LocalFrame& from = of_a.voxel->frame;
+    double reach = 0.0;
+    LeafPoints stored[3];
+    for (std::uint32_t i = 0; i < of_a.count; ++i) {
+      const Triangle3 corners = view.triangles->triangle(of_a.record(i));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = (corners[k][0] - from.origin[0]) / from.unit, y = (corners[k][1] - from.origin[1]) / from.unit,
+                     z = (corners[k][2] - from.origin[2]) / from.unit;
+        reach = std::max(reach, std::abs(x) + std::abs(y) + std::abs(z));
+        stored[k].x[i] = roundToFloat(x), stored[k].y[i] = roundToFloat(y), stored[k].z[i] = roundToFloat(z);
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      HWY_NAMESPACE::carry(frame.m.data(), frame.g.data(), stored[k].x, stored[k].y, stored[k].z, of_a.count,
+                           leaf.corners[k].x, leaf.corners[k].y, leaf.corners[k].z);
+    const double carried = static_cast<double>(frame.stretch_a) * reach;
+    error = carried < kLargestCarried / 4 ? kError * carried : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Spheres of a's nodes in the frame of a voxel of b, eight lanes, and which of them lie within or beyond a length of

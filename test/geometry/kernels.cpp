@@ -12,6 +12,7 @@
 
 #include <pcl_bsh/simd/segment_lanes-inl.h>
 #include <pcl_bsh/simd/triangle_lanes-inl.h>
+#include <pcl_bsh/simd/triangle_pair_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -82,6 +83,23 @@ void toTriangleOnTarget(const FlatTriangle<float>& triangle, const float* x, con
   lowerToTriangle(triangle, x, y, z, 8, out.lowered);
 }
 
+test::PairVerdict comparePairOnTarget(const FlatTriangle<float>& triangle, const float* corners, float reach,
+                                      float sure_square)
+{
+  LeafCorners leaf;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::fill(leaf.corners[k].x, leaf.corners[k].x + kLeafPoints, corners[3 * k]);
+    std::fill(leaf.corners[k].y, leaf.corners[k].y + kLeafPoints, corners[3 * k + 1]);
+    std::fill(leaf.corners[k].z, leaf.corners[k].z + kLeafPoints, corners[3 * k + 2]);
+  }
+  const LanesVerdict found = compareWithTriangle(triangle, leaf, firstBits(kLeafPoints), reach, sure_square);
+  const LanesVerdict last = compareWithTriangle(triangle, leaf, 1u << (kLeafPoints - 1), reach, sure_square);
+  const auto all = [](std::uint32_t bits) { return bits == firstBits(kLeafPoints); };
+  if (all(found.apart) == (last.apart != 0) && all(found.within) == (last.within != 0))
+    return {all(found.apart), all(found.within)};
+  return {true, true}; // not alike in all lanes
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -95,6 +113,7 @@ HWY_EXPORT(testOnTarget);
 HWY_EXPORT(slabsApartOnTarget);
 HWY_EXPORT(segmentInBoxOnTarget);
 HWY_EXPORT(toTriangleOnTarget);
+HWY_EXPORT(comparePairOnTarget);
 } // namespace
 
 namespace test {
@@ -138,6 +157,11 @@ ToTriangle squaredToTriangleEight(const FlatTriangle<float>& triangle, const flo
   ToTriangle found;
   HWY_DYNAMIC_DISPATCH(toTriangleOnTarget)(triangle, x, y, z, found);
   return found;
+}
+
+PairVerdict comparePair(const FlatTriangle<float>& triangle, const float (&corners)[9], float reach, float sure_square)
+{
+  return HWY_DYNAMIC_DISPATCH(comparePairOnTarget)(triangle, corners, reach, sure_square);
 }
 
 } // namespace test

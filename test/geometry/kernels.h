@@ -48,4 +48,10 @@ struct ToTriangle {
 ToTriangle squaredToTriangleEight(const FlatTriangle<float>& triangle, const float (&x)[8], const float (&y)[8],
                                   const float (&z)[8]);
 
+/// compareWithTriangle() of one triangle, its corners x y z each.
+struct PairVerdict {
+  bool apart, within;
+};
+PairVerdict comparePair(const FlatTriangle<float>& triangle, const float (&corners)[9], float reach, float sure_square);
+
 } // namespace pcl_bsh::test

@@ -39,5 +39,7 @@ int main()
   PCL_BSH_PRINT(kMotionRounding);
   std::printf("kCompensatedError %a\n", pcl_bsh::CompensatedSum::kError);
   std::printf("kFlatTriangleError %a\n", pcl_bsh::kFlatTriangleUnits * pcl_bsh::kFloatUnit);
+  std::printf("kTrianglePairError %a\n", pcl_bsh::kTrianglePairUnits * pcl_bsh::kFloatUnit);
+  PCL_BSH_PRINT(kTrianglePairMargin);
   std::printf("kFlatSkewOfFloats %a\n", pcl_bsh::kFlatSkew<float>);
 }

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Triangles in lanes against one triangle that was laid flat: those that are surely farther apart than a reach, and
+// those that surely are not. The rest is for numbers of more digits.
+
+#if defined(PCL_BSH_SIMD_TRIANGLE_PAIR_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_SIMD_TRIANGLE_PAIR_LANES_INL_H_
+#undef PCL_BSH_SIMD_TRIANGLE_PAIR_LANES_INL_H_
+#else
+#define PCL_BSH_SIMD_TRIANGLE_PAIR_LANES_INL_H_
+#endif
+
+#include <pcl_bsh/simd/point_lanes-inl.h>
+#include <pcl_bsh/simd/triangle_lanes-inl.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Corners of sixteen triangles in one frame; those past the leaf's count hold anything.
+struct LeafCorners {
+  LeafPoints corners[3];
+};
+
+struct LanesVerdict {
+  std::uint32_t apart = 0;  ///< bits of the lanes that are surely farther apart than the reach
+  std::uint32_t within = 0; ///< bits of those of which a corner surely is within the sure reach
+};
+
+/// Compares triangles in lanes with one that was laid flat in their frame.
+///
+/// Apart: along any direction, the gap between two triangles is no more than their distance. So nothing that led to a
+/// direction can make a verdict wrong; it only has to be measured well. Directions are tried from the flat triangle to
+/// each corner, and across both triangles.
+///
+/// Rounding bound. Let v be a direction in the frame, w the same turned, C the greatest distance of a lane's corner
+/// from the flat triangle's origin, and L its longest side. One of v and w is as computed; the other errs by 3 u of
+/// terms that are, as a vector, at most sqrt(3) times as long.
+/// - A corner less the origin errs by u C, its product with v by 3 u |v| C more.
+/// - The flat triangle's corners along w: 5.2 u |w| L for the turn, 2 u |w| L for two products and their sum.
+/// - The difference of both, the squares and their comparison: shares of what is compared, below 16 u, as is what the
+///   rows change of a length; of kTrianglePairMargin.
+/// Together less than kTrianglePairUnits of (C + L): proved in test/proof/triangle_pairs.g. Where the flat triangle is
+/// stored is triangle.error.
+///
+/// Within: a corner is, as squaredToTriangle() tells.
+/// @param lanes those asked for. @param reach beyond which a lane is apart, with triangle.error and all that corners
+/// may be off. @param sure_square what a corner's squared distance must not exceed (DistanceBand::hit); negative:
+/// nobody asks
+HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle, const LeafCorners& leaf,
+                                            std::uint32_t lanes, float reach, float sure_square)
+{
+  const LaneTag d;
+  const auto spread = [d](float value) HWY_ATTR { return hn::Set(d, value); };
+  const float* rows = triangle.rows;
+  const LaneVector zero = hn::Zero(d), length = spread(triangle.length), apex_x = spread(triangle.apex_x),
+                   apex_y = spread(triangle.apex_y);
+  LanesVerdict found;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const std::uint32_t block = firstBits(hn::Lanes(d)) << i;
+    if ((lanes & block) == 0) continue;
+    LaneVector x[3], y[3], z[3];
+    LaneVector farthest = zero, low_z = zero, high_z = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LeafPoints& corner = leaf.corners[k];
+      x[k] = hn::Sub(hn::Load(d, corner.x + i), spread(triangle.origin[0]));
+      y[k] = hn::Sub(hn::Load(d, corner.y + i), spread(triangle.origin[1]));
+      z[k] = hn::Sub(hn::Load(d, corner.z + i), spread(triangle.origin[2]));
+      farthest = hn::Max(farthest, hn::Add(hn::Add(hn::Abs(x[k]), hn::Abs(y[k])), hn::Abs(z[k])));
+    }
+    // What a gap must exceed, for each unit of its direction.
+    const LaneVector least =
+        hn::Mul(hn::Add(hn::Mul(hn::Add(farthest, length), spread(kTrianglePairUnits * 0x1p-24f)), spread(reach)),
+                spread(1.0f + kTrianglePairMargin));
+    const LaneVector least_square = hn::Mul(least, least);
+    auto apart = hn::Lt(zero, zero), within = apart;
+    const auto consider = [&](LaneVector gap, LaneVector direction_square) HWY_ATTR {
+      const auto beyond =
+          hn::Gt(hn::Mul(gap, gap), hn::Add(hn::Mul(least_square, direction_square), spread(kVanishingSquare)));
+      apart = hn::Or(apart, hn::And(beyond, hn::Gt(gap, zero)));
+    };
+    const auto dot = [&](LaneVector u, LaneVector v, LaneVector w, std::size_t k)
+                         HWY_ATTR { return turned(u, v, w, x[k], y[k], z[k]); };
+    const auto lowest = [&](LaneVector u, LaneVector v, LaneVector w)
+                            HWY_ATTR { return hn::Min(hn::Min(dot(u, v, w, 0), dot(u, v, w, 1)), dot(u, v, w, 2)); };
+
+    // From the flat triangle to each corner, and across it.
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto row = [&](std::size_t r) HWY_ATTR {
+        return dot(spread(rows[3 * r]), spread(rows[3 * r + 1]), spread(rows[3 * r + 2]), k);
+      };
+      const LaneVector on_x = row(0), on_y = row(1), on_z = row(2);
+      low_z = k == 0 ? on_z : hn::Min(low_z, on_z);
+      high_z = k == 0 ? on_z : hn::Max(high_z, on_z);
+      LaneVector best = spread(std::numeric_limits<float>::infinity()), best_x = zero, best_y = zero;
+      beyondPlaces(triangle, spread, on_x, on_y, [&](LaneVector dx, LaneVector dy) HWY_ATTR {
+        const LaneVector square = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+        const auto better = hn::Lt(square, best);
+        best = hn::Min(best, square);
+        best_x = hn::IfThenElse(better, dx, best_x);
+        best_y = hn::IfThenElse(better, dy, best_y);
+      });
+      const LaneVector square = hn::Add(best, hn::Mul(on_z, on_z));
+      within = hn::Or(within, hn::Le(square, spread(sure_square)));
+      const auto back = [&](std::size_t axis) HWY_ATTR {
+        return turned(spread(rows[axis]), spread(rows[3 + axis]), spread(rows[6 + axis]), best_x, best_y, on_z);
+      };
+      const LaneVector far_side =
+          hn::Max(hn::Max(zero, hn::Mul(best_x, length)), hn::Add(hn::Mul(best_x, apex_x), hn::Mul(best_y, apex_y)));
+      consider(hn::Sub(lowest(back(0), back(1), back(2)), far_side), square);
+    }
+    consider(hn::Max(low_z, hn::Neg(high_z)), spread(1.0f));
+
+    std::uint32_t open = lanes & block & ~(bitsOf(d, apart) << i) & ~(bitsOf(d, within) << i);
+    if (open != 0) { // across the lane's triangle
+      LaneVector ux = hn::Sub(x[1], x[0]), uy = hn::Sub(y[1], y[0]), uz = hn::Sub(z[1], z[0]);
+      LaneVector vx = hn::Sub(x[2], x[0]), vy = hn::Sub(y[2], y[0]), vz = hn::Sub(z[2], z[0]);
+      const LaneVector nx = hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)), ny = hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
+                       nz = hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx));
+      const LaneVector on_x = turned(spread(rows[0]), spread(rows[1]), spread(rows[2]), nx, ny, nz),
+                       on_y = turned(spread(rows[3]), spread(rows[4]), spread(rows[5]), nx, ny, nz);
+      const LaneVector end = hn::Mul(on_x, length), apex = hn::Add(hn::Mul(on_x, apex_x), hn::Mul(on_y, apex_y));
+      const LaneVector low = hn::Min(hn::Min(zero, end), apex), high = hn::Max(hn::Max(zero, end), apex);
+      const LaneVector at[3] = {dot(nx, ny, nz, 0), dot(nx, ny, nz, 1), dot(nx, ny, nz, 2)};
+      const LaneVector own_low = hn::Min(hn::Min(at[0], at[1]), at[2]),
+                       own_high = hn::Max(hn::Max(at[0], at[1]), at[2]);
+      consider(hn::Max(hn::Sub(own_low, high), hn::Sub(low, own_high)),
+               hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)));
+    }
+    found.apart |= bitsOf(d, apart) << i & block;
+    found.within |= bitsOf(d, within) << i & block;
+  }
+  found.apart &= lanes;
+  found.within &= lanes;
+  return found;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
