@@ -19,16 +19,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// arithmetic gets wrong.
 constexpr double kPad = 0x1p-12;
 
-/// What a grid may cost, of so many triangles: entries of the whole first one, and of all; a finer one is made where a
-/// column has more than kCrowded.
+/// Entries of the whole first grid, about; a finer one is made where a column has more than kCrowded.
 std::size_t mostEntries(std::size_t triangles)
 {
-  return 8 * triangles + std::min<std::size_t>(64 * triangles + (1 << 14), 1 << 20);
+  return 6 * triangles + (1 << 14);
 }
-std::size_t mostOfAll(std::size_t triangles)
+/// Bytes of all grids. A finer one takes up to 128 for each of its triangles.
+std::size_t mostBytes(std::size_t triangles)
 {
-  return 16 * triangles + (1 << 21);
+  return 32 * triangles + (1 << 17);
 }
+constexpr std::size_t kFinerEntries = 16, kFinerCells = 8;
 constexpr std::uint32_t kCrowded = 128;
 constexpr std::uint32_t kMostColumns = 4096; ///< along an axis
 
@@ -144,8 +145,9 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   }
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
-  const double most_entries = finer ? 16.0 * count : static_cast<double>(mostEntries(triangles.size()));
-  const double most_cells = finer ? 8.0 * count : count + 4096.0;
+  const double most_entries =
+      finer ? static_cast<double>(kFinerEntries) * count : static_cast<double>(mostEntries(triangles.size()));
+  const double most_cells = finer ? static_cast<double>(kFinerCells) * count : count + 4096.0;
   const auto along = [](double length, double per) { return std::max(1.0, std::ceil(length * per)); };
   double per = shareOf(1.0, longest);
   if (!(per < kInfinity)) per = 0.0;
@@ -155,24 +157,27 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
     if (cells > most_cells || shadows.entries(next) > most_entries || next * longest > kMostColumns) break;
     per = next;
   }
-  const double columns = along(width, per), rows = along(height, per);
-  if (finer && shadows.entries(per) > 0.6 * count * columns * rows) return false;
-
-  Grid grid{low[0], low[1], shareOf(columns, width), shareOf(rows, height), 0.0, 0, 0, 0};
-  if (!(grid.per_x < kInfinity)) grid.per_x = 0.0;
-  if (!(grid.per_y < kInfinity)) grid.per_y = 0.0;
-  grid.columns = static_cast<std::uint32_t>(columns), grid.rows = static_cast<std::uint32_t>(rows);
-  grid.pad = kPad * std::max(width / columns, height / rows);
+  Grid grid;
+  std::vector<std::uint32_t> ends;
+  for (;; per *= 0.8) { // needles meet more columns than their shadows fill
+    const double columns = along(width, per), rows = along(height, per);
+    if (finer && shadows.entries(per) > 0.6 * count * columns * rows) return false;
+    grid = {low[0], low[1], shareOf(columns, width), shareOf(rows, height), 0.0, 0, 0, 0};
+    if (!(grid.per_x < kInfinity)) grid.per_x = 0.0;
+    if (!(grid.per_y < kInfinity)) grid.per_y = 0.0;
+    grid.columns = static_cast<std::uint32_t>(columns), grid.rows = static_cast<std::uint32_t>(rows);
+    grid.pad = kPad * std::max(width / columns, height / rows);
+    ends.assign(std::size_t{grid.columns} * grid.rows + 1, 0);
+    double entries = 0.0;
+    for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { ++ends[cell], ++entries; });
+    if (entries <= 1.25 * most_entries || ends.size() <= 2) break;
+  }
   grid.first = static_cast<std::uint32_t>(cells_.size());
-
-  const std::size_t cell_count = std::size_t{grid.columns} * grid.rows;
-  std::vector<std::uint32_t> ends(cell_count + 1, 0);
-  for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { ++ends[cell]; });
   std::uint32_t begin = static_cast<std::uint32_t>(entries_.size()), sum = begin;
   for (std::uint32_t& n : ends) sum += std::exchange(n, sum);
   entries_.resize(sum);
   for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { entries_[ends[cell]++] = i; });
-  for (std::size_t i = 0; i < cell_count; ++i) cells_.push_back({std::exchange(begin, ends[i]), ends[i]});
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) cells_.push_back({std::exchange(begin, ends[i]), ends[i]});
   grids_.push_back(grid);
   return true;
 }
@@ -216,7 +221,8 @@ void Columns::forEachCell(const Grid& grid, std::uint32_t triangle, const Visit&
 /// Gives crowded columns finer grids, the most crowded first, as far as memory goes.
 void Columns::refine()
 {
-  const std::size_t most = mostOfAll(view_.count);
+  const std::size_t most = mostBytes(view_.count);
+  constexpr std::size_t finer_bytes = kFinerEntries * sizeof(std::uint32_t) + kFinerCells * sizeof(Cell);
   using Crowded = std::tuple<std::uint32_t, std::size_t, std::uint32_t>; // entries, cell, grid
   std::priority_queue<Crowded> crowded;
   const auto note = [&](std::uint32_t grid) {
@@ -226,9 +232,10 @@ void Columns::refine()
   };
   note(0);
   std::vector<std::uint32_t> some;
-  while (!crowded.empty() && entries_.size() < most) {
+  while (!crowded.empty()) {
     const auto [count, cell, index] = crowded.top();
     crowded.pop();
+    if (entries_.size() * sizeof(std::uint32_t) + cells_.size() * sizeof(Cell) + finer_bytes * count > most) continue;
     const Grid grid = grids_[index];
     const std::size_t place = cell - grid.first;
     const auto column = static_cast<double>(place % grid.columns), row = static_cast<double>(place / grid.columns);

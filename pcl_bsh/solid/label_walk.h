@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace pcl_bsh {
 
@@ -79,6 +80,23 @@ private:
     if (label != Label::outside) sink.one(record, label);
   }
 
+  /// Of a point by where it is stored, for where it was given lies anywhere in memory; by that where it must be.
+  template <class Sink>
+  void labelStored(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t i, Sink& sink)
+  {
+    const std::uint32_t record = voxel.records()[i];
+    if (!sink.wants(record)) return;
+    const LocalFrame& local = voxel.frame;
+    const Point3 at = labels_.seen(frame, {static_cast<double>(voxel.x()[i]) * local.unit,
+                                           static_cast<double>(voxel.y()[i]) * local.unit,
+                                           static_cast<double>(voxel.z()[i]) * local.unit});
+    // Turned, the slack of three axes adds up.
+    const double slack = (local.slack(0) + local.slack(1) + local.slack(2)) * local.unit * (1.0 + 4e-6);
+    const std::optional<Label> found = labels_.labelAround(at, frame.error + slack);
+    const Label label = found ? *found : labels_.label(frame, voxel.point(cloud_.view, i), work_.exact_decisions);
+    if (label != Label::outside) sink.one(record, label);
+  }
+
   template <class Sink>
   void labelNode(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t index, Sink& sink)
   {
@@ -102,7 +120,7 @@ private:
       }
       else {
         ++work_.leaf_pairs;
-        for (std::uint32_t j = begin; j < end; ++j) tell(frame, records[j], voxel.point(cloud_.view, j), sink);
+        for (std::uint32_t j = begin; j < end; ++j) labelStored(voxel, frame, j, sink);
       }
     }
   }

@@ -96,17 +96,12 @@ PointLabels::Frame PointLabels::frameAt(const Point3& origin, double reach) cons
   return frame;
 }
 
-Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions)
+/// How often the surface winds round a place. @param decide called with each triangle that double arithmetic cannot
+/// tell of, returns its share; nothing ends it all
+template <class Decide>
+std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const Decide& decide)
 {
-  const Point3 at = seen(frame, {p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]});
-  const double error = frame.error;
-  if (!std::isfinite(at[0] + at[1] + at[2] + error)) { // out of range: all triangles, exactly
-    exact_decisions += triangles_.count;
-    const std::optional<int> turns = winding_.number(
-        p, triangles_.count, [&](std::size_t i) { return triangles_.triangle(static_cast<std::uint32_t>(i)); });
-    return !turns ? Label::surface : *turns != 0 ? Label::inside : Label::outside;
-  }
-  if (columns_.isBeyond(at, error)) return Label::outside;
+  if (columns_.isBeyond(at, error)) return 0;
   const Point3 low = {at[0] - error, at[1] - error, at[2] - error},
                high = {at[0] + error, at[1] + error, at[2] + error};
   int turns = 0;
@@ -121,16 +116,43 @@ Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exa
       for (std::size_t k = 0; k < 3; ++k) corner[k] -= at[k];
     const Crossing met = meet(t, error, static_cast<double>(box.low[2]) > high[2]);
     if (met == Crossing::unknown) {
-      ++exact_decisions;
-      const Winding::Crossing exact = winding_.crossing(p, triangles_.triangle(i));
-      if (exact.on_surface) return Label::surface;
-      turns += exact.turns;
+      const std::optional<int> decided = decide(i);
+      if (!decided) return std::nullopt;
+      turns += *decided;
     }
     else {
       turns += met == Crossing::front ? 1 : met == Crossing::back ? -1 : 0;
     }
   }
-  return turns != 0 ? Label::inside : Label::outside;
+  return turns;
+}
+
+std::optional<Label> PointLabels::labelAround(const Point3& at, double error)
+{
+  if (!std::isfinite(at[0] + at[1] + at[2] + error)) return std::nullopt;
+  const std::optional<int> turns = turnsAt(at, error, [](std::uint32_t) { return std::nullopt; });
+  if (!turns) return std::nullopt;
+  return *turns != 0 ? Label::inside : Label::outside;
+}
+
+Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions)
+{
+  const Point3 at = seen(frame, {p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]});
+  std::optional<int> turns;
+  if (std::isfinite(at[0] + at[1] + at[2] + frame.error)) {
+    turns = turnsAt(at, frame.error, [&](std::uint32_t i) -> std::optional<int> {
+      ++exact_decisions;
+      const Winding::Crossing exact = winding_.crossing(p, triangles_.triangle(i));
+      if (exact.on_surface) return std::nullopt;
+      return exact.turns;
+    });
+  }
+  else { // out of range: all triangles, exactly
+    exact_decisions += triangles_.count;
+    turns = winding_.number(p, triangles_.count,
+                            [&](std::size_t i) { return triangles_.triangle(static_cast<std::uint32_t>(i)); });
+  }
+  return !turns ? Label::surface : *turns != 0 ? Label::inside : Label::outside;
 }
 
 } // namespace pcl_bsh

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace pcl_bsh {
@@ -51,7 +52,13 @@ public:
   /// @param p finite, of the cloud. @param exact_decisions crossings that Winding decided are added
   Label label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions);
 
+  /// The label of all places within `error` of `at`, per axis, as seen; nothing where double arithmetic cannot tell.
+  std::optional<Label> labelAround(const Point3& at, double error);
+
 private:
+  template <class Decide>
+  std::optional<int> turnsAt(const Point3& at, double error, const Decide& decide);
+
   const Columns& columns_;
   const TrianglesView& triangles_;
   Winding winding_;

@@ -46,9 +46,10 @@ TEST(Solid, JoinsCornersOfEqualCoordinates)
 
 TEST(Solid, TakesLittleMemory)
 {
-  const test::ClosedMesh mesh = test::bumpyMesh(100, 0.2);
-  const Solid solid(mesh.view());
-  EXPECT_LT(static_cast<double>(solid.bytes()) / static_cast<double>(mesh.view().count), 128.0);
+  for (const test::ClosedMesh& mesh : {test::bumpyMesh(100, 0.2), test::fanMesh(30000), test::latticeMesh(400, 8, 3)}) {
+    const Solid solid(mesh.view());
+    EXPECT_LT(solid.bytes(), 70 * mesh.view().count + 400000) << mesh.view().count << " triangles";
+  }
 }
 
 } // namespace
