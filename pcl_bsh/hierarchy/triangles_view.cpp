@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 
 #include <algorithm>
@@ -23,30 +24,58 @@ constexpr auto kName = "triangles";
 
 double apart(const Point3& p, const Point3& q)
 {
-  const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-  const double squared = x * x + y * y + z * z;
-  return std::isnormal(squared) ? std::sqrt(squared) : std::hypot(x, y, z); // squares leave the range of doubles early
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+/// Squares of the sides that face the corners, as shares of the longest one's.
+std::array<double, 3> sharesOf(const std::array<Point3, 3>& corners)
+{
+  std::array<double, 3> sides;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point3 side = corners[(i + 1) % 3] - corners[(i + 2) % 3];
+    sides[i] = dot(side, side);
+  }
+  double longest = std::max({sides[0], sides[1], sides[2]});
+  if (!std::isnormal(longest)) { // squares leave the range of doubles early
+    for (std::size_t i = 0; i < 3; ++i) sides[i] = apart(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+    longest = std::max({sides[0], sides[1], sides[2]});
+    const double unit = longest > 0.0 ? 1.0 / longest : 0.0;
+    for (double& side : sides) side *= side * unit * unit;
+    return sides;
+  }
+  const double unit = 1.0 / longest;
+  for (double& side : sides) side *= unit;
+  return sides;
 }
 
 /// The middle of the smallest ball: that of the longest side where the triangle is not acute, else its circumcentre.
 Point3 middleOf(const std::array<Point3, 3>& corners)
 {
-  const double a = apart(corners[1], corners[2]), b = apart(corners[2], corners[0]), c = apart(corners[0], corners[1]);
-  const double longest = std::max({a, b, c});
-  // Shares of the longest side, so that no square overflows.
-  const double unit = longest > 0.0 ? 1.0 / longest : 0.0;
-  const double aa = a * unit * a * unit, bb = b * unit * b * unit, cc = c * unit * c * unit;
+  const auto [aa, bb, cc] = sharesOf(corners);
   std::array<double, 3> weights = {aa * (bb + cc - aa), bb * (cc + aa - bb), cc * (aa + bb - cc)};
-  if (!(std::min({weights[0], weights[1], weights[2]}) > 0.0)) {
+  if (!(std::min({weights[0], weights[1], weights[2]}) > 0x1p-900)) { // nor so thin that shares leave the range
     weights = {1.0, 1.0, 1.0};
-    weights[a == longest ? 0 : b == longest ? 1 : 2] = 0.0; // the corner that faces it
+    const double longest = std::max({aa, bb, cc});
+    weights[aa == longest ? 0 : bb == longest ? 1 : 2] = 0.0; // the corner that faces it
   }
   Point3 middle;
-  const double sum = weights[0] + weights[1] + weights[2];
+  const double unit = 1.0 / (weights[0] + weights[1] + weights[2]);
+  for (double& weight : weights) weight *= unit;
   for (std::size_t k = 0; k < 3; ++k)
-    middle[k] =
-        corners[0][k] * (weights[0] / sum) + corners[1][k] * (weights[1] / sum) + corners[2][k] * (weights[2] / sum);
+    middle[k] = corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2];
   return middle;
+}
+
+/// How far the farthest corner is from a place.
+double reachFrom(const Point3& place, const std::array<Point3, 3>& corners)
+{
+  double most = 0.0;
+  for (const Point3& corner : corners) {
+    const Point3 way = corner - place;
+    most = std::max(most, dot(way, way));
+  }
+  if (std::isnormal(most)) return std::sqrt(most);
+  return std::max({apart(place, corners[0]), apart(place, corners[1]), apart(place, corners[2])});
 }
 
 template <class Coordinate>
@@ -67,8 +96,8 @@ inline constexpr double kOffMiddle = 2 * ((std::is_same_v<Coordinate, float> ? k
 template <class Coordinate>
 struct Balls {
   TrianglesView triangles;
-  std::vector<std::array<Coordinate, 3>> centers;
-  std::vector<float> radii;
+  std::unique_ptr<std::array<Coordinate, 3>[]> centers;
+  std::unique_ptr<float[]> radii;
 };
 
 template <class Coordinate>
@@ -76,37 +105,35 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
 {
   auto balls = std::make_shared<Balls<Coordinate>>();
   balls->triangles = triangles;
-  balls->centers.resize(triangles.count);
-  balls->radii.resize(triangles.count);
+  balls->centers = std::make_unique_for_overwrite<std::array<Coordinate, 3>[]>(triangles.count);
+  balls->radii = std::make_unique_for_overwrite<float[]>(triangles.count);
   double largest = 0.0;
   for (std::size_t i = 0; i < triangles.count; ++i) {
     const std::array<Point3, 3> corners = triangles.triangle(static_cast<std::uint32_t>(i));
     std::array<Coordinate, 3>& center = balls->centers[i];
     if (!std::all_of(corners.begin(), corners.end(), isFinite)) {
       center.fill(std::numeric_limits<Coordinate>::quiet_NaN());
+      balls->radii[i] = 0.0f;
       continue;
     }
     const Point3 middle = middleOf(corners);
     for (std::size_t k = 0; k < 3; ++k) center[k] = rounded<Coordinate>(middle[k]);
     const Point3 stored = {double{center[0]}, double{center[1]}, double{center[2]}};
-    double radius = 0.0;
-    for (const Point3& corner : corners) {
-      radius = std::max(radius, apart(stored, corner));
+    for (const Point3& corner : corners)
       for (const double x : corner) largest = std::max(largest, std::abs(x));
-    }
-    balls->radii[i] = roundUp(radius * (1.0 + kFewDoubleRoundings));
+    balls->radii[i] = roundUp(reachFrom(stored, corners) * (1.0 + kFewDoubleRoundings));
     if (!std::isfinite(balls->radii[i]))
       throw InvalidInput(Input::surface, kName, "triangle " + std::to_string(i) + " is too large for a float32 radius",
                          "give coordinates below 1e38")
           .withIndex(i);
   }
   PointsView view;
-  view.data = balls->centers.data();
+  view.data = balls->centers.get();
   view.count = triangles.count;
   view.stride = 3 * sizeof(Coordinate);
   view.offset = {0, sizeof(Coordinate), 2 * sizeof(Coordinate)};
   view.scalar = scalar;
-  view.radii = balls->radii.data();
+  view.radii = balls->radii.get();
   view.uncertainty = triangles.vertices.uncertainty;
   view.triangles = &balls->triangles;
   constexpr double vanishing = std::numeric_limits<Coordinate>::denorm_min();
