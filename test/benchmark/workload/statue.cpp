@@ -42,18 +42,22 @@ Vector onCube(unsigned face, double u, double v)
   }
 }
 
-/// The surface: each ray from the origin meets it once, so it is closed whatever the bumps.
 Vector onStatue(unsigned face, double u, double v, std::uint64_t seed)
 {
-  Vector p = onCube(face, u, v);
+  return bench::onStatue(onCube(face, u, v), seed);
+}
+
+} // namespace
+
+/// Each ray from the origin meets the surface once, so it is closed whatever the bumps.
+std::array<double, 3> onStatue(std::array<double, 3> p, std::uint64_t seed)
+{
   const double r = 1.0 / length(p);
   for (double& x : p) x *= r;
   const double swell = 1.0 + octaveNoise({p[0] + 10, p[1] + 10, p[2] + 10}, 0.8, 0.25, 6, seed);
   for (std::size_t k = 0; k < 3; ++k) p[k] *= kHalfAxes[k] * swell;
   return p;
 }
-
-} // namespace
 
 Points statue(std::size_t count, std::uint64_t seed)
 {
