@@ -74,7 +74,7 @@ TEST_F(CollisionFilterData, PandaArmOnTheTable)
   const Cloud::Ptr arm = load("robot_panda_sampled");
   constexpr double clearance = 0.02;
   // Upright on the table, between its objects.
-  Eigen::Isometry3d pose(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(0, 0.82, 0.57)));
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(std::atan2(-0.82, 0.57), Eigen::Vector3d::UnitX()));
   pose.translation() = Eigen::Vector3d(0.0, -0.03, -0.77);
 
   CollisionFilter<Cloud> filter(true);
