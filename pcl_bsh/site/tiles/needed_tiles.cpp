@@ -3,6 +3,7 @@
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pcl_bsh::site {
 
@@ -21,6 +22,16 @@ Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
     const auto greatest = tile.greatest.find(uncertainty.field);
     length = greatest == tile.greatest.end() ? 0.0 : std::max(0.0, greatest->second * uncertainty.sigmas * rounding_up);
   }
+  // A point of the tile turns no farther than a ball that holds all of them.
+  Point3 middle;
+  double square = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    middle[k] = 0.5 * tile.bounds->low[k] + 0.5 * tile.bounds->high[k];
+    const double half = std::max(tile.bounds->high[k] - middle[k], middle[k] - tile.bounds->low[k]);
+    square += half * half;
+  }
+  length +=
+      (uncertainty.pose.length + uncertainty.pose.turned(middle, std::sqrt(square) * (1.0 + 1e-9))) * (1.0 + 1e-6);
   return length == 0.0 ? *tile.bounds : moved(*tile.bounds, Eigen::Isometry3d::Identity(), length);
 }
 

@@ -47,10 +47,11 @@ void SiteClashList::addTo(site::SiteRequest& request)
 }
 
 void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
-                           const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found, Json& report)
+                           const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
+                           const Answer::Unseen* unseen, Json& report)
 {
   write(
-      finder_->finish(), obstacle.view(), surface, poses, found, nullptr,
+      finder_->finish(), obstacle.view(), surface, poses, found, unseen, nullptr,
       [&](FormerPlaces& former, const TrajectoryRequest& motion) { former.visit(obstacle, poses, motion); }, report);
 }
 
@@ -63,7 +64,7 @@ void SiteClashList::finish(const site::Site& obstacle, const std::vector<Eigen::
   for (const site::MetPoint& point : met) places.push_back(point.place);
   write(
       std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr, poses,
-      found,
+      found, nullptr,
       [&](std::uint32_t i) {
         return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
       },
@@ -79,8 +80,8 @@ void SiteClashList::finish(const site::Site& obstacle, const std::vector<Eigen::
 
 void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
                           const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
-                          std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit,
-                          Json& report)
+                          const Answer::Unseen* unseen, std::function<io::SourcePoint(std::uint32_t)> model_source_of,
+                          const Visit& visit, Json& report)
 {
   const PointsView places =
       viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
@@ -101,6 +102,7 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
                        .unit = options_.unit,
                        .coordinate_system = site::coordinateSystemOf(site_),
                        .surface = surface,
+                       .unseen = unseen,
                        .source_of =
                            [&](std::uint32_t i) {
                              const site::SitePoint& point = clashes.points[i];
@@ -108,6 +110,7 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
                            },
                        .model_source_of = std::move(model_source_of)};
   warnings_.clear();
+  io::listUnseen(list);
   report["clashes"] = list.present() - list.perhaps();
   report["clashes_perhaps"] = list.perhaps();
   if (site::rankHere() != 0) return;

@@ -35,9 +35,9 @@ public:
 
   /// After the question. To be called by all ranks; the first writes the lists, and warnings() are then of what they
   /// were compared with. @param surface the obstacle, where it is one; else null. @param report gets the numbers of
-  /// clashes that there are now: certain ones, and those perhaps
+  /// clashes that there are now: certain ones, and those perhaps. @param unseen null where that was not asked
   void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const std::vector<Eigen::Isometry3d>& poses,
-              const site::SitePassage& found, Json& report);
+              const site::SitePassage& found, const Answer::Unseen* unseen, Json& report);
 
   /// The same of an obstacle that is a site.
   void finish(const site::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
@@ -50,7 +50,7 @@ private:
   using Visit = std::function<void(FormerPlaces&, const TrajectoryRequest& motion)>;
 
   void write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-             const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
+             const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found, const Answer::Unseen* unseen,
              std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit, Json& report);
   void compare(io::ClashReport& list, const Visit& visit);
 

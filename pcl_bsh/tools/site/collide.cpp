@@ -17,6 +17,7 @@
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/see_site.h>
 
 #include "clashes.h"
 #include "output.h"
@@ -92,9 +93,11 @@ public:
     const site::SiteFlags found =
         site::collisionFlags(asking.site, placed_, Side::both, asking.request, asking.out.flags());
     putCounts(asking.report, "", found.colliding, found.undecided);
-    file_.write(found.b, asking.options);
-    putCounts(asking.report, "_of_obstacle", countOf(found.b, Verdict::colliding),
-              countOf(found.b, Verdict::undecided));
+    const std::optional<site::SiteUnseen> unseen = lookAround(asking);
+    const std::vector<Verdict>& verdicts = unseen ? unseen->verdicts : found.b;
+    file_.write(verdicts, asking.options);
+    putCounts(asking.report, "_of_obstacle", countOf(verdicts, Verdict::colliding),
+              countOf(verdicts, Verdict::undecided));
     return found;
   }
 
@@ -110,12 +113,26 @@ public:
 
   void finish(Asking& asking, const site::SitePassage& found) const
   {
-    asking.clashes.finish(hierarchy_, surface_, asking.poses, found, asking.report);
+    const std::optional<site::SiteUnseen> unseen = lookAround(asking);
+    if (!asking.clashes.isWanted()) return;
+    asking.clashes.finish(hierarchy_, surface_, asking.poses, found, unseen ? &unseen->unseen : nullptr, asking.report);
   }
 
   void putTilesOf(Json& /*report*/, const site::TilesRead& /*tiles*/) const {}
 
 private:
+  std::optional<site::SiteUnseen> lookAround(Asking& asking) const
+  {
+    const Question& question = asking.options.question;
+    if (!question.seen) return std::nullopt;
+    site::SiteUnseen found = site::unseenAlong(asking.site, {question.origin, question.seen_angle.value_or(0.0)},
+                                               hierarchy_, asking.poses, asking.request);
+    asking.report["unseen"] = io::unseenJson(found.unseen);
+    asking.report["unseen"]["beams"] = found.beams;
+    putTiles(asking.report, "tiles_of_beams", found.tiles_of_beams);
+    return found;
+  }
+
   const ObstacleFile& file_;
   const io::Obstacle* surface_;
   Shape shape_;
@@ -177,7 +194,7 @@ public:
 
   void finish(Asking& asking, const site::SitePassage& found) const
   {
-    asking.clashes.finish(site_, asking.poses, found, asking.report);
+    if (asking.clashes.isWanted()) asking.clashes.finish(site_, asking.poses, found, asking.report);
   }
 
   void putTilesOf(Json& report, const site::TilesRead& tiles) const { putTiles(report, "tiles_of_obstacle", tiles); }
@@ -233,7 +250,7 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
     clashes.addTo(request);
     const site::SitePassage found = obstacle.along(asking);
     putPassage(report, found, question);
-    if (clashes.isWanted()) obstacle.finish(asking, found);
+    obstacle.finish(asking, found);
     put_tiles(found);
     break;
   }

@@ -35,6 +35,9 @@ Example: where does a machine come within 5 cm of it on its way? On one process,
   mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
 Example: the same as a page, place by place
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: what of the machine lies where neither of two scanners saw that nothing is there
+  pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
+    --seen --seen-angle 0.002 --origin "source:0=12,3,1.7;1=40,8,1.7"
 Example: what of two epochs has no point of the other within 10 cm
   pcl_bsh_site collide now before --clearance 0.1 --out now_marked --obstacle-out before_marked)";
 
@@ -98,7 +101,7 @@ struct CollideTexts {
     app.add_option(
            "--previous", options.previous,
            "earlier .json list, of the same clearance, uncertainties and accuracy: clashes are new, persisting, "
-           "resolved, or not visited by the path or not scanned any more")
+           "resolved, or not visited by the path, unseen or not scanned any more")
         ->type_name("FILE");
     app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
     app.add_flag("--any", any, "only whether any point collides");
@@ -112,13 +115,28 @@ struct CollideTexts {
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     addQuestionOptions(app, options.question,
                        {"clearance", "swept", "accuracy", "uncertainty", "obstacle_uncertainty", "sigmas",
-                        "max_distance", "solid", "vertices_only", "threads"});
+                        "pose_uncertainty", "input_pose_uncertainty", "seen", "origin", "seen_angle", "max_distance",
+                        "solid", "vertices_only", "threads"});
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
         ->type_name("N,...")
         ->delimiter(',')
         ->check(CLI::Range(1u, 1000000u));
+  }
+
+  /// What --seen needs, and does not go with.
+  void requireSight(const SiteOptions& options) const
+  {
+    if (any || closest || distances)
+      throw UsageError("--seen: is about points at poses: leave out --any, --closest and --distances");
+    if (options.obstacleIsSite()) throw UsageError("--seen: OBSTACLE is a site: give a cloud or a mesh");
+    if (options.question.origin.empty())
+      throw UsageError("--origin: is missing: give X,Y,Z of the scanner, or of several scans FIELD:N=X,Y,Z;N=X,Y,Z by "
+                       "the field that numbers them, as source, which numbers the clouds of SITE from 0");
+    if (!options.question.seen_angle)
+      throw UsageError("--seen-angle: is missing: give what a beam speaks for, one and a half times the angle between "
+                       "neighbouring beams");
   }
 
   /// @throws UsageError where they do not fit each other
@@ -141,9 +159,10 @@ struct CollideTexts {
     question.wanted.contacts = lists;
     question.wanted.distances = distances;
     requireAccepted(question);
+    if (question.seen) requireSight(options);
     if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
       throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
-    if (!needs_clearance && !(question.uncertainty.isZero() && question.obstacle_uncertainty.isZero()))
+    if (!needs_clearance && question.isUncertain())
       throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && !question.clearance) throw UsageError("--clearance: is missing: give a length");
     if (options.report.empty() && options.out.empty() && options.obstacle_out.empty() && !lists)

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is unseen in a site is unseen in one SeenSpace over all of its points, whatever the tiles.
+#include "float64_cloud.h"
+#include "support/made_scans.h"
+#include "support/temporary_folder.h"
+#include "tools/programs/program_run.h"
+#include "two_ranks.h"
+
+#include <pcl_bsh/collide.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/site/make_site.h>
+
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/site/see_site.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::site {
+namespace {
+
+using testing::HasSubstr;
+
+/// A room with a pillar, scanned from two places into a file each, and a machine that drives round the pillar.
+class SeeSite : public testing::Test {
+protected:
+  SeeSite()
+  {
+    test::MadeRoom room{{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(8, 6, 3)}, {}};
+    room.boxes.emplace_back(Eigen::Vector3d(3, 2.5, 0), Eigen::Vector3d(3.5, 3.5, 3));
+    test::Random random(1);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Eigen::Vector3d& o = origins[s];
+      const std::vector<double> ends = test::makeScan(room, {o, 0.03, -1.2, 1.3}, random).returns;
+      for (std::size_t i = 0; i < ends.size(); i += 3) scans[s].push_back({ends[i], ends[i + 1], ends[i + 2]});
+      io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
+    }
+    for (int i = 0; i < 400; ++i)
+      machine.push_back({random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(0.0, 1.0)});
+    for (int k = 0; k < 12; ++k) {
+      Eigen::Isometry3d pose(Eigen::AngleAxisd(0.4 * k, Eigen::Vector3d::UnitZ()));
+      pose.translation() = Eigen::Vector3d(4.0 + 2.8 * std::cos(0.5 * k), 3.0 + 2.2 * std::sin(0.5 * k), 0.2 + 0.1 * k);
+      poses.push_back(pose);
+    }
+    sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
+    sight.angle = 0.05;
+    request.clearance = 0.1;
+    request.uncertainty = 0.01;
+  }
+
+  Site siteOf(std::uint64_t tile_points)
+  {
+    MakeOptions options;
+    options.tile_points = tile_points;
+    return makeSite({folder / "scan0.pcd", folder / "scan1.pcd"}, folder / ("site" + std::to_string(tile_points)),
+                    options);
+  }
+
+  /// Of all points at once.
+  Answer::Unseen expected(std::vector<Verdict>& gravest) const
+  {
+    std::vector<ScanBeams> beams;
+    std::vector<Point3> all;
+    for (std::size_t s = 0; s < 2; ++s) {
+      beams.push_back({sight.origins.entries[s].origin, viewOf(scans[s].front().data(), scans[s].size())});
+      beams.back().returns.uncertainty = request.uncertainty.length;
+      all.insert(all.end(), scans[s].begin(), scans[s].end());
+    }
+    SeenOptions options;
+    options.angle = sight.angle;
+    const SeenSpace space(beams, options);
+    PointsView view = viewOf(all.front().data(), all.size());
+    view.uncertainty = request.uncertainty.length;
+    const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
+    FlagsRequest flags;
+    flags.clearance = request.clearance;
+    flags.flagged = Side::b;
+    UnseenRequest asked;
+    asked.clearance = request.clearance;
+    Answer::Unseen unseen;
+    gravest.assign(machine.size(), Verdict::free);
+    for (const Eigen::Isometry3d& pose : poses) {
+      FlagsResult found = pcl_bsh::collisionFlags({scan}, {model, pose}, flags);
+      markUnseen(space, {model, pose}, asked, found.b);
+      unseen.addPose(found.b, true, gravest);
+    }
+    return unseen;
+  }
+
+  SiteUnseen asked(const Site& site) const
+  {
+    return unseenAlong(site, sight, SphereHierarchy(viewOf(machine.front().data(), machine.size())), poses, request);
+  }
+
+  io::TemporaryFolder folder;
+  std::vector<Eigen::Vector3d> origins = {{1, 1, 1.5}, {7, 5, 1.5}};
+  std::vector<Point3> scans[2], machine;
+  std::vector<Eigen::Isometry3d> poses;
+  SiteSight sight;
+  SiteRequest request;
+};
+
+TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
+{
+  std::vector<Verdict> gravest;
+  const Answer::Unseen right = expected(gravest);
+  ASSERT_GT(right.count, 20u);
+  ASSERT_LT(right.count, machine.size());
+  for (const std::uint64_t tile_points : {1000000u, 3000u, 500u}) {
+    const SiteUnseen found = asked(siteOf(tile_points));
+    EXPECT_EQ(found.verdicts, gravest) << tile_points;
+    EXPECT_EQ(found.unseen.at_poses, right.at_poses);
+    EXPECT_EQ(found.unseen.where, right.where);
+    EXPECT_EQ(found.unseen.first_pose, right.first_pose);
+    EXPECT_EQ(found.unseen.count, right.count);
+    EXPECT_LT(found.beams, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
+  }
+}
+
+TEST_F(SeeSite, ReadsTilesInTheDirectionsOfTheModelAlone)
+{
+  poses.resize(1);
+  const SiteUnseen found = asked(siteOf(500));
+  EXPECT_LT(found.tiles_of_beams.read, found.tiles_of_beams.tiles);
+  std::vector<Verdict> gravest;
+  EXPECT_EQ(found.unseen.where, expected(gravest).where);
+}
+
+TEST_F(SeeSite, NeedsAllBeamsWhereABallHoldsTheScanner)
+{
+  poses = {Eigen::Isometry3d(Eigen::Translation3d(1, 1, 1))};
+  request.clearance = 0.5;
+  const SiteUnseen found = asked(siteOf(3000));
+  EXPECT_GE(found.beams, scans[0].size());
+  std::vector<Verdict> gravest;
+  EXPECT_EQ(found.unseen.where, expected(gravest).where);
+}
+
+TEST_F(SeeSite, ABeamAloneSeesNothingWhateverTheTiles)
+{
+  sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=1,1,1.5");
+  scans[1] = {{7, 1, 1.5}, {1, 5, 1.5}};
+  io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
+  scans[0] = {{0, 0, 0}, {0, 0.1, 0}};
+  io::writeCloud(folder / "scan0.pcd", float64Cloud(scans[0]));
+  machine = {{0, 0, 0}};
+  poses = {Eigen::Isometry3d(Eigen::Translation3d(3, 1, 1.5))};
+  request.clearance = 0.01;
+  std::vector<Verdict> gravest;
+  const Answer::Unseen right = expected(gravest);
+  EXPECT_EQ(right.count, 0u) << "the other beam looks elsewhere";
+  for (const std::uint64_t tile_points : {1000u, 1u}) EXPECT_EQ(asked(siteOf(tile_points)).verdicts, gravest);
+}
+
+TEST_F(SeeSite, RefusesWhatItCannotTell)
+{
+  const auto refusal = [&](const Site& site) {
+    try {
+      asked(site);
+    }
+    catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Site site = siteOf(3000);
+  sight.origins = {};
+  EXPECT_THAT(refusal(site), HasSubstr("does not say where its scanner stood: give `origin`"));
+  sight.origins = ScanOrigins::parse("source:0=1,1,1.5");
+  EXPECT_THAT(refusal(site), HasSubstr("is of scan 1 in field 'source', which has no origin"));
+  sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
+  sight.angle = 0.0;
+  EXPECT_THAT(refusal(site), HasSubstr("angle that a beam speaks for: 0 radians: give one in"));
+  sight.angle = 0.05;
+  request.memory = 1 << 20;
+  request.clearance = 2.0; // so that all are needed
+  EXPECT_THAT(refusal(site), HasSubstr("beams at least look at the model on its way"));
+}
+
+} // namespace
+} // namespace pcl_bsh::site
+#endif
