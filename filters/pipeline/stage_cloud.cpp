@@ -16,7 +16,8 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud)
 
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud)
 {
-  return std::make_shared<StageCloud>(StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint, cloud.las_header});
+  return std::make_shared<StageCloud>(
+      StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint, cloud.las_header, cloud.scanners});
 }
 
 } // namespace pcl_bsh::pipeline

@@ -34,6 +34,8 @@ struct StageCloud {
   pcl::PCLPointCloud2 cloud;
   std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
+  /// Where each scan's sensor stood, likewise, of clouds whose field `scan` numbers them from 0; or the only one's.
+  std::vector<std::array<double, 7>> scanners = {};
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
 };

@@ -59,5 +59,23 @@ TEST_F(SeenStages, RefuseCloudsMergedOfSeveralScans)
   EXPECT_EQ(outputOf(scan, merge, machine)->viewpoint, io::no_viewpoint);
 }
 
+TEST_F(SeenStages, KnowWhereEachMergedScanIsFrom)
+{
+  const std::string merge = R"({"type": "filters.merge", "inputs": ["in", "other"], "number_scans": true})";
+  const StageCloudPtr second = scanFrom(-1, {-1, 0, 1, 1, 0, 0, 0});
+  const StageCloudPtr merged = outputOf(scan, merge, second);
+  EXPECT_EQ(merged->scanners, (std::vector<io::Viewpoint>{at_scanner, {-1, 0, 1, 1, 0, 0, 0}}));
+  const auto count = [](const StageCloudPtr& cloud) { return cloud->cloud.width * cloud->cloud.height; };
+  ASSERT_EQ(count(merged), count(scan) + count(second));
+  EXPECT_EQ(io::valueOf(merged->cloud, 0, "scan"), 0.0);
+  EXPECT_EQ(io::valueOf(merged->cloud, count(scan), "scan"), 1.0);
+  EXPECT_THAT(runStage(merged, flag + "}", machine).warnings, Contains(HasSubstr("1 point of the obstacle is unseen")));
+  const StageCloudPtr again = outputOf(merged, merge, merged);
+  EXPECT_EQ(again->scanners.size(), 4u);
+  EXPECT_EQ(io::valueOf(again->cloud, count(merged) + count(scan), "scan"), 3.0);
+  const StageCloudPtr moved = outputOf(merged, R"({"type": "filters.transform", "transform": [1, 0, 0, 0, 0, 0]})");
+  EXPECT_EQ(moved->scanners[1][0], 0.0) << "the scanners move along";
+}
+
 } // namespace
 } // namespace pcl_bsh::pipeline

@@ -29,6 +29,7 @@ struct BshFlag : Stage, QuestionStage {
     output->cloud = withResults(inputs[0]->cloud, found);
     output->viewpoint = inputs[0]->viewpoint;
     output->las_header = inputs[0]->las_header;
+    output->scanners = inputs[0]->scanners;
     output->triangles = inputs[0]->triangles;
     output->face_properties = inputs[0]->face_properties;
     return output;

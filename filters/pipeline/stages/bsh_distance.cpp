@@ -37,6 +37,7 @@ struct BshDistance : SelectingStage, QuestionStage {
     measured->cloud = withDistances(inputs[0]->cloud, answer.distances.a.distance);
     measured->viewpoint = inputs[0]->viewpoint;
     measured->las_header = inputs[0]->las_header;
+    measured->scanners = inputs[0]->scanners;
     within_ = std::move(answer.within);
     inputs[0] = std::move(measured);
     return SelectingStage::run(std::move(inputs));

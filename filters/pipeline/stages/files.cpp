@@ -57,6 +57,7 @@ protected:
   {
     for (const std::string& remark : facts.remarks) warn(filename.path + ": " + remark);
     cloud.viewpoint = facts.viewpoint;
+    cloud.scanners = facts.scanners;
     cloud.las_header = facts.las;
   }
 };

@@ -3,6 +3,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 
 #include <algorithm>
 #include <cstring>
@@ -24,13 +25,17 @@ const pcl::PCLPointField* fieldLike(const pcl::PCLPointCloud2& cloud, const pcl:
 
 /// The points of all inputs in one row, with the first one's layout and frame, and the viewpoint if all have the same.
 struct Merge : Stage {
+  bool number_scans = false;
+
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
     for (std::size_t i = 1; i < inputs.size(); ++i) {
       requireFields(inputs[0], inputs[i], i);
       if (inputs[i].fields.size() != inputs[0].fields.size()) requireFields(inputs[i], inputs[0], 0);
     }
-    return inputs[0];
+    CloudHeader merged = inputs[0];
+    if (number_scans && !hasScans(merged)) io::addField(merged, io::scan_field_name, pcl::PCLPointField::UINT32);
+    return merged;
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
@@ -40,10 +45,14 @@ struct Merge : Stage {
     io::requirePoints(points);
     const auto output = emptyLike(*inputs[0]);
     pcl::PCLPointCloud2& merged = output->cloud;
+    output->scanners.clear();
+    if (number_scans && !hasScans(merged)) io::addField(merged, io::scan_field_name, pcl::PCLPointField::UINT32);
     io::allocate(merged, static_cast<std::uint32_t>(points));
     std::uint8_t* next = merged.data.data();
     for (StageCloudPtr& input : inputs) {
+      std::uint8_t* const begin = next;
       next = append(input->cloud, merged, next);
+      if (number_scans) numberScans(*input, *output, begin, next);
       if (input->cloud.is_dense == 0) merged.is_dense = 0;
       if (input->viewpoint != output->viewpoint) output->viewpoint = io::no_viewpoint; // it would be that of some
       input.reset();
@@ -52,6 +61,34 @@ struct Merge : Stage {
   }
 
 private:
+  static bool hasScans(const pcl::PCLPointCloud2& cloud)
+  {
+    return std::any_of(cloud.fields.begin(), cloud.fields.end(),
+                       [](const pcl::PCLPointField& field) { return field.name == io::scan_field_name; });
+  }
+
+  /// The records of an input count as the next scans: its own, where it numbers them, or one.
+  static void numberScans(const StageCloud& input, StageCloud& output, std::uint8_t* record, const std::uint8_t* end)
+  {
+    pcl::PCLPointCloud2& merged = output.cloud;
+    const bool several = hasScans(input.cloud);
+    const auto field = std::find_if(merged.fields.begin(), merged.fields.end(),
+                                    [](const pcl::PCLPointField& one) { return one.name == io::scan_field_name; });
+    const std::size_t first = output.scanners.size();
+    io::withFieldType(field->datatype, [&](auto number) {
+      for (; record != end; record += merged.point_step) {
+        if (several) std::memcpy(&number, record + field->offset, sizeof number);
+        number = static_cast<decltype(number)>(first + static_cast<std::size_t>(number));
+        std::memcpy(record + field->offset, &number, sizeof number);
+        number = {};
+      }
+    });
+    if (!several || input.scanners.empty())
+      output.scanners.push_back(input.scanners.empty() ? input.viewpoint : input.scanners.front());
+    else
+      output.scanners.insert(output.scanners.end(), input.scanners.begin(), input.scanners.end());
+  }
+
   static void requireFields(const CloudHeader& needed, const CloudHeader& cloud, std::size_t input)
   {
     for (const pcl::PCLPointField& field : needed.fields) {
@@ -65,10 +102,16 @@ private:
   {
     const std::size_t points = std::size_t{cloud.width} * cloud.height;
     std::vector<std::size_t> from;
-    for (const pcl::PCLPointField& field : merged.fields) from.push_back(fieldLike(cloud, field)->offset);
+    std::vector<const pcl::PCLPointField*> fields; // but for numbers of scans, where the input has none
+    for (const pcl::PCLPointField& field : merged.fields) {
+      const pcl::PCLPointField* const like = fieldLike(cloud, field);
+      if (like == nullptr) continue;
+      from.push_back(like->offset);
+      fields.push_back(&field);
+    }
     for (std::size_t i = 0; i < points; ++i, next += merged.point_step) {
-      for (std::size_t k = 0; k < merged.fields.size(); ++k) {
-        const pcl::PCLPointField& field = merged.fields[k];
+      for (std::size_t k = 0; k < fields.size(); ++k) {
+        const pcl::PCLPointField& field = *fields[k];
         std::memcpy(next + field.offset, &cloud.data[i * cloud.point_step + from[k]], io::sizeOf(field));
       }
     }
@@ -82,7 +125,10 @@ StageType merge()
 {
   return describe<Merge>("filters.merge", "All points of several clouds with the same fields, as one row.")
       .alias("pcl::concatenate")
-      .inputs(1, std::numeric_limits<std::size_t>::max());
+      .inputs(1, std::numeric_limits<std::size_t>::max())
+      .option(&Merge::number_scans, "number_scans",
+              "a field `scan` numbers the scans that the points are of, and the cloud keeps where each scanner stood, "
+              "which `seen` needs");
 }
 
 } // namespace pcl_bsh::pipeline

@@ -179,6 +179,7 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
   if (asked.seen && asked.origin.empty()) {
     io::CloudFacts facts;
     facts.viewpoint = input->viewpoint;
+    facts.scanners = input->scanners;
     asked.origin = io::originsOf(input->cloud, facts);
   }
   Asked found;

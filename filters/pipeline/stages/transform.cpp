@@ -84,6 +84,7 @@ struct Transform : Stage {
     movePoints(output->cloud, map);
     turnNormals(output->cloud, map);
     moveViewpoint(output->viewpoint, map);
+    for (std::array<double, 7>& scanner : output->scanners) moveViewpoint(scanner, map);
     return output;
   }
 
@@ -136,10 +137,9 @@ private:
 
 StageType transform()
 {
-  return describe<Transform>(
-             "filters.transform",
-             "Moves points, normals and the viewpoint. Computed in double; a warning tells when float32 "
-             "coordinates become too coarse.")
+  return describe<Transform>("filters.transform",
+                             "Moves points, normals and viewpoints. Computed in double; a warning tells when float32 "
+                             "coordinates become too coarse.")
       .alias("pcl::transformPointCloud")
       .option(&Transform::transform, "transform", "the motion that is applied to each point")
       .required();

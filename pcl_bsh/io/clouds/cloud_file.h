@@ -39,7 +39,7 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 /// What a file says beside its points.
 struct CloudFacts {
   Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx
-  std::vector<Viewpoint> scanners = {};  ///< of .ptx, of each scan
+  std::vector<Viewpoint> scanners = {};  ///< of .ptx, of each scan that was read
   LasHeaderPtr las = nullptr;            ///< of .las
   std::string coordinate_system = {};    ///< as a .las names it; empty where it does not
   std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name

@@ -10,6 +10,10 @@ ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)
   const bool several = std::any_of(cloud.fields.begin(), cloud.fields.end(),
                                    [](const pcl::PCLPointField& field) { return field.name == scan_field_name; });
   if (!several) {
+    if (facts.scanners.size() == 1) {
+      const Viewpoint& pose = facts.scanners.front();
+      return ScanOrigins::of({pose[0], pose[1], pose[2]});
+    }
     const Point3 origin = {facts.viewpoint[0], facts.viewpoint[1], facts.viewpoint[2]};
     return origin == Point3{0, 0, 0} ? ScanOrigins() : ScanOrigins::of(origin);
   }

@@ -23,6 +23,21 @@ TEST(ScanOriginsOf, AreWhatTheFileSays)
   const std::string axes = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
   const std::string one = "1\n1\n" + axes + "4 5 6.5 1\n1 2 3 0.5\n", other = "1\n1\n" + axes + "7 8 9 1\n1 2 3 0.5\n";
   EXPECT_EQ(originsIn(folder.write("one.ptx", one)), "4,5,6.5");
+  const std::string at_zero = "1\n1\n" + axes + "0 0 0 1\n1 2 3 0.5\n";
+  EXPECT_EQ(originsIn(folder.write("zero.ptx", at_zero)), "0,0,0") << "which a .ptx always says";
+  CloudFacts facts;
+  const pcl::PCLPointCloud2 second = readPtxScan(folder.write("second.ptx", one + at_zero), 1, &facts);
+  EXPECT_EQ(originsOf(second, facts).text(), "0,0,0");
+  EXPECT_EQ(originsIn(folder.write("camera.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                                 "property float y\nproperty float z\nelement camera 1\n"
+                                                 "property float view_px\nproperty float view_py\n"
+                                                 "property float view_pz\nproperty float x_axisx\n"
+                                                 "property float x_axisy\nproperty float x_axisz\n"
+                                                 "property float y_axisx\nproperty float y_axisy\n"
+                                                 "property float y_axisz\nproperty float z_axisx\n"
+                                                 "property float z_axisy\nproperty float z_axisz\nend_header\n"
+                                                 "1 1 1\n1 2 3.5 1 0 0 0 1 0 0 0 1\n")),
+            "1,2,3.5");
   EXPECT_EQ(originsIn(folder.write("two.ptx", one + other)), "scan:0=4,5,6.5;1=7,8,9");
   const std::string header = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nVIEWPOINT ",
                     rest = " 1 0 0 0\nPOINTS 1\nDATA ascii\n";

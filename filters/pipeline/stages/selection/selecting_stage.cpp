@@ -30,7 +30,7 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
   }
   if (!keep_organized) {
     return std::make_shared<StageCloud>(
-        StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header});
+        StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header, input->scanners});
   }
   const auto output = ownCloud(std::move(input));
   output->triangles.reset(); // whose corners may go

@@ -279,7 +279,7 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
     const bool kept = wanted.value_or(number) == number;
     if (number == wanted.value_or(0)) viewpoint = scannerPose(scan);
     if (kept) only = scan;
-    if (scanners) scanners->push_back(scannerPose(scan));
+    if (scanners && kept) scanners->push_back(scannerPose(scan));
     for (std::uint64_t i = 0; i < scan.columns * scan.rows; ++i) {
       if (!kept) {
         text.nextLine();

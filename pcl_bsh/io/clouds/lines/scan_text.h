@@ -34,7 +34,7 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
 /// @param viewpoint the scanner's pose in the common frame: the transform's position, and the rotation that is nearest
 ///   to it; of several scans, the first one's
 /// @throws FormatError
-/// @param scanners null, or gets the pose of each scan
+/// @param scanners null, or gets the pose of each scan that is read
 pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> scan = {},
                              std::vector<Viewpoint>* scanners = nullptr);
 
