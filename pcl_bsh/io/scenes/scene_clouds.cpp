@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/scenes/scene_clouds.h>
 
+#include <pcl_bsh/base/invalid_input.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,15 +16,26 @@ void parseUncertainty(const JsonReader& reader, CloudSource& cloud)
   const bool of_field = reader.has("uncertainty") && reader.at("uncertainty").json().is_string();
   double sigmas = 1.0;
   read(reader, "sigmas", sigmas);
+  const auto withPose = [&](Uncertainty uncertainty) {
+    try {
+      if (reader.has("pose_uncertainty"))
+        uncertainty.pose = PoseUncertainty::parse(reader.at("pose_uncertainty").text());
+    }
+    catch (const InvalidInput& error) {
+      reader.at("pose_uncertainty").fail(error.wrong(), error.remedy());
+    }
+    return uncertainty;
+  };
   if (!of_field) {
     if (reader.has("sigmas"))
       reader.at("sigmas").fail("is given, but the uncertainty is no field", "give the length itself");
     read(reader, "uncertainty", cloud.uncertainty.length);
+    cloud.uncertainty = withPose(cloud.uncertainty);
     return;
   }
   if (!cloud.shape.empty())
     reader.at("uncertainty").fail("names a field, which a " + cloud.shape + " does not have", "give a length");
-  cloud.uncertainty = {reader.at("uncertainty").text(), sigmas * cloud.scale};
+  cloud.uncertainty = withPose({reader.at("uncertainty").text(), sigmas * cloud.scale});
 }
 
 void parseSurface(const JsonReader& reader, CloudSource& cloud)

@@ -170,6 +170,14 @@ const std::string& placeOf(const std::string& cloud, const SceneFile& file)
       ->place;
 }
 
+/// Whether the pose of a cloud's objects is uncertain by an angle.
+bool turns(const std::string& cloud, const SceneFile& file)
+{
+  return std::any_of(file.clouds.begin(), file.clouds.end(), [&](const CloudSource& source) {
+    return source.name == cloud && source.uncertainty.pose.angle > 0.0;
+  });
+}
+
 } // namespace
 
 void setRules(Scene& scene, const std::vector<RuleEntry>& rules)
@@ -219,6 +227,11 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
         throw JsonError(file.path.string(), placeOf(part.cloud, file),
                         "is a surface, and the wave of '" + entry.name + "' moves points",
                         "give 'vertices_only': true");
+      }
+      if (entry.wave && turns(part.cloud, file)) {
+        throw JsonError(file.path.string(), placeOf(part.cloud, file) + ".pose_uncertainty",
+                        "has an angle, and the wave of '" + entry.name + "' moves points away from where it counts",
+                        "give its length alone, no shorter than what the angle moves any point by");
       }
       if (entry.wave) {
         auto waving = std::make_unique<Waving>();

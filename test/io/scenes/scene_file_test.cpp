@@ -248,6 +248,16 @@ TEST(SceneFile, CloudsMayBeUncertain)
   const std::string wave = R"(, "wave": {"amplitude": [0, 0, 0], "length": 1, "period": 1})";
   EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "sigmas": 2)", wave), "undecided");
   EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.25)", wave), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("pose_uncertainty": "0.25")"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("pose_uncertainty": "0.2499")"), "free");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.1, "pose_uncertainty": "0.1,0.06")"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": 0.1, "pose_uncertainty": "0.1,0.06,1,0,0")"), "free") << "turns there";
+  EXPECT_EQ(verdictOf(folder, R"("uncertainty": "sigma", "pose_uncertainty": "0.126")"), "undecided");
+  EXPECT_EQ(verdictOf(folder, R"("pose_uncertainty": "0.25")", wave), "undecided");
+  EXPECT_THAT(verdictOf(folder, R"("pose_uncertainty": "0.25,0.1")", wave),
+              HasSubstr("clouds.unsure.pose_uncertainty: has an angle, and the wave of 'b' moves points"));
+  EXPECT_THAT(verdictOf(folder, R"("pose_uncertainty": "x")"),
+              HasSubstr("clouds.unsure.pose_uncertainty: 'x' is none: give T"));
   EXPECT_THAT(verdictOf(folder, R"("uncertainty": "sigm")"),
               HasSubstr("scene.json: clouds.unsure.uncertainty: field 'sigm' of its points' sigmas is missing"));
   EXPECT_THAT(verdictOf(folder, R"("uncertainty": "y", "shift": [0, -1, 0])"),
