@@ -4,8 +4,10 @@
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/vtk_filters/point_array.h>
 
+#include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -46,4 +48,14 @@ void vtkBSHCollisionFilter::Fill(const pcl_bsh::Question& question, const pcl_bs
   addPointArray<vtkUnsignedCharArray>(*output, "collision", [&](std::size_t i) { return bytesOf(found.flags)[i]; });
   output->GetPointData()->SetActiveScalars("collision");
   this->NumberOfCollidingPoints = static_cast<vtkIdType>(found.colliding);
+  if (!question.seen) return;
+  vtkNew<vtkUnsignedCharArray> verdicts;
+  verdicts->SetName("obstacle_collision");
+  for (const pcl_bsh::Verdict verdict : answer.obstacle_flags)
+    verdicts->InsertNextValue(static_cast<unsigned char>(verdict));
+  vtkNew<vtkIntArray> at_poses;
+  at_poses->SetName("unseen_at_poses");
+  for (const std::size_t count : answer.unseen.at_poses) at_poses->InsertNextValue(static_cast<int>(count));
+  output->GetFieldData()->AddArray(verdicts);
+  output->GetFieldData()->AddArray(at_poses);
 }

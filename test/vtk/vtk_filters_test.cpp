@@ -894,5 +894,30 @@ TEST(SphereSource, RunsAgainAfterAFailure)
   EXPECT_GT(source->GetOutput()->GetNumberOfPoints(), 0);
 }
 
+TEST(CollisionFilter, TellsWhatOfTheObstacleNobodySaw)
+{
+  std::vector<Point3> wall; // 3 m away, and on all sides of the scanner
+  for (double up = -1.55; up <= 1.55; up += 0.03)
+    for (double around = 0.0; around < 6.28; around += 0.03)
+      wall.push_back({3 * std::cos(up) * std::cos(around), 3 * std::cos(up) * std::sin(around), 3 * std::sin(up) + 1});
+  const std::vector<Point3> machine = {{1, 0, 1}, {5, 0, 1}, {2.999, 0, 1}};
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(dataOf(wall, VTK_DOUBLE));
+  filter->SetObstacleData(dataOf(machine, VTK_DOUBLE));
+  filter->SetClearance(0.1);
+  filter->SetOption("seen", "true");
+  filter->SetOption("origin", "0,0,1");
+  filter->Update();
+  vtkDataArray* const found = filter->GetOutput()->GetFieldData()->GetArray("obstacle_collision");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->GetTuple1(0), 0);
+  EXPECT_EQ(found->GetTuple1(1), 4);
+  EXPECT_EQ(found->GetTuple1(2), 1);
+  EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("unseen_at_poses")->GetTuple1(0), 1);
+  filter->SetOption("pose_uncertainty", "0.2");
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("obstacle_collision")->GetTuple1(2), 2) << "undecided now";
+}
+
 } // namespace
 } // namespace pcl_bsh::vtk
