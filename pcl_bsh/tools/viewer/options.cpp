@@ -136,6 +136,8 @@ void checkScene(const Options& options)
   if (options.trajectory) refuse("--trajectory");
   if (options.question.solid) refuse("--solid");
   if (options.question.input_solid) refuse("--input-solid");
+  if (options.question.seen) refuse("--seen");
+  if (options.beams > 0) refuse("--beams");
   if (options.trace) throw UsageError("--trace: shows a query of clouds: give these in place of --scene");
   if (options.cut) throw UsageError("--cut: cuts a cloud: give clouds in place of --scene");
   if (options.color && *options.color != Coloring::collision)
@@ -158,6 +160,8 @@ void checkClouds(const Options& options)
   if (!options.question.clearance && obstacles && options.color &&
       (*options.color == Coloring::collision || *options.color == Coloring::first_pose))
     throw UsageError("--clearance: is missing: this --color asks what collides");
+  if (options.question.seen && (!obstacles || !options.question.clearance))
+    throw UsageError("--seen: is about obstacles and a clearance: give both");
   if (options.trace && !options.question.clearance) throw UsageError("--clearance: is missing: --trace shows a query");
   if (options.closest && !obstacles)
     throw UsageError("--closest: there is no second cloud: give a second cloud or --model");
@@ -179,6 +183,8 @@ void checkSite(const Options& options)
   if (options.question.input_solid) refuse("--input-solid");
   if (options.open_edges) refuse("--open-edges");
   if (options.trace) refuse("--trace");
+  if (options.question.seen) refuse("--seen");
+  if (options.beams > 0) refuse("--beams");
   if (options.closest) refuse("--closest");
   if (options.export_to) throw UsageError("--export: of a site: give pcl_bsh_site export SITE FILE.pvtp");
   if (options.step > 0) throw UsageError("--step: a site has no poses: leave it out");
@@ -228,7 +234,9 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(cli::number<unsigned>("give the number of a pose or step, from 0"));
   options.question.threads = 0;
-  cli::addQuestionOptions(app, options.question, {"clearance", "solid", "input_solid", "vertices_only", "threads"});
+  cli::addQuestionOptions(
+      app, options.question,
+      {"clearance", "solid", "input_solid", "seen", "origin", "seen_angle", "vertices_only", "threads"});
   cli::ColumnOptions columns;
   columns.addTo(app);
   app.add_option("--color", options.color,
@@ -263,6 +271,11 @@ std::optional<Options> parseOptions(int argc, char** argv)
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
   app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
   app.add_flag("--open-edges", options.open_edges, "draw the edges of surfaces that no other triangle closes, in red");
+  app.add_option("--beams", options.beams,
+                 "draw so many beams of the first cloud's scanner, evenly picked: from\nwhere it stood, as --origin or "
+                 "the file says, to the points")
+      ->type_name("N")
+      ->transform(cli::number<unsigned>("give the number of beams"));
   app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
   app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
   app.add_option("--screenshot", options.screenshot, "write a picture instead of opening a window; needs no display")

@@ -47,7 +47,8 @@ struct Options {
   std::optional<unsigned> level;
   unsigned step = 0; ///< of the trajectory or the scene
   bool voxels = false, cells = false, trace = false, closest = false, open_edges = false;
-  std::string unit; ///< of lengths, for titles
+  unsigned beams = 0; ///< of the first cloud's scanner that are drawn
+  std::string unit;   ///< of lengths, for titles
   std::optional<std::filesystem::path> screenshot;
   int width = 1280, height = 960;
   Camera camera;

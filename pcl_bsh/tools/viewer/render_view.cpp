@@ -38,7 +38,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
         makeCloudActor(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
                        viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color));
   if (options.cut) clouds_[0]->cut(*options.cut);
-  extras_ = {options.level, options.voxels, options.cells, options.trace, options.open_edges};
+  extras_ = {options.level, options.voxels, options.cells, options.trace, options.open_edges, options.beams > 0};
   collisions_ = content.collisions(options.step);
   coloring_ = coloringOf(content, collisions_);
   step_ = options.step;
@@ -130,6 +130,8 @@ std::vector<LegendEntry> RenderView::legend() const
     if (viewed.role == ViewedCloud::Role::obstacle) {
       add(viewed.legend, histogram_.isShown() ? compared_color : obstacle_color);
       if (!collisions_.flags[i].empty()) add(viewed.legend + ", colliding", obstacle_colliding_color);
+      if (!collisions_.flags[i].empty() && countOf(collisions_.flags[i], Verdict::unseen) > 0)
+        add(viewed.legend + ", unseen", unseen_color);
       continue;
     }
     const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
@@ -151,6 +153,7 @@ std::vector<LegendEntry> RenderView::legend() const
   if (extras_.voxels) add("voxels", voxel_color);
   if (extras_.open_edges) add("open edges", open_edge_color);
   if (extras_.cells) add("octree cells", cell_color);
+  if (extras_.beams) add("beams", path_color);
   if (extras_.trace) {
     add("query: pruned", fate_colors[0]);
     add("query: near, not needed", fate_colors[1]);

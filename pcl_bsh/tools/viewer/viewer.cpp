@@ -224,6 +224,12 @@ bool Viewer::press(const std::string& key)
     extras.voxels = !extras.voxels;
   else if (key == "o")
     extras.cells = !extras.cells;
+  else if (key == "b") {
+    if (content_.options().beams == 0)
+      render_view_->setNote("b shows beams of the scanner: give --beams N");
+    else
+      extras.beams = !extras.beams;
+  }
   else if (key == "t") {
     if (!content_.options().question.clearance)
       render_view_->setNote("t shows a query: give an obstacle and --clearance");

@@ -17,7 +17,7 @@ namespace pcl_bsh::viewer {
 
 inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
 v  o    voxels, octree cells
-t       what the query tested and pruned
+t  b    what the query tested and pruned, beams of the scanner
 left right   step before, after
 click   point or triangle: number, place, distance, first pose
 r  s    reset the camera, save a picture

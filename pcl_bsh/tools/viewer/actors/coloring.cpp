@@ -241,7 +241,14 @@ void mark(CloudActors clouds, ValueBar& bar, const ViewContent& content, const S
                                               ? colorsOfVerdicts(flags)
                                               : std::vector<Color>());
   }
-  for (std::size_t i = 1; i < clouds.size(); ++i) clouds[i]->mark(maskOf(collisions.flags[i], false));
+  for (std::size_t i = 1; i < clouds.size(); ++i) {
+    const std::vector<Verdict>& flags = collisions.flags[i];
+    std::vector<Color> colors;
+    if (countOf(flags, Verdict::unseen) > 0)
+      for (const Verdict flag : flags)
+        colors.push_back(flag == Verdict::unseen ? unseen_color : obstacle_colliding_color);
+    clouds[i]->mark(maskOf(flags, false), colors);
+  }
 }
 
 } // namespace pcl_bsh::viewer

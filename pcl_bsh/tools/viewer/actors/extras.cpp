@@ -106,6 +106,24 @@ void addTraced(PropGroup& group, const std::vector<TracedSphere>& all, const Eig
   }
 }
 
+void addBeams(PropGroup& group, const ViewContent& content)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  for (const std::array<Eigen::Vector3d, 2>& beam : content.beams()) {
+    lines->InsertNextCell(2);
+    for (const Eigen::Vector3d& end : beam) lines->InsertCellPoint(points->InsertNextPoint(end.data()));
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetLines(lines);
+  const auto actor = actorOf(data);
+  setColor(*actor, path_color);
+  actor->GetProperty()->SetOpacity(0.25);
+  group.add(actor);
+}
+
 std::vector<OpenEdge> listOpenEdges(const ViewedCloud& viewed)
 {
   std::vector<OpenEdge> edges;
@@ -155,6 +173,7 @@ void addExtras(PropGroup& group, const ViewContent& content, const Extras& extra
     if (extras.open_edges) addOpenEdges(group, content.viewedClouds()[i], pose);
     if (extras.cells) addWires(group, *vtk::cellBoxes(hierarchy, extras.level.value_or(1)), pose, cell_color);
   }
+  if (extras.beams) addBeams(group, content);
   if (!extras.trace) return;
   for (const Trace& query : content.traces(step)) {
     addTraced(group, query.trace.a, content.poseOf(query.a, step));

@@ -15,6 +15,7 @@ struct Extras {
   std::optional<unsigned> level; ///< of the spheres
   bool voxels = false, cells = false, trace = false;
   bool open_edges = false; ///< of surfaces
+  bool beams = false;      ///< of the scan's scanner
 };
 
 /// Adds what shows the algorithm at work: spheres of a level, voxels and octree cells as wire boxes, and what a query

@@ -7,9 +7,11 @@
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/warnings.h>
 
@@ -21,7 +23,9 @@ namespace pcl_bsh::viewer {
 namespace {
 
 /// A cloud with faces is a surface.
-ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options)
+/// @param origins null, or gets where its scanners stood
+ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options,
+                 ScanOrigins* origins = nullptr)
 {
   ViewedCloud viewed;
   viewed.name = viewed.legend = file.filename().string();
@@ -40,6 +44,7 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   if (read.isSurface()) viewed.surface = read;
   step.done(counted(viewed.parts(), viewed.partName()));
   cli::warnOfFile(program, file, facts.remarks);
+  if (origins) *origins = io::originsOf(*viewed.cloud, facts);
   return viewed;
 }
 
@@ -56,8 +61,11 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
                           counted(poses_.size(), "pose") + ", counted from 0");
   for (const std::filesystem::path& file : options.clouds)
-    viewed_clouds_.push_back(
-        load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle, options));
+    viewed_clouds_.push_back(load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle,
+                                  options, viewed_clouds_.empty() ? &origins_ : nullptr));
+  if (!options.question.origin.empty()) origins_ = options.question.origin;
+  if (options.question.seen)
+    seen_from_ = Shape(scan().file.string(), scan().points(), recordFields(scan().cloud->fields));
   if (options.model) {
     model_ = viewed_clouds_.size();
     viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
@@ -97,7 +105,8 @@ Answer CloudsContent::asked(std::size_t other, std::size_t step, Question questi
   question.solid = options_.question.solid;
   question.input_solid = options_.question.input_solid;
   question.pose = poseOf(other, step);
-  Answer answer = cli::named([&] { return ask(question, input ? *input : shapes_[0], shapes_[other]); }, question);
+  Shape& scan = question.seen ? seen_from_ : input ? *input : shapes_[0];
+  Answer answer = cli::named([&] { return ask(question, scan, shapes_[other]); }, question);
   for (const Warning& warning : answer.warnings)
     if (warning.kind == WarningKind::hollow && hollow_.insert(warning.text).second) cli::warn(program, {warning.text});
   return answer;
@@ -112,6 +121,11 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
     found.flags[0].assign(scan().parts(), Verdict::free);
     Question question;
     question.wanted.flags = question.wanted.obstacle_flags = true;
+    question.seen = options_.question.seen;
+    if (question.seen) {
+      question.origin = origins_;
+      question.seen_angle = options_.question.seen_angle;
+    }
     for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
       Answer answer = asked(other, step, question);
       const std::vector<Verdict>& of_scan = answer.collisions.flags;
@@ -119,6 +133,8 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
       found.flags[other] = std::move(answer.obstacle_flags);
     }
     countVerdicts(found);
+    for (std::size_t other = 1; other < found.flags.size(); ++other)
+      found.unseen += countOf(found.flags[other], Verdict::unseen);
   }
   if (options_.closest) found.closest = closest(step);
   return found;
@@ -146,6 +162,7 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
   if (collisions.known) {
     text << ", " << groupedCount(collisions.colliding, "collides", "collide");
     if (collisions.undecided > 0) text << ", " << groupedCount(collisions.undecided, "is undecided", "are undecided");
+    if (options_.question.seen) text << ", of the obstacles " << grouped(collisions.unseen) << " unseen";
     if (collisions.sparse > 0) text << ", " << grouped(collisions.sparse) << " not scanned densely enough";
     if (options_.question.clearance)
       text << "  (clearance " << lengthOf(*options_.question.clearance, options_.unit) << ')';
@@ -158,6 +175,21 @@ MotionPaths CloudsContent::paths(std::size_t /*step*/) const
 {
   if (steps() == 1) return {};
   return {"path of the model", {poses_}};
+}
+
+std::vector<std::array<Eigen::Vector3d, 2>> CloudsContent::beams() const
+{
+  std::vector<std::array<Eigen::Vector3d, 2>> lines;
+  if (options_.beams == 0) return lines;
+  const PointsView& view = scan().points();
+  const ScanBeams beams =
+      scansOf(view, recordFields(scan().cloud->fields), scan().file.string(), origins_).front(); // of the first
+  const std::size_t step = std::max<std::size_t>(beams.returns.size() / options_.beams, 1);
+  for (std::size_t i = 0; i < beams.returns.size(); i += step) {
+    const Point3 end = view.point(beams.returns.record(i));
+    if (isFinite(end)) lines.push_back({Eigen::Vector3d(beams.origin.data()), Eigen::Vector3d(end.data())});
+  }
+  return lines;
 }
 
 std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t step) const

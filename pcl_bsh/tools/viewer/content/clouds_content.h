@@ -40,6 +40,7 @@ public:
   /// Of the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
   std::string details(std::size_t cloud, std::uint32_t part, std::size_t step) const override;
   std::vector<Trace> traces(std::size_t step) const override;
+  std::vector<std::array<Eigen::Vector3d, 2>> beams() const override;
 
 private:
   Placed placed(std::size_t cloud, std::size_t step) const
@@ -56,6 +57,8 @@ private:
 
   mutable std::vector<Shape> shapes_;    ///< of the viewed clouds, with what is kept of them
   mutable std::set<std::string> hollow_; ///< warnings that were told
+  ScanOrigins origins_;                  ///< of the scan
+  mutable Shape seen_from_;              ///< the scan, as one that has scanners
   std::optional<std::size_t> model_;
   std::vector<Eigen::Isometry3d> poses_;
   mutable std::optional<std::vector<std::int32_t>> first_poses_;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -93,6 +94,9 @@ public:
   /// More text about a picked part, put behind its name and coordinates; or empty.
   virtual std::string details(std::size_t /*cloud*/, std::uint32_t /*part*/, std::size_t /*step*/) const { return {}; }
   virtual std::vector<Trace> traces(std::size_t /*step*/) const { return {}; }
+
+  /// Beams of the scan's scanner, from where it stood to some of its points.
+  virtual std::vector<std::array<Eigen::Vector3d, 2>> beams() const { return {}; }
 
   /// The noun of so many parts, of which values are.
   virtual std::string partsName(std::size_t count) const { return nounOf(count, scan().partName()); }
