@@ -4,6 +4,7 @@
 #include "refusal.h"
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
@@ -71,11 +72,25 @@ void compareAnswers(Bytes bytes)
   }
   Eigen::Isometry3d pose(Eigen::AngleAxisd(0.1 * bytes.below(63), Eigen::Vector3d(1, 2, 3).normalized()));
   for (Eigen::Index k = 0; k < 3; ++k) pose.translation()[k] = number(bytes);
+  std::vector<std::uint32_t> corners;
+  TrianglesView triangles;
+  if (!view.radii && view.count > 0 && bytes.below(4) == 0) {
+    for (unsigned i = 3 * (1 + bytes.below(6)); i > 0; --i)
+      corners.push_back(static_cast<std::uint32_t>(bytes.below(static_cast<unsigned>(view.count))));
+    triangles.vertices = view;
+    triangles.corners = corners.data();
+    triangles.count = corners.size() / 3;
+  }
   UnseenRequest request;
   request.clearance = std::abs(number(bytes)) / 4.0;
   std::vector<Verdict> verdicts(radii.size(), Verdict::free), expected = verdicts;
   std::string refusal, expected_refusal;
   try {
+    if (triangles.count > 0) {
+      view = viewOf(triangles);
+      verdicts.assign(triangles.count, Verdict::free);
+      expected = verdicts;
+    }
     const SphereHierarchy hierarchy(view);
     markUnseen(SeenSpace(scans, options), {hierarchy, pose}, request, verdicts);
   }
