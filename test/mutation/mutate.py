@@ -1,247 +1,357 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the tests by what they notice: changes the sources one place at a time, builds, and runs tests.
+"""Measures the tests by what they notice of small changes of the sources.
 
-    mutate.py BUILD [--rooms flags,pairs] [--count 30] [--seed 1] [--only ID] [--list] [--report]
+    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--release build/release]
+    mutate.py run WORK [--rooms flags,pairs] [--only ID] [--quick]
+    mutate.py report WORK [--csv FILE]
 
-BUILD is a configured build folder, which the mutants are built in: of the preset `mutation`, say. Rooms are rows of the
-table below. Each mutant changes a source in place, is built, and meets the tests of its room one executable after
-another until one fails; then the source is as it was, also when this program is stopped. Results are lines of
-BUILD/mutants.jsonl; mutants that have one are not tried again. --list prints the mutants that there are, --report the
-score.
+WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room, spread
+over its files), writes all of them into the copy behind a switch, and builds copy and tests once. `run` runs the tests of
+each room once to see which mutants each reaches, then, for each mutant, the tests that reach it, quick ones first, those of
+its own room before others, until one fails; --quick leaves out those that take more than some seconds. Stopped, it goes on where it was. Tests of the core are taken from the release
+build as they are. Reasons why survivors cannot be seen are rows of survivors.csv beside this file.
 """
 import argparse
 import collections
+import csv
 import datetime
-import hashlib
 import json
+import os
 import pathlib
 import random
 import re
-import signal
+import resource
+import shutil
 import subprocess
 import sys
-import time
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+import mutants
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
 
 # Folder of sources: the rooms whose tests are run, the first one first.
 ROOMS = {
-    "simd": ["geometry", "pairs", "flags", "distances", "query"],
-    "geometry": ["geometry", "pairs", "symmetries", "query"],
-    "hierarchy": ["hierarchy", "symmetries", "query"],
-    "query": ["query", "flags", "pairs"],
-    "traversal": ["pairs", "flags", "symmetries", "query"],
-    "pairs": ["pairs", "symmetries", "query"],
-    "flags": ["flags", "symmetries", "query"],
-    "distances": ["distances", "symmetries", "query"],
-    "neighbors": ["neighbors", "symmetries", "query"],
-    "clusters": ["clusters", "query"],
-    "surface": ["surface", "question"],
-    "trajectory": ["trajectory", "symmetries", "query"],
-    "roadmap": ["roadmap", "symmetries", "query"],
-    "scene": ["scene", "query"],
-    "clashes": ["clashes"],
-    "question": ["question", "symmetries"],
-    "site": ["site"],
-    "io/files": ["files", "site"],
-    "io/text": ["text", "clouds"],
-    "io/poses": ["poses"],
-    "io/json": ["json", "scenes"],
-    "io/clouds": ["clouds"],
-    "io/scenes": ["scenes"],
-    "io/reports": ["reports"],
+    "pcl_bsh/simd": ["geometry", "pairs", "flags", "distances", "neighbors", "hierarchy", "query", "symmetries"],
+    "pcl_bsh/geometry": ["geometry", "hierarchy", "pairs", "flags", "distances", "query", "symmetries"],
+    "pcl_bsh/hierarchy": ["hierarchy", "pairs", "flags", "distances", "neighbors", "query", "symmetries"],
+    "pcl_bsh/query": ["query", "flags", "pairs", "distances", "question", "trajectory", "symmetries"],
+    "pcl_bsh/traversal": ["pairs", "flags", "distances", "clusters", "query", "symmetries"],
+    "pcl_bsh/pairs": ["pairs", "query", "roadmap", "scene", "symmetries"],
+    "pcl_bsh/flags": ["flags", "query", "question", "symmetries"],
+    "pcl_bsh/distances": ["distances", "query", "clashes", "question", "symmetries"],
+    "pcl_bsh/neighbors": ["neighbors", "query", "question", "symmetries"],
+    "pcl_bsh/clusters": ["clusters", "query", "clashes", "symmetries"],
+    "pcl_bsh/seen": ["seen", "question"],
+    "pcl_bsh/solid": ["solid", "question", "query"],
+    "pcl_bsh/trajectory": ["trajectory", "query", "question", "symmetries"],
+    "pcl_bsh/roadmap": ["roadmap", "query", "symmetries"],
+    "pcl_bsh/scene": ["scene", "query"],
+    "pcl_bsh/clashes": ["clashes"],
+    "pcl_bsh/question": ["question", "symmetries"],
+    "pcl_bsh/io/files": ["files", "clouds", "site"],
+    "pcl_bsh/io/text": ["text", "poses", "json", "clouds"],
+    "pcl_bsh/io/poses": ["poses", "pipeline"],
+    "pcl_bsh/io/json": ["json", "scenes", "reports", "pipeline"],
+    "pcl_bsh/io/clouds": ["clouds", "site", "pipeline"],
+    "pcl_bsh/io/scenes": ["scenes"],
+    "pcl_bsh/io/reports": ["reports", "pipeline"],
+    "pcl_bsh/site": ["site"],
+    "pcl_bsh/search": ["search"],
+    "filters": ["filters", "pipeline"],
 }
+PARTS = ["filters/pipeline"]  # folders that are no part of the room above them
+ROOMS["filters/pipeline"] = ["pipeline"]
 
-# Name, what is found (in code, without comments and strings), what takes its place.
-OPERATORS = [
-    ("boundary", r"(?<=[\w)\]] )<(?= [\w(\-!])", "<="),
-    ("boundary", r"(?<=[\w)\]] )<=(?= )", "<"),
-    ("boundary", r"(?<=[\w)\]] )>(?= [\w(\-!])", ">="),
-    ("boundary", r"(?<=[\w)\]] )>=(?= )", ">"),
-    ("comparison", r"(?<= )==(?= )", "!="),
-    ("comparison", r"(?<= )!=(?= )", "=="),
-    ("sign", r"(?<=[\w)\]] )\+(?= [\w(])", "-"),
-    ("sign", r"(?<=[\w)\]] )-(?= [\w(])", "+"),
-    ("term", r"(?<=[\w)\]]) [+-] \w[\w.]*(?=[;,)])", ""),
-    ("factor", r"(?<=[\w)\]]) \* \w[\w.]*(?=[;,)])", ""),
-    ("logic", r"(?<= )&&(?= )", "||"),
-    ("logic", r"(?<= )\|\|(?= )", "&&"),
-    ("negation", r"(?<=[(\s])!(?=[\w(])", ""),
-    ("guard", r"(?<=if \()(?!constexpr)[^()]*(?:\([^()]*\)[^()]*)*(?=\) (?:return|continue|break|throw|failToWrite)\b)", "false"),
-    ("half", r"(?<![\w.])(\d+\.\d+(?:e-?\d+)?)(?![\w.])", r"(0.5 * \1)"),
-    ("extreme", r"\bmax\(", "min("),
-    ("extreme", r"\bmin\(", "max("),
-    ("extreme", r"\bhn::Max\(", "hn::Min("),
-    ("extreme", r"\bhn::Min\(", "hn::Max("),
-    ("side", r"(?<=\W)a(?=\.(?:pose|hierarchy|view)\b)", "b"),
-    ("side", r"(?<=\W)b(?=\.(?:pose|hierarchy|view)\b)", "a"),
-    ("side", r"\bSide::a\b", "Side::b"),
-    ("index", r"(?<=\[)(\w+)(?=\])(?!\s*\()", r"\1 + 1"),
-    ("invalidation", r"^\s*\w[\w.>\-]*(?:clear|reset|invalidate|forget\w*|drop\w*|notify\w*)\([^;]*\);", ";"),
-    ("unlock", r"^\s*const auto lock = [^;]*;", ";"),
-    ("sync", r"^\s*sync\w*\([^;]*\);", ";"),
-    ("sync", r"\bfsync\(\w+\) != 0", "false"),
-    ("rounding", r"\broundUp\(", "roundDown("),
-    ("rounding", r"\broundDown\(", "roundUp("),
-]
+# Tests that take more than some seconds: the last that are run.
+SLOW = ["*HundredThousandPoints", "*OneHash*", "*Sequences.SameAsBrute*", "*SceneCombinations*", "*NothingCollidesBeforeItsFirst*",
+        "*EachIsThatOfTheMotion*", "*GrazingPaths*", "*WorkClimb*", "*H25Any*", "*AnswerAlikePastClusters*", "*FacingSheets*",
+        "*HoldsAtEachInstantAsBrute*", "*ScalesWithinScales*", "*TakeNoMoreWork*", "*TenThousandInAnyOrder*",
+        "*DistancesAtLargeClearancesCost*", "*Attack*", "*OfAVastSearch*", "*OfASharedStack*", "Symmetries.*"]
 
-Mutant = collections.namedtuple("Mutant", "id room file line column operator before after")
+CMAKE = ["-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w", "-D",
+         "BUILD_SHARED_LIBS=OFF", "-D", "PCL_BSH_SIMD_LEFT_OUT=HWY_SSSE3|HWY_SSE4|HWY_AVX2|HWY_AVX3|HWY_AVX3_DL", "-D",
+         "PCL_BSH_BUILD_COMPONENTS=OFF", "-D", "PCL_BSH_BUILD_PIPELINES=ON", "-D", "PCL_BSH_BUILD_SITES=ON", "-D",
+         "PCL_BSH_MUTATED=ON"]
 
 
-def code_of(line):
-    """The line with comments and strings blanked, of the same length."""
-    blank = lambda match: " " * len(match.group())
-    line = re.sub(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'', blank, line)
-    return re.sub(r"//.*", blank, line)
+def room_of(name):
+    return max((room for room in ROOMS if name.startswith(room + "/")), key=len, default=None)
 
 
-def mutants_of(room):
-    folder = SOURCE / "pcl_bsh" / room
-    for file in sorted(folder.rglob("*")):
-        if file.suffix not in (".cpp", ".h"):
-            continue
-        name = file.relative_to(SOURCE).as_posix()
-        for number, line in enumerate(file.read_text().splitlines(), 1):
-            code = code_of(line)
-            if re.match(r"\s*(#|template|static_assert|using|namespace|/?\*)", code) or "operator" in code:
-                continue
-            for operator, pattern, replacement in OPERATORS:
-                for match in re.finditer(pattern, code):
-                    text = line[match.start():match.end()]
-                    after = match.expand(replacement)
-                    # By what it changes, not by where: lines move.
-                    key = hashlib.sha1(f"{name}|{line.strip()}|{match.start() - len(line) + len(line.lstrip())}|"
-                                       f"{operator}|{after}".encode()).hexdigest()[:10]
-                    changed = line[:match.start()] + after + line[match.end():]
-                    yield Mutant(key, room, name, number, match.start(), operator, line, changed)
+def sources():
+    listed = subprocess.run(["git", "-C", str(SOURCE), "ls-files"], capture_output=True, text=True, check=True).stdout
+    return [name for name in listed.splitlines() if (SOURCE / name).is_file()]
 
 
-class Changed:
-    """A source with a mutant in it. What it was is kept beside the results, in case this program is killed."""
-
-    def __init__(self, build):
-        self.kept = build / "mutated.json"
-
-    def restore(self):
-        if self.kept.exists():
-            kept = json.loads(self.kept.read_text())
-            (SOURCE / kept["file"]).write_text(kept["text"])
-            self.kept.unlink()
-
-    def put(self, mutant):
-        file = SOURCE / mutant.file
-        text = file.read_text()
-        lines = text.splitlines(keepends=True)
-        self.kept.write_text(json.dumps({"file": mutant.file, "text": text}))
-        lines[mutant.line - 1] = mutant.after + "\n"
-        file.write_text("".join(lines))
+def write_changed(file, data):
+    """Leaves what is the same as it is, so that it is not compiled again."""
+    if not file.exists() or file.read_bytes() != data:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(data)
 
 
-def build(folder, targets):
-    return subprocess.run(["cmake", "--build", str(folder), "--target", *targets], capture_output=True, text=True)
+# Making ---------------------------------------------------------------------------------------------------------------
+
+def choose(room, names, count, rng):
+    """Mutants of a room: a file after the other, of each one of an operator not yet taken there as long as there are."""
+    left = {}
+    for name in names:
+        found = mutants.mutants_of(name, (SOURCE / name).read_text())
+        rng.shuffle(found)
+        taken = collections.Counter()
+        for mutant in found:
+            taken[mutant.operator] += 1
+        rank = collections.Counter()
+        ordered = []
+        for mutant in found:
+            rank[mutant.operator] += 1
+            ordered.append((rank[mutant.operator], mutant))
+        left[name] = [mutant for _, mutant in sorted(ordered, key=lambda pair: pair[0])]
+    # A file with many mutants has more turns than one with few.
+    turns = [name for name in names for _ in range((len(left[name]) + 19) // 20)]
+    rng.shuffle(turns)
+    chosen, sites = [], set()
+    while len(chosen) < count and any(left.values()):
+        for name in turns:
+            while left[name]:
+                mutant = left[name].pop(0)
+                if (name, mutant.site) in sites:
+                    continue  # one of each place
+                sites.add((name, mutant.site))
+                chosen.append(mutant)
+                break
+            if len(chosen) == count:
+                break
+    return chosen
 
 
-def run_test(folder, room, limit):
-    """None where all tests pass, else what failed first."""
+def write_copy(work, chosen):
+    by_file = collections.defaultdict(list)
+    for number, mutant in chosen.items():
+        by_file[mutant.file].append((number, mutant))
+    header = str(HERE / "mutant.h")
+    for name in sources():
+        data = (SOURCE / name).read_bytes()
+        if name in by_file:
+            data = mutants.with_mutants(data.decode(), by_file[name], header).encode()
+        write_changed(work / "source" / name, data)
+
+
+def compile_all(work, chosen, targets):
+    """Builds, and leaves out what does not compile, now or before. Returns the numbers left out."""
+    kept = work / "not_compiled.json"
+    known = set(json.loads(kept.read_text())) if kept.exists() else set()
+    left_out = {number for number, mutant in chosen.items() if mutant.id in known}
+    while True:
+        write_copy(work, {n: m for n, m in chosen.items() if n not in left_out})
+        built = subprocess.run(["nice", "-n", "10", "cmake", "--build", str(work / "build"), "--target", *targets, "--", "-j2"],
+                               capture_output=True, text=True, errors="replace")
+        if built.returncode == 0:
+            return left_out
+        (work / "errors.txt").write_text(built.stdout + built.stderr)
+        places = set()
+        for match in re.finditer(r"/source/([\w./-]+):(\d+):\d+: (?:fatal )?(error|note|  ?required)?", built.stdout):
+            places.add((match.group(3) == "error", match.group(1), int(match.group(2))))
+        def at(errors_only):
+            found = set()
+            for number, mutant in chosen.items():
+                text = (SOURCE / mutant.file).read_text()
+                first, last = (text.count("\n", 0, at) + 1 for at in (mutant.site.begin, mutant.site.end))
+                if any(file == mutant.file and first <= line <= last and (is_error or not errors_only)
+                       for is_error, file, line in places):
+                    found.add(number)
+            return found - left_out
+        new = at(True) or at(False)
+        if not new: # what begins there may end badly
+            for is_error, file, line in places:
+                before = [number for number, mutant in chosen.items() if mutant.file == file and mutant.line <= line]
+                new |= set(before[-1:]) - left_out if is_error else set()
+        if not new:
+            sys.exit(f"mutate.py: the copy does not compile: see {work / 'errors.txt'}")
+        left_out |= new
+        known |= {chosen[number].id for number in new}
+        kept.write_text(json.dumps(sorted(known)))
+        print(f"{len(new)} mutants do not compile", flush=True)
+
+
+def make(options):
+    work = options.work.resolve()
+    rooms = options.rooms
+    names = sources()
+    chosen, number = {}, 0
+    for room in rooms:
+        rng = random.Random(f"{options.seed} {room}")
+        ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room]
+        for mutant in choose(room, ours, options.count, rng):
+            number += 1
+            chosen[number] = mutant
+    write_copy(work, chosen)
+    subprocess.run(["cmake", "-S", str(work / "source"), "-B", str(work / "build"), *CMAKE, "-D",
+                    f"PCL_BSH_TEST_OBJECTS={options.release.resolve()}", "-D", f"PCL_BSH_SHARED_DIR={SOURCE.parent / 'shared'}"],
+                   check=True, stdout=subprocess.DEVNULL)
+    tests = list(dict.fromkeys(f"{test}_test" for room in rooms for test in ROOMS[room]))
+    left_out = compile_all(work, chosen, tests)
+    rows = [dict(mutant._asdict(), number=number, room=room_of(mutant.file), compiled=number not in left_out, site=None)
+            for number, mutant in chosen.items()]
+    (work / "mutants.json").write_text(json.dumps(rows, indent=1))
+    for old in ("reached", "results.jsonl"):
+        shutil.rmtree(work / old, ignore_errors=True)
+        (work / old).unlink(missing_ok=True)
+    print(f"{len(rows) - len(left_out)} mutants are compiled, {len(left_out)} cannot be")
+
+
+# Running --------------------------------------------------------------------------------------------------------------
+
+Test = collections.namedtuple("Test", "name milliseconds reached")
+
+
+def run_binary(work, test, environment, arguments, cpu_seconds):
+    def limit():
+        os.nice(19)
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds + 1))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
-        run = subprocess.run([str(folder / "test" / f"{room}_test"), "--gtest_fail_fast", "--gtest_brief=1"],
-                             capture_output=True, text=True, errors="replace", timeout=limit, cwd=folder)
+        return subprocess.run([str(work / "build" / "test" / f"{test}_test"), "--gtest_brief=1", *arguments],
+                              capture_output=True, text=True, errors="replace", cwd=work, preexec_fn=limit,
+                              env=dict(os.environ, **environment), timeout=60 + 30 * cpu_seconds)
     except subprocess.TimeoutExpired:
-        return "timed out", room
-    if run.returncode == 0:
         return None
-    failed = re.search(r"^\[  FAILED  \] (\S+)", run.stdout, re.MULTILINE)
-    return "killed", failed.group(1).rstrip(",") if failed else f"{room}_test, which ended with {run.returncode}"
 
 
-def trial(folder, mutant, changed, limits):
-    result = dict(mutant._asdict(), date=datetime.date.today().isoformat())
-    rooms = ROOMS[mutant.room]
-    try:
-        changed.put(mutant)
-        for room in filter(limits.get, rooms):
-            built = build(folder, [f"{room}_test"])
-            if built.returncode != 0:
-                return dict(result, result="not compiled")
-            failed = run_test(folder, room, limits[room])
-            if failed:
-                return dict(result, result=failed[0], test=failed[1])
-        return dict(result, result="survived", test=", ".join(filter(limits.get, rooms)))
-    finally:
-        changed.restore()
+def tests_of(work, test, slow):
+    """What each quick or slow test of a room reaches, by a run without mutants."""
+    kept = work / "reached" / (test + (".slow" if slow else ""))
+    if not kept.exists():
+        kept.parent.mkdir(exist_ok=True)
+        unfinished = kept.with_suffix(kept.suffix + ".part")
+        unfinished.unlink(missing_ok=True)
+        ran = run_binary(work, test, {"PCL_BSH_MUTANT": "-1", "PCL_BSH_REACHED": str(unfinished)},
+                         ["--gtest_filter=" + ("" if slow else "-") + ":".join(SLOW)], 3600)
+        if ran is None or ran.returncode < 0:
+            sys.exit(f"mutate.py: {test}_test does not run without a mutant")
+        unfinished.touch() # where there is none
+        unfinished.rename(kept)
+    found = []
+    for line in kept.read_text().splitlines():
+        name, milliseconds, result, *reached = line.split()
+        if result == "passed":
+            found.append(Test(name, int(milliseconds), set(map(int, reached))))
+        else:
+            print(f"{name} fails without a mutant, and is left out", file=sys.stderr)
+    return found
 
 
-def report(results):
-    counts = collections.Counter(result["result"] for result in results)
-    tried = sum(counts.values()) - counts["not compiled"]
-    noticed = counts["killed"] + counts["timed out"]
-    print(f"{tried} mutants, {noticed} noticed ({100 * noticed / max(1, tried):.0f} %): {counts['killed']} killed, "
-          f"{counts['timed out']} timed out, {counts['survived']} survived; {counts['not compiled']} more did not compile\n")
-    print("| room | noticed | survived |\n|---|---|---|")
+def batches(tests):
+    """Quick ones first: up to a second of them, up to ten, all others."""
+    batch, total, most = [], 0, 1000
+    for test in sorted(tests, key=lambda test: test.milliseconds):
+        if batch and total + test.milliseconds > most:
+            yield batch
+            batch, total, most = [], 0, 10 * most
+        batch.append(test)
+        total += test.milliseconds
+    if batch:
+        yield batch
+
+
+def trial(work, mutant, quick):
+    number, reached = mutant["number"], False
+    for room, slow in [(room, slow) for slow in ([False] if quick else [False, True]) for room in ROOMS[mutant["room"]]]:
+        for batch in batches([test for test in tests_of(work, room, slow) if number in test.reached]):
+            reached = True
+            flags = work / "flags.txt"
+            flags.write_text(f"--gtest_filter={':'.join(test.name for test in batch)}\n--gtest_fail_fast\n")
+            limit = 10 + 5 * sum(test.milliseconds for test in batch) // 1000
+            ran = run_binary(work, room, {"PCL_BSH_MUTANT": str(number)}, [f"--gtest_flagfile={flags}"], limit)
+            if ran is None or ran.returncode in (-24, -9):
+                return "timed out", f"{room}: {batch[0].name} or another"
+            if ran.returncode != 0:
+                failed = re.search(r"^\[  FAILED  \] ([^\s,]+)", ran.stdout, re.MULTILINE)
+                return "killed", failed.group(1) if failed else f"{room}_test ended with {ran.returncode}"
+    return ("survived", ", ".join(ROOMS[mutant["room"]])) if reached else ("not reached", "")
+
+
+def run(options):
+    work = options.work.resolve()
+    chosen = [m for m in json.loads((work / "mutants.json").read_text()) if m["compiled"] and m["room"] in options.rooms]
+    file = work / "results.jsonl"
+    tried = {json.loads(line)["id"] for line in file.read_text().splitlines()} if file.exists() else set()
+    chosen = [m for m in chosen if (m["id"] == options.only if options.only else m["id"] not in tried)]
+    turn = collections.Counter()
+    def place(mutant): # one of each room after another
+        turn[mutant["room"]] += 1
+        return turn[mutant["room"]]
+    with file.open("a") as out:
+        for mutant in sorted(chosen, key=place):
+            result, test = trial(work, mutant, options.quick)
+            mutant = dict(mutant, result=result, test=test, date=datetime.date.today().isoformat())
+            out.write(json.dumps(mutant) + "\n")
+            out.flush()
+            print(f"{result} {mutant['id']} {mutant['file']}:{mutant['line']} {mutant['operator']}: {mutant['before']}  =>  "
+                  f"{mutant['after']}  [{test}]", flush=True)
+
+
+# Reporting ------------------------------------------------------------------------------------------------------------
+
+COLUMNS = ["id", "file", "line", "operator", "result", "test", "date", "before", "after"]
+
+
+def report(options):
+    results = {}
+    for line in (options.work / "results.jsonl").read_text().splitlines():
+        result = json.loads(line)
+        results[result["id"]] = result  # the last one of each
+    reasons = {}
+    with (HERE / "survivors.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            reasons[row["id"]] = row
+    print("| room | mutants | noticed | cannot be seen | survived | not reached |\n|---|---|---|---|---|---|")
+    total = collections.Counter()
     for room in ROOMS:
-        ours = [result["result"] for result in results if result["room"] == room]
-        if ours:
-            print(f"| {room} | {sum(result in ('killed', 'timed out') for result in ours)} | {ours.count('survived')} |")
-    print("\n| survivor | operator | line | with |\n|---|---|---|---|")
-    for result in results:
-        if result["result"] == "survived":
-            before, after = (result[key].strip().replace("|", "\\|") for key in ("before", "after"))
-            print(f"| {result['id']} {result['file']}:{result['line']} | {result['operator']} | `{before}` | `{after}` |")
+        counts = collections.Counter()
+        for result in results.values():
+            if result["room"] == room:
+                noticed = result["result"] in ("killed", "timed out")
+                counts["noticed" if noticed else "explained" if result["id"] in reasons else result["result"]] += 1
+        if counts:
+            print(f"| `{room}` | {sum(counts.values())} | {counts['noticed']} | {counts['explained']} | {counts['survived']} | "
+                  f"{counts['not reached']} |")
+        total += counts
+    tried = sum(total.values())
+    print(f"\n{tried} mutants: {total['noticed']} noticed ({100 * total['noticed'] / max(1, tried):.1f} %), "
+          f"{total['explained']} cannot be seen, {total['survived']} survived, {total['not reached']} not reached")
+    for result in sorted(results.values(), key=lambda result: (result["file"], result["line"])):
+        if result["result"] in ("survived", "not reached") and result["id"] not in reasons:
+            print(f"{result['result']} {result['id']} {result['file']}:{result['line']} {result['operator']}: {result['before']}  =>  "
+                  f"{result['after']}")
+    if options.csv:
+        with options.csv.open("w", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(sorted(results.values(), key=lambda result: (result["file"], result["line"], result["id"])))
 
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("what", choices=["make", "run", "report"])
+    parser.add_argument("work", type=pathlib.Path)
     parser.add_argument("--rooms", default=",".join(ROOMS))
-    parser.add_argument("--count", type=int, default=30)
+    parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--release", type=pathlib.Path, default=SOURCE / "build" / "release")
     parser.add_argument("--only")
-    parser.add_argument("--list", action="store_true")
-    parser.add_argument("--report", action="store_true")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--csv", type=pathlib.Path)
     options = parser.parse_args()
-    folder = options.build.resolve()
-    file = folder / "mutants.jsonl"
-    results = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
-    if options.report:
-        return report(results)
-    changed = Changed(folder)
-    changed.restore()
-    rooms = options.rooms.split(",")
-    unknown = [room for room in rooms if room not in ROOMS]
-    if unknown:
-        sys.exit(f"mutate.py: --rooms: there is no {unknown[0]}: there are {', '.join(ROOMS)}")
-    mutants = [mutant for room in rooms for mutant in mutants_of(room)]
-    if options.list:
-        for mutant in mutants:
-            print(f"{mutant.id} {mutant.file}:{mutant.line} {mutant.operator}: {mutant.after.strip()}")
-        return None
-    random.Random(options.seed).shuffle(mutants)
-    tried = {result["id"] for result in results}
-    chosen = [mutant for mutant in mutants if (mutant.id == options.only if options.only else mutant.id not in tried)]
-    for stop in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(stop, lambda *_: sys.exit("mutate.py: stopped"))
-    limits = {}
-    targets = subprocess.run(["cmake", "--build", str(folder), "--target", "help"], capture_output=True,
-                             text=True).stdout.splitlines()
-    for room in dict.fromkeys(room for mutant in chosen[:options.count] for room in ROOMS[mutant.room]):
-        if not any(line.startswith(f"{room}_test:") for line in targets):
-            continue  # a component that is not built
-        built = build(folder, [f"{room}_test"])
-        start = time.monotonic()
-        failed = "is not built" if built.returncode != 0 else run_test(folder, room, 3600)
-        if failed:
-            sys.exit(f"mutate.py: {room}_test fails without a mutant: {failed}")
-        limits[room] = 60 + 5 * (time.monotonic() - start)
-    with file.open("a") as out:
-        for mutant in chosen[:options.count]:
-            result = trial(folder, mutant, changed, limits)
-            out.write(json.dumps(result) + "\n")
-            out.flush()
-            print(f"{result['result']} {mutant.id} {mutant.file}:{mutant.line} {mutant.operator}: "
-                  f"{mutant.after.strip()}  [{result.get('test', '')}]", flush=True)
-    return None
+    options.rooms = options.rooms.split(",")
+    options.rooms = [room if room in ROOMS else f"pcl_bsh/{room}" for room in options.rooms]
+    for room in options.rooms:
+        if room not in ROOMS:
+            sys.exit(f"mutate.py: --rooms: there is no {room}: there are {', '.join(ROOMS)}")
+    {"make": make, "run": run, "report": report}[options.what](options)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
