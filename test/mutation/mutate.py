@@ -3,19 +3,22 @@
 """Measures the tests by what they notice of small changes of the sources.
 
     mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--release build/release]
-    mutate.py run WORK [--rooms flags,pairs] [--only ID] [--quick]
+    mutate.py run WORK [--rooms flags,pairs] [--only ID] [--scope own]
     mutate.py report WORK [--csv FILE]
 
 WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room, spread
 over its files), writes all of them into the copy behind a switch, and builds copy and tests once. `run` runs the tests of
 each room once to see which mutants each reaches, then, for each mutant, the tests that reach it, quick ones first, those of
-its own room before others, until one fails; --quick leaves out those that take more than some seconds. Stopped, it goes on where it was. Tests of the core are taken from the release
+its own room before others, until one fails. --scope own: a second of tests of its own room; quick: the quick tests
+of all its rooms; survivors are tried again by a wider scope. Stopped, it goes on where it was. Tests of the core are taken from the release
 build as they are. Reasons why survivors cannot be seen are rows of survivors.csv beside this file.
 """
 import argparse
 import collections
 import csv
 import datetime
+import functools
+import itertools
 import json
 import os
 import pathlib
@@ -33,11 +36,11 @@ SOURCE = HERE.parents[1]
 
 # Folder of sources: the rooms whose tests are run, the first one first.
 ROOMS = {
-    "pcl_bsh/simd": ["geometry", "pairs", "flags", "distances", "neighbors", "hierarchy", "query", "symmetries"],
-    "pcl_bsh/geometry": ["geometry", "hierarchy", "pairs", "flags", "distances", "query", "symmetries"],
+    "pcl_bsh/simd": ["pairs", "flags", "distances", "neighbors", "hierarchy", "trajectory", "geometry", "query", "symmetries"],
+    "pcl_bsh/geometry": ["geometry", "pairs", "hierarchy", "flags", "distances", "query", "symmetries"],
     "pcl_bsh/hierarchy": ["hierarchy", "pairs", "flags", "distances", "neighbors", "query", "symmetries"],
-    "pcl_bsh/query": ["query", "flags", "pairs", "distances", "question", "trajectory", "symmetries"],
-    "pcl_bsh/traversal": ["pairs", "flags", "distances", "clusters", "query", "symmetries"],
+    "pcl_bsh/query": ["flags", "pairs", "distances", "question", "trajectory", "query", "symmetries"],
+    "pcl_bsh/traversal": ["pairs", "flags", "distances", "clusters", "trajectory", "query", "symmetries"],
     "pcl_bsh/pairs": ["pairs", "query", "roadmap", "scene", "symmetries"],
     "pcl_bsh/flags": ["flags", "query", "question", "symmetries"],
     "pcl_bsh/distances": ["distances", "query", "clashes", "question", "symmetries"],
@@ -69,11 +72,6 @@ SLOW = ["*HundredThousandPoints", "*OneHash*", "*Sequences.SameAsBrute*", "*Scen
         "*EachIsThatOfTheMotion*", "*GrazingPaths*", "*WorkClimb*", "*H25Any*", "*AnswerAlikePastClusters*", "*FacingSheets*",
         "*HoldsAtEachInstantAsBrute*", "*ScalesWithinScales*", "*TakeNoMoreWork*", "*TenThousandInAnyOrder*",
         "*DistancesAtLargeClearancesCost*", "*Attack*", "*OfAVastSearch*", "*OfASharedStack*", "Symmetries.*"]
-
-CMAKE = ["-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -w", "-D",
-         "BUILD_SHARED_LIBS=OFF", "-D", "PCL_BSH_SIMD_LEFT_OUT=HWY_SSSE3|HWY_SSE4|HWY_AVX2|HWY_AVX3|HWY_AVX3_DL", "-D",
-         "PCL_BSH_BUILD_COMPONENTS=OFF", "-D", "PCL_BSH_BUILD_PIPELINES=ON", "-D", "PCL_BSH_BUILD_SITES=ON", "-D",
-         "PCL_BSH_MUTATED=ON"]
 
 
 def room_of(name):
@@ -188,9 +186,8 @@ def make(options):
             number += 1
             chosen[number] = mutant
     write_copy(work, chosen)
-    subprocess.run(["cmake", "-S", str(work / "source"), "-B", str(work / "build"), *CMAKE, "-D",
-                    f"PCL_BSH_TEST_OBJECTS={options.release.resolve()}", "-D", f"PCL_BSH_SHARED_DIR={SOURCE.parent / 'shared'}"],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--preset", "mutation", "-D", f"PCL_BSH_TEST_OBJECTS={options.release.resolve()}", "-D",
+                    f"PCL_BSH_SHARED_DIR={SOURCE.parent / 'shared'}"], cwd=work / "source", check=True, stdout=subprocess.DEVNULL)
     tests = list(dict.fromkeys(f"{test}_test" for room in rooms for test in ROOMS[room]))
     left_out = compile_all(work, chosen, tests)
     rows = [dict(mutant._asdict(), number=number, room=room_of(mutant.file), compiled=number not in left_out, site=None)
@@ -220,6 +217,7 @@ def run_binary(work, test, environment, arguments, cpu_seconds):
         return None
 
 
+@functools.lru_cache(maxsize=None)
 def tests_of(work, test, slow):
     """What each quick or slow test of a room reaches, by a run without mutants."""
     kept = work / "reached" / (test + (".slow" if slow else ""))
@@ -256,14 +254,20 @@ def batches(tests):
         yield batch
 
 
-def trial(work, mutant, quick):
+SCOPES = ["own", "quick", "all"]
+
+
+def trial(work, mutant, scope):
+    """@param scope own: a second of tests of the first room alone; quick: of all its rooms; all: slow ones, too"""
     number, reached = mutant["number"], False
-    for room, slow in [(room, slow) for slow in ([False] if quick else [False, True]) for room in ROOMS[mutant["room"]]]:
-        for batch in batches([test for test in tests_of(work, room, slow) if number in test.reached]):
+    rooms = ROOMS[mutant["room"]][:1 if scope == "own" else None]
+    for room, slow in [(room, slow) for slow in ([False, True] if scope == "all" else [False]) for room in rooms]:
+        reaching = batches([test for test in tests_of(work, room, slow) if number in test.reached])
+        for batch in itertools.islice(reaching, 1 if scope == "own" else None):
             reached = True
             flags = work / "flags.txt"
             flags.write_text(f"--gtest_filter={':'.join(test.name for test in batch)}\n--gtest_fail_fast\n")
-            limit = 10 + 5 * sum(test.milliseconds for test in batch) // 1000
+            limit = 3 + 5 * sum(test.milliseconds for test in batch) // 1000
             ran = run_binary(work, room, {"PCL_BSH_MUTANT": str(number)}, [f"--gtest_flagfile={flags}"], limit)
             if ran is None or ran.returncode in (-24, -9):
                 return "timed out", f"{room}: {batch[0].name} or another"
@@ -277,7 +281,11 @@ def run(options):
     work = options.work.resolve()
     chosen = [m for m in json.loads((work / "mutants.json").read_text()) if m["compiled"] and m["room"] in options.rooms]
     file = work / "results.jsonl"
-    tried = {json.loads(line)["id"] for line in file.read_text().splitlines()} if file.exists() else set()
+    tried = set()
+    for result in map(json.loads, file.read_text().splitlines() if file.exists() else []):
+        noticed = result["result"] in ("killed", "timed out")
+        if noticed or SCOPES.index(result["scope"]) >= SCOPES.index(options.scope):
+            tried.add(result["id"])
     chosen = [m for m in chosen if (m["id"] == options.only if options.only else m["id"] not in tried)]
     turn = collections.Counter()
     def place(mutant): # one of each room after another
@@ -285,8 +293,8 @@ def run(options):
         return turn[mutant["room"]]
     with file.open("a") as out:
         for mutant in sorted(chosen, key=place):
-            result, test = trial(work, mutant, options.quick)
-            mutant = dict(mutant, result=result, test=test, date=datetime.date.today().isoformat())
+            result, test = trial(work, mutant, options.scope)
+            mutant = dict(mutant, scope=options.scope, result=result, test=test, date=datetime.date.today().isoformat())
             out.write(json.dumps(mutant) + "\n")
             out.flush()
             print(f"{result} {mutant['id']} {mutant['file']}:{mutant['line']} {mutant['operator']}: {mutant['before']}  =>  "
@@ -295,7 +303,7 @@ def run(options):
 
 # Reporting ------------------------------------------------------------------------------------------------------------
 
-COLUMNS = ["id", "file", "line", "operator", "result", "test", "date", "before", "after"]
+COLUMNS = ["id", "file", "line", "operator", "result", "scope", "test", "date", "before", "after"]
 
 
 def report(options):
@@ -342,7 +350,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--release", type=pathlib.Path, default=SOURCE / "build" / "release")
     parser.add_argument("--only")
-    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--scope", choices=SCOPES, default="all")
     parser.add_argument("--csv", type=pathlib.Path)
     options = parser.parse_args()
     options.rooms = options.rooms.split(",")
