@@ -50,7 +50,6 @@ WITHOUT_ROWS = {
     "Uncertain places, and the density guard": 2,  # uncertainty.csv
     "What scanners saw to be empty": 1,  # seen.csv
     "A robot cut out of its scans": 1,  # self_filter.csv
-    "Surfaces": 2,  # surface.csv
     "Along a path": 2,  # trajectory.csv at both scales; a table of instructions
     "Scenes": 1,  # scene.csv
     "What accuracy costs": 2,  # pcl_bsh_accuracy
@@ -155,6 +154,44 @@ def sites(rows):
         yield f"| {title} | " + " | ".join(cells) + " |"
 
 
+def surfaces(rows):
+    peers = ("Embree", "FCL OBBRSS", "VTK static locator", "CGAL AABB")
+    insides = {"Embree": "Embree, parity", "VTK static locator": "VTK enclosed points", "CGAL AABB": "CGAL side of mesh"}
+    yield "| question | mesh | pcl_bsh, build + query | query again | Embree | FCL | VTK | CGAL | best of them / ours |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    for question, title in (("within 1/400 of its size", "flags, 1/400"), ("within 1/40.0 of its size", "flags, 1/40"),
+                            ("distances", "distances"), ("inside", "inside")):
+        for mesh in ("box", "part", "bumpy", "tubes"):
+            of = rows.where(question=question, mesh=mesh)
+            if not of:
+                continue
+            ours = of.one("both [s]", racer="pcl_bsh")
+            cells, best = [], None
+            for peer in peers:
+                found = of.where(racer=insides.get(peer, peer) if question == "inside" else peer)
+                if not found:
+                    cells.append("")
+                    continue
+                time, wrong = float(found[0]["both [s]"]), int(found[0]["wrong"])
+                best = time if best is None else min(best, time)
+                cells.append(short(time, " s") + (f", {wrong} wrong" if wrong else ""))
+            yield (f"| {title} | {mesh} | {short(ours, ' s')} | {short(of.one('again [s]', racer='pcl_bsh'), ' s')} | " +
+                   " | ".join(cells) + f" | {ratio(best / ours)} |").replace("|  |", "| |").replace("|  |", "| |")
+
+
+def bodies(rows):
+    yield "| question | mesh | triangles | pcl_bsh, build + query | query again | bytes a triangle | FCL, build + query | FCL again |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for row in rows:
+        if row["racer"] != "pcl_bsh" or not row["question"].startswith(("two bodies", "itself", "a corner")):
+            continue
+        fcl = rows.where(question=row["question"], mesh=row["mesh"], racer="FCL OBBRSS")
+        others = [short(float(fcl[0]["both [s]"]), " s"), short(float(fcl[0]["query [s]"]), " s")] if fcl else ["", ""]
+        question = re.sub(r"moved by ([\d.]+)", lambda number: f"moved by {float(number.group(1)):g}", row["question"]).replace(" clearances", " d")
+        yield (f"| {question} | {row['mesh']} | {int(row['triangles']):,} | {short(float(row['both [s]']), ' s')} | "
+               f"{short(float(row['again [s]']), ' s')} | {row['bytes / triangle']} | " + " | ".join(others) + " |").replace("|  |", "| |").replace("|  |", "| |")
+
+
 def readme():
     """The README's rows about what BENCHMARK.md has tables of: beginnings of lines, and how they go on."""
     of_flags = rows_of("flags_terrain.csv").where(order="scan", d="5.00")
@@ -169,7 +206,7 @@ def readme():
     yield f"| the distance of each of a million points | {ours} ms | nanoflann {nanoflann} ms, PCL's k-d tree {kd_tree} ms |"
 
 
-TABLES = {"flags": flags, "rigid": rigid, "distances": distances, "paths": paths, "sites": sites}
+TABLES = {"flags": flags, "rigid": rigid, "distances": distances, "paths": paths, "sites": sites, "surfaces": surfaces, "bodies": bodies}
 
 # Documents ------------------------------------------------------------------------------------------------------------
 

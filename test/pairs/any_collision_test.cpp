@@ -195,8 +195,7 @@ TEST(AnyCollision, FarMovesDecidedWithoutRoundingTheMovedPoint) // H20
       const SphereHierarchy hierarchy_p(cloud_p.view()), hierarchy_q(cloud_q.view());
       const AnyResult result = anyCollision({hierarchy_p}, {hierarchy_q, pose}, within(.05));
       const ExactDistance distance(identity, pose);
-      EXPECT_EQ(result.pair.has_value(),
-                distance.compare(cloud_p.view().point(0), cloud_q.view().point(0), .05) <= 0);
+      EXPECT_EQ(result.pair.has_value(), distance.compare(cloud_p.view().point(0), cloud_q.view().point(0), .05) <= 0);
     }
   }
 }

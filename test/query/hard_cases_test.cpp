@@ -72,10 +72,10 @@ void expectTruth(const Truth& truth, const HardCase& c, const Placed& a, const P
   const AnyResult any = anyCollision(a, b, request);
   ASSERT_EQ(any.verdict, truth.any.verdict);
   if (any.pair) {
-    EXPECT_LE(ExactDistance(a.pose, b.pose)
-                  .compare(a.hierarchy().view().point(any.pair->a), b.hierarchy().view().point(any.pair->b),
-                           c.clearance),
-              0);
+    EXPECT_LE(
+        ExactDistance(a.pose, b.pose)
+            .compare(a.hierarchy().view().point(any.pair->a), b.hierarchy().view().point(any.pair->b), c.clearance),
+        0);
   }
   const FlagsResult flags = collisionFlags(a, b, request);
   EXPECT_EQ(flags.a, truth.flags.a);

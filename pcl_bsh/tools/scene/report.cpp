@@ -186,8 +186,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
       json[key].push_back(std::move(entry));
     }
   };
-  if (effects.any)
-    list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["pair"] = points(pair.pair); });
+  if (effects.any) list("any", result.any, [&](Json& e, const CollidingPair& pair) { e["pair"] = points(pair.pair); });
   if (open && (effects.any || effects.self)) list("undecided", result.undecided, [](Json&, const PartPair&) {});
   if (effects.flags) json["flags"] = flagged(result.flags);
   if (effects.distance)
