@@ -37,6 +37,18 @@ void count(FlagsResult& found)
   found.undecided_b = countOf(found.b, Verdict::undecided);
 }
 
+Interval outward(double lower, double upper)
+{
+  return {std::nextafter(lower, -unbounded), std::nextafter(upper, unbounded)};
+}
+
+/// Of what is held. @param width of a ball, 0 of a point or a triangle
+Interval depthsOf(const Interval& distance, double width)
+{
+  if (width == 0.0) return {-distance.upper, -distance.lower};
+  return outward(-(distance.upper + width), -(distance.lower + width));
+}
+
 /// The gravest of each.
 void merge(std::vector<Verdict>& verdicts, const std::vector<Verdict>& others)
 {
@@ -232,6 +244,12 @@ PointDistances Solids::depths(const Pairing& pair, const Records& records) const
   return pair.of_obstacle ? pointDistances(a_, records, b_, request) : pointDistances(b_, records, a_, request);
 }
 
+/// Of a ball: the distance is that of its near side, the depth that of its far side.
+double Solids::widthOf(const Pairing& pair, std::uint32_t record) const
+{
+  return 2.0 * (pair.of_obstacle ? a_ : b_).hierarchy().view().ownRadius(record);
+}
+
 void Solids::turn(SymmetricDistances& found, bool both_ways)
 {
   for (Pairing& pair : pairings_)
@@ -254,9 +272,9 @@ void Solids::turn(Pairing& pair, PointDistances& found)
     }
   }
   for (const std::uint32_t record : records) {
-    if (found.distance[record] > 0.0) found.distance[record] = -found.distance[record];
-    if (!found.interval.empty())
-      found.interval[record] = {-found.interval[record].upper, -found.interval[record].lower};
+    const double width = widthOf(pair, record);
+    if (const double depth = found.distance[record] + width; depth > 0.0) found.distance[record] = -depth;
+    if (!found.interval.empty()) found.interval[record] = depthsOf(found.interval[record], width);
   }
   found.greatest = std::numeric_limits<double>::quiet_NaN();
   found.greatest_pair.reset();
@@ -274,11 +292,14 @@ void Solids::turn(DistanceResult& closest)
     const Records& records = held(pair, closest.work);
     if (records.empty()) continue;
     const PointDistances measured = depths(pair, records);
-    if (!(measured.greatest > 0.0) || closest.distance <= -measured.greatest) continue;
-    closest.distance = -measured.greatest;
-    closest.pair = measured.greatest_pair;
-    if (!pair.of_obstacle) closest.pair = PointPair{measured.greatest_pair->b, measured.greatest_pair->a};
-    closest.interval = {std::nextafter(closest.distance, -unbounded), std::nextafter(closest.distance, unbounded)};
+    for (const std::uint32_t record : records) {
+      const double depth = measured.distance[record] + widthOf(pair, record);
+      if (!(depth > 0.0) || closest.distance <= -depth) continue;
+      closest.distance = -depth;
+      const std::uint32_t nearest = measured.closest_point[record];
+      closest.pair = pair.of_obstacle ? PointPair{record, nearest} : PointPair{nearest, record};
+      closest.interval = outward(-depth, -depth);
+    }
   }
 }
 

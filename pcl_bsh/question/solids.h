@@ -76,6 +76,7 @@ private:
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;
   PointDistances depths(const Pairing& pair, const Records& records) const;
+  double widthOf(const Pairing& pair, std::uint32_t record) const;
   void turn(Pairing& pair, PointDistances& found);
 
   const Question& question_;

@@ -112,6 +112,27 @@ TEST_F(SolidsTest, DistancesAreSigned)
   EXPECT_THAT(answer().within, ElementsAre(0, 1, 0, 0, 0, 0));
 }
 
+TEST_F(SolidsTest, ABallIsAsDeepAsItsFarSide)
+{
+  points = {{0.5, 0, 0}, {0.75, 0, 0}, {1, 0, 0}, {1.25, 0, 0}, {2, 0, 0}};
+  const std::vector<float> radii{0.0f, 0.5f, 0.5f, 0.5f, 0.5f};
+  PointsView balls = viewOf(points[0].data(), points.size());
+  balls.radii = radii.data();
+  question.wanted.distances = question.wanted.closest = true;
+  question.accuracy = Accuracy::level(3); // tells intervals
+  Shape input("the scan", balls), obstacle("the tank", viewOf(view()));
+  const Answer found = ask(question, input, obstacle);
+  const std::vector<double> depths{-0.5, -0.75, -0.5, -0.25, 0.5};
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    EXPECT_LE(found.distances.a.interval[i].lower, depths[i]) << i;
+    EXPECT_GE(found.distances.a.interval[i].upper, depths[i]) << i;
+  }
+  question.accuracy = {};
+  EXPECT_EQ(ask(question, input, obstacle).distances.a.distance, depths);
+  EXPECT_EQ(ask(question, input, obstacle).closest.distance, -0.75);
+  EXPECT_EQ(ask(question, input, obstacle).closest.pair->a, 1u);
+}
+
 TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
 {
   const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };

@@ -260,14 +260,11 @@ Answers answersOf(const Instance& instance)
   askAlong(instance, placed_a, b, answers);
   askQuestion(instance, cloud_a.view(), cloud_b.view(), answers);
   const test::Cloud vertices(instance.b.points, {instance.b.scalar});
-  Body centres = instance.a; // how deep a ball is inside is not defined
-  centres.radii.clear();
-  const test::Cloud places = centres.cloud();
   for (const bool solid : {false, true}) {
     const std::vector<Triangle>& faces = solid ? instance.shell : instance.faces;
     if (faces.empty()) continue;
-    (solid ? answers.shell : answers.surface) = askFaces(instance, (solid ? places : cloud_a).view(),
-                                                         {vertices.view(), faces.front().data(), faces.size()}, solid);
+    (solid ? answers.shell : answers.surface) =
+        askFaces(instance, cloud_a.view(), {vertices.view(), faces.front().data(), faces.size()}, solid);
   }
   return answers;
 }
