@@ -8,6 +8,10 @@
 
 namespace pcl_bsh::site {
 
+/// What is asked of a and b as they stand, or of b at these poses.
+Question questionOf(const SiteRequest& request, const Placed& a, const Placed& b,
+                    const std::vector<Eigen::Isometry3d>* poses);
+
 /// Adds what b holds of a tile, where it is asked as a solid. @param found of the surface, of a and b as they stand
 /// @param poses of b instead; null: as it stands
 template <typename Found>
@@ -15,16 +19,8 @@ void addHeldOf(const SiteRequest& request, const Placed& a, const Placed& b, Fou
                const std::vector<Eigen::Isometry3d>* poses = nullptr)
 {
   if (!request.solid) return;
-  Question question;
-  question.clearance = request.clearance;
-  question.threads = request.threads;
-  question.swept = request.swept.value_or(0.0);
-  question.solid = true;
-  question.pose_of_input = a.pose;
-  question.pose = b.pose;
-  if (poses) question.path = *poses;
   Shape tile("a tile", std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &a.hierarchy()));
-  addHeld(question, tile, *request.solid, found);
+  addHeld(questionOf(request, a, b, poses), tile, *request.solid, found);
 }
 
 } // namespace pcl_bsh::site
