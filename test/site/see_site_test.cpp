@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/site/make_site.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
