@@ -11,6 +11,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// The directions in which models are looked for from one scanner, so that only beams that matter need to be kept.
 class LookedAt {
 public:
   /// @param angle that beams speak for. @throws std::invalid_argument as SeenSpace does
