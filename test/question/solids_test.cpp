@@ -119,7 +119,7 @@ TEST_F(SolidsTest, ABallIsAsDeepAsItsFarSide)
   PointsView balls = viewOf(points[0].data(), points.size());
   balls.radii = radii.data();
   question.wanted.distances = question.wanted.closest = true;
-  question.accuracy = Accuracy::level(3); // tells intervals
+  question.accuracy = Accuracy::tolerance(0.01); // tells intervals
   Shape input("the scan", balls), obstacle("the tank", viewOf(view()));
   const Answer found = ask(question, input, obstacle);
   const std::vector<double> depths{-0.5, -0.75, -0.5, -0.25, 0.5};

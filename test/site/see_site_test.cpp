@@ -108,7 +108,7 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
 {
   std::vector<Verdict> gravest;
   const Answer::Unseen right = expected(gravest);
-  ASSERT_GT(right.count, 20u);
+  ASSERT_GE(right.count, 20u);
   ASSERT_LT(right.count, machine.size());
   for (const std::uint64_t tile_points : {1000000u, 3000u, 500u}) {
     const SiteUnseen found = asked(siteOf(tile_points));

@@ -743,7 +743,7 @@ TEST_F(CollideAlong, CertainClashesAreToldFromThosePerhaps)
   EXPECT_EQ(list["clashes"][0]["certainty"], "certain");
   EXPECT_EQ(list["clashes"][1]["certainty"], "perhaps");
   EXPECT_THAT(io::contentOf(folder / "a.html"), HasSubstr("<h1>1 clash, 1 perhaps</h1>"));
-  EXPECT_THAT(io::contentOf(folder / "a.csv"), HasSubstr(",perhaps,0,0.3,0.15,0,,exact,,\n"));
+  EXPECT_THAT(io::contentOf(folder / "a.csv"), HasSubstr(",perhaps,0,0.3,0.15,0,,exact,,,\n"));
   expectDone(job + options + "--clashes {b.json} --previous {a.json}");
   for (const Json& clash : clashes("b.json")) EXPECT_EQ(clash["status"], "persisting");
   expectFailure(job + "--trajectory {poses.txt} --clashes {c.json} --previous {a.json}", 1,
