@@ -241,7 +241,7 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
   const FileBytes file(path);
   return naming(path, [&] {
     Contents contents;
-    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan);
+    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners);
     return checked(std::move(contents), facts);
   });
 }
