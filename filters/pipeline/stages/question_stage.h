@@ -33,13 +33,13 @@ protected:
     Shape input, obstacle;
     Answer answer;
 
-    const SphereHierarchy& inputHierarchy(const Question& question)
+    const SphereHierarchy& inputHierarchy(const Question& asked)
     {
-      return input.hierarchy(question.uncertaintyOfInput(), question.threads);
+      return input.hierarchy(asked.uncertaintyOfInput(), asked.threads);
     }
-    const SphereHierarchy& obstacleHierarchy(const Question& question)
+    const SphereHierarchy& obstacleHierarchy(const Question& asked)
     {
-      return obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
+      return obstacle.hierarchy(asked.uncertaintyOfObstacle(), asked.threads);
     }
   };
 
