@@ -59,6 +59,26 @@ Point3 middleOf(const TrianglesView& view)
   return middle;
 }
 
+/// Calls visit(p) for the corners of that part of a convex polygon which lies between two planes across an axis; some
+/// twice.
+template <class Visit>
+void forEachCorner(const Point3* corners, std::size_t count, std::size_t axis, double low, double high,
+                   const Visit& visit)
+{
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point3 &u = corners[i], &v = corners[i + 1 < count ? i + 1 : 0];
+    if (u[axis] >= low && u[axis] <= high) visit(u);
+    const bool upward = u[axis] < v[axis];
+    for (const double at : {upward ? low : high, upward ? high : low}) {
+      if ((u[axis] < at) == (v[axis] < at) || !(std::abs(at) < kInfinity)) continue;
+      const double share = (at - u[axis]) / (v[axis] - u[axis]);
+      Point3 p;
+      for (std::size_t k = 0; k < 3; ++k) p[k] = u[k] + (v[k] - u[k]) * share;
+      visit(p);
+    }
+  }
+}
+
 } // namespace
 
 /// How much of a grid triangles fill: columns of width w take count + extent / w + area / w^2 entries, about.
@@ -122,7 +142,7 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   for (std::uint32_t i = 0; i < view_.count; ++i) {
     if (!(boxes_[i].low[0] <= boxes_[i].high[0])) continue;
     all.push_back(i);
-    markCubes(seenTriangle(i), 0);
+    markCubes(seenTriangle(i));
   }
   makeGrid(low_, high_, all, false);
   refine();
@@ -304,41 +324,52 @@ bool Columns::isClear(const Point3& at, double reach) const noexcept
   return true;
 }
 
-/// Marks the cubes that a triangle may meet: those of its box, once it is cut into pieces of two cubes at most.
-void Columns::markCubes(const Triangle3& t, int depth)
+/// Marks the cubes that a triangle may meet: of each slab along the first axis and each row of it along the second,
+/// those that the part of the triangle there reaches along the last.
+void Columns::markCubes(const Triangle3& t)
 {
-  constexpr int kDeepest = 24;
+  Point3 pad;
   std::array<std::uint32_t, 3> from, to;
-  bool small = true;
+  const auto cube = [&](double x, std::size_t axis) { return indexOf(x, low_[axis], cubes_per_[axis], kCubes); };
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [least, most] = std::minmax({t[0][k], t[1][k], t[2][k]});
-    const double pad = kPad * (high_[k] - low_[k]) / kCubes;
-    from[k] = indexOf(least - pad, low_[k], cubes_per_[k], kCubes);
-    to[k] = indexOf(most + pad, low_[k], cubes_per_[k], kCubes);
-    small = small && to[k] - from[k] <= 1;
+    pad[k] = kPad * (high_[k] - low_[k]) / kCubes;
+    from[k] = cube(least - pad[k], k), to[k] = cube(most + pad[k], k);
   }
-  if (small || depth == kDeepest) {
-    const std::uint64_t row = (~std::uint64_t{0} >> (kCubes - 1 - (to[2] - from[2]))) << from[2];
+  const auto mark = [&](std::uint32_t i, std::uint32_t j, std::uint32_t low, std::uint32_t high) {
+    cubes_[i * kCubes + j] |= (~std::uint64_t{0} >> (kCubes - 1 - (high - low))) << low;
+  };
+  const auto isWide = [&](std::size_t axis) { return to[axis] - from[axis] > 1; };
+  if (!isWide(0) && !isWide(1) && !isWide(2)) {
     for (std::uint32_t i = from[0]; i <= to[0]; ++i)
-      for (std::uint32_t j = from[1]; j <= to[1]; ++j) cubes_[i * kCubes + j] |= row;
+      for (std::uint32_t j = from[1]; j <= to[1]; ++j) mark(i, j, from[2], to[2]);
     return;
   }
-  // The side that is longest in cubes is cut.
-  std::size_t longest = 0;
-  double length = -1.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    double squared = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double d = (t[(i + 1) % 3][k] - t[i][k]) * cubes_per_[k];
-      squared += d * d;
+  // The first and the last stand for what lies beyond, too.
+  const auto low = [&](std::uint32_t i, std::size_t axis) {
+    return i == 0 ? -kInfinity : low_[axis] + i / cubes_per_[axis] - pad[axis];
+  };
+  const auto high = [&](std::uint32_t i, std::size_t axis) {
+    return i + 1 == kCubes || !(cubes_per_[axis] > 0.0) ? kInfinity
+                                                        : low_[axis] + (i + 1) / cubes_per_[axis] + pad[axis];
+  };
+  std::array<Point3, 9> part;
+  for (std::uint32_t i = from[0]; i <= to[0]; ++i) {
+    std::size_t corners = 0;
+    double bottom = kInfinity, top = -kInfinity;
+    forEachCorner(t.data(), 3, 0, low(i, 0), high(i, 0), [&](const Point3& p) {
+      part[corners++] = p;
+      bottom = std::min(bottom, p[1]), top = std::max(top, p[1]);
+    });
+    if (corners == 0) continue;
+    const std::uint32_t last = cube(top + pad[1], 1);
+    for (std::uint32_t j = cube(bottom - pad[1], 1); j <= last; ++j) {
+      double least = kInfinity, most = -kInfinity;
+      forEachCorner(part.data(), corners, 1, low(j, 1), high(j, 1),
+                    [&](const Point3& p) { least = std::min(least, p[2]), most = std::max(most, p[2]); });
+      if (least <= most) mark(i, j, cube(least - pad[2], 2), cube(most + pad[2], 2));
     }
-    if (squared > length) length = squared, longest = i;
   }
-  const Point3 &u = t[longest], &v = t[(longest + 1) % 3], &w = t[(longest + 2) % 3];
-  Point3 middle;
-  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * u[k] + 0.5 * v[k];
-  markCubes({u, middle, w}, depth + 1);
-  markCubes({middle, v, w}, depth + 1);
 }
 
 std::size_t Columns::bytes() const noexcept

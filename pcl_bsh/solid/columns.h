@@ -100,7 +100,7 @@ private:
   void forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
   void refine();
   void collect(std::uint32_t grid, const Point3& at, double error, std::vector<std::uint32_t>& found) const;
-  void markCubes(const Triangle3& triangle, int depth);
+  void markCubes(const Triangle3& triangle);
 
   TrianglesView view_;
   Point3 origin_ = {};

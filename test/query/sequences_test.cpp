@@ -32,7 +32,7 @@ TEST(Sequences, SameAsBruteForceAfterEveryStep)
 
 TEST(Sequences, OfSurfacesAndSolids)
 {
-  expectSound(60, true);
+  expectSound(30, true);
 }
 
 } // namespace
