@@ -53,13 +53,23 @@ public:
     return *this;
   }
 
-  Dyadic& operator+=(Dyadic other)
+  Dyadic& operator+=(const Dyadic& other)
   {
     if (other.sign() == 0) return *this;
-    if (sign() == 0) return *this = std::move(other);
-    if (exponent_ > other.exponent_) std::swap(*this, other);
-    other.integer_ <<= static_cast<unsigned>(other.exponent_ - exponent_);
-    integer_ += other.integer_;
+    if (shareExponent(other.exponent_))
+      integer_ += other.integer_;
+    else
+      integer_ += shifted(other);
+    return *this;
+  }
+
+  Dyadic& operator-=(const Dyadic& other)
+  {
+    if (other.sign() == 0) return *this;
+    if (shareExponent(other.exponent_))
+      integer_ -= other.integer_;
+    else
+      integer_ -= shifted(other);
     return *this;
   }
 
@@ -70,9 +80,15 @@ public:
     return negated;
   }
 
-  friend Dyadic operator*(Dyadic x, const Dyadic& y) { return x *= y; }
-  friend Dyadic operator+(Dyadic x, const Dyadic& y) { return x += y; }
-  friend Dyadic operator-(Dyadic x, const Dyadic& y) { return x += -y; }
+  friend Dyadic operator*(const Dyadic& x, const Dyadic& y)
+  {
+    Dyadic product;
+    boost::multiprecision::multiply(product.integer_, x.integer_, y.integer_);
+    product.exponent_ = x.exponent_ + y.exponent_;
+    return product;
+  }
+  friend Dyadic operator+(Dyadic x, const Dyadic& y) { return std::move(x += y); }
+  friend Dyadic operator-(Dyadic x, const Dyadic& y) { return std::move(x -= y); }
 
   /// Approximation m x 2^e with m in [1, 2) or zero and a relative error below 2^-52, whatever the magnitude.
   struct Scaled {
@@ -91,6 +107,20 @@ public:
   }
 
 private:
+  /// Takes the exponent if it is less. @return whether it is this one's now
+  bool shareExponent(int exponent)
+  {
+    if (sign() == 0) exponent_ = exponent;
+    if (exponent_ <= exponent) return exponent_ == exponent;
+    integer_ <<= static_cast<unsigned>(exponent_ - exponent);
+    exponent_ = exponent;
+    return true;
+  }
+  Integer shifted(const Dyadic& other) const
+  {
+    return other.integer_ << static_cast<unsigned>(other.exponent_ - exponent_);
+  }
+
   Integer integer_ = 0;
   int exponent_ = 0;
 };
