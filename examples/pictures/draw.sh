@@ -58,9 +58,9 @@ bash examples/pictures/press.sh >"$work/press.off"
 bash examples/pictures/press.sh open >"$work/open_press.off"
 if [[ -r "${rooms}1.pcd" ]]; then
   view "${rooms}1.pcd" --model "$work/press.off" --pose=1.6,0.2,-1.2,0,0,0.4 --solid --color distance --range 2 \
-    --camera=-9,-13,15,0.5,0,-0.5 --screenshot examples/pictures/solid.png
+    --cut 0,0,1.2,0,0,1 --camera=6.5,-6,6,1,0.2,-0.6 --screenshot examples/pictures/solid.png
 fi
-view "$work/open_press.off" --open-edges --camera=5,-4.5,4,0,0,1 --screenshot examples/pictures/open_edges.png
+view "$work/open_press.off" --open-edges --camera=7,-6,4.5,0,0,1.2 --screenshot examples/pictures/open_edges.png
 # A made room of 8 m x 6 m with a pillar, scanned from one place: what of a sheet 1.2 m above the floor did nobody see?
 awk 'BEGIN {
   print "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nVIEWPOINT 1.5 2 1.5 1 0 0 0\nPOINTS " 628 * 156 "\nDATA ascii"

@@ -87,8 +87,8 @@ void RenderView::drawClouds()
     deformed = true;
   }
   if (deformed) paint(clouds_, bar_, content_, coloring_);
-  if (!paintDistances(clouds_, bar_, histogram_, content_, coloring_, step_))
-    mark(clouds_, bar_, content_, collisions_, coloring_, step_);
+  all_measured_ = paintDistances(clouds_, bar_, histogram_, content_, coloring_, step_);
+  if (!all_measured_) mark(clouds_, bar_, content_, collisions_, coloring_, step_);
 }
 
 void RenderView::drawExtras()
@@ -128,14 +128,14 @@ std::vector<LegendEntry> RenderView::legend() const
   for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
     const ViewedCloud& viewed = content_.viewedClouds()[i];
     if (viewed.role == ViewedCloud::Role::obstacle) {
-      add(viewed.legend, histogram_.isShown() ? compared_color : obstacle_color);
+      add(viewed.legend, all_measured_ ? compared_color : obstacle_color);
       if (!collisions_.flags[i].empty()) add(viewed.legend + ", colliding", obstacle_colliding_color);
       if (!collisions_.flags[i].empty() && countOf(collisions_.flags[i], Verdict::unseen) > 0)
         add(viewed.legend + ", unseen", unseen_color);
       continue;
     }
     const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
-    if (histogram_.isShown()) continue; // which says it all
+    if (all_measured_) continue; // the bar says it all
     if (by_value || coloring_ == Coloring::collision)
       add(viewed.legend + (collisions_.known ? ", free" : ""), scan_color);
     if (collisions_.known && (!by_value || content_.options().range))

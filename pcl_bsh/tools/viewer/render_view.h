@@ -67,6 +67,7 @@ private:
   Caption caption_;
   ValueBar bar_;
   ValueHistogram histogram_;
+  bool all_measured_ = false; ///< all points of the first cloud are coloured by their distance
   Coloring coloring_;
   std::optional<TileActors> tiles_; ///< of a site
   Extras extras_;

@@ -243,6 +243,19 @@ TEST_F(Picture, EveryColouringHasItsBarAndNeedsItsField)
   EXPECT_FALSE(std::filesystem::exists(folder / "x.png"));
 }
 
+TEST_F(Picture, LegendNamesTheColourOfAnObstacleThatDistancesLeadTo)
+{
+  const auto box = folder.write("box.off", "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+                                           "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  const auto near_and_inside = folder.write("points.xyz", "0.5 0.5 0.5\n3 0 0\n0 4 0\n");
+  const std::string both = near_and_inside.string() + " --model " + box.string() + " --color distance";
+  for (const char* const solid : {"", " --solid"}) { // the latter has no histogram
+    const Pixels pixels = drawn(both + solid);
+    EXPECT_GT(pixels.countNear(compared_color, 40, 60, 80), 10u) << solid;
+    EXPECT_EQ(pixels.countNear(obstacle_color, 40, 60, 80), 0u) << solid;
+  }
+}
+
 TEST_F(Picture, ACloudWithoutAColourIsDrawnByHeight)
 {
   const auto cloud = [&](const std::string& last_blue) {
