@@ -66,7 +66,7 @@ array([0, 1], dtype=uint8)
 constexpr auto kCollidingIndices =
     R"(The rows that collide, ascending: for large clouds of which few points do.
 
-Parameters are those of `collision_flags`.
+Parameters are those of `collision_flags`, but for `spacings_of_b`, `density` and `seen`.
 
 Returns
 -------
@@ -90,7 +90,7 @@ array([1], dtype=int32)
 constexpr auto kAnyCollision =
     R"(Does any pair of points collide? Ends at the first one.
 
-Parameters are those of `collision_flags`.
+Parameters are those of `collision_flags`, but for `side`, `spacings_of_b`, `density` and `seen`.
 
 Returns
 -------
@@ -110,7 +110,11 @@ Examples
 
 constexpr auto kClosestPair = R"(The smallest distance of two clouds, and the pair of points that realises it.
 
-Parameters are those of `collision_flags`.
+Parameters
+----------
+a, b : SphereHierarchy
+pose_a, pose_b, accuracy, threads, solid, input_solid
+    As of `collision_flags`.
 
 Returns
 -------
@@ -155,18 +159,35 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
     return arrayFrom(std::move(side == Side::a ? a : b));
 }
 
+/// Of collisions at one pose each.
+Asked collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
+                      const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
+{
+  Asked asked(a, pose_a, b, pose_b);
+  asked.question.clearance = clearance;
+  asked.question.accuracy = accuracyOf(accuracy);
+  asked.question.threads = threads;
+  asked.set(options, QuestionKind::collisions);
+  return asked;
+}
+
+/// Unseen are points of b alone: answers that do not have them must not hide them.
+void refuseSeen(const Asked& asked)
+{
+  if (asked.question.seen)
+    throw InvalidOption("seen", "is about points of b, which this does not tell",
+                        "ask collision_flags() with side=\"b\" or \"both\"");
+}
+
 template <class Sides>
 auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
                       const Sides& side, const AccuracyLike& accuracy, unsigned threads,
                       const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b, const py::kwargs& options)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
   const Side flagged = sideOf(side.template cast<std::string>());
   Question& question = asked.question;
-  question.clearance = clearance;
-  question.accuracy = accuracyOf(accuracy);
-  question.threads = threads;
-  asked.set(options, QuestionKind::collisions);
+  if (flagged == Side::a) refuseSeen(asked);
   question.wanted.flags = flagged != Side::b;
   question.wanted.obstacle_flags = flagged != Side::a;
   question.wanted.spacings = true;
@@ -182,18 +203,13 @@ auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const Po
 template <class Sides>
 auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
                         const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads,
-                        bool solid, bool input_solid)
+                        const py::kwargs& options)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
   const Side flagged = sideOf(side.template cast<std::string>());
-  Question& question = asked.question;
-  question.clearance = clearance;
-  question.accuracy = accuracyOf(accuracy);
-  question.threads = threads;
-  question.solid = solid;
-  question.input_solid = input_solid;
-  question.wanted.indices = flagged != Side::b;
-  question.wanted.obstacle_indices = flagged != Side::a;
+  refuseSeen(asked);
+  asked.question.wanted.indices = flagged != Side::b;
+  asked.question.wanted.obstacle_indices = flagged != Side::a;
   CollidingIndices found = asked.answer().indices;
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
@@ -204,17 +220,12 @@ auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const 
 }
 
 AnyResult anyCollisionOf(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
-                         const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads, bool solid,
-                         bool input_solid)
+                         const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
+                         const py::kwargs& options)
 {
-  Asked asked(a, pose_a, b, pose_b);
-  Question& question = asked.question;
-  question.clearance = clearance;
-  question.accuracy = accuracyOf(accuracy);
-  question.threads = threads;
-  question.solid = solid;
-  question.input_solid = input_solid;
-  question.wanted.any = true;
+  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
+  refuseSeen(asked);
+  asked.question.wanted.any = true;
   return asked.answer().any;
 }
 
@@ -295,12 +306,10 @@ void bindCollision(py::module_& module)
   };
   define("collision_flags", &collisionFlagsOf<OneSide>, kCollisionFlags, "side"_a = "a", "spacings_of_b"_a = none);
   define("collision_flags", &collisionFlagsOf<BothSides>, "", "side"_a, "spacings_of_b"_a = none);
-  define("colliding_indices", &collidingIndicesOf<OneSide>, kCollidingIndices, "side"_a = "a", "solid"_a = false,
-         "input_solid"_a = false);
-  define("colliding_indices", &collidingIndicesOf<BothSides>, "", "side"_a, "solid"_a = false, "input_solid"_a = false);
+  define("colliding_indices", &collidingIndicesOf<OneSide>, kCollidingIndices, "side"_a = "a");
+  define("colliding_indices", &collidingIndicesOf<BothSides>, "", "side"_a);
   module.def("any_collision", &anyCollisionOf, kAnyCollision, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
-             "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false,
-             "input_solid"_a = false);
+             "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
   module.def("closest_pair", &closestPairOf, kClosestPair, "a"_a, "b"_a, py::kw_only(), "pose_a"_a = none,
              "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false, "input_solid"_a = false);
 }

@@ -260,6 +260,9 @@ void checkOptions(const Question& question)
   if (question.density && (question.path || wanted.contacts || wanted.poses || wanted.first_poses))
     refuse("density", "is about which points collide at one pose",
            "leave out the path, the list of clashes, or `density`");
+  if (question.density &&
+      (wanted.any || wanted.indices || wanted.obstacle_indices || (wanted.obstacle_flags && !wanted.flags)))
+    refuse("density", "is told by flags of the input alone", "ask for these alone, or leave it out");
   if (question.seen && question.swept > 0.0)
     refuse("seen", "is about poses, and the motion between them is asked about", "leave out `seen` or `swept`");
   for (const char* const option : {"solid", "input_solid"})

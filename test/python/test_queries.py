@@ -174,6 +174,17 @@ def test_options_of_questions_are_arguments():
     assert pcl_bsh.collision_flags(above, grid, 0.2, density=False, widest_gap=None).tolist() == [0]
     seen = pcl_bsh.collision_flags(grid, above, 0.05, side="b", seen=True, origin="4.5,4.5,-5")
     assert seen.tolist() == [pcl_bsh.Verdict.UNSEEN]  # beyond what stopped the beams
+    for ask in (pcl_bsh.collision_flags, pcl_bsh.colliding_indices, pcl_bsh.any_collision):  # none may hide it
+        with pytest.raises(ValueError, match="seen"):
+            ask(grid, above, 0.05, seen=True, origin="4.5,4.5,-5")
+    assert pcl_bsh.colliding_indices(inside, box, 0.1).tolist() == []
+    assert pcl_bsh.colliding_indices(inside, box, 0.1, solid=True).tolist() == [0]
+    assert not pcl_bsh.any_collision(inside, box, 0.1) and pcl_bsh.any_collision(inside, box, 0.1, solid=True)
+    for ask in (pcl_bsh.colliding_indices, pcl_bsh.any_collision):
+        with pytest.raises(ValueError, match="density"):
+            ask(above, grid, 0.2, density=True)
+    with pytest.raises(ValueError, match="density"):
+        pcl_bsh.collision_flags(above, grid, 0.2, side="b", density=True)
     with pytest.raises(ValueError, match="density"):
         pcl_bsh.collision_flags(above, grid, 0.2, widest_gap=2.0)
     for name in ("swept_by", "vertices_only", "uncertainty", "max_distance"):

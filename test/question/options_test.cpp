@@ -194,6 +194,12 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_THAT(refusal([](Question& q) { q.widest_gap = 2; }), HasSubstr("widest_gap: is given, but not `density`"));
   EXPECT_THAT(refusal([&](Question& q) { q.density = true, q.path = path; }), HasSubstr("density: is about which"));
   EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.contacts = true; }), HasSubstr("density: is about which"));
+  for (bool Wanted::*const list : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_indices})
+    EXPECT_THAT(refusal([&](Question& q) { q.density = q.wanted.*list = true; }),
+                HasSubstr("density: is told by flags"));
+  EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.obstacle_flags = true, q.wanted.flags = false; }),
+              HasSubstr("density: is told by flags of the input alone"));
+  EXPECT_EQ(refusal([](Question& q) { q.density = q.wanted.obstacle_flags = true; }), "");
   EXPECT_THAT(refusal([](Question& q) { q.accuracy = Accuracy::level(1), q.wanted.distances = true; }),
               HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
   EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
