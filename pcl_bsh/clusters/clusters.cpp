@@ -115,8 +115,7 @@ private:
     if (node_a.lowest[pair.a.lane] > node_b.lowest[pair.b.lane]) return; // its mirror image is compared
     const ComparedLeaves leaves = walk_.compare(pair);
     const LeafRange &a = leaves.a, &b = leaves.b;
-    uniteCoincident(a, node_a.points(pair.a.lane));
-    uniteCoincident(b, node_b.points(pair.b.lane));
+    uniteCoincident(a, node_a.points(pair.a.lane)); // of each leaf: it meets itself, too
     const DistanceBand band = leaves.frame.band(reach());
     const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
       const std::uint32_t p = a.record(i), q = b.record(j);

@@ -106,7 +106,7 @@ std::vector<std::uint32_t> orderOf(const PoseList& poses, const BodyBall& body, 
   }
   double extent = 0.0; // one for all: cells are cubes
   for (std::size_t k = 0; k < kDimensions; ++k) extent = std::max(extent, all.high[k] - all.low[k]);
-  const double cells = extent > 0.0 && std::isfinite(1023.0 / extent) ? 1023.0 / extent : 0.0;
+  const double cells = std::isfinite(1023.0 / extent) ? 1023.0 / extent : 0.0;
 
   std::vector<Keyed> keyed(count);
   parallelFor(blocks, threads, [&](std::size_t block) {

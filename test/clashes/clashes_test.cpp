@@ -118,6 +118,30 @@ TEST(Clashes, IdsTellThePlaceWhateverTheOrder)
   EXPECT_EQ(idsOf(points), ids) << "small changes";
 }
 
+TEST(Clashes, IdsCountCellsOfFourClusterDistances)
+{
+  const Scan scan({{100, 0, 50, 0.1f}});
+  EXPECT_EQ(scan.clashes(0.25)[0].id, "C100_0_50");
+  EXPECT_EQ(scan.clashes(0.3)[0].id, "C50_0_25"); // of 1.2, the next power of two
+  EXPECT_EQ(scan.clashes(1.0)[0].id, "C25_0_12");
+}
+
+TEST(Clashes, IdsPassToTheNearestAndToOneEach)
+{
+  std::vector<Clash> earlier = Scan({{0, 0, 0, 0.1f}, {3, 0, 0, 0.2f}}).clashes();
+  std::vector<Clash> clashes = Scan({{2.5f, 0, 0, 0.1f}}).clashes();
+  compareWithEarlier(clashes, earlier, 4.0); // both are near
+  ASSERT_EQ(clashes.size(), 1u);
+  EXPECT_EQ(clashes[0].id, earlier[1].id);
+
+  earlier.erase(earlier.begin());
+  clashes = Scan({{2.5f, 0, 0, 0.1f}, {5, 0, 0, 0.2f}}).clashes();
+  compareWithEarlier(clashes, earlier, 4.0);
+  ASSERT_EQ(clashes.size(), 2u);
+  EXPECT_EQ(clashes[0].id, earlier[0].id);
+  EXPECT_NE(clashes[1].id, earlier[0].id);
+}
+
 TEST(Clashes, NothingCollidesNothingClashes)
 {
   EXPECT_TRUE(Scan({{0, 0, 0, free_point}}).clashes().empty());

@@ -57,7 +57,7 @@ TEST_F(FormerPlacesAlongALine, AreResolvedOnlyWhereTheRunLooked)
   FormerPlaces former(clashes, clearance, cluster_distance);
   EXPECT_FALSE(former.empty());
   visit(former, {0, 10});
-  scan(former, {{-1.75, 0, 0}, {20, 0.5, 0.5}, {8.249, 0, 0}});
+  scan(former, {{std::nan(""), 0, 0}, {-1.75, 0, 0}, {20, 0.5, 0.5}, {8.249, 0, 0}, {10, 0, std::nan("")}});
   former.judge();
   EXPECT_EQ(statuses(), (std::vector{ClashStatus::resolved, ClashStatus::not_scanned, ClashStatus::not_visited,
                                      ClashStatus::persisting}))
@@ -97,6 +97,9 @@ TEST_F(FormerPlacesAlongALine, PartsThatTellNothingAreKnownBefore)
   EXPECT_FALSE(former.mayVisit({{4, -1, -1}, {5, 1, 1}}, poses, {}));
   EXPECT_TRUE(former.mayScan({{11.5, 0, 0}, {15, 1, 1}}));
   EXPECT_FALSE(former.mayScan({{12, 0, 0}, {15, 1, 1}}));
+  clashes = {resolvedAt(0)};
+  FormerPlaces one(clashes, clearance, cluster_distance);
+  EXPECT_TRUE(one.mayVisit({{-40.5, -20, -20}, {-0.5, 20, 20}}, poses, {})) << "at the box's side";
 }
 
 /// What collided only perhaps may have been farther away than the clearance: the same place is near it still.

@@ -22,6 +22,17 @@ std::vector<Extent> randomBoxes(std::size_t count, double longest, std::mt19937&
   return boxes;
 }
 
+TEST(Extent, IsNearUpToTheLengthItself)
+{
+  const Extent box{{0, 0, 0}, {1, 1, 1}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Extent other = box;
+    other.low[k] = 1.5, other.high[k] = 2.0;
+    EXPECT_TRUE(box.isNear(other, 0.5) && other.isNear(box, 0.5));
+    EXPECT_FALSE(box.isNear(other, 0.499) || other.isNear(box, 0.499));
+  }
+}
+
 TEST(NearBoxes, AreThoseOfComparingAll)
 {
   std::mt19937 random(5);

@@ -44,6 +44,23 @@ FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads =
   return request;
 }
 
+TEST(CollisionFlags, OfNothingLookedAtAreUndecidedButOfWhatCollidesWithNothing)
+{
+  // With a budget of nothing; one point is not finite, or is not named.
+  const Cloud other({{0, 0, 0}});
+  Cloud with_nan({{0, 0, 0}, {nan, 0, 0}, {0.5, 0, 0}}), subset({{0, 0, 0}, {0.25, 0, 0}, {0.5, 0, 0}});
+  subset.restrictTo({0, 2});
+  const SphereHierarchy b(other.view());
+  FlagsRequest request = within(1.0);
+  request.accuracy = Accuracy::nodePairs(0);
+  for (const Cloud* cloud : {&with_nan, &subset}) {
+    const SphereHierarchy a(cloud->view());
+    const FlagsResult found = collisionFlags({a}, {b}, request);
+    EXPECT_EQ(found.a, (Flags{Verdict::undecided, Verdict::free, Verdict::undecided}));
+    EXPECT_EQ(found.undecided_a, 2u);
+  }
+}
+
 std::size_t ones(const Flags& flags)
 {
   std::size_t count = 0;

@@ -411,6 +411,24 @@ TEST(ExactDistance, ComparesGapsAsTheDefinitionDoes)
   }
 }
 
+TEST(ExactDistance, ComparesGapsThatDifferInOneNumberByABit)
+{
+  const ExactDistance distance(identity, identity);
+  const Pair first{{0, 0, 0}, {3, 4, 5}, 0.5, 0.25};
+  EXPECT_EQ(distance.compareGaps(first, first), 0);
+  Pair nearer = first, farther = first, of_greater_radius = first, other_radius = first;
+  nearer.p[0] = 0x1p-51;
+  farther.q[2] = std::nextafter(5.0, 9.0);
+  of_greater_radius.radius_p = std::nextafter(0.5, 1.0);
+  other_radius.radius_q = std::nextafter(0.25, 1.0);
+  for (const Pair& less : {nearer, of_greater_radius, other_radius}) {
+    EXPECT_EQ(distance.compareGaps(less, first), -1) << testing::PrintToString(less);
+    EXPECT_EQ(distance.compareGaps(first, less), 1) << testing::PrintToString(less);
+  }
+  EXPECT_EQ(distance.compareGaps(farther, first), 1);
+  EXPECT_EQ(distance.compareGaps(first, farther), -1);
+}
+
 TEST(ExactDistance, ComparesEqualGapsOfDifferentMaking)
 {
   const ExactDistance distance(identity, identity);

@@ -61,6 +61,18 @@ void expectSameAsBruteForce(const Scene& scene)
   expectSameAsBruteForce(scene, std::nextafter(distance, infinity));
 }
 
+TEST(AnyCollision, LearnsWhichSideOfTheClearanceTheDistanceIs)
+{
+  const Cloud one({{0, 0, 0}}), other({{0.75, 0, 0}});
+  const SphereHierarchy a(one.view()), b(other.view());
+  const Interval near = anyCollision({a}, {b}, within(0.75)).interval,
+                 far = anyCollision({a}, {b}, within(0.5)).interval;
+  EXPECT_EQ(near.lower, -infinity);
+  EXPECT_EQ(near.upper, 0.75);
+  EXPECT_EQ(far.lower, 0.5);
+  EXPECT_EQ(far.upper, infinity);
+}
+
 bool collide(const std::vector<Point3>& a, const std::vector<Point3>& b, double clearance,
              Scalar scalar = Scalar::float32)
 {

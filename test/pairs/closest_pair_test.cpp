@@ -56,6 +56,16 @@ TEST(ClosestPair, SameAsBruteForceOfTriangles)
   for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
 }
 
+TEST(ClosestPair, OfTouchingPointsIsKnownToBeZero)
+{
+  const Cloud cloud({{1, 2, 3}, {4, 5, 6}});
+  const SphereHierarchy a(cloud.view());
+  const DistanceResult found = closestPair({a}, {a});
+  EXPECT_EQ(found.distance, 0.0);
+  EXPECT_EQ(found.interval.lower, 0.0);
+  EXPECT_EQ(found.interval.upper, 0.0);
+}
+
 TEST(ClosestPair, SmallestOfManyEquals)
 {
   Random random(6);

@@ -110,6 +110,18 @@ TEST(Contacts, NormalsPointFromTheOtherToTheFirst)
   EXPECT_EQ(result.contacts[0].normal, Eigen::Vector3d(0, 0, 1));
 }
 
+TEST(Contacts, NormalsAreInTheFrameOfThePoses)
+{
+  const Cloud high({{0, 0, 0.5}}), low({{0.25, 0, 0}});
+  const SphereHierarchy a(high.view()), b(low.view());
+  const Eigen::Isometry3d moved(Eigen::Translation3d(3, 0, 0));
+  const Eigen::Isometry3d turned = moved * Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitY()); // x to -z
+  const ContactsResult result = nearestContacts({a, moved}, {b, turned}, within(1.0, 3));
+  ASSERT_EQ(result.contacts.size(), 1u);
+  EXPECT_NEAR(result.contacts[0].distance, 0.75, 1e-15);
+  EXPECT_TRUE(result.contacts[0].normal.isApprox(Eigen::Vector3d(0, 0, 1), 1e-12));
+}
+
 /// Where points have radii, too, float arithmetic decides all but those at the very reach.
 TEST(Contacts, BallsNeedHardlyAnExactDecision)
 {

@@ -169,6 +169,19 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
   EXPECT_GT(decided, 1000u);
 }
 
+TEST(Uncertainty, IntervalsHoldTheDistanceWhateverTheTolerance)
+{
+  Cloud cloud_a({{0, 0, 0}}), cloud_b({{0.859375, 0, 0}, {0.9296875, 0, 0}});
+  cloud_a.setUncertainties(0.125, {}); // certain up to 0.875
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  for (const double tolerance : {0.0, 1e-3, 0.0625, 0.25}) {
+    const AnyResult found = anyCollision({a}, {b}, {1.0, Accuracy::tolerance(tolerance)});
+    EXPECT_EQ(found.verdict, Verdict::colliding);
+    EXPECT_GE(found.interval.upper, 0.859375) << tolerance;
+    EXPECT_LE(found.interval.upper, 0.875 + tolerance + 1e-12) << tolerance;
+  }
+}
+
 TEST(Uncertainty, OfManyPointsAtOnePlace)
 {
   // One leaf holds them all, but they are not alike.

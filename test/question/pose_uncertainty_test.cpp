@@ -173,7 +173,11 @@ TEST(PoseUncertainty, ReadsItsText)
   EXPECT_TRUE(PoseUncertainty::parse("0.01") == (PoseUncertainty{0.01}));
   EXPECT_TRUE(PoseUncertainty::parse("0.01,0.002") == (PoseUncertainty{0.01, 0.002}));
   EXPECT_TRUE(PoseUncertainty::parse("") == PoseUncertainty());
+  EXPECT_TRUE(PoseUncertainty::parse("0,0.002") == (PoseUncertainty{0.0, 0.002}));
   EXPECT_EQ(PoseUncertainty().text(), "");
+  const PoseUncertainty others[] = {
+      {0.02, 0.002, {1, -2, 3.5}}, {0.01, 0.003, {1, -2, 3.5}}, {0.01, 0.002, {1, -2, 3}}};
+  for (const PoseUncertainty& other : others) EXPECT_FALSE(other == all) << other.text();
   for (const char* wrong : {"a", "1,2,3", "-1", "1,-1", "nan", "1,inf", "covariance=3", "covariance=3:1,2", "1,,2"})
     EXPECT_THAT(refusalOf(wrong), HasSubstr(std::string("pose uncertainty: '") + wrong + "' is none: give T")) << wrong;
 }
@@ -186,6 +190,9 @@ TEST(PoseUncertainty, IsComputedFromACovariance)
   EXPECT_NEAR(bound.length, 0.09, 1e-9);
   EXPECT_NEAR(bound.angle, 0.006, 1e-9);
   EXPECT_EQ(bound.about, (Point3{1, 0, 0}));
+  const PoseUncertainty tiny = PoseUncertainty::of(1e-16 * covariance, 3.0);
+  EXPECT_NEAR(tiny.length, 9e-10, 1e-15);
+  EXPECT_NEAR(tiny.angle, 6e-11, 1e-16);
   std::string text = "covariance=3:";
   for (int i = 0; i < 36; ++i) text += (i == 0 ? "" : ",") + std::to_string(covariance(i / 6, i % 6));
   EXPECT_NEAR(PoseUncertainty::parse(text).length, 0.09, 1e-3);

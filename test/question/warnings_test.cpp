@@ -27,6 +27,25 @@ std::vector<std::string> textsOf(const std::vector<Warning>& warnings)
   return texts;
 }
 
+TEST(Density, CouldHideWhatIsBetweenTheScannedPointsOfBoth)
+{
+  const auto of = [](std::optional<std::size_t> input, std::optional<std::size_t> obstacle) {
+    Density density;
+    if (input) density.input = Spacing{*input, 1.0, 1.0};
+    if (obstacle) density.obstacle = Spacing{*obstacle, 1.0, 1.0};
+    return density;
+  };
+  const std::optional<std::size_t> surface, few = 99, scan = 100;
+  EXPECT_NEAR(of(scan, scan).blind(), std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(of(surface, scan).blind(), std::sqrt(0.5), 1e-15);
+  for (const auto& input : {surface, few, scan})
+    for (const auto& obstacle : {surface, few, scan}) {
+      const bool is_scanned = (input || obstacle) && input != few && obstacle != few;
+      EXPECT_EQ(of(input, obstacle).couldHide(0.5), is_scanned);
+      EXPECT_FALSE(of(input, obstacle).couldHide(1.5));
+    }
+}
+
 /// A plane of n * n points, one apart, its least corner at (x, 0, 0).
 std::vector<float> plane(int n, float x = 0)
 {

@@ -494,6 +494,21 @@ std::string messageOf(const Call& call)
   return "";
 }
 
+TEST(OnMotions, CollideAtTheirEndsWhateverTheTolerance)
+{
+  const Cloud point({{0, 0, 0}});
+  const SphereHierarchy a(point.view());
+  const Poses poses = {at(0.45), at(6.45)};
+  MotionsRequest request;
+  request.clearance = 0.5;
+  for (const double swept : {0.01, 0.2, 1.0}) {
+    request.swept = swept;
+    const AnyOnMotions found = anyCollisionOnMotions({a}, a, poses, {{0, 1}, {1, 0}}, request);
+    EXPECT_EQ(found.flags, std::vector<Verdict>(2, Verdict::colliding)) << swept;
+    EXPECT_LT(found.work.volumes_built + found.work.node_pairs, 100u);
+  }
+}
+
 TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
 {
   const Cloud point({{0, 0, 0}}), none(std::vector<Point3>{});
@@ -533,6 +548,12 @@ TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
   wrong = good;
   wrong.pivot[1] = std::numeric_limits<double>::infinity();
   EXPECT_THAT(refusal({{0, 2}}, wrong), testing::HasSubstr("pivot"));
+  Eigen::Isometry3d stretched = Eigen::Isometry3d::Identity();
+  stretched.linear() *= 1.1;
+  EXPECT_THAT(messageOf([&] {
+                anyCollisionOnMotions({a, stretched}, a, poses, {{0, 2}}, good);
+              }),
+              testing::HasSubstr("pose of the scan: not rigid"));
   poses[2000].translation().z() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(refusal({{0, 2}}, good), testing::HasSubstr("pose 2000 of the model: not finite"));
   poses[1999].linear() *= 1.1;

@@ -299,9 +299,12 @@ TEST(MarkUnseen, LeavesOtherVerdictsAlone)
   const std::vector<double> ends = allAround(0.1, 1.0);
   const float places[] = {5, 0, 0, 5, 1, 0, 5, 2, 0, 5, 3, 0, std::nanf(""), 0, 0};
   const SphereHierarchy model(viewOf(places, 5));
-  Verdicts verdicts = test::verdictsOf({0, 1, 2, 3, 0});
+  const Verdicts before = test::verdictsOf({0, 1, 2, 3, 0});
+  Verdicts verdicts = before, by_brute_force = before;
   EXPECT_EQ(markUnseen(spaceOf({scanOf(ends)}, 0.2), {model}, within(0.1), verdicts).unseen, 1u);
+  EXPECT_EQ(brute_force::markUnseen({scanOf(ends)}, 0.2, {model}, within(0.1), by_brute_force).unseen, 1u);
   EXPECT_EQ(verdicts, test::verdictsOf({4, 1, 2, 3, 0}));
+  EXPECT_EQ(by_brute_force, verdicts);
 }
 
 TEST(MarkUnseenHardCases, BeamThatGrazes)
@@ -312,6 +315,8 @@ TEST(MarkUnseenHardCases, BeamThatGrazes)
   const double touching = 5.0 * std::sin(off - angle);
   EXPECT_TRUE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 - 1e-9)));
   EXPECT_FALSE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 + 1e-9)));
+  for (const double less : {0.0, 1e-15, 1e-14}) // what rounding leaves open is not seen
+    EXPECT_FALSE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 - less))) << less;
 }
 
 TEST(MarkUnseenHardCases, BeamThatEndsAtTheBall)
@@ -366,6 +371,29 @@ TEST(MarkUnseenHardCases, AllBeamsWithoutReturn)
   EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 1.1));
 }
 
+TEST(MarkUnseenHardCases, SomeBeamsWithoutReturn)
+{
+  std::vector<double> returns, misses;
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  for (std::size_t i = 0; i < ends.size(); i += 3) {
+    std::vector<double>& side = ends[i] > 10.0 ? misses : returns;
+    side.insert(side.end(), ends.begin() + i, ends.begin() + i + 3);
+  }
+  ScanBeams scan = scanOf(returns);
+  scan.misses = viewOf(misses.data(), misses.size() / 3);
+  EXPECT_FALSE(isSeen({scan}, 0.2, {4, 0, 0}, 0.5)); // no beam says anything there
+  scan.misses_beyond = 6.25;
+  EXPECT_TRUE(isSeen({scan}, 0.2, {4, 0, 0}, 0.5));
+  EXPECT_FALSE(isSeen({scan}, 0.2, {6, 0, 0}, 0.5));
+  EXPECT_TRUE(isSeen({scan}, 0.2, {0, 6, 0}, 0.5));
+}
+
+TEST(MarkUnseenHardCases, TwoBeamsAreEnough)
+{
+  EXPECT_TRUE(isSeen({scanOf({5, 0, 0, 5, 0.01, 0})}, 0.25, {2, 0, 0}, 0.05));
+  EXPECT_FALSE(isSeen({scanOf({5, 0, 0})}, 0.25, {2, 0, 0}, 0.05));
+}
+
 TEST(MarkUnseenHardCases, Antipode)
 {
   std::vector<double> ends = allAround(0.1, 12.5);
@@ -415,6 +443,14 @@ TEST(MarkUnseen, TakesUncertainPlacesAsTheyAre)
   EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], Verdict::free);
   view.uncertainty = 0.2;
   EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
+  view.uncertainty = 0.0;
+  const float own = 0.2f;
+  view.uncertainties = &own;
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.7)[0], Verdict::free);
+  view.uncertainties = nullptr;
+  view.radii = &own;
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(view)}, 1.9)[0], kUnseen);
 }
 
 std::string refusalOf(const std::vector<ScanBeams>& scans, const SeenOptions& options = {})
@@ -437,7 +473,13 @@ TEST(SeenSpace, RefusesWhatHasNoMeaning)
     SeenOptions options;
     options.angle = angle;
     EXPECT_NE(refusalOf({scan}, options).find("give one in [0.0001, 0.25]"), std::string::npos) << angle;
+    Verdicts none;
+    EXPECT_THROW(brute_force::markUnseen({scan}, angle, {SphereHierarchy(PointsView())}, within(1.0), none),
+                 InvalidInput);
   }
+  scan.misses.count = 3;
+  EXPECT_NE(refusalOf({scan}).find("data is null"), std::string::npos) << refusalOf({scan});
+  scan.misses.count = 0;
   scan.origin = {0, std::nan(""), 0};
   EXPECT_EQ(refusalOf({scan}), "scan 0: origin: 0 nan 0: give finite coordinates");
   scan.origin = {0, 0, 0};

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a ray may meet is listed, what is said to be clear is so, and neither costs much.
 #include <pcl_bsh/solid/columns.h>
+
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
 
 #include "meshes.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace pcl_bsh {
@@ -77,6 +81,91 @@ TEST(Columns, IsClearThreeCubesBesideASlantingTriangle)
     }
   }
   EXPECT_GT(clear, 2000);
+}
+
+/// Whether the shadow of a triangle holds a place; false next to its edges.
+bool isUnder(const Triangle3& t, const Point3& at)
+{
+  int left = 0, right = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point3 &u = t[i], &v = t[(i + 1) % 3];
+    const double side = (v[0] - u[0]) * (at[1] - u[1]) - (v[1] - u[1]) * (at[0] - u[0]);
+    left += side > 1e-12, right += side < -1e-12;
+  }
+  return left == 3 || right == 3;
+}
+
+struct Found {
+  double listed = 0.0; ///< triangles a place, in the mean
+  double clear = 0.0;  ///< share of the places that are a sixteenth of the mesh away from it
+};
+
+Found look(const test::ClosedMesh& mesh, double error, std::uint64_t seed)
+{
+  constexpr int kPlaces = 600;
+  const Columns columns(mesh.view());
+  const auto count = static_cast<std::uint32_t>(mesh.view().count);
+  Point3 low = columns.seen({mesh.xyz[0], mesh.xyz[1], mesh.xyz[2]}), high = low;
+  for (std::size_t i = 0; i < mesh.xyz.size(); i += 3) {
+    const Point3 p = columns.seen({mesh.xyz[i], mesh.xyz[i + 1], mesh.xyz[i + 2]});
+    for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  }
+  double widest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) widest = std::max(widest, high[k] - low[k]);
+  const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+  const TriangleDistance distance(identity, identity);
+  Random random(seed);
+  std::vector<std::uint32_t> several;
+  Found found;
+  double away = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    Point3 at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = low[k] + (high[k] - low[k]) * random.uniform(0, 1);
+    const Columns::Range range = columns.above(at, error, several);
+    std::vector<std::uint32_t> listed(range.begin(), range.end());
+    found.listed += static_cast<double>(listed.size()) / kPlaces;
+    std::sort(listed.begin(), listed.end());
+    EXPECT_EQ(std::adjacent_find(listed.begin(), listed.end()), listed.end()) << "each once";
+    const double reach = widest / 16;
+    bool is_away = true;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      const Triangle3 seen = columns.seenTriangle(t);
+      for (const double off : {-error, 0.0, error}) {
+        const Point3 beside = {at[0] + off, at[1] - off, at[2]};
+        if (!isUnder(seen, beside) || std::max({seen[0][2], seen[1][2], seen[2][2]}) < at[2]) continue;
+        EXPECT_TRUE(std::binary_search(listed.begin(), listed.end(), t)) << t;
+      }
+      is_away = is_away && distance.enclose(at, seen).low > reach;
+    }
+    away += is_away;
+    if (columns.isClear(at, reach / 4)) {
+      for (std::uint32_t t = 0; t < count; ++t)
+        EXPECT_GT(distance.enclose(at, columns.seenTriangle(t)).high, reach / 4);
+      found.clear += is_away;
+    }
+  }
+  found.clear /= std::max(away, 1.0);
+  return found;
+}
+
+TEST(Columns, ListWhatIsAboveAPlaceAndLittleElse)
+{
+  const Found bumpy = look(test::bumpyMesh(24, 0.2), 0.0, 1), lattice = look(test::latticeMesh(12, 8, 3), 0.0, 2),
+              fan = look(test::fanMesh(600), 0.0, 3);
+  EXPECT_LT(bumpy.listed, 12) << "of 2208 triangles";
+  EXPECT_LT(lattice.listed, 60);
+  EXPECT_LT(fan.listed, 60) << "of 1200";
+}
+
+TEST(Columns, ListWhatIsAboveAnyOfSeveralPlaces)
+{
+  EXPECT_LT(look(test::bumpyMesh(24, 0.2), 0.01, 4).listed, 40);
+}
+
+TEST(Columns, AreClearAwayFromTheSurface)
+{
+  EXPECT_GT(look(test::bumpyMesh(24, 0.2), 0.0, 5).clear, 0.99);
+  EXPECT_GT(look(test::boxMesh(), 0.0, 6).clear, 0.99);
 }
 
 } // namespace

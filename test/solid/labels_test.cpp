@@ -136,6 +136,21 @@ TEST(Labels, OfSmallEdgesFarFromTheOrigin)
   expectExact(mesh, points, poseOf(0.7, {10, 20, 30}), poseOf(0.7, {10, 20, 30}));
 }
 
+TEST(Labels, OfSinglePointsOnTheSurface)
+{
+  // Each a node of its own, of no size: where it is seen is off by rounding alone.
+  const Mesh box = test::boxMesh();
+  Random random(18);
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> point = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+    point[static_cast<std::size_t>(i % 3)] = i % 2;
+    const Isometry3d pose = poseOf(random.uniform(0, 3), {random.uniform(-9, 9), random.uniform(-9, 9), 1});
+    expectExact(box, point, pose, pose, "point " + std::to_string(i));
+    const SphereHierarchy cloud(viewOf(point.data(), 1));
+    EXPECT_EQ(labelPoints({cloud, pose}, {Solid(box.view()), pose}).on_surface, 1u) << i;
+  }
+}
+
 TEST(Labels, OfAStrayBodyAndOfExtremeSizes)
 {
   Mesh stray = test::bumpyMesh(12, 0.2);
