@@ -241,6 +241,23 @@ TEST(FarNodes, AnswersAreThoseOfBruteForce)
     }
 }
 
+TEST(FarNodes, InVoxelsOfAnotherUnit)
+{
+  Random random(64);
+  for (const double size : {1e60, 1e25, 1e-25, 1e-60})
+    for (int kind = 0; kind < 4; ++kind) {
+      auto points_a = shapeOf(kind, 300, random), points_b = shapeOf((kind + 1) % 4, 300, random);
+      for (auto* const points : {&points_a, &points_b})
+        for (Point3& p : *points) p = scaled(p, size);
+      const Cloud a(points_a, {Scalar::float64}), b(points_b, {Scalar::float64});
+      const SphereHierarchy of_a(a.view()), of_b(b.view());
+      Eigen::Isometry3d pose = poseAt(random.uniform(8, 14), random);
+      pose.translation() *= size;
+      expectExact(of_a, of_b, pose, std::to_string(kind) + " at " + std::to_string(std::log10(size)));
+      if (HasFatalFailure()) return;
+    }
+}
+
 TEST(FarNodes, OfOnePoint)
 {
   const Cloud one({{0, 0, 0}}), ring(helix(900, 1, 0));

@@ -68,6 +68,23 @@ HierarchyOptions oneVoxel()
   return options;
 }
 
+TEST(Work, OfSeveralQueriesIsTheSumOfAllCounts)
+{
+  Work one;
+  one.voxels_built = 1, one.volumes_built = 2, one.node_pairs = 3, one.volumes_carried = 4, one.leaf_pairs = 5;
+  one.exact_decisions = 6, one.ranked = 7;
+  Work sum = one;
+  sum += one;
+  std::size_t counts = 0;
+  for (const auto& [name, count] : countsOf(one)) {
+    EXPECT_EQ(countsOf(sum).at(name), 2 * count) << name;
+    ++counts;
+  }
+  EXPECT_GE(counts, 6u);
+  EXPECT_EQ(sum.ranked, 14u);
+  EXPECT_EQ(sum.updates(), 12u);
+}
+
 // One point each: above the voxels a root with one child, in the voxel a root with one leaf.
 TEST(Work, OfTwoPoints)
 {
