@@ -11,12 +11,12 @@
 
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/distance_visit-inl.h>
+#include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -35,6 +35,7 @@ public:
     leaves_(scratch.leaves),
     flat_(scratch.flat),
     maybe_(scratch.maybe_nearest),
+    long_(scratch.long_triangles),
     of_triangles_(query.pairs.ofTriangles()),
     laid_flat_(query.b.hierarchy().view().triangles &&
                (query.a.hierarchy().view().triangles || !query.a.hierarchy().view().radii)),
@@ -47,8 +48,11 @@ public:
     own_radii_(roundUp(query.a.hierarchy().storage().largest_radius / unit_)),
     max_(query.pairs.reach.most),
     lengths_only_(!query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
-                  query.b.pose.linear() == Eigen::Matrix3d::Identity())
+                  query.b.pose.linear() == Eigen::Matrix3d::Identity()),
+    moved_only_(query.a.pose.linear() == Eigen::Matrix3d::Identity()),
+    unmoved_(moved_only_ && query.a.pose.translation() == Eigen::Vector3d::Zero())
   {
+    long_.forget();
     for (int k = 0; k < 3; ++k)
       shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
@@ -200,113 +204,222 @@ private:
     return own;
   }
 
-  /// The nearest triangle of b to each point of the leaf: floats leave those that may be, exact arithmetic decides.
+  /// The nearest triangle of b to each point of the leaf: floats leave those that may be, longer numbers decide.
   /// @return false where all points are known to be nearer than what was measured
   bool findNearestTriangles(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
     std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
     const LaneTag d;
-    alignas(64) float squared[kLeafPoints], most[kLeafPoints], radii[kLeafPoints] = {}; ///< of balls of a
+    alignas(64) float squared[kLeafPoints], reach[kLeafPoints];
+    alignas(64) float nearest[kLeafPoints]; ///< of the squared distances in one obstacle
     for (std::uint32_t i = 0; i < kLeafPoints; ++i)
-      most[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
-    for (const NearSphere& candidate : near) { // the middles of balls are on triangles
-      if (candidate.lower > largestOf(most, kLeafPoints)) break;
-      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
-      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
-      nearestSquared(carried(candidate.sphere.obstacle).points, other.x(), other.y(), other.z(), firstBits(other.count),
-                     squared);
-      const float error = errorOf(obstacle, (view_a_.off_middle + view_b_.off_middle) / other.voxel->frame.unit);
-      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-        LaneVector low, high;
-        boundsOfFlat(d, hn::Load(d, squared + i), hn::Zero(d), error, obstacle, low, high);
-        const LaneVector before = hn::Load(d, most + i);
-        hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most + i);
-      }
-    }
+      most_[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
     maybe_.clear();
     for (const NearSphere& candidate : near) {
-      if (candidate.lower > largestOf(most, kLeafPoints)) break;
-      ++work_.leaf_pairs;
+      if (candidate.lower > largestOf(most_, kLeafPoints)) break;
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
       const CarriedLeaf& own = carried(candidate.sphere.obstacle);
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      const float error_of_points = errorOf(obstacle, 0.0);
-      const double stretched = static_cast<double>(obstacle.frame.stretch_b) / other.voxel->frame.unit;
-      for (std::uint32_t i = 0; i < leaf_.count; ++i) radii[i] = roundUp(leaf_.radius(i) * stretched);
+      const float stretched = enough(static_cast<double>(obstacle.frame.stretch_b) / other.voxel->frame.unit);
+      if (view_a_.radii)
+        for (std::uint32_t i = 0; i < leaf_.count; ++i) radii_[i] = enough(leaf_.radius(i) * double{stretched});
+      setReach(obstacle, reach);
+      if (pointsNearSlab(own.points, candidate.sphere, obstacle, reach) == 0) continue;
+      ++work_.leaf_pairs;
+      std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
+      float largest_error = 0.0f;
       for (std::uint32_t j = 0; j < other.count; ++j) {
-        const LaneVector radius = hn::Set(d, roundUp(other.radius(j) * stretched));
+        const LaneVector radius = hn::Set(d, enough(other.radius(j) * double{stretched}));
         squaredDistances(own.points, other.x()[j], other.y()[j], other.z()[j], squared);
         bool any = false;
-        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-          LaneVector low, high;
-          boundsOfFlat(d, hn::Load(d, squared + i), hn::Add(radius, hn::Load(d, radii + i)), error_of_points, obstacle,
-                       low, high);
-          any = any || !hn::AllTrue(d, hn::Gt(low, hn::Load(d, most + i)));
-        }
+        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+          any = any || !hn::AllTrue(d, isBeyond(hn::Load(d, squared + i), hn::Load(d, reach + i), radius));
         if (!any) continue;
         const FlatRecord& triangle = flat_.of(view_b_, obstacle.voxel->frame, other.record(j));
-        squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, squared);
-        const float error =
-            errorOf(obstacle, triangle.error(obstacle.frame) + view_a_.off_middle / other.voxel->frame.unit);
         MaybeNearest& entry = maybe_.emplace_back();
-        entry.voxel = other.voxel;
+        entry.obstacle = candidate.sphere.obstacle;
         entry.point = other.begin + j;
+        entry.error = enough(triangle.error(obstacle.frame) + view_a_.off_middle / other.voxel->frame.unit);
+        squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, entry.squared);
         any = false;
         for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-          LaneVector low, high;
-          boundsOfFlat(d, hn::Load(d, squared + i), hn::Load(d, radii + i), error, obstacle, low, high);
-          const LaneVector before = hn::Load(d, most + i);
-          hn::StoreU(low, d, entry.low + i);
-          hn::StoreU(high, d, entry.high + i);
-          any = any || !hn::AllTrue(d, hn::Gt(low, before));
-          hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most + i);
+          const LaneVector at = hn::LoadU(d, entry.squared + i);
+          any = any || !hn::AllTrue(d, isBeyond(at, hn::Load(d, reach + i), hn::Set(d, entry.error)));
+          hn::Store(hn::Min(at, hn::Load(d, nearest + i)), d, nearest + i);
         }
+        largest_error = std::max(largest_error, entry.error);
         if (!any) maybe_.pop_back();
       }
+      const float error = enough(obstacle.frame.error + double{largest_error});
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+        LaneVector low, high;
+        boundsOfFlat(d, hn::Load(d, nearest + i), hn::Zero(d), error, obstacle, low, high);
+        const LaneVector before = hn::Load(d, most_ + i);
+        hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most_ + i);
+      }
     }
-    if (query_.exceeds(largestOf(most, kLeafPoints), unit_)) return false;
-    for (std::uint32_t i = 0; i < leaf_.count; ++i) found_[i] = decideAmong(i, most[i]);
+    if (query_.exceeds(largestOf(most_, kLeafPoints), unit_)) return false;
+    decideAmong();
     return true;
   }
 
-  /// Of points carried to an obstacle, and so much more, in its unit. NaN and infinity bound nothing.
-  static float errorOf(const DistanceObstacle& obstacle, double more)
+  /// A float that is not below a double >= 0, nor much above it.
+  static float enough(double x) { return roundToFloat(x) * (1.0f + 0x1p-22f) + 0x1p-140f; }
+
+  /// Lengths in the obstacle's unit: what is farther from a point of the leaf, or from its ball, is not the nearest.
+  void setReach(const DistanceObstacle& obstacle, float* reach) const
   {
-    return roundUp((obstacle.frame.error + more) * (1.0 + 2 * kMargin));
+    const LaneTag d;
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+      const LaneVector scaled = hn::Mul(hn::Load(d, most_ + i), hn::Set(d, obstacle.at_most_inside));
+      const LaneVector sum = hn::Add(hn::Add(scaled, hn::Load(d, radii_ + i)), hn::Set(d, obstacle.slack));
+      hn::Store(hn::Mul(sum, hn::Set(d, 1.0f + kFlatMargin)), d, reach + i);
+    }
   }
 
-  /// Of the triangles that may be the nearest to point i. @param most that it is away from its nearest
-  Found decideAmong(std::uint32_t i, float most)
+  /// Whether squared distances are surely above the square of a reach and what it may be short of. A reach of minus
+  /// infinity is that of no point; NaN is beyond nothing.
+  static HWY_INLINE hn::Mask<LaneTag> isBeyond(LaneVector squared, LaneVector reach, LaneVector more)
   {
-    Found best;
-    std::optional<RecordDistance::Pair> best_pair;
-    double nearest = double{most} * unit_;
-    for (const MaybeNearest& entry : maybe_) {
-      if (entry.low[i] > most) continue;
-      Found found{entry.voxel, entry.point};
-      if (!best.voxel) {
-        best = found;
-        best.least = double{orNone(entry.low[i])} * unit_;
-        best.most = std::isnan(entry.high[i]) ? kInfinity : double{entry.high[i]} * unit_;
-        continue;
-      }
-      if (!best_pair) {
-        best_pair = posed(i, best);
-        nearest = std::min(nearest, query_.pairs.distance.enclose(*best_pair).high);
-        best.least = -kInfinity; // of several: what floats say is not the least of them
-        best.most = kInfinity;
-      }
-      ++work_.exact_decisions;
-      const RecordDistance::Pair pair = posed(i, found);
-      if (query_.pairs.distance.isSurelyBeyond(pair, nearest)) continue;
-      const int sign = query_.pairs.distance.compareGaps(pair, *best_pair);
-      if (sign > 0 || (sign == 0 && recordOf(best) < recordOf(found))) continue;
-      best = found;
-      best_pair = pair;
-      nearest = std::min(nearest, query_.pairs.distance.enclose(pair).high);
+    const LaneTag d;
+    const LaneVector limit = hn::Mul(hn::Add(reach, more), hn::Set(d, 1.0f + kFlatMargin));
+    return hn::Or(hn::Gt(squared, hn::Add(hn::Mul(limit, limit), hn::Set(d, kVanishingSquare))),
+                  hn::Lt(limit, hn::Zero(d)));
+  }
+
+  /// Which points of the leaf may be nearer than their `reach` to what lies in a sphere of b and in its slab.
+  std::uint32_t pointsNearSlab(const LeafPoints& points, const ObstacleSphere& sphere, const DistanceObstacle& obstacle,
+                               const float* reach) const
+  {
+    const LaneTag d;
+    const std::uint32_t k = sphere.lane;
+    const Node& node = *sphere.node;
+    const Slab slab = slabOf(obstacle.slabs[sphere.node - obstacle.voxel->nodes.data()], k,
+                             {node.x[k], node.y[k], node.z[k]}, node.r[k] * obstacle.frame.stretch_b);
+    std::uint32_t far = 0;
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+      const LaneVector length =
+          lengthToSlab(slab, hn::Load(d, points.x + i), hn::Load(d, points.y + i), hn::Load(d, points.z + i));
+      far |= bitsOf(d, hn::Gt(length, hn::Load(d, reach + i))) << i; // not so for NaN
     }
-    return best;
+    return ~far & firstBits(leaf_.count);
+  }
+
+  /// What is known of the triangle that is the nearest to a point, of those that were looked at.
+  struct Nearest {
+    bool compared = false; ///< with another one; the following are set
+    SharedPart part;
+    double gap; ///< of the triangle, at most
+  };
+
+  /// Of the triangles that may be the nearest.
+  void decideAmong()
+  {
+    const LaneTag d;
+    std::uint32_t several = 0;
+    alignas(64) float reach[kLeafPoints] = {};
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) found_[i] = Found();
+    placed_ = 0;
+    std::uint32_t obstacle = kNoVoxel; // that `reach` is in
+    for (const MaybeNearest& entry : maybe_) {
+      if (entry.obstacle != obstacle) setReach(obstacles_[obstacle = entry.obstacle], reach);
+      std::uint32_t beyond = 0;
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+        beyond |= bitsOf(d, isBeyond(hn::LoadU(d, entry.squared + i), hn::Load(d, reach + i), hn::Set(d, entry.error)))
+                  << i;
+      for (std::uint32_t bits = ~beyond & firstBits(leaf_.count); bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        const Found found{obstacles_[obstacle].voxel, entry.point};
+        if (found_[i].voxel) {
+          Nearest& nearest = nearest_[i];
+          if ((several >> i & 1) == 0) nearest.compared = false;
+          several |= 1u << i;
+          compareTriangles(i, found, nearest);
+          continue;
+        }
+        found_[i] = found;
+        if (max_ < kInfinity) setBounds(found_[i], obstacles_[obstacle], entry.squared[i], radii_[i], entry.error);
+      }
+    }
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      lengths_[i] = kNotKnown;
+      if (!found_[i].voxel || view_a_.radii) continue;
+      LongTriangle& triangle = longOf(found_[i]);
+      const LongVector& place = placeOf(i);
+      lengths_[i] = (several >> i & 1) != 0 ? longDistance(triangle, nearest_[i].part, place)
+                                            : longDistance(triangle, nearPartOf(triangle, place), place);
+    }
+  }
+
+  /// What floats say of a distance.
+  void setBounds(Found& found, const DistanceObstacle& obstacle, float squared, float radius, float error) const
+  {
+    const LaneTag d;
+    LaneVector low, high;
+    boundsOfFlat(d, hn::Set(d, squared), hn::Set(d, radius), enough(obstacle.frame.error + double{error}), obstacle,
+                 low, high);
+    const float most = hn::GetLane(high);
+    found.least = double{orNone(hn::GetLane(low))} * unit_;
+    found.most = std::isnan(most) ? kInfinity : double{most} * unit_;
+  }
+
+  /// Takes the nearer of two triangles to point i, of equals the smaller record.
+  void compareTriangles(std::uint32_t i, const Found& found, Nearest& nearest)
+  {
+    Found& best = found_[i];
+    ++work_.exact_decisions;
+    const bool by_parts = !view_a_.radii;
+    const auto partOf = [&](const Found& of) {
+      const LongTriangle& triangle = longOf(of);
+      return SharedPart(nearPartOf(triangle, placeOf(i)), triangle);
+    };
+    if (!nearest.compared) {
+      nearest.compared = true;
+      nearest.gap = double{most_[i]} * unit_;
+      if (by_parts) nearest.part = partOf(best);
+      best.least = -kInfinity; // of several: what floats say is not the least of them
+      best.most = kInfinity;
+    }
+    SharedPart part;
+    const auto take = [&] {
+      best.voxel = found.voxel;
+      best.point = found.point;
+      nearest.part = part;
+    };
+    if (by_parts) {
+      part = partOf(found);
+      if (part.low > nearest.part.high) return;
+      if (part.high < nearest.part.low) return take();
+      if (part.isSameAs(nearest.part)) {
+        if (recordOf(found) < recordOf(best)) take();
+        return;
+      }
+    }
+    const RecordDistance::Pair pair = posed(i, found), best_pair = posed(i, best);
+    nearest.gap = std::min(nearest.gap, query_.pairs.distance.enclose(best_pair).high);
+    if (query_.pairs.distance.isSurelyBeyond(pair, nearest.gap)) return;
+    const int sign = query_.pairs.distance.compareGaps(pair, best_pair);
+    if (sign < 0 || (sign == 0 && recordOf(found) < recordOf(best))) take();
+  }
+
+  LongTriangle& longOf(const Found& found) { return long_.of(*view_b_.triangles, query_.b.pose, recordOf(found)); }
+
+  /// Where point i is in the world.
+  const LongVector& placeOf(std::uint32_t i)
+  {
+    LongVector& place = places_[i];
+    if ((placed_ >> i & 1) != 0) return place;
+    placed_ |= 1u << i;
+    const Point3 p = given(i);
+    if (unmoved_) return place = LongVector(p);
+    if (!moved_only_) return place = LongVector(placedLong(query_.a.pose, p));
+    place.error = 0.0;
+    place.plain = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const WithError sum = twoSum(p[k], query_.a.pose.translation()[static_cast<Eigen::Index>(k)]);
+      place.value[k] = sum.value, place.tail[k] = sum.error;
+    }
+    return place;
   }
 
   Found named(std::uint32_t i, const std::vector<NearSphere>& near) const
@@ -412,11 +525,12 @@ private:
     std::uint32_t nearest = kNothing;
     Interval interval{max_, kInfinity};
     if (found.voxel) {
-      const bool is_known = lengths_only_ && max_ == kInfinity && !std::isnan(lengths_[i]);
+      const bool has_length = lengths_only_ || laid_flat_;
+      const bool is_known = has_length && max_ == kInfinity && !std::isnan(lengths_[i]);
       const RecordDistance::Pair pair = is_known ? RecordDistance::Pair() : posed(i, found);
       if (is_known || isWithin(found, pair)) {
         nearest = recordOf(found);
-        distance = lengths_only_ ? lengths_[i] : kNotKnown;
+        distance = has_length ? lengths_[i] : kNotKnown;
         if (std::isnan(distance)) distance = query_.pairs.distance.gap(pair);
         if (query_.reached) query_.reached->raise(distance);
         if (sheet_.interval) interval = intervalOf(distance);
@@ -440,6 +554,7 @@ private:
   std::vector<CarriedLeaf>& leaves_;
   FlatRecords& flat_;
   std::vector<MaybeNearest>& maybe_;
+  LongTriangles& long_;
   const bool of_triangles_; ///< whether a cloud is
   const bool laid_flat_;    ///< whether b is, and points of a have no radii
   std::uint64_t& stamp_;
@@ -451,12 +566,19 @@ private:
   const float own_radii_;       ///< the largest of a's points, in the walk's unit
   const double max_;
   const bool lengths_only_; ///< whether distances are lengths of differences between given points, and a shift
+  const bool moved_only_;   ///< whether a's pose turns nothing
+  const bool unmoved_;      ///< whether it moves nothing, either
   std::array<WithError, 3> shift_;
 
   LeafRange leaf_;
   Found found_[kLeafPoints];
   GivenPairs given_ = {};
-  alignas(64) double lengths_[kLeafPoints];
+  alignas(64) double lengths_[kLeafPoints]; ///< where they are known
+  LongVector places_[kLeafPoints];          ///< of the points that have their bit in placed_
+  std::uint32_t placed_ = 0;
+  alignas(64) float most_[kLeafPoints];       ///< that points are away from their nearest triangles, in the walk's unit
+  alignas(64) float radii_[kLeafPoints] = {}; ///< of a's balls, in the obstacle's unit, at least
+  Nearest nearest_[kLeafPoints];              ///< of points that several triangles may be the nearest to
   NearestTwo two_;
   float limit_ = 0.0f; ///< no point of the leaf is farther than this from its nearest, in the walk's unit
   double error_ = 0.0; ///< of the float distances, in the walk's unit

@@ -10,6 +10,7 @@
 #endif
 
 #include <pcl_bsh/distances/bound_margin.h>
+#include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
@@ -28,12 +29,13 @@ namespace HWY_NAMESPACE {
 struct DistanceObstacle {
   const Voxel* voxel; ///< null: the tree above the voxels
   RelativeFrame frame;
-  float slack;          ///< pruneReach(0): what floats may err by
-  float blunt_radius;   ///< as the frame has it
-  float error;          ///< of carried points, at least
-  float least, most;    ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
-  float at_most_inside; ///< at least what a length of 1 in the walk's unit is in the frame
-  bool is_plain;        ///< whether float distances in the frame can be compared with those in others
+  float slack;                  ///< pruneReach(0): what floats may err by
+  float blunt_radius;           ///< as the frame has it
+  float error;                  ///< of carried points, at least
+  float least, most;            ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
+  float at_most_inside;         ///< at least what a length of 1 in the walk's unit is in the frame
+  bool is_plain;                ///< whether float distances in the frame can be compared with those in others
+  const Slabs* slabs = nullptr; ///< of the voxel's nodes, where it has triangles
 
   /// @param unit of the walk, in the clouds' unit
   DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit)
@@ -150,6 +152,44 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
   }
 }
 
+/// From places in a frame to what lies both in a sphere and in its slab, at least. As slabsApart() has it: kSlabMargin
+/// of all lengths pays for the normal and for float arithmetic. 0 where squares may leave the range of float.
+HWY_INLINE LaneVector lengthToSlab(const Slab& slab, LaneVector x, LaneVector y, LaneVector z)
+{
+  const LaneTag d;
+  const LaneVector dx = hn::Sub(x, hn::Set(d, slab.center.x)), dy = hn::Sub(y, hn::Set(d, slab.center.y)),
+                   dz = hn::Sub(z, hn::Set(d, slab.center.z));
+  const LaneVector nx = hn::Set(d, slab.normal.x), ny = hn::Set(d, slab.normal.y), nz = hn::Set(d, slab.normal.z);
+  const LaneVector on = hn::Add(hn::Add(hn::Mul(dx, nx), hn::Mul(dy, ny)), hn::Mul(dz, nz));
+  const LaneVector tx = hn::Sub(dx, hn::Mul(on, nx)), ty = hn::Sub(dy, hn::Mul(on, ny)),
+                   tz = hn::Sub(dz, hn::Mul(on, nz));
+  const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), hn::Set(d, slab.radius));
+  const LaneVector margin = hn::Mul(lengths, hn::Set(d, kSlabMargin));
+  const LaneVector along = hn::Max(hn::Sub(hn::Abs(on), hn::Add(hn::Set(d, slab.h), margin)), hn::Zero(d));
+  const LaneVector across =
+      hn::Max(hn::Sub(hn::Sqrt(squaredNorm(tx, ty, tz)), hn::Add(hn::Set(d, slab.radius), margin)), hn::Zero(d));
+  const LaneVector squared = hn::Add(hn::Mul(along, along), hn::Mul(across, across));
+  return hn::IfThenElseZero(hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)),
+                            hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0f - kBoundMargin)));
+}
+
+/// Raises lower bounds as boundDistances() has them by what the slab of the other sphere says.
+HWY_INLINE void raiseBySlab(const CarriedNode& spheres, const DistanceObstacle& obstacle, const Slab& slab,
+                            float* lower)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector length =
+        lengthToSlab(slab, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i));
+    const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack));
+    const LaneVector near = hn::Sub(hn::Sub(length, radii), hn::Mul(hn::Add(length, radii), hn::Set(d, kBoundMargin)));
+    const LaneVector scaled =
+        hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+    const LaneVector before = hn::LoadU(d, lower + i);
+    hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower + i);
+  }
+}
+
 /// A lower bound that is NaN bounds nothing.
 HWY_INLINE float orNone(float lower)
 {
@@ -248,11 +288,12 @@ HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own,
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.cut[lane] = std::min(visit.cut[lane], upper[lane]);
 }
 
-/// A triangle of b that may be the nearest to some points of a leaf, and how far it is from each, in the walk's unit.
+/// A triangle of b that may be the nearest to some points of a leaf, and its squared distance from each.
 struct MaybeNearest {
-  const Voxel* voxel;
-  std::uint32_t point; ///< in the voxel
-  float low[kLeafPoints], high[kLeafPoints];
+  std::uint32_t obstacle;
+  std::uint32_t point; ///< in its voxel
+  float error;         ///< of the distances, beside that of the obstacle's frame
+  float squared[kLeafPoints];
 };
 
 /// Memory of one walk after another, to be had by a ScratchLease.
@@ -266,13 +307,14 @@ struct DistanceScratch {
   std::vector<std::uint32_t> entered;      ///< the voxels that have one
   FlatRecords flat;                        ///< where b is of triangles
   std::vector<MaybeNearest> maybe_nearest; ///< likewise
+  LongTriangles long_triangles;            ///< likewise
 
   std::size_t bytes() const noexcept
   {
     std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
                       roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
                       (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t) + flat.bytes() +
-                      maybe_nearest.capacity() * sizeof(MaybeNearest);
+                      maybe_nearest.capacity() * sizeof(MaybeNearest) + long_triangles.bytes();
     for (const DistanceVisit& visit : visits) {
       sum += (visit.rows.capacity() + visit.kept.capacity()) * sizeof(DistanceRow) +
              visit.carried.capacity() * sizeof(CarriedNode);

@@ -177,6 +177,12 @@ private:
       boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
+    if (obstacle.slabs) {
+      const Slabs& slabs = obstacle.slabs[&node - obstacle.voxel->nodes.data()];
+      raiseBySlab(own, obstacle,
+                  slabOf(slabs, sphere.lane, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius),
+                  row.lower);
+    }
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
       boundByTriangles(visit, own, obstacle, leaf.count, outdoing_.isPossible(), row.lower,
@@ -301,6 +307,8 @@ private:
   {
     const RelativeFrame frame(a_.frame(voxel_), a_.pose, b_.frame(space), b_.pose, query_.rotation);
     obstacles_.emplace_back(voxel, b_.frame(space), frame, unit_);
+    if (voxel && b_.storage.view.triangles)
+      obstacles_.back().slabs = b_.storage.voxels[space].slabs.of(*voxel, b_.storage.view, found.work);
     if (scratch_.leaves.size() < obstacles_.size()) scratch_.leaves.resize(2 * obstacles_.size());
   }
 

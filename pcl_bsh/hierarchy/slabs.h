@@ -12,8 +12,8 @@ struct PointsView;
 struct Voxel;
 
 /// Beside a node's spheres: every point below child i, stored or given, is within h[i] of the plane through the
-/// sphere's centre with the normal (x, y, z)[i], |n . (p - centre)| <= h. Leaves have the normal of the node that they
-/// are in; the root's leaves have none: (0, 0, 0).
+/// sphere's centre with the normal (x, y, z)[i], |n . (p - centre)| <= h; of triangles, all of each. Leaves of points
+/// have the normal of the node that they are in; the root's leaves have none: (0, 0, 0).
 struct alignas(32) Slabs {
   float x[kNodeChildren], y[kNodeChildren], z[kNodeChildren], h[kNodeChildren];
 };
@@ -29,13 +29,13 @@ class LazySlabs {
 public:
   explicit LazySlabs(SlabAxis axis) : axis_(axis) {}
 
-  /// One per node of a built voxel whose points have no radii. Any number of threads may call this at once:
+  /// One per node of a built voxel whose points are no balls. Any number of threads may call this at once:
   /// threads that come before slabs are stored all fit the same ones, and those of one thread are kept.
-  /// @param work the slabs that this call added to the voxel are added to it
-  const Slabs* of(const Voxel& voxel, BuildWork& work)
+  /// @param view of the cloud @param work the slabs that this call added to the voxel are added to it
+  const Slabs* of(const Voxel& voxel, const PointsView& view, BuildWork& work)
   {
     const Slabs* known = slabs_.get();
-    return known ? known : fit(voxel, work);
+    return known ? known : fit(voxel, view, work);
   }
 
   bool isFitted() const noexcept { return slabs_.get() != nullptr; }
@@ -45,7 +45,7 @@ public:
   void adopt(LazySlabs& other) noexcept { slabs_.adopt(other.slabs_); }
 
 private:
-  const Slabs* fit(const Voxel& voxel, BuildWork& work);
+  const Slabs* fit(const Voxel& voxel, const PointsView& view, BuildWork& work);
 
   const SlabAxis axis_;
   MadeOnce<Slabs[]> slabs_;

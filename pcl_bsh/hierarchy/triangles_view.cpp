@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
+#include <pcl_bsh/hierarchy/triangle_balls.h>
 #include <pcl_bsh/hierarchy/view_check.h>
 
 #include <algorithm>
@@ -100,6 +101,48 @@ struct Balls {
   std::unique_ptr<float[]> radii;
 };
 
+/// One of them. @param largest raised to its largest coordinate
+template <class Coordinate>
+void ballOf(Balls<Coordinate>& balls, std::size_t i, double& largest)
+{
+  const std::array<Point3, 3> corners = balls.triangles.triangle(static_cast<std::uint32_t>(i));
+  std::array<Coordinate, 3>& center = balls.centers[i];
+  if (!std::all_of(corners.begin(), corners.end(), isFinite)) {
+    center.fill(std::numeric_limits<Coordinate>::quiet_NaN());
+    balls.radii[i] = 0.0f;
+    return;
+  }
+  const Point3 middle = middleOf(corners);
+  for (std::size_t k = 0; k < 3; ++k) center[k] = rounded<Coordinate>(middle[k]);
+  const Point3 stored = {double{center[0]}, double{center[1]}, double{center[2]}};
+  for (const Point3& corner : corners)
+    for (const double x : corner) largest = std::max(largest, std::abs(x));
+  balls.radii[i] = roundUp(reachFrom(stored, corners) * (1.0 + kFewDoubleRoundings));
+  if (!std::isfinite(balls.radii[i]))
+    throw InvalidInput(Input::surface, kName, "triangle " + std::to_string(i) + " is too large for a float32 radius",
+                       "give coordinates below 1e38")
+        .withIndex(i);
+}
+
+/// The same of those from i on.
+template <class Coordinate>
+void eightBallsOf(Balls<Coordinate>& balls, std::size_t first, double& largest)
+{
+  EightBalls eight;
+  for (std::size_t i = 0; i < kBallsTogether; ++i) {
+    const std::array<Point3, 3> corners = balls.triangles.triangle(static_cast<std::uint32_t>(first + i));
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k) eight.corners[c][k][i] = corners[c][k];
+  }
+  findEightBalls(eight, std::is_same_v<Coordinate, float>);
+  largest = std::max(largest, eight.largest);
+  for (std::size_t i = 0; i < kBallsTogether; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) balls.centers[first + i][k] = static_cast<Coordinate>(eight.centers[k][i]);
+    balls.radii[first + i] = eight.radii[i];
+    if (!std::isfinite(eight.radii[i])) ballOf(balls, first + i, largest);
+  }
+}
+
 template <class Coordinate>
 PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
 {
@@ -108,25 +151,9 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
   balls->centers = std::make_unique_for_overwrite<std::array<Coordinate, 3>[]>(triangles.count);
   balls->radii = std::make_unique_for_overwrite<float[]>(triangles.count);
   double largest = 0.0;
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    const std::array<Point3, 3> corners = triangles.triangle(static_cast<std::uint32_t>(i));
-    std::array<Coordinate, 3>& center = balls->centers[i];
-    if (!std::all_of(corners.begin(), corners.end(), isFinite)) {
-      center.fill(std::numeric_limits<Coordinate>::quiet_NaN());
-      balls->radii[i] = 0.0f;
-      continue;
-    }
-    const Point3 middle = middleOf(corners);
-    for (std::size_t k = 0; k < 3; ++k) center[k] = rounded<Coordinate>(middle[k]);
-    const Point3 stored = {double{center[0]}, double{center[1]}, double{center[2]}};
-    for (const Point3& corner : corners)
-      for (const double x : corner) largest = std::max(largest, std::abs(x));
-    balls->radii[i] = roundUp(reachFrom(stored, corners) * (1.0 + kFewDoubleRoundings));
-    if (!std::isfinite(balls->radii[i]))
-      throw InvalidInput(Input::surface, kName, "triangle " + std::to_string(i) + " is too large for a float32 radius",
-                         "give coordinates below 1e38")
-          .withIndex(i);
-  }
+  std::size_t i = 0;
+  for (; i + kBallsTogether <= triangles.count; i += kBallsTogether) eightBallsOf(*balls, i, largest);
+  for (; i < triangles.count; ++i) ballOf(*balls, i, largest);
   PointsView view;
   view.data = balls->centers.get();
   view.count = triangles.count;

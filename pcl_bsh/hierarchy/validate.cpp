@@ -169,15 +169,22 @@ private:
                  const std::string& here)
   {
     BuildWork unasked;
-    const Slabs& slabs = fitted.of(voxel, unasked)[index];
+    const Slabs& slabs = fitted.of(voxel, s_.view, unasked)[index];
     const LocalFrame& f = voxel.frame;
-    for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
-      const Point3 p = s_.view.point(voxel.records()[k]);
+    const auto isWithin = [&](const Point3& p) {
       const auto local = [&](std::size_t axis) { return p[axis] / f.unit - f.origin[axis] / f.unit; };
       const double along = slabs.x[i] * (local(0) - node.x[i]) + slabs.y[i] * (local(1) - node.y[i]) +
                            slabs.z[i] * (local(2) - node.z[i]);
-      if (!(std::abs(along) <= static_cast<double>(slabs.h[i])))
-        defect(here + "slab " + std::to_string(i) + " does not contain point " + std::to_string(voxel.records()[k]));
+      return std::abs(along) <= static_cast<double>(slabs.h[i]);
+    };
+    for (std::uint32_t k = node.begin[i]; k < node.begin[i + 1]; ++k) {
+      const std::uint32_t record = voxel.records()[k];
+      bool within = true;
+      if (!s_.view.triangles)
+        within = isWithin(s_.view.point(record));
+      else
+        for (const Point3& corner : s_.view.triangles->triangle(record)) within = within && isWithin(corner);
+      if (!within) defect(here + "slab " + std::to_string(i) + " does not contain point " + std::to_string(record));
     }
   }
 

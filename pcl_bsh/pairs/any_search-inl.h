@@ -120,7 +120,12 @@ public:
       if (surely || pairs_.collide(candidate, walk_.work)) witness_ = candidate;
       return witness_.has_value();
     };
-    if (pairs_.haveRadii()) {
+    if (walk_.areTriangles()) {
+      eachTrianglePairNear(
+          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return std::max(reach(), 0.0); },
+          [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
+    }
+    else if (pairs_.haveRadii()) {
       eachBallPairNear(leaves.frame, leaves.points, leaves.near, leaves.a, leaves.b, reach(), pairs_.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }

@@ -109,6 +109,15 @@ public:
   Next compare(const LanePair& pair)
   {
     const ComparedLeaves leaves = walk_.compare(pair);
+    if (walk_.areTriangles()) {
+      eachTrianglePairNear(
+          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
+          [&](std::uint32_t i, std::uint32_t j) {
+            consider({leaves.a.record(i), leaves.b.record(j)});
+            return false;
+          });
+      return Next::go_on;
+    }
     eachPairMaybeNearest(leaves, pairs_.haveRadii(), best_.to_beat, [&](std::uint32_t i, std::uint32_t j) {
       consider({leaves.a.record(i), leaves.b.record(j)});
       return false;

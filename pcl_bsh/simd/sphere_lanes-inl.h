@@ -252,6 +252,9 @@ struct SlabLanes {
   const float *x, *y, *z, *h;
 };
 
+/// Of the lengths that slabs are compared with: their squares, summed up, are in the range of float.
+inline constexpr float kLongestOfSlabs = 0x1p60f;
+
 /// Bit i: slab i, of sphere i, is proven to be more than reach away from another one: along the normal of either and
 /// across it. Of sheets that face each other at the reach, the distance across leaves only what is opposite.
 ///
@@ -261,7 +264,8 @@ struct SlabLanes {
 /// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r:
 /// u is split into its parts along n and across it. Normals may be off length 1 by 2^-19, and so may what carries them
 /// from one frame to another; kSlabMargin of all lengths pays for these and for float arithmetic, a few roundings of
-/// each term, and kSlabMargin in the sine's square for those of 1 - cosine^2. 0 as a normal proves nothing.
+/// each term, and kSlabMargin in the sine's square for those of 1 - cosine^2. 0 as a normal proves nothing, and nothing
+/// is proven where squares may leave the range of float: triangles reach beyond the frame that their middles are in.
 HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes& slabs, const Slab& other, float reach)
 {
   const LaneTag d;
@@ -298,7 +302,7 @@ HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes&
     const LaneVector along = hn::Max(hn::Sub(hn::Max(along_other, along_own), margin), hn::Zero(d));
     const LaneVector across = hn::Max(hn::Sub(hn::Sqrt(squaredNorm(tx, ty, tz)), hn::Add(radii, margin)), hn::Zero(d));
     const LaneVector squared = hn::Add(hn::Mul(along, along), hn::Mul(across, across));
-    apart |= bitsOf(d, hn::Gt(squared, limit)) << i;
+    apart |= bitsOf(d, hn::And(hn::Gt(squared, limit), hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)))) << i;
   }
   return apart;
 }

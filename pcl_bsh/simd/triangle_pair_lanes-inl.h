@@ -130,7 +130,8 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
       consider(hn::Max(hn::Sub(own_low, high), hn::Sub(low, own_high)),
                hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)));
     }
-    found.apart |= bitsOf(d, apart) << i & block;
+    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
+    found.apart |= bitsOf(d, hn::And(apart, in_range)) << i & block;
     found.within |= bitsOf(d, within) << i & block;
   }
   found.apart &= lanes;

@@ -24,6 +24,12 @@ std::size_t mostEntries(std::size_t triangles)
 {
   return 6 * triangles + (1 << 14);
 }
+/// What is added where these make few columns: of long thin triangles, each of which meets many.
+std::size_t moreEntries(std::size_t triangles)
+{
+  return std::min<std::size_t>(40 * triangles, 1 << 21);
+}
+constexpr double kFewColumns = 1.0 / 16; ///< for each triangle
 /// Bytes of all grids. A finer one takes up to 128 for each of its triangles.
 std::size_t mostBytes(std::size_t triangles)
 {
@@ -165,7 +171,8 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   }
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
-  const double most_entries =
+  bool may_have_more = !finer;
+  double most_entries =
       finer ? static_cast<double>(kFinerEntries) * count : static_cast<double>(mostEntries(triangles.size()));
   const double most_cells = finer ? static_cast<double>(kFinerCells) * count : count + 4096.0;
   const auto along = [](double length, double per) { return std::max(1.0, std::ceil(length * per)); };
@@ -174,6 +181,10 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   for (int step = 0; per > 0.0 && step < 64; ++step) {
     const double next = per * 1.2;
     const double cells = along(width, next) * along(height, next);
+    if (may_have_more && shadows.entries(next) > most_entries && cells < kFewColumns * count) {
+      most_entries += static_cast<double>(moreEntries(triangles.size()));
+      may_have_more = false;
+    }
     if (cells > most_cells || shadows.entries(next) > most_entries || next * longest > kMostColumns) break;
     per = next;
   }

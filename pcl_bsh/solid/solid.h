@@ -28,7 +28,7 @@ enum class Label : std::uint8_t { outside, inside, surface };
 /// are one where their coordinates are equal. Triangles that are not finite count for nothing.
 ///
 /// The view is held, and what it refers to must stay as it is; beyond that, about 60 bytes a triangle, and up to 400
-/// kB.
+/// kB; where triangles are long and thin, up to 10 MB.
 class Solid {
 public:
   /// @throws InvalidInput (Input::surface) for a view that viewOf() refuses, and for a mesh that does not close: how

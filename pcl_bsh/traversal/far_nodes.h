@@ -83,10 +83,12 @@ private:
 };
 
 /// @param voxel built, its points without radii. @param work what is fitted for it is added
-inline NodeSupport nodeSupport(Voxel& voxel, const Node& node, std::uint32_t child, BuildWork& work)
+inline NodeSupport nodeSupport(Voxel& voxel, const PointsView& view, const Node& node, std::uint32_t child,
+                               BuildWork& work)
 {
   const auto index = &node - voxel.nodes.data();
-  return {voxel.frame, node, child, voxel.slabs.of(voxel, work)[index], voxel.cross_slabs.of(voxel, work)[index]};
+  return {voxel.frame, node, child, voxel.slabs.of(voxel, view, work)[index],
+          voxel.cross_slabs.of(voxel, view, work)[index]};
 }
 
 /// From the middle of a to that of b, both posed, and how much of it may be rounding.

@@ -114,6 +114,34 @@ struct CarriedTriangles {
   }
 };
 
+/// Calls found(i, j) for the pairs of triangles of two leaves that floats do not prove to be farther apart than
+/// reach(); stops when found() returns true. @param reach in the clouds' unit, >= 0; asked before each triangle of b
+template <class Reach, class Found>
+bool eachTrianglePairNear(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
+                          FlatRecords& flat, const Reach& reach, const Found& found)
+{
+  const RelativeFrame& frame = leaves.frame;
+  const LocalFrame& frame_b = leaves.b.voxel->frame;
+  const double largest = leaves.a.largestRadius();
+  CarriedTriangles own;
+  bool is_carried = false;
+  for (std::uint32_t j = 0; j < leaves.b.count; ++j) {
+    const float by_balls = frame.pruneReach(reach() + largest + leaves.b.radius(j));
+    std::uint32_t near =
+        leaves.near & pointsNear(leaves.points.x, leaves.points.y, leaves.points.z, leaves.a.count, leaves.b.x()[j],
+                                 leaves.b.y()[j], leaves.b.z()[j], by_balls, kSphereMargin);
+    if (near == 0) continue;
+    const FlatRecord& triangle = flat.of(view_b, frame_b, leaves.b.record(j));
+    if (!is_carried) own.carry(view_a, leaves.a, frame);
+    is_carried = true;
+    const float error = roundUp(own.error + triangle.error(frame));
+    near &= ~compareWithTriangle(triangle.flat, own.leaf, near, frame.pruneReach(reach()) + error, -1.0f).apart;
+    for (; near != 0; near &= near - 1)
+      if (found(static_cast<std::uint32_t>(std::countr_zero(near)), j)) return true;
+  }
+  return false;
+}
+
 /// Spheres of a's nodes in the frame of a voxel of b, eight lanes, and which of them lie within or beyond a length of
 /// triangles.
 struct LanesNear {

@@ -59,6 +59,12 @@ HWY_INLINE LeafRange leafOf(const Spaces& side, std::uint32_t space, const Node&
   return {&side.storage.voxels[space], node.begin[lane], node.comparedPoints(lane)};
 }
 
+/// The slab of one child of a node.
+inline Slab slabOf(const Slabs& slabs, std::uint32_t lane, const Point& center, float radius)
+{
+  return {{slabs.x[lane], slabs.y[lane], slabs.z[lane]}, slabs.h[lane], center, radius};
+}
+
 /// A leaf of a in the frame of b's voxel.
 HWY_INLINE void carryLeaf(const RelativeFrame& frame, const LeafRange& leaf, LeafPoints& out)
 {

@@ -10,6 +10,7 @@
 #define PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
 #endif
 
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
 #include <optional>
@@ -69,6 +70,19 @@ public:
   FrameTable frames;
   RecordDistance distance;
   Work work;
+
+  /// Whether both clouds are of triangles, so that leaves are compared by eachTrianglePairNear().
+  bool areTriangles() const { return a.storage.view.triangles && b.storage.view.triangles; }
+
+  /// b's triangles laid flat. @pre areTriangles()
+  FlatRecords& flat()
+  {
+    if (!flat_) {
+      flat_.emplace();
+      (**flat_).prepare(b.storage);
+    }
+    return **flat_;
+  }
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
 
@@ -314,17 +328,19 @@ private:
     return lane.space == kAboveVoxels ? nullptr : &side.storage.voxels[lane.space];
   }
 
-  /// Whether slabs can be compared: in voxels of the same unit, where points have no radii.
+  /// Whether slabs can be compared: in voxels of the same unit, where points are no balls.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {
-    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.radii &&
-           !b.storage.view.radii && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
+    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !areBalls(a) && !areBalls(b) &&
+           a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
   }
+
+  static bool areBalls(const Spaces& side) { return side.storage.view.radii && !side.storage.view.triangles; }
 
   const Slabs& slabsOf(const Spaces& side, const Lane& lane)
   {
     Voxel& voxel = side.storage.voxels[lane.space];
-    return voxel.slabs.of(voxel, work)[lane.node];
+    return voxel.slabs.of(voxel, side.storage.view, work)[lane.node];
   }
 
   static GivenSphere givenSphere(const Spaces& side, const Lane& lane)
@@ -334,6 +350,7 @@ private:
   }
 
   const Separation separation_;
+  std::optional<ScratchLease<FlatRecords>> flat_;
 };
 
 } // namespace HWY_NAMESPACE

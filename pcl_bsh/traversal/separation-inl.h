@@ -19,12 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// The slab of one child of a node.
-inline Slab slabOf(const Slabs& slabs, std::uint32_t lane, const Point& center, float radius)
-{
-  return {{slabs.x[lane], slabs.y[lane], slabs.z[lane]}, slabs.h[lane], center, radius};
-}
-
 /// Without a shift: what carries normals.
 inline constexpr float kNowhere[3] = {0.0f, 0.0f, 0.0f};
 
@@ -109,23 +103,27 @@ public:
   }
 
   /// Of nodes far from each other for their size: by how far their points reach towards each other, and point by point
-  /// where one is a leaf much larger than the other. @param gap as spheresNear() gave it. @pre both are in voxels, no
-  /// radii
+  /// where one is a leaf of points much larger than the other. @param gap as spheresNear() gave it. @pre both are in
+  /// voxels, no balls
   HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near) const
   {
     std::uint32_t far = near & spheresFar(gap, facing.spheres.r, facing.spheres.stretch, facing.radius, kFarNodes);
     if (far == 0) return 0;
-    const NodeSupport other = nodeSupport(*facing.other_voxel, facing.other_node, facing.other_lane, work_);
+    const NodeSupport other =
+        nodeSupport(*facing.other_voxel, others(facing).storage.view, facing.other_node, facing.other_lane, work_);
     const bool other_is_leaf = facing.otherIsLeaf();
     std::uint32_t apart = 0;
     for (; far != 0; far &= far - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
       const float radius = facing.radiusOf(lane);
-      const NodeSupport own = nodeSupport(*facing.voxel, facing.node, lane, work_);
+      const NodeSupport own = nodeSupport(*facing.voxel, owners(facing).storage.view, facing.node, lane, work_);
       bool is_apart = areFarApart(facing, facing.of_a ? own : other, facing.of_a ? other : own);
-      if (!is_apart && !other_is_leaf && facing.isLeaf(lane) && radius > kLargeFarLeaf * facing.radius)
+      const bool own_points = !owners(facing).storage.view.triangles,
+                 other_points = !others(facing).storage.view.triangles;
+      if (!is_apart && own_points && !other_is_leaf && facing.isLeaf(lane) && radius > kLargeFarLeaf * facing.radius)
         is_apart = isLeafFarApart(facing, facing.leaf(lane), facing.of_a, other);
-      else if (!is_apart && other_is_leaf && !facing.isLeaf(lane) && facing.radius > kLargeFarLeaf * radius)
+      else if (!is_apart && other_points && other_is_leaf && !facing.isLeaf(lane) &&
+               facing.radius > kLargeFarLeaf * radius)
         is_apart = isLeafFarApart(facing, facing.otherLeaf(), !facing.of_a, own);
       if (is_apart) apart |= 1u << lane;
     }

@@ -53,6 +53,25 @@ void boundDistanceOnTarget(const float* center, float radius, const float* other
   out = {lower[0], cut[0]};
 }
 
+void longTriangleDistanceOnTarget(const Point3& p, const Eigen::Isometry3d& pose_a, const Triangle3& t,
+                                  const Eigen::Isometry3d& pose_b, test::LongTriangleDistance& out)
+{
+  LongTriangle triangle;
+  triangle.set(t, pose_b);
+  const bool moved_only = pose_a.matrix() == Eigen::Matrix4d::Identity();
+  const LongVector place = moved_only ? LongVector(p) : LongVector(placedLong(pose_a, p));
+  const NearPart part = nearPartOf(triangle, place);
+  out = {static_cast<int>(part.kind), part.low, part.high, longDistance(triangle, part, place)};
+}
+
+void lengthToSlabOnTarget(const float (&normal)[3], float h, const float (&center)[3], float radius,
+                          const float (&place)[3], float& length)
+{
+  const LaneTag d;
+  const Slab slab{{normal[0], normal[1], normal[2]}, h, {center[0], center[1], center[2]}, radius};
+  length = hn::GetLane(lengthToSlab(slab, hn::Set(d, place[0]), hn::Set(d, place[1]), hn::Set(d, place[2])));
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();
@@ -62,6 +81,8 @@ namespace pcl_bsh {
 namespace {
 HWY_EXPORT(longLengthOnTarget);
 HWY_EXPORT(boundDistanceOnTarget);
+HWY_EXPORT(longTriangleDistanceOnTarget);
+HWY_EXPORT(lengthToSlabOnTarget);
 } // namespace
 
 namespace test {
@@ -80,6 +101,21 @@ DistanceBounds boundDistance(const float (&center)[3], float radius, const float
   DistanceBounds found;
   HWY_DYNAMIC_DISPATCH(boundDistanceOnTarget)(center, radius, other, other_radius, frame, found);
   return found;
+}
+
+LongTriangleDistance longTriangleDistance(const Point3& p, const Eigen::Isometry3d& pose_a, const Triangle3& t,
+                                          const Eigen::Isometry3d& pose_b)
+{
+  LongTriangleDistance found;
+  HWY_DYNAMIC_DISPATCH(longTriangleDistanceOnTarget)(p, pose_a, t, pose_b, found);
+  return found;
+}
+
+float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3])
+{
+  float length = 0.0f;
+  HWY_DYNAMIC_DISPATCH(lengthToSlabOnTarget)(normal, h, center, radius, place, length);
+  return length;
 }
 
 } // namespace test

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/triangle3.h>
+
+#include <Eigen/Geometry>
 
 #include <array>
 
@@ -26,5 +29,17 @@ struct DistanceBounds {
 };
 DistanceBounds boundDistance(const float (&center)[3], float radius, const float (&other)[3], float other_radius,
                              const FrameBounds& frame);
+
+/// nearPartOf() and longDistance() of a point and a triangle under their poses.
+struct LongTriangleDistance {
+  int kind; ///< NearPart::Kind: 0 where doubles are not sure
+  double low, high;
+  double rounded; ///< NaN where it is in doubt
+};
+LongTriangleDistance longTriangleDistance(const Point3& p, const Eigen::Isometry3d& pose_a, const Triangle3& t,
+                                          const Eigen::Isometry3d& pose_b);
+
+/// From a place to what is both in a sphere and in a slab.
+float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3]);
 
 } // namespace pcl_bsh::test

@@ -5,6 +5,7 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/storage.h>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,51 @@ TEST(TrianglesView, BallsHoldTheirTriangles)
   const std::vector<double> small = soup<double>(500, 1e-200, 0.0), large = soup<double>(500, 1e32, 0.0);
   expectHeld(viewOf(trianglesOf(small, inTurn(small.size() / 3))));
   expectHeld(viewOf(trianglesOf(large, inTurn(large.size() / 3))));
+}
+
+/// Eight are found at once, and the last ones by themselves.
+TEST(TrianglesView, BallsAreTheSameByThemselves)
+{
+  const auto expectSame = [](const auto& xyz) {
+    const PointsView all = viewOf(trianglesOf(xyz, inTurn(xyz.size() / 3)));
+    for (std::uint32_t i = 0; i < all.count; ++i) {
+      const Corners corners = {3 * i, 3 * i + 1, 3 * i + 2};
+      const PointsView one = viewOf(trianglesOf(xyz, corners));
+      ASSERT_EQ(one.radii[0], all.radii[i]) << "triangle " << i;
+      if (isFinite(one.point(0)))
+        ASSERT_EQ(one.point(0), all.point(i)) << "triangle " << i;
+      else
+        ASSERT_FALSE(isFinite(all.point(i))) << "triangle " << i;
+    }
+  };
+  expectSame(soup<float>(2001, 1.0, 4.5e5));
+  expectSame(soup<double>(2001, 1.0, 4.5e5));
+  expectSame(soup<double>(501, 1e-200, 0.0));
+  expectSame(soup<double>(501, 1e32, 0.0));
+  std::vector<float> some = soup<float>(40, 1.0, 0.0);
+  some[9 * 5 + 4] = std::numeric_limits<float>::quiet_NaN();
+  some[9 * 17] = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < 9; ++k) some[9 * 20 + k] = 1e-40f * static_cast<float>(k);
+  expectSame(some);
+}
+
+TEST(TrianglesView, SlabsHoldTheirTriangles)
+{
+  for (const double offset : {0.0, 4.5e5}) {
+    const std::vector<double> xyz = soup<double>(3000, 1.0, offset);
+    const Corners corners = inTurn(xyz.size() / 3);
+    const SphereHierarchy cloud(viewOf(trianglesOf(xyz, corners)));
+    cloud.buildAll(1);
+    const SphereHierarchy::Storage& storage = cloud.storage();
+    BuildWork work;
+    for (std::size_t v = 0; v < storage.voxel_count; ++v) {
+      Voxel& voxel = storage.voxels[v];
+      voxel.slabs.of(voxel, storage.view, work);
+      voxel.cross_slabs.of(voxel, storage.view, work);
+    }
+    const HierarchyDefects defects = cloud.validate();
+    EXPECT_TRUE(defects.none()) << defects.lines.front();
+  }
 }
 
 TEST(TrianglesView, BallsAreTheSmallest)

@@ -93,8 +93,8 @@ TEST(FarNodes, AreNeverApartWithinTheDistanceOfTheirPoints)
           for (const Node& nb : b.voxels[w].nodes)
             for (std::uint32_t i = 0; i < na.count; ++i)
               for (std::uint32_t k = 0; k < nb.count; ++k) {
-                const NodeSupport sa = nodeSupport(a.voxels[v], na, i, work),
-                                  sb = nodeSupport(b.voxels[w], nb, k, work);
+                const NodeSupport sa = nodeSupport(a.voxels[v], a.view, na, i, work),
+                                  sb = nodeSupport(b.voxels[w], b.view, nb, k, work);
                 const auto least = nearest(a, b, a.voxels[v], b.voxels[w], na, nb, i, k, distance);
                 // What is said to be apart by this is so: its points are no nearer.
                 double claimed = 0.0, above = least.high * (1.0 + 1e-6) + 1e-300;

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What long numbers say of a point and a triangle, against exact arithmetic; and bounds by slabs.
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
+
+#include "kernels.h"
+#include "support/attack.h"
+#include "support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Random;
+
+/// Of many kinds: any shape; on a lattice, where places lie above edges and corners; far from the origin of the world;
+/// tiny and huge; thin.
+struct Case {
+  Point3 p;
+  Triangle3 t;
+  Eigen::Isometry3d a = Eigen::Isometry3d::Identity(), b = a;
+};
+
+Case randomCase(Random& random)
+{
+  Case c;
+  const bool lattice = random.chance(0.3);
+  const double far = random.pick({0.0, 0.0, 5e6}), size = std::ldexp(1.0, random.pick({0, 0, 0, -40, 40, -130}));
+  const auto coordinate = [&] { return far + size * (lattice ? 0.25 * random.integer(-8, 8) : random.uniform(-1, 1)); };
+  for (Point3& corner : c.t) corner = random.point(coordinate);
+  if (random.chance(0.2)) // thin
+    for (std::size_t k = 0; k < 3; ++k)
+      c.t[2][k] =
+          c.t[0][k] + 0.5 * (c.t[1][k] - c.t[0][k]) + size * random.pick({1e-3, 1e-9, 0.0}) * random.uniform(-1, 1);
+  c.p = random.point(coordinate);
+  if (random.chance(0.1)) c.p = c.t[0];
+  if (random.chance(0.2)) { // near the face
+    const double u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+    for (std::size_t k = 0; k < 3; ++k) c.p[k] = c.t[0][k] + u * (c.t[1][k] - c.t[0][k]) + v * (c.t[2][k] - c.t[0][k]);
+  }
+  if (random.chance(0.3)) c.b = random.pose(2.0);
+  if (random.chance(0.3)) c.a = random.pose(2.0);
+  if (random.chance(0.2)) c.a.linear() = c.b.linear() = Eigen::Matrix3d::Identity();
+  return c;
+}
+
+TEST(LongTriangles, SayWhatExactArithmeticSays)
+{
+  test::onEveryTarget([](const std::string& target) {
+    Random random(77);
+    int known = 0, kinds[4] = {};
+    constexpr int kCases = 20000;
+    for (int i = 0; i < kCases; ++i) {
+      const Case c = randomCase(random);
+      const TriangleDistance exact(c.a, c.b);
+      const test::LongTriangleDistance found = test::longTriangleDistance(c.p, c.a, c.t, c.b);
+      ++kinds[found.kind];
+      if (found.low > -std::numeric_limits<double>::infinity()) {
+        EXPECT_GE(exact.compare(c.p, c.t, found.low), 0) << target << ", case " << i;
+        EXPECT_LE(exact.compare(c.p, c.t, found.high), 0) << target << ", case " << i;
+      }
+      if (std::isnan(found.rounded)) continue;
+      ++known;
+      EXPECT_EQ(found.rounded, exact.distance(c.p, c.t)) << target << ", case " << i << ", part " << found.kind;
+    }
+    EXPECT_GT(known, kCases / 2) << target;
+    EXPECT_LT(kinds[0], kCases / 2) << target;
+    for (int kind = 1; kind < 4; ++kind) EXPECT_GT(kinds[kind], kCases / 20) << target << ", part " << kind;
+  });
+}
+
+TEST(LongTriangles, KnowMostDistances)
+{
+  Random random(78);
+  int known = 0;
+  for (int i = 0; i < 10000; ++i) {
+    Case c;
+    for (Point3& corner : c.t) corner = random.point([&] { return 100.0 + random.uniform(-1, 1); });
+    c.p = random.point([&] { return 100.0 + random.uniform(-1, 1); });
+    if (i % 2 == 0) c.b = random.pose(2.0), c.a = random.pose(2.0);
+    known += std::isnan(test::longTriangleDistance(c.p, c.a, c.t, c.b).rounded) ? 0 : 1;
+  }
+  EXPECT_GT(known, 9900);
+}
+
+TEST(LengthToSlab, IsNoMoreThanTheDistanceOfAnyPlaceInIt)
+{
+  test::onEveryTarget([](const std::string& target) {
+    Random random(79);
+    for (int i = 0; i < 20000; ++i) {
+      const auto number = [&](double most) { return static_cast<float>(random.uniform(-most, most)); };
+      Eigen::Vector3d n = random.rotation() * Eigen::Vector3d::UnitZ();
+      const float normal[3] = {static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())};
+      n = {normal[0], normal[1], normal[2]};
+      n.normalize();
+      const float center[3] = {number(10), number(10), number(10)}, place[3] = {number(10), number(10), number(10)};
+      const float radius = static_cast<float>(random.uniform(0, 3));
+      const float h = random.chance(0.2) ? 0.0f : radius * static_cast<float>(random.uniform(0, 1));
+      // The nearest place: towards the plane, and across it.
+      const Eigen::Vector3d c(center[0], center[1], center[2]), p(place[0], place[1], place[2]), d = p - c;
+      const double on = std::clamp(n.dot(d), -double{h}, double{h}), across = (d - n.dot(d) * n).norm();
+      Eigen::Vector3d q = c + on * n;
+      if (across > 0) q += std::min(across, std::sqrt(double{radius} * radius - on * on)) / across * (d - n.dot(d) * n);
+      EXPECT_LE(test::lengthToSlab(normal, h, center, radius, place), (p - q).norm()) << target << ", case " << i;
+    }
+  });
+}
+
+TEST(LengthToSlab, SaysNothingWhereSquaresOverflow)
+{
+  test::onEveryTarget([](const std::string& target) {
+    const float up[3] = {0, 0, 1}, nowhere[3] = {0, 0, 0};
+    for (const float far : {0x1p59f, 0x1p62f, 0x1p66f, 0x1p100f}) {
+      const float place[3] = {far, far, 0}; // the slab holds it
+      EXPECT_LE(test::lengthToSlab(up, 0.0f, nowhere, 2 * far, place), 0.0f) << target << ", " << far;
+    }
+  });
+}
+
+} // namespace
+} // namespace pcl_bsh
