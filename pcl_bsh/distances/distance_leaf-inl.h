@@ -14,6 +14,8 @@
 #include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -66,6 +68,7 @@ public:
     ++stamp_;
     std::uint32_t undecided = firstBits(leaf_.count);
     if (laid_flat_) {
+      fetchAhead();
       if (!findNearestTriangles(visit, lane, near)) return;
     }
     else {
@@ -204,6 +207,18 @@ private:
     return own;
   }
 
+  /// What is read and written of the points lies anywhere in memory.
+  void fetchAhead() const
+  {
+    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
+      const std::uint32_t record = leaf_.record(i);
+      if (!leaf_.voxel->frame.lossless)
+        hwy::Prefetch(static_cast<const unsigned char*>(view_a_.data) + view_a_.stride * record + view_a_.offset[0]);
+      hwy::Prefetch(sheet_.distance + record);
+      hwy::Prefetch(sheet_.nearest + record);
+    }
+  }
+
   /// The nearest triangle of b to each point of the leaf: floats leave those that may be, longer numbers decide.
   /// @return false where all points are known to be nearer than what was measured
   bool findNearestTriangles(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
@@ -214,15 +229,14 @@ private:
     alignas(64) float nearest[kLeafPoints]; ///< of the squared distances in one obstacle
     for (std::uint32_t i = 0; i < kLeafPoints; ++i)
       most_[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
+    lanes_ = (leaf_.count + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
     maybe_.clear();
     for (const NearSphere& candidate : near) {
       if (candidate.lower > largestOf(most_, kLeafPoints)) break;
       const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
       const CarriedLeaf& own = carried(candidate.sphere.obstacle);
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      const float stretched = enough(static_cast<double>(obstacle.frame.stretch_b) / other.voxel->frame.unit);
-      if (view_a_.radii)
-        for (std::uint32_t i = 0; i < leaf_.count; ++i) radii_[i] = enough(leaf_.radius(i) * double{stretched});
+      const float stretched = stretchOf(obstacle);
       setReach(obstacle, reach);
       if (pointsNearSlab(own.points, candidate.sphere, obstacle, reach) == 0) continue;
       ++work_.leaf_pairs;
@@ -232,7 +246,7 @@ private:
         const LaneVector radius = hn::Set(d, enough(other.radius(j) * double{stretched}));
         squaredDistances(own.points, other.x()[j], other.y()[j], other.z()[j], squared);
         bool any = false;
-        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+        for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d))
           any = any || !hn::AllTrue(d, isBeyond(hn::Load(d, squared + i), hn::Load(d, reach + i), radius));
         if (!any) continue;
         const FlatRecord& triangle = flat_.of(view_b_, obstacle.voxel->frame, other.record(j));
@@ -240,9 +254,9 @@ private:
         entry.obstacle = candidate.sphere.obstacle;
         entry.point = other.begin + j;
         entry.error = enough(triangle.error(obstacle.frame) + view_a_.off_middle / other.voxel->frame.unit);
-        squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, kLeafPoints, entry.squared);
+        squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, lanes_, entry.squared);
         any = false;
-        for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+        for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
           const LaneVector at = hn::LoadU(d, entry.squared + i);
           any = any || !hn::AllTrue(d, isBeyond(at, hn::Load(d, reach + i), hn::Set(d, entry.error)));
           hn::Store(hn::Min(at, hn::Load(d, nearest + i)), d, nearest + i);
@@ -251,7 +265,7 @@ private:
         if (!any) maybe_.pop_back();
       }
       const float error = enough(obstacle.frame.error + double{largest_error});
-      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+      for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
         LaneVector low, high;
         boundsOfFlat(d, hn::Load(d, nearest + i), hn::Zero(d), error, obstacle, low, high);
         const LaneVector before = hn::Load(d, most_ + i);
@@ -266,11 +280,21 @@ private:
   /// A float that is not below a double >= 0, nor much above it.
   static float enough(double x) { return roundToFloat(x) * (1.0f + 0x1p-22f) + 0x1p-140f; }
 
-  /// Lengths in the obstacle's unit: what is farther from a point of the leaf, or from its ball, is not the nearest.
-  void setReach(const DistanceObstacle& obstacle, float* reach) const
+  /// At least what a length of the clouds' unit is in the obstacle's.
+  static float stretchOf(const DistanceObstacle& obstacle)
+  {
+    return enough(static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit);
+  }
+
+  /// Sets `radii_`, and lengths in the obstacle's unit: what is farther from a point of the leaf, or from its ball, is
+  /// not the nearest.
+  void setReach(const DistanceObstacle& obstacle, float* reach)
   {
     const LaneTag d;
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const float stretched = stretchOf(obstacle);
+    for (std::uint32_t i = 0; view_a_.radii && i < leaf_.count; ++i)
+      radii_[i] = enough(leaf_.radius(i) * double{stretched});
+    for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
       const LaneVector scaled = hn::Mul(hn::Load(d, most_ + i), hn::Set(d, obstacle.at_most_inside));
       const LaneVector sum = hn::Add(hn::Add(scaled, hn::Load(d, radii_ + i)), hn::Set(d, obstacle.slack));
       hn::Store(hn::Mul(sum, hn::Set(d, 1.0f + kFlatMargin)), d, reach + i);
@@ -297,7 +321,7 @@ private:
     const Slab slab = slabOf(obstacle.slabs[sphere.node - obstacle.voxel->nodes.data()], k,
                              {node.x[k], node.y[k], node.z[k]}, node.r[k] * obstacle.frame.stretch_b);
     std::uint32_t far = 0;
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
       const LaneVector length =
           lengthToSlab(slab, hn::Load(d, points.x + i), hn::Load(d, points.y + i), hn::Load(d, points.z + i));
       far |= bitsOf(d, hn::Gt(length, hn::Load(d, reach + i))) << i; // not so for NaN
@@ -324,7 +348,7 @@ private:
     for (const MaybeNearest& entry : maybe_) {
       if (entry.obstacle != obstacle) setReach(obstacles_[obstacle = entry.obstacle], reach);
       std::uint32_t beyond = 0;
-      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+      for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d))
         beyond |= bitsOf(d, isBeyond(hn::LoadU(d, entry.squared + i), hn::Load(d, reach + i), hn::Set(d, entry.error)))
                   << i;
       for (std::uint32_t bits = ~beyond & firstBits(leaf_.count); bits != 0; bits &= bits - 1) {
@@ -576,6 +600,7 @@ private:
   alignas(64) double lengths_[kLeafPoints]; ///< where they are known
   LongVector places_[kLeafPoints];          ///< of the points that have their bit in placed_
   std::uint32_t placed_ = 0;
+  std::size_t lanes_ = kLeafPoints;           ///< of the leaf's points, whole vectors
   alignas(64) float most_[kLeafPoints];       ///< that points are away from their nearest triangles, in the walk's unit
   alignas(64) float radii_[kLeafPoints] = {}; ///< of a's balls, in the obstacle's unit, at least
   Nearest nearest_[kLeafPoints];              ///< of points that several triangles may be the nearest to
