@@ -254,8 +254,10 @@ private:
     ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     if (pairs_.haveRadii() || obstacle.voxel->frame.unit != a_voxel_->frame.unit) return false;
     if (!obstacle.slabs)
-      obstacle.slabs = b_.storage.voxels[reached_[visit.obstacle]].slabs.of(*obstacle.voxel, b_.storage.view, found.work);
-    visit.slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, a_.storage.view, found.work) + (visit.node - a_voxel_->nodes.data());
+      obstacle.slabs =
+          b_.storage.voxels[reached_[visit.obstacle]].slabs.of(*obstacle.voxel, b_.storage.view, found.work);
+    visit.slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, a_.storage.view, found.work) +
+                  (visit.node - a_voxel_->nodes.data());
     carry(obstacle.frame.m.data(), kNowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny,
           visit.nz);
     return true;

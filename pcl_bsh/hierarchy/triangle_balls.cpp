@@ -39,7 +39,8 @@ void findEightBallsOnTarget(EightBalls& balls, bool to_float)
       return Place{hn::LoadU(d, at[0] + i), hn::LoadU(d, at[1] + i), hn::LoadU(d, at[2] + i)};
     };
     const Place corners[3] = {corner(0), corner(1), corner(2)};
-    Vector a = squared(corners[1], corners[2]), b = squared(corners[2], corners[0]), c = squared(corners[0], corners[1]);
+    Vector a = squared(corners[1], corners[2]), b = squared(corners[2], corners[0]),
+           c = squared(corners[0], corners[1]);
     const Vector longest = hn::Max(hn::Max(a, b), c), of_longest = hn::Div(one, longest);
     a = hn::Mul(a, of_longest), b = hn::Mul(b, of_longest), c = hn::Mul(c, of_longest);
     Vector wa = hn::Mul(a, hn::Sub(hn::Add(b, c), a)), wb = hn::Mul(b, hn::Sub(hn::Add(c, a), b)),
@@ -59,8 +60,8 @@ void findEightBallsOnTarget(EightBalls& balls, bool to_float)
     const Place center = {middle(corners[0].x, corners[1].x, corners[2].x),
                           middle(corners[0].y, corners[1].y, corners[2].y),
                           middle(corners[0].z, corners[1].z, corners[2].z)};
-    const Vector reach = hn::Max(hn::Max(squared(corners[0], center), squared(corners[1], center)),
-                                 squared(corners[2], center));
+    const Vector reach =
+        hn::Max(hn::Max(squared(corners[0], center), squared(corners[1], center)), squared(corners[2], center));
     const auto known = hn::And(isNormal(longest), isNormal(reach));
     hn::StoreU(center.x, d, balls.centers[0] + i);
     hn::StoreU(center.y, d, balls.centers[1] + i);
