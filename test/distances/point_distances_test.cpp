@@ -35,6 +35,39 @@ HierarchyOptions optionsFor(const Scene& scene, std::uint64_t seed)
   return options;
 }
 
+TEST(PointDistances, AreCountedAnewInAResultThatIsUsedAgain)
+{
+  const Cloud one({{0, 0, 0}, {1, 0, 0}, {9, 0, 0}}), other({{2, 0, 0}});
+  const SphereHierarchy a(one.view()), b(other.view());
+  PointDistances found;
+  for (int again = 0; again < 3; ++again) {
+    pointDistances({a}, {b}, within(3.0), found);
+    EXPECT_EQ(found.measured, 2u);
+  }
+  const HausdorffDistance both = hausdorffDistance({a}, {b}), turned = hausdorffDistance({b}, {a});
+  EXPECT_EQ(both.distance, 7.0);
+  EXPECT_EQ(test::countsOf(both.work).at("node_pairs"), test::countsOf(turned.work).at("node_pairs"));
+  EXPECT_GT(both.work.node_pairs, pointDistances({a}, {b}).work.node_pairs / 2);
+}
+
+TEST(PointDistances, IntervalsAreAboutAsWideAsTheTolerance)
+{
+  for (std::uint64_t seed = 0; seed < 20; ++seed) { // some with radii, some without
+    const Scene scene = test::anyScene(seed, 300);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    PointDistancesRequest request = within(kInfinity);
+    const double tolerance = 0.01 * (scene.clearance + 1e-3);
+    request.accuracy = Accuracy::tolerance(tolerance);
+    const PointDistances found = pointDistances({a, scene.pose_a}, {b, scene.pose_b}, request);
+    for (std::size_t i = 0; i < found.distance.size(); ++i) {
+      if (found.closest_point[i] == kNothing) continue;
+      const double rounding = 1e-12 * std::abs(found.distance[i]);
+      EXPECT_GE(found.interval[i].lower, found.distance[i] - tolerance * (1 + 1e-9) - rounding) << scene.name;
+      EXPECT_LE(found.interval[i].upper, found.distance[i] + rounding + 1e-300) << scene.name;
+    }
+  }
+}
+
 TEST(PointDistances, OfRandomClouds)
 {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {

@@ -124,6 +124,38 @@ void replaceEraseAndInsert(std::uint64_t seed)
   }
 }
 
+TEST(HierarchyUpdate, SaysHowManyRecordsMoreThereAre)
+{
+  const std::vector<float> xyz(15, 0.5f);
+  SphereHierarchy hierarchy(viewOf(xyz.data(), 2));
+  HierarchyUpdate update(hierarchy, nullptr, 0);
+  try {
+    update.commit(viewOf(xyz.data(), 5));
+    FAIL();
+  }
+  catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("has 3 more records, of which 0 were announced"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(HierarchyRefit, TakesTheSameSubsetAndNoOther)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+  const std::vector<std::int32_t> some = {0, 2}, same = {0, 2}, others = {0, 1};
+  const auto viewOfSome = [&](const std::vector<std::int32_t>& indices) {
+    PointsView view = viewOf(xyz.data(), 3);
+    view.indices = indices.data();
+    view.index_count = indices.size();
+    return view;
+  };
+  SphereHierarchy hierarchy(viewOfSome(some));
+  EXPECT_NO_THROW(hierarchy.refit(viewOfSome(some)));
+  EXPECT_NO_THROW(hierarchy.refit(viewOfSome(same)));
+  EXPECT_THROW(hierarchy.refit(viewOfSome(others)), std::invalid_argument);
+  EXPECT_THROW(hierarchy.refit(viewOf(xyz.data(), 3)), std::invalid_argument);
+}
+
 TEST(HierarchyUpdate, EqualToBuildingAnew)
 {
   for (std::uint64_t seed = 0; seed < 30; ++seed) replaceEraseAndInsert<float>(seed);

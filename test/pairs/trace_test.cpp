@@ -94,6 +94,18 @@ TEST(Trace, LevelsCountFromTheVoxels)
   EXPECT_LT(largest[2], largest[1]);
 }
 
+TEST(Trace, OfCloudsFarApartIsTheirVoxels)
+{
+  const Cloud three({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}), one({{1000, 0, 0}});
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  const SphereHierarchy a(three.view(), options), b(one.view(), options);
+  const CollisionTrace trace = traceCollision({a}, {b}, within(1.0));
+  EXPECT_EQ(trace.a.size(), 3u);
+  EXPECT_EQ(trace.b.size(), 1u);
+  EXPECT_EQ(countOf(trace.a, SphereFate::pruned), 3u);
+}
+
 TEST(Trace, EmptyCloudsAndRefusals)
 {
   const SphereHierarchy nothing{PointsView{}};
