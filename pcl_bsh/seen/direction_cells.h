@@ -63,10 +63,12 @@ struct CellSphere {
   CellSphere() = default;
   explicit CellSphere(const DirectionCell& cell)
   {
-    const std::array<Eigen::Vector3d, 4> corners = cell.corners();
-    center = (corners[0] + corners[2]).normalized();
-    for (const Eigen::Vector3d& corner : corners) chord = std::max(chord, (corner.normalized() - center).norm());
-    chord *= 1.0 + 0x1p-40;
+    const double half = std::ldexp(1.0, -static_cast<int>(cell.level));
+    center = directionOf({cell.face, -1.0 + half * (2 * cell.u + 1), -1.0 + half * (2 * cell.w + 1)});
+    const double length = center.norm(), farthest = 1.4142135623730952 * half; // of the face's places from its middle
+    center /= length;
+    // |x / |x| - y / |y|| <= 2 |x - y| / (|x| + |y|), and no place of a face is nearer than 1 (Dunkl, Williams, 1964).
+    chord = 2.0 * farthest / (length + std::max(1.0, length - farthest)) * (1.0 + 0x1p-40);
   }
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double chord = 0.0;
@@ -94,7 +96,7 @@ struct Cone {
   bool meets(const DirectionCell& cell) const;
 };
 
-/// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most a quarter of the angle.
+/// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most an eighth of the angle.
 unsigned cellLevels(double angle);
 
 /// Up to this angle a beam speaks for a cell: less than its own by rounding and by what directions are off as stored.

@@ -14,7 +14,7 @@
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
 // grid over the sphere, each of which one beam must speak for as a whole, so that a cell is a hole for certain where
-// the angle to the nearest beam exceeds the given one, perhaps where it exceeds 0.6 of that, and else never; and a
+// the angle to the nearest beam exceeds the given one, perhaps where it exceeds 0.8 of that, and else never; and a
 // length of 2^-40 times the coordinates may decide either way.
 //
 // What the beams do not tell: things thinner than the angle leaves between beams, edges sharper than right angles,

@@ -9,12 +9,15 @@
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/question/uncertainty.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <Eigen/Geometry>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -90,6 +93,11 @@ std::vector<Eigen::Isometry3d> path(double clearance)
   return poses;
 }
 
+std::shared_ptr<SphereHierarchy> unowned(const SphereHierarchy& hierarchy)
+{
+  return {std::shared_ptr<void>(), const_cast<SphereHierarchy*>(&hierarchy)}; // nothing deforms it
+}
+
 void ask(const std::string& query, const SphereHierarchy& a, const SphereHierarchy& b, double clearance, Entry& entry)
 {
   FlagsRequest request;
@@ -104,12 +112,36 @@ void ask(const std::string& query, const SphereHierarchy& a, const SphereHierarc
     entry.colliding = found.a.size();
     entry.undecided = found.undecided_a.size();
   }
-  else if (query == "path") {
+  else if (query == "path" || query == "swept") {
     TrajectoryRequest along;
     along.clearance = clearance;
+    if (query == "swept") along.swept = 0.1 * clearance;
     const TrajectoryResult found = collideAlong({a}, b, path(clearance), along);
     entry.colliding = found.colliding;
     entry.undecided = found.undecided;
+  }
+  else if (query == "poses") {
+    AnyRequest at_poses;
+    at_poses.clearance = clearance;
+    const auto found = anyCollisionAtPoses({a}, b, path(clearance), at_poses).flags;
+    entry.colliding = countOf(found, Verdict::colliding);
+    entry.undecided = countOf(found, Verdict::undecided);
+  }
+  else if (query == "scene") {
+    SceneOptions effects;
+    effects.clearance = clearance;
+    effects.effects.flags = true;
+    Scene scene(effects);
+    scene.add(fixedObject("a", unowned(a)));
+    const ObjectId moved = scene.add(object("b", unowned(b), path(clearance).front()));
+    entry.colliding = entry.undecided = 0;
+    for (const Eigen::Isometry3d& pose : path(clearance)) {
+      scene.setPose(moved, pose);
+      for (const FlaggedPart& part : scene.query().flags) {
+        entry.colliding += countOf(part.flags, Verdict::colliding);
+        entry.undecided += countOf(part.flags, Verdict::undecided);
+      }
+    }
   }
   else { // a search that ends early, and one that need not
     entry.colliding = entry.undecided = 0;
@@ -180,9 +212,10 @@ int main(int argc, char** argv)
       ->capture_default_str();
   app.add_option("--query", options.queries,
                  "flags, lists (of colliding and undecided points), any (of two clouds at 20 poses, each alone), path "
-                 "(flags along these poses)")
+                 "(flags along these poses), swept (the same of the motion between them), poses (any at all of them in "
+                 "one call), scene (flags at each of them)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"flags", "lists", "any", "path"}))
+      ->check(CLI::IsMember({"flags", "lists", "any", "path", "swept", "poses", "scene"}))
       ->capture_default_str();
   app.add_option("--size", options.size, "points of a made cloud")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--clearances", options.clearances, "in spacings of the cloud")

@@ -31,12 +31,13 @@ PROGRAMS = {
     "rigid_100k.csv": "bench_rigid --sizes 100000 --poses 300",
     "scene.csv": "bench_scene --clock cpu",
     "search.csv": "bench_search --scene terrain,autzen --clock cpu --repeat 5",
-    "seen.csv": "bench_seen --clock cpu",
+    "seen.csv": "bench_seen --clock cpu --building {demo}/building.ply",
     "self_filter.csv": "bench_self_filter --clock cpu --frames 10",
     "sites.csv": "bench_sites {work} --scales 0.53,5.3,53 --repeat 1",
     "surface.csv": "bench_surface --clock cpu",
     "trajectory.csv": "bench_trajectory --scale 0.1",
     "trajectory_full.csv": "bench_trajectory --scale 1 --scenes tunnel,tight --racers pcl_bsh",
+    "uncertain_poses.csv": "bench_uncertainty --scene terrain,lion --query flags,path,swept,poses,scene --clearances 5 --clock cpu --repeat 7",
     "uncertainty.csv": "bench_uncertainty --scene terrain,lion --query flags,lists,any,path --clock cpu",
 }
 
@@ -48,7 +49,6 @@ WITHOUT_ROWS = {
     "Where nearly all pairs are alike": 1,  # growth.csv
     "Neighbours of single points": 1,  # search.csv
     "Uncertain places, and the density guard": 2,  # uncertainty.csv
-    "What scanners saw to be empty": 1,  # seen.csv
     "A robot cut out of its scans": 1,  # self_filter.csv
     "Along a path": 2,  # trajectory.csv at both scales; a table of instructions
     "Scenes": 1,  # scene.csv
@@ -192,6 +192,26 @@ def bodies(rows):
                f"{short(float(row['again [s]']), ' s')} | {row['bytes / triangle']} | " + " | ".join(others) + " |").replace("|  |", "| |").replace("|  |", "| |")
 
 
+def seen(rows):
+    yield "| scans | ranges | | making | asking | memory | truly visible | of these seen | seen in all | wrongly |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
+    for row in rows:
+        visible, recognised = int(row["visible"]), int(row["recognised"])
+        ranges = "exact" if float(row["noise [mm]"]) == 0 else f"off by up to {3 * float(row['noise [mm]']):.0f} mm"
+        yield (f"| {row['room']} | {ranges} | {row['method']} | {short(float(row['make [s]']), ' s')} | {short(float(row['ask [s]']), ' s')} | "
+               f"{short(float(row['memory [MB]']), ' MB')} | {visible:,} | {recognised:,} ({100 * recognised / visible:.1f} %) | "
+               f"{int(row['called seen']):,} | {int(row['wrongly']):,} |")
+
+
+def uncertain_poses(rows):
+    yield "| scan | question | plain | one length | a length per point | the pose | the pose / one length |"
+    yield "|---|---|---|---|---|---|---|"
+    for scene in ("terrain", "lion"):
+        for query, title in (("flags", "flags"), ("path", "path, 20 poses"), ("swept", "path, swept"), ("poses", "list of 20 poses"), ("scene", "scene, 20 poses")):
+            of = [rows.one("least [ms]", scene=scene, query=query, uncertainty=kind) for kind in ("plain", "one length", "a length per point", "the pose")]
+            yield f"| {scene} | {title} | " + " | ".join(short(time, " ms") for time in of) + f" | {of[3] / of[1]:.2f} |"
+
+
 def readme():
     """The README's rows about what BENCHMARK.md has tables of: beginnings of lines, and how they go on."""
     of_flags = rows_of("flags_terrain.csv").where(order="scan", d="5.00")
@@ -206,7 +226,7 @@ def readme():
     yield f"| the distance of each of a million points | {ours} ms | nanoflann {nanoflann} ms, PCL's k-d tree {kd_tree} ms |"
 
 
-TABLES = {"flags": flags, "rigid": rigid, "distances": distances, "paths": paths, "sites": sites, "surfaces": surfaces, "bodies": bodies}
+TABLES = {"flags": flags, "rigid": rigid, "distances": distances, "paths": paths, "sites": sites, "surfaces": surfaces, "bodies": bodies, "seen": seen, "uncertain_poses": uncertain_poses}
 
 # Documents ------------------------------------------------------------------------------------------------------------
 
@@ -281,7 +301,7 @@ def make_rows(build, only):
     for name, command in PROGRAMS.items():
         if only and name not in only:
             continue
-        program, *arguments = command.format(work=build / "sites_work").split()
+        program, *arguments = command.format(work=build / "sites_work", demo=SOURCE / "build" / "demo").split()
         print(f"{name}: {command}", flush=True)
         run = subprocess.run([str(build / "test" / "benchmark" / program), *arguments, "--csv", str(HERE / "results" / name)])
         if run.returncode != 0:
