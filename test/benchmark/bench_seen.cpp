@@ -31,8 +31,9 @@ using namespace pcl_bsh::bench;
 namespace {
 
 struct Options : ProgramOptions {
-  std::string room = "hall";
-  std::string building;       ///< file
+  std::vector<std::string> rooms = {"hall", "building"};
+  std::string room;
+  std::string building = PCL_BSH_SOURCE_DIR "/build/demo/building.ply";
   double step = 0.000667;     ///< between beams
   std::size_t points = 50000; ///< of the machine
   std::size_t poses = 100;
@@ -321,7 +322,11 @@ int main(int argc, char** argv)
 {
   Options options;
   CLI::App app("What scanners saw to be empty: time, and what is recognised.");
-  app.add_option("--building", options.building, "building.ply of the demonstration: in it, too");
+  app.add_option("--rooms", options.rooms, "hall, building")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"hall", "building"}))
+      ->capture_default_str();
+  app.add_option("--building", options.building, "building.ply of the demonstration")->capture_default_str();
   app.add_option("--step", options.step, "between beams, in radians; four scanners turn by a quarter");
   app.add_option("--points", options.points, "of the machine");
   app.add_option("--poses", options.poses, "of its way");
@@ -333,8 +338,8 @@ int main(int argc, char** argv)
                "recognised", "called seen", "wrongly"});
   return runProgram(app, argc, argv, options, std::move(table), [&](Table& rows) {
     const std::string building = std::exchange(options.building, "");
-    for (const std::string room : {"hall", "building"}) {
-      if (room == "building" && building.empty()) continue;
+    const std::vector<std::string> rooms = std::exchange(options.rooms, {});
+    for (const std::string& room : rooms) {
       for (const double noise : {0.0, options.noise}) {
         Options one = options;
         one.room = room;
@@ -344,7 +349,7 @@ int main(int argc, char** argv)
         progress(room + ": scans made");
         measureOurs(one, world, rows);
 #ifdef PCL_BSH_BENCH_OCTOMAP
-        if (options.cell > 0.0) measureOctoMap(one, world, rows);
+        if (options.cell > 0.0 && noise == 0.0) measureOctoMap(one, world, rows);
 #endif
       }
     }

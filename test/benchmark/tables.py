@@ -31,7 +31,7 @@ PROGRAMS = {
     "rigid_100k.csv": "bench_rigid --sizes 100000 --poses 300",
     "scene.csv": "bench_scene --clock cpu",
     "search.csv": "bench_search --scene terrain,autzen --clock cpu --repeat 5",
-    "seen.csv": "bench_seen --clock cpu --building {demo}/building.ply",
+    "seen.csv": "bench_seen --clock cpu --repeat 5",
     "self_filter.csv": "bench_self_filter --clock cpu --frames 10",
     "sites.csv": "bench_sites {work} --scales 0.53,5.3,53 --repeat 1",
     "surface.csv": "bench_surface --clock cpu",
@@ -301,7 +301,7 @@ def make_rows(build, only):
     for name, command in PROGRAMS.items():
         if only and name not in only:
             continue
-        program, *arguments = command.format(work=build / "sites_work", demo=SOURCE / "build" / "demo").split()
+        program, *arguments = command.format(work=build / "sites_work").split()
         print(f"{name}: {command}", flush=True)
         run = subprocess.run([str(build / "test" / "benchmark" / program), *arguments, "--csv", str(HERE / "results" / name)])
         if run.returncode != 0:
