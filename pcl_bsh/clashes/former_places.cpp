@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clashes/former_places.h>
 #include <pcl_bsh/clashes/near_boxes.h>
+#include <pcl_bsh/geometry/ball_about_box.h>
+#include <pcl_bsh/geometry/rounding.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace pcl_bsh {
@@ -100,16 +101,9 @@ void FormerPlaces::visit(const SphereHierarchy& model, const std::vector<Eigen::
 bool FormerPlaces::mayVisit(const Extent& box, const std::vector<Eigen::Isometry3d>& poses,
                             const TrajectoryRequest& motion) const
 {
-  // A ball about the box, for the query has balls and no boxes.
-  Point3 middle;
-  double square = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
-    const double half = std::max(box.high[k] - middle[k], middle[k] - box.low[k]);
-    square += half * half;
-  }
-  const float radius = std::nextafter(static_cast<float>(std::sqrt(square) * (1.0 + 1e-6)), HUGE_VALF);
-  PointsView ball = viewOf(middle.data(), 1);
+  const BoxBall about = ballAboutBox(box.low, box.high); // the query has balls and no boxes
+  const float radius = roundUp(about.radius);
+  PointsView ball = viewOf(about.center.data(), 1);
   ball.radii = &radius;
   bool may = false;
   places_->findNear(SphereHierarchy(ball), poses, motion, [&](std::size_t) { may = true; });

@@ -2,6 +2,7 @@
 // A scan whose pose is uncertain, its scanners and its beams move together: among them a model moves, the other way.
 #pragma once
 
+#include <pcl_bsh/geometry/ball_about_box.h>
 #include <pcl_bsh/hierarchy/record_corners.h>
 #include <pcl_bsh/question/pose_uncertainty.h>
 
@@ -19,18 +20,19 @@ struct CornerBox {
       const Corners corners = cornersOf(view, record);
       for (std::uint32_t c = 0; c < corners.count; ++c) box.extend(Eigen::Vector3d(corners.at[c].data()));
     }
-    if (!box.isEmpty()) radius = 0.5 * box.diagonal().norm() * (1.0 + 0x1p-40);
+    if (!box.isEmpty())
+      ball = ballAboutBox({box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()});
   }
   Eigen::AlignedBox3d box;
-  double radius = 0.0; ///< of a ball about its centre that holds it
+  BoxBall ball = {{0, 0, 0}, 0.0}; ///< about it
 };
 
 /// By how much any point of the model, at most. @param of_scan in the scan's frame
 inline double strayOf(const PoseUncertainty& of_scan, const CornerBox& model, const Eigen::Isometry3d& T_scan_model)
 {
   if (of_scan.isZero() || model.box.isEmpty()) return 0.0;
-  const Eigen::Vector3d at = T_scan_model * model.box.center();
-  return (of_scan.length + of_scan.turned({at.x(), at.y(), at.z()}, model.radius)) * (1.0 + 0x1p-40);
+  const Eigen::Vector3d at = T_scan_model * Eigen::Vector3d(model.ball.center.data());
+  return (of_scan.length + of_scan.turned({at.x(), at.y(), at.z()}, model.ball.radius)) * (1.0 + 0x1p-40);
 }
 
 } // namespace pcl_bsh

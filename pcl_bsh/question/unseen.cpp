@@ -110,7 +110,8 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
     const Eigen::Isometry3d in_scan = is_moved ? from_world * poses[k] : poses[k];
     double moves = strayOf(question.input_pose_uncertainty, bounds, in_scan);
     if (is_moved) // by rounding
-      moves += 0x1p-44 * (in_scan.translation().lpNorm<1>() + bounds.radius + poses[k].translation().lpNorm<1>() +
+      moves += 0x1p-44 * (in_scan.translation().lpNorm<1>() + bounds.ball.radius +
+                          Eigen::Vector3d(bounds.ball.center.data()).lpNorm<1>() + poses[k].translation().lpNorm<1>() +
                           question.pose_of_input.translation().lpNorm<1>());
     request.clearance = flags.clearance + moves;
     collisionFlags(scan, {model, poses[k]}, flags, found);

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/geometry/ball_about_box.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/question/model_stray.h>
 #include <pcl_bsh/seen/looked_at.h>
@@ -123,25 +124,20 @@ private:
 
   bool isNear(const Bounds& box) const
   {
-    Point3 middle;
-    double square = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      middle[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
-      const double half = std::max(box.high[k] - middle[k], middle[k] - box.low[k]);
-      square += half * half;
-    }
-    const double radius = std::sqrt(square) * (1.0 + 0x1p-40);
+    const BoxBall ball = ballAboutBox(box.low, box.high);
     return std::any_of(looked_.begin(), looked_.end(),
-                       [&](const LookedAt& looked) { return looked.holdsSome(middle, radius); });
+                       [&](const LookedAt& looked) { return looked.holdsSome(ball.center, ball.radius); });
   }
 
   void visit(const std::vector<std::uint32_t>& tiles)
   {
     std::vector<KeptBeam> own;
     double uncertainty = 0.0;
+    Uncertainty of_ends = request_.uncertainty;
+    of_ends.pose = {}; // beams and their scanner move together
     TileVisitor visitor(site_, request_.memory);
     visitor.visitAll(tiles, [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      const PointsView view = Inquiry::pointsOf(cloud, site_, tile, request_.uncertainty);
+      const PointsView view = Inquiry::pointsOf(cloud, site_, tile, of_ends);
       uncertainty = view.uncertainty;
       const std::vector<ScanBeams> scans =
           scansOf(view, recordFields(cloud.fields), (site_.folder / tile.file).string(), sight_.origins);

@@ -39,8 +39,8 @@ protected:
       for (std::size_t i = 0; i < ends.size(); i += 3) scans[s].push_back({ends[i], ends[i + 1], ends[i + 2]});
       io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
     }
-    for (int i = 0; i < 400; ++i)
-      machine.push_back({random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(0.0, 1.0)});
+    for (int i = 0; i < 800; ++i)
+      machine.push_back({random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.0, 1.0)});
     for (int k = 0; k < 12; ++k) {
       Eigen::Isometry3d pose(Eigen::AngleAxisd(0.4 * k, Eigen::Vector3d::UnitZ()));
       pose.translation() = Eigen::Vector3d(4.0 + 2.8 * std::cos(0.5 * k), 3.0 + 2.2 * std::sin(0.5 * k), 0.2 + 0.1 * k);
@@ -108,7 +108,7 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
 {
   std::vector<Verdict> gravest;
   const Answer::Unseen right = expected(gravest);
-  ASSERT_GE(right.count, 20u);
+  ASSERT_GT(right.count, 20u);
   ASSERT_LT(right.count, machine.size());
   for (const std::uint64_t tile_points : {1000000u, 3000u, 500u}) {
     const SiteUnseen found = asked(siteOf(tile_points));

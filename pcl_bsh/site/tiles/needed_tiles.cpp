@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/ball_about_box.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace pcl_bsh::site {
 
@@ -23,15 +23,8 @@ Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
     length = greatest == tile.greatest.end() ? 0.0 : std::max(0.0, greatest->second * uncertainty.sigmas * rounding_up);
   }
   // A point of the tile turns no farther than a ball that holds all of them.
-  Point3 middle;
-  double square = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    middle[k] = 0.5 * tile.bounds->low[k] + 0.5 * tile.bounds->high[k];
-    const double half = std::max(tile.bounds->high[k] - middle[k], middle[k] - tile.bounds->low[k]);
-    square += half * half;
-  }
-  length +=
-      (uncertainty.pose.length + uncertainty.pose.turned(middle, std::sqrt(square) * (1.0 + 1e-9))) * (1.0 + 1e-6);
+  const BoxBall ball = ballAboutBox(tile.bounds->low, tile.bounds->high);
+  length += (uncertainty.pose.length + uncertainty.pose.turned(ball.center, ball.radius)) * (1.0 + 1e-6);
   return length == 0.0 ? *tile.bounds : moved(*tile.bounds, Eigen::Isometry3d::Identity(), length);
 }
 
