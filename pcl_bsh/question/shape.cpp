@@ -91,8 +91,14 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
   options.angle = angle;
   options.threads = threads;
   const std::vector<RecordField> fields = fields_ ? fields_() : std::vector<RecordField>();
+  PointsView view = hierarchy_->view();
+  if (!uncertainty_.pose.isZero()) { // beams and their scanner move together: it makes none of them shorter
+    Uncertainty of_ends = uncertainty_;
+    of_ends.pose = {};
+    view = withUncertainty(view_(), fields, name_, of_ends);
+  }
   looked_ = std::make_shared<const Looked>(
-      Looked{origins, angle, uncertainty_, SeenSpace(scansOf(hierarchy_->view(), fields, name_, origins), options)});
+      Looked{origins, angle, uncertainty_, SeenSpace(scansOf(view, fields, name_, origins), options)});
   return looked_->space;
 }
 

@@ -62,7 +62,8 @@ PointsView withUncertainty(const PointsView& view, const std::vector<RecordField
   checkUncertainty(cloud, uncertainty);
   PointsView uncertain = view;
   const bool by_field = !uncertainty.field.empty();
-  uncertain.uncertainty = movedBy(by_field ? 0.0 : uncertainty.length, uncertainty.pose.length);
+  const double of_all = movedBy(by_field ? 0.0 : uncertainty.length, uncertainty.pose.length);
+  uncertain.uncertainty = movedBy(of_all, view.uncertainty);
   if (!by_field && uncertainty.pose.angle == 0.0) return uncertain;
   std::optional<RecordNumbers> sigmas;
   if (by_field) {
@@ -78,7 +79,8 @@ PointsView withUncertainty(const PointsView& view, const std::vector<RecordField
     if (!isFinite(view.point(record))) continue; // it takes part in nothing
     const double sigma = sigmas ? (*sigmas)[i] : 0.0;
     const float own = productUpward(sigma, uncertainty.sigmas);
-    const float length = roundUp(movedBy(own, uncertainty.pose.turned(view.point(record), view.radius(record))));
+    const double asked = movedBy(own, uncertainty.pose.turned(view.point(record), view.radius(record)));
+    const float length = roundUp(movedBy(asked, view.ownUncertainty(record)));
     if (sigma >= 0.0 && std::isfinite(length)) {
       owned->lengths[i] = length;
       continue;

@@ -75,7 +75,7 @@ struct RecordField {
 /// Refuses numbers that are not finite and >= 0. @param cloud its name in errors. @throws InvalidInput
 void checkUncertainty(const std::string& cloud, const Uncertainty& uncertainty);
 
-/// The view with the uncertainties of its points, which it keeps alive beside what it kept before.
+/// The view with uncertainties of its points on top of what it has, kept alive beside what it kept before.
 /// @param fields of the view's records. @param cloud its name in errors
 /// @throws InvalidInput naming the value, the point or the field: a number that is negative or not finite, a field that
 ///   is missing or holds more than one number a point

@@ -155,6 +155,24 @@ TEST(PoseUncertainty, MovesPointsByItsBound)
   EXPECT_NEAR(moved, 0.35 + 4 * std::sin(0.5), 1e-6);
 }
 
+TEST(PoseUncertainty, AddsToWhatPointsHave)
+{
+  const float place[] = {1, 2, 5}, own[] = {0.5f};
+  PointsView given = viewOf(place, 1);
+  given.uncertainty = 0.125;
+  given.uncertainties = own;
+  Uncertainty all(0.25);
+  const auto moved = [&] {
+    const PointsView view = withUncertainty(given, {}, "cloud", all);
+    return view.uncertainty + view.ownUncertainty(0);
+  };
+  EXPECT_NEAR(moved(), 0.875, 1e-12);
+  EXPECT_GE(moved(), 0.875);
+  all.pose = {0.1, 1.0, {1, 2, 3}};
+  EXPECT_NEAR(moved(), 0.975 + 4 * std::sin(0.5), 1e-6);
+  EXPECT_GE(moved(), 0.975 + 4 * std::sin(0.5));
+}
+
 std::string refusalOf(const std::string& text)
 {
   try {

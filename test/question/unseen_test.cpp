@@ -133,12 +133,16 @@ TEST_F(Unseen, HoldsWhereverTheScanTrulyIs)
   EXPECT_EQ(flags(), test::verdictsOf({0, 0, 0}));
   question.input_pose_uncertainty = {0.15};
   EXPECT_EQ(flags(), test::verdictsOf({0, 4, 4})) << "free all the same, but not seen up to the pillar";
-  question.input_pose_uncertainty = {0.0, 0.08, {1, 3, 1.5}};
+  question.input_pose_uncertainty = {0.0, 0.1, {1, 3, 1.5}};
   EXPECT_EQ(flags(), test::verdictsOf({0, 4, 4})) << "turned about the scanner";
   question.input_pose_uncertainty = {0.0, 0.01, {2.7, 3, 1.5}};
   EXPECT_EQ(flags()[1], Verdict::free) << "turned about the place";
   question.input_pose_uncertainty = {0.25};
   EXPECT_EQ(flags()[1], Verdict::undecided);
+  model_[3] = 2.6; // scanner, beams and pillar move together: 0.3 of the 0.4 to the pillar are taken
+  question.input_pose_uncertainty = {0.2};
+  question.seen_angle = 0.02; // which takes 0.04
+  EXPECT_EQ(flags()[1], Verdict::free);
 }
 
 TEST_F(Unseen, IsAskedOfScansThatStandInAWorld)
