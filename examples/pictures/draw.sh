@@ -78,10 +78,22 @@ awk 'BEGIN {
     print o[1] + range * d[1], o[2] + range * d[2], o[3] + range * d[3]
   }
 }' >"$work/pillar.pcd"
-awk 'BEGIN { for (x = 0.1; x < 7.95; x += 0.03) for (y = 0.1; y < 5.95; y += 0.03) print x, y, 1.2 }' >"$work/sheet.xyz"
+awk 'BEGIN { for (x = 0.1; x < 7.95; x += 0.02) for (y = 0.1; y < 5.95; y += 0.02) print x, y, 1.2 }' >"$work/sheet.xyz"
 "$programs/pcl_bsh_collide" "$work/pillar.pcd" "$work/sheet.xyz" "$work/out.pcd" --clearance 0.05 --seen \
-  --obstacle-out "$work/sheet.pcd" >/dev/null
-view "$work/sheet.pcd" "$work/pillar.pcd" --camera=-1,-3.5,9,4,3,0.8 --screenshot examples/pictures/unseen.png
+  --obstacle-out "$work/room.pcd" >/dev/null
+# Beside the verdicts the pillar, cut off below the ceiling, and where the scanner stood.
+{
+  printf 'OFF\n8 6 0\n'
+  printf '%s %s %s\n' 3.4 2.6 0  4 2.6 0  4 3.2 0  3.4 3.2 0  3.4 2.6 2.2  4 2.6 2.2  4 3.2 2.2  3.4 3.2 2.2
+  printf '4 %s %s %s %s\n' 0 3 2 1  4 5 6 7  0 1 5 4  1 2 6 5  2 3 7 6  3 0 4 7
+} >"$work/pillar.off"
+{
+  printf 'OFF\n6 8 0\n'
+  printf '%s %s %s\n' 1.58 2 1.5  1.42 2 1.5  1.5 2.08 1.5  1.5 1.92 1.5  1.5 2 1.58  1.5 2 1.42
+  printf '3 %s %s %s\n' 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5
+} >"$work/scanner.off"
+view "$work/room.pcd" "$work/pillar.off" "$work/scanner.off" --camera=3,-6.2,7.6,3.75,2.4,0.2 \
+  --screenshot examples/pictures/unseen.png
 
 # What accuracy costs in time: measured, so draw it while nothing else runs.
 "$programs/pcl_bsh_accuracy" "$scans/building.ply" "$scans/man.off" --clearance 0.5 --pose=-7,0,-2.6,0,0,0 --poses 10 \

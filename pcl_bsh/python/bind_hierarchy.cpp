@@ -35,6 +35,9 @@ uncertainty : float, default 0
     points are.
 uncertainties : array_like of float32, (n,), optional
     Added to `uncertainty`, for each point.
+pose_uncertainty : str or 1, 2 or 5 numbers, optional
+    How far every pose of the cloud may truly be off, on top: a length, an angle in radians, and the place x, y, z of the
+    cloud that it turns about; or ``"covariance=SIGMAS:"`` and 36 numbers.
 copy : bool, default False
     Keep a copy, and leave the arrays as they are.
 voxel_edge : float, default 0
@@ -77,6 +80,8 @@ triangles : array_like of int, (t, 3)
     Rows of the vertices; copied.
 uncertainty : float, default 0
     How far each triangle may truly be from where it was measured.
+pose_uncertainty : str or 1, 2 or 5 numbers, optional
+    As of `SphereHierarchy`.
 copy : bool, default False
     Keep a copy of the vertices, and leave the array as it is.
 voxel_edge : float, default 0
@@ -143,11 +148,6 @@ Examples
 >>> pcl_bsh.closest_pair(ball, pcl_bsh.SphereHierarchy(np.array([[1.0, 1.0, 3.0]]))).distance
 2.0
 )";
-
-const KeptArrays* arraysOf(const PointsView& view)
-{
-  return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(view.owner.get()));
-}
 
 /// For Python's collector: an array may hold the hierarchy that keeps it.
 int traverse(PyObject* self, visitproc visit, void* arg)
@@ -217,10 +217,11 @@ py::dict refit(Cloud& hierarchy, const ArrayLike& xyz, const OptionalArray& radi
 }
 
 std::shared_ptr<Cloud> make(const ArrayLike& xyz, const OptionalArray& radii, const OptionalArray& indices,
-                            double uncertainty, const OptionalArray& uncertainties, bool copy, double voxel_edge,
-                            unsigned threads)
+                            double uncertainty, const OptionalArray& uncertainties,
+                            const PoseUncertaintyLike& pose_uncertainty, bool copy, double voxel_edge, unsigned threads)
 {
-  const PointsView view = viewOfPoints("points", {xyz, radii, indices, uncertainty, uncertainties, copy});
+  const PointsView view = viewOfPoints(
+      "points", {xyz, radii, indices, uncertainty, uncertainties, copy, poseUncertaintyOf(pose_uncertainty)});
   HierarchyOptions options;
   options.voxel_edge = voxel_edge;
   options.threads = threads;
@@ -228,13 +229,15 @@ std::shared_ptr<Cloud> make(const ArrayLike& xyz, const OptionalArray& radii, co
 }
 
 std::shared_ptr<Cloud> makeOfTriangles(const ArrayLike& vertices, const ArrayLike& triangles, double uncertainty,
-                                       bool copy, double voxel_edge, unsigned threads)
+                                       const PoseUncertaintyLike& pose_uncertainty, bool copy, double voxel_edge,
+                                       unsigned threads)
 {
   const std::vector<std::uint32_t> corners = recordsOf("triangles", triangles, 3);
   std::vector<Triangle> list;
   for (std::size_t i = 0; i < corners.size(); i += 3) list.push_back({corners[i], corners[i + 1], corners[i + 2]});
-  const PointsView view =
-      viewOfTriangles({vertices, py::none(), py::none(), uncertainty, py::none(), copy}, std::move(list));
+  const PointsView view = viewOfTriangles(
+      {vertices, py::none(), py::none(), uncertainty, py::none(), copy, poseUncertaintyOf(pose_uncertainty)},
+      std::move(list));
   HierarchyOptions options;
   options.voxel_edge = voxel_edge;
   options.threads = threads;
@@ -248,10 +251,11 @@ void bindHierarchy(py::module_& module)
   py::class_<Cloud, std::shared_ptr<Cloud>>(module, "SphereHierarchy", kHierarchy,
                                             py::custom_type_setup(&setUpCollection))
       .def(py::init(&make), "xyz"_a, py::kw_only(), "radii"_a = py::none(), "indices"_a = py::none(),
-           "uncertainty"_a = 0.0, "uncertainties"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
-           "threads"_a = 1)
+           "uncertainty"_a = 0.0, "uncertainties"_a = py::none(), "pose_uncertainty"_a = py::none(), "copy"_a = false,
+           "voxel_edge"_a = 0.0, "threads"_a = 1)
       .def_static("of_triangles", &makeOfTriangles, kOfTriangles, "vertices"_a, "triangles"_a, py::kw_only(),
-                  "uncertainty"_a = 0.0, "copy"_a = false, "voxel_edge"_a = 0.0, "threads"_a = 1)
+                  "uncertainty"_a = 0.0, "pose_uncertainty"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
+                  "threads"_a = 1)
       .def("__len__", &sizeOf)
       .def("__repr__", &textOf)
       .def_property_readonly(

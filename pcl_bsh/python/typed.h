@@ -37,6 +37,7 @@ public:
 using ArrayLike = As<"npt.ArrayLike">;
 using OptionalArray = As<"Optional[npt.ArrayLike]">;
 using PoseLike = As<"Optional[npt.ArrayLike]">;
+using PoseUncertaintyLike = As<"Union[None, str, npt.ArrayLike]">;
 using AccuracyLike = As<"Union[None, str, Accuracy]">;
 using ProgressLike = As<"Optional[Callable[[float], Any]]">;
 using PathLike = As<"Union[str, os.PathLike[str]]">;

@@ -25,7 +25,7 @@ bool Cone::meets(const DirectionCell& cell) const
 unsigned cellLevels(double angle)
 {
   unsigned levels = 6;
-  while (std::ldexp(angle, static_cast<int>(levels)) < 16.0) ++levels;
+  while (std::ldexp(angle, static_cast<int>(levels)) < 8.0) ++levels;
   return levels;
 }
 

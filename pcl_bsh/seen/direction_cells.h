@@ -96,7 +96,7 @@ struct Cone {
   bool meets(const DirectionCell& cell) const;
 };
 
-/// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most an eighth of the angle.
+/// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most a quarter of the angle.
 unsigned cellLevels(double angle);
 
 /// Up to this angle a beam speaks for a cell: less than its own by rounding and by what directions are off as stored.

@@ -69,6 +69,23 @@ def test_subset_radii_and_uncertainties_stay():
     np.testing.assert_equal(answers(hierarchy, other), answers(pcl_bsh.SphereHierarchy(xyz, copy=True, **kept), other))
 
 
+def test_what_a_pose_adds_is_of_where_points_are_now():
+    near, far = np.array([[0.5, 0.0, 0]]), np.array([[4.0, 0.0, 0]])
+    kept = dict(uncertainty=0.01, uncertainties=np.array([0.02], np.float32), pose_uncertainty=(0.01, 0.1))
+    hierarchy, other = pcl_bsh.SphereHierarchy(near, **kept), pcl_bsh.SphereHierarchy(np.array([[4.0, 0.4, 0]]))
+    for now, verdict in ((far, 2), (near, 0), (far, 2)):
+        hierarchy.refit(now)
+        np.testing.assert_array_equal(pcl_bsh.collision_flags(hierarchy, other, 0.0), [verdict])
+        again = pcl_bsh.SphereHierarchy(now, copy=True, **kept)
+        np.testing.assert_equal(answers(hierarchy, other), answers(again, other))
+    assert not far.flags.writeable and near.flags.writeable
+    corners = np.array([[0.5, 0, 0], [0.5, 0, 1], [0.5, 0.1, 0]])
+    mesh = pcl_bsh.SphereHierarchy.of_triangles(corners, [[0, 1, 2]], pose_uncertainty=(0, 0.1))
+    for shift, verdict in ((3.5, 2), (0, 0)):
+        mesh.refit(corners + [shift, 0, 0])
+        np.testing.assert_array_equal(pcl_bsh.collision_flags(other, mesh, 0.1), [verdict])
+
+
 def test_what_does_not_fit_changes_nothing():
     xyz = cloud("random", 1, 60)
     hierarchy, other = pcl_bsh.SphereHierarchy(xyz), pcl_bsh.SphereHierarchy(cloud("random", 2, 60))

@@ -143,6 +143,37 @@ def test_uncertain_places():
         bool(maybe)
 
 
+def test_uncertain_poses():
+    """Turned by up to 0.2 about the origin, a point at 1 moves by no more than 0.2, one at 3 by no more than 0.6."""
+    wall = pcl_bsh.SphereHierarchy([[1.0, 0, 0], [3, 0, 0]])
+    points = np.array([[1.0, 0.35, 0], [3, 0.35, 0]])
+    turned = pcl_bsh.SphereHierarchy(points, pose_uncertainty=(0.01, 0.2, 0, 0, 0))
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(wall, turned, 0.1), [0, 2])
+    along = pcl_bsh.collide_along(wall, turned, [np.eye(4), np.eye(4)], clearance=0.1)
+    np.testing.assert_array_equal(along.flags, [0, 2])
+    far = np.eye(4)
+    far[2, 3] = 5
+    np.testing.assert_array_equal(pcl_bsh.any_collision_at_poses(wall, turned, [np.eye(4), far], 0.1), [2, 0])
+    assert [part["flags"].tolist() for part in flags_in_a_scene(wall, turned) if part["object"] == 0] == [[0, 2]]
+    by_text = pcl_bsh.SphereHierarchy(points, pose_uncertainty="0.01,0.2")
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(wall, by_text, 0.1), [0, 2])
+    sheet = np.array([[3.0, 0.35, 0], [3, 0.35, 1], [3, 1, 0]])
+    for pose_uncertainty, verdict in ((None, 0), (0.3, 2), ((0, 0.2), 2)):
+        mesh = pcl_bsh.SphereHierarchy.of_triangles(sheet, [[0, 1, 2]], pose_uncertainty=pose_uncertainty)
+        np.testing.assert_array_equal(pcl_bsh.collision_flags(wall, mesh, 0.1), [0, verdict])
+    assert "uncertain" in repr(turned)
+    for wrong in ("x", "1,2,3", (1, 2, 3), -1, (0, np.nan)):
+        with pytest.raises(ValueError, match="pose uncertainty: .* is none: give T"):
+            pcl_bsh.SphereHierarchy(points, pose_uncertainty=wrong)
+
+
+def flags_in_a_scene(wall, turned):
+    scene = pcl_bsh.Scene(clearance=0.1, flags=True)
+    scene.add("wall", wall, fixed=True)
+    scene.add("machine", turned)
+    return scene.query().flags
+
+
 def test_density_guard():
     x, y = np.meshgrid(np.arange(0, 2, 0.1), np.arange(0, 2, 0.1))
     wall = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)

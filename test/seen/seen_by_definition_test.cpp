@@ -236,7 +236,7 @@ protected:
         EXPECT_TRUE(seesAny({})) << what << ": place " << i << " is called seen";
       }
       else {
-        EXPECT_FALSE(seesAny({0x1p-40 * far, 0.8})) << what << ": place " << i << " is called unseen";
+        EXPECT_FALSE(seesAny({0x1p-40 * far, 0.6})) << what << ": place " << i << " is called unseen";
       }
       ++(seen ? seen_ : unseen_);
     }

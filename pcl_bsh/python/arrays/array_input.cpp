@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/question/uncertainty.h>
 
 #include <algorithm>
 #include <array>
@@ -187,9 +188,52 @@ Eigen::Isometry3d poseFromRows(const std::string& name, const double* rows, py::
   return pose;
 }
 
+/// Whoever asks the view for its arrays still finds them.
+PointsView withPose(const PointsView& view, const std::string& name, const PoseUncertainty& pose)
+{
+  if (pose.isZero()) return view;
+  Uncertainty of_pose;
+  of_pose.pose = pose;
+  PointsView uncertain = withUncertainty(view, {}, name, of_pose);
+  uncertain.owner = std::shared_ptr<const void>(uncertain.owner, view.owner.get());
+  return uncertain;
+}
+
 bool isPoseShape(const py::array& array, py::ssize_t first)
 {
   return (array.shape(first) == 3 || array.shape(first) == 4) && array.shape(first + 1) == 4;
+}
+
+/// Without what the pose's uncertainty adds.
+PointsView keptViewOf(const std::string& name, const PointsInput& input)
+{
+  auto kept = makeOwner<KeptArrays>();
+  kept->points = arrayOf(name, input.xyz);
+  const bool converted = !kept->points.is(input.xyz) && kept->points.owndata();
+  PointsView view = viewOfArray(name, kept->points, input.copy, kept->in_place);
+  if (converted) kept->in_place = false;
+  kept->keep(kept->points);
+  const auto floats = [&](const char* what, const py::object& values) -> const float* {
+    if (values.is_none()) return nullptr;
+    py::array array = floatsOf(what, values, view.count);
+    if (input.copy) array = array.attr("copy")();
+    return static_cast<const float*>(kept->keep(array));
+  };
+  view.radii = floats("radii", input.radii);
+  kept->uncertainty = view.uncertainty = input.uncertainty;
+  kept->uncertainties = view.uncertainties = floats("uncertainties", input.uncertainties);
+  kept->pose = input.pose;
+  if (!input.indices.is_none()) {
+    const std::vector<std::uint32_t> records = recordsOf("indices", input.indices, 1);
+    py::array_t<std::int32_t> own(static_cast<py::ssize_t>(records.size()));
+    std::transform(records.begin(), records.end(), own.mutable_data(), [](std::uint32_t record) {
+      return static_cast<std::int32_t>(std::min<std::uint32_t>(record, std::numeric_limits<std::int32_t>::max()));
+    });
+    view.indices = static_cast<const std::int32_t*>(kept->keep(own));
+    view.index_count = records.size();
+  }
+  view.owner = std::shared_ptr<const void>(kept, static_cast<const Owner*>(kept.get()));
+  return view;
 }
 
 } // namespace
@@ -220,44 +264,27 @@ int KeptArrays::traverse(visitproc visit, void* arg) const
 
 PointsView viewOfPoints(const std::string& name, const PointsInput& input)
 {
-  auto kept = makeOwner<KeptArrays>();
-  kept->points = arrayOf(name, input.xyz);
-  const bool converted = !kept->points.is(input.xyz) && kept->points.owndata();
-  PointsView view = viewOfArray(name, kept->points, input.copy, kept->in_place);
-  if (converted) kept->in_place = false;
-  kept->keep(kept->points);
-  const auto floats = [&](const char* what, const py::object& values) -> const float* {
-    if (values.is_none()) return nullptr;
-    py::array array = floatsOf(what, values, view.count);
-    if (input.copy) array = array.attr("copy")();
-    return static_cast<const float*>(kept->keep(array));
-  };
-  view.radii = floats("radii", input.radii);
-  view.uncertainty = input.uncertainty;
-  view.uncertainties = floats("uncertainties", input.uncertainties);
-  if (!input.indices.is_none()) {
-    const std::vector<std::uint32_t> records = recordsOf("indices", input.indices, 1);
-    py::array_t<std::int32_t> own(static_cast<py::ssize_t>(records.size()));
-    std::transform(records.begin(), records.end(), own.mutable_data(), [](std::uint32_t record) {
-      return static_cast<std::int32_t>(std::min<std::uint32_t>(record, std::numeric_limits<std::int32_t>::max()));
-    });
-    view.indices = static_cast<const std::int32_t*>(kept->keep(own));
-    view.index_count = records.size();
-  }
-  view.owner = std::shared_ptr<const void>(kept, static_cast<const Owner*>(kept.get()));
-  return view;
+  return withPose(keptViewOf(name, input), name, input.pose);
 }
 
 PointsView viewOfTriangles(const PointsInput& vertices, std::vector<Triangle> triangles)
 {
-  const PointsView corners = viewOfPoints("vertices", vertices);
+  const PointsView corners = keptViewOf("vertices", vertices);
   PointsView view = viewOf(trianglesOf(corners, std::make_shared<const std::vector<Triangle>>(std::move(triangles))));
   view.owner = std::shared_ptr<const void>(view.owner, corners.owner.get()); // who asks for the arrays finds them
-  return view;
+  return withPose(view, "triangles", vertices.pose);
+}
+
+const KeptArrays* arraysOf(const PointsView& view)
+{
+  return dynamic_cast<const KeptArrays*>(static_cast<const Owner*>(view.owner.get()));
 }
 
 MovedView movedView(const PointsView& before, PointsInput input)
 {
+  const KeptArrays& given = *arraysOf(before);
+  input.uncertainty = given.uncertainty;
+  input.pose = given.pose;
   if (before.triangles) {
     if (!input.radii.is_none() || !input.uncertainties.is_none())
       throw InvalidInput(Input::points, input.radii.is_none() ? "uncertainties" : "radii", "are those of points",
@@ -265,18 +292,16 @@ MovedView movedView(const PointsView& before, PointsInput input)
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i < before.triangles->count; ++i)
       triangles.push_back(before.triangles->cornersOf(static_cast<std::uint32_t>(i)));
-    input.uncertainty = before.uncertainty;
     return {before, viewOfTriangles(input, std::move(triangles))};
   }
   // The arrays of before end with its hierarchy's view.
-  const auto stays = [&](py::object& given, const float* values) {
-    if (given.is_none() && values) given = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
+  const auto stays = [&](py::object& now, const float* values) {
+    if (now.is_none() && values) now = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
   };
   stays(input.radii, before.radii);
-  stays(input.uncertainties, before.uncertainties);
+  stays(input.uncertainties, given.uncertainties);
   if (before.indices)
     input.indices = py::array_t<std::int32_t>(static_cast<py::ssize_t>(before.index_count), before.indices);
-  input.uncertainty = before.uncertainty;
   return {before, viewOfPoints("points", input)};
 }
 
@@ -308,6 +333,16 @@ std::vector<Eigen::Isometry3d> posesOf(const std::string& name, const py::object
   for (py::ssize_t i = 0; i < array.shape(0); ++i, rows += 4 * array.shape(1))
     list.push_back(poseFromRows(name + "[" + std::to_string(i) + "]", rows, array.shape(1)));
   return list;
+}
+
+PoseUncertainty poseUncertaintyOf(const py::object& uncertainty)
+{
+  if (uncertainty.is_none()) return {};
+  if (py::isinstance<py::str>(uncertainty)) return PoseUncertainty::parse(py::str(uncertainty));
+  const py::array numbers = doublesOf("pose_uncertainty", uncertainty, Input::uncertainty).attr("reshape")(-1);
+  std::string text;
+  for (const py::handle number : numbers) text += (text.empty() ? "" : ",") + std::string(py::str(number));
+  return PoseUncertainty::parse(text);
 }
 
 Point3 point3Of(const std::string& name, const py::object& point)

@@ -10,6 +10,7 @@
 #include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/question/pose_uncertainty.h>
 
 #include <pybind11/numpy.h>
 
@@ -33,6 +34,7 @@ struct PointsInput {
   double uncertainty = 0.0;              ///< of every point
   py::object uncertainties = py::none(); ///< (n,) float32
   bool copy = false;
+  PoseUncertainty pose = {}; ///< on top of both: all points may move together
 };
 
 /// What a hierarchy of Python's lives on. Released by whichever thread lets go of it last.
@@ -46,6 +48,11 @@ class KeptArrays : public Owner {
 public:
   py::array points;
   bool in_place = false; ///< `points` is the caller's own memory
+
+  /// What was given beside the points, which the view's uncertainties are made of.
+  double uncertainty = 0.0;
+  const float* uncertainties = nullptr;
+  PoseUncertainty pose = {};
   const void* keep(const py::array& array);
 
   /// As PyTypeObject::tp_traverse, for whoever alone has this object.
@@ -80,8 +87,11 @@ struct MovedView {
   PointsView before, now;
 };
 
-/// `input` has no subset and no common uncertainty, those of the points before stay, as do radii and uncertainties that
-/// it does not have. Of triangles, it has their vertices.
+/// What keeps the arrays of a view of viewOfPoints() or viewOfTriangles(); else null.
+const KeptArrays* arraysOf(const PointsView& view);
+
+/// `input` has no subset and no uncertainty of all points, those of the points before stay, as do radii and
+/// uncertainties that it does not have. Of triangles, it has their vertices.
 MovedView movedView(const PointsView& before, PointsInput input);
 
 /// The same for the time of a call: nothing is locked. `kept` has what must live as long as the view.
@@ -95,6 +105,9 @@ std::vector<Eigen::Isometry3d> posesOf(const std::string& name, const py::object
 
 Point3 point3Of(const std::string& name, const py::object& point);
 Eigen::Vector3d vectorOf(const std::string& name, const py::object& vector);
+
+/// A text for PoseUncertainty::parse(), or the numbers of one; None: exact.
+PoseUncertainty poseUncertaintyOf(const py::object& uncertainty);
 
 /// A text for Accuracy::parse(), or an Accuracy; None: exact.
 Accuracy accuracyOf(const py::object& accuracy);

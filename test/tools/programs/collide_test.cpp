@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/clouds/las_sample.h"
 #include "program_run.h"
 #include "support/verdicts.h"
 
@@ -11,7 +12,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace pcl_bsh {
 
@@ -213,6 +216,61 @@ TEST_F(Collide, TellsWhatOfTheObstacleNobodySaw)
   expectFailure("{scan.pcd}" + rest + "--origin 1,2", 2, "--origin: '1,2' is none: give X,Y,Z");
   expectFailure("{scan.pcd} {machine.xyz} {out.pcd} --clearance 1 --origin 0,0,0", 2,
                 "--origin: is given, but not --seen: give --seen, too");
+}
+
+/// Two scanners on either side of a pillar, in one file, where a field tells whose each point is.
+TEST_F(Collide, TakesScannersFromATableByAField)
+{
+  io::LasSample las(4, 6);
+  las.scale = {1e-4, 1e-4, 1e-4};
+  las.offset = {431200, 5412300, 0};
+  std::string csv = "x,y,z,scan\n", columns;
+  for (const int scan : {7, 12}) {
+    const double x = scan == 7 ? 0.0 : 6.0, towards = scan == 7 ? 1.0 : -1.0, pillar = scan == 7 ? 2.0 : 3.5;
+    for (double elevation = -1.55; elevation <= 1.55; elevation += 0.05) {
+      for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.05) {
+        const double along = std::cos(elevation) * std::cos(azimuth), range = towards * along > 0.5 ? pillar : 5.0;
+        const std::array<double, 3> end = {x + range * along, range * std::cos(elevation) * std::sin(azimuth),
+                                           1.0 + range * std::sin(elevation)};
+        std::string point(las.length(), '\0');
+        std::string row;
+        for (std::size_t k = 0; k < 3; ++k) {
+          io::put(point, 4 * k, static_cast<std::int32_t>(std::lround(1e4 * end[k])));
+          row += std::to_string(end[k]) + ' ';
+        }
+        point[14] = 0x11; // the only return
+        io::put(point, 20, static_cast<std::uint16_t>(scan));
+        las.points.push_back(point);
+        row += std::to_string(scan) + '\n';
+        columns += row;
+        std::replace(row.begin(), row.end(), ' ', ',');
+        csv += row;
+      }
+    }
+  }
+  folder.write("scans.las", las.text());
+  folder.write("scans.csv", csv);
+  folder.write("scans.xyz", columns);
+  folder.write("machine.xyz", "1 0 1\n3 0 1\n-3 0 1\n");
+  const std::string rest = " {machine.xyz} {out.pcd} --clearance 0.1 --seen --obstacle-out {seen.pcd} ";
+  const std::string grid = "--pose 431200,5412300,0,0,0,0 ";
+  const std::string in_grid = "7=431200,5412300,1;12=431206,5412300,1\"", near = "7=0,0,1;12=6,0,1\"";
+  for (const std::string& job :
+       {"{scans.las}" + rest + grid + "--origin \"point_source_id:" + in_grid,
+        "{scans.csv}" + rest + "--origin \"scan:" + near, "{scans.xyz}" + rest + "--origin \"column_4:" + near}) {
+    expectDone(job);
+    EXPECT_EQ(flags("seen.pcd"), (std::vector<int>{0, 0, 0})) << job;
+  }
+  for (const std::string& job :
+       {"{scans.las}" + rest + grid + "--origin 431200,5412300,1", "{scans.csv}" + rest + "--origin 0,0,1"}) {
+    expectDone(job); // the other scanner's returns end beams of this one
+    EXPECT_EQ(flags("seen.pcd").at(1), 4) << job;
+  }
+  expectFailure("{scans.las}" + rest, 1, "scans.las: does not say where its scanner stood: give --origin");
+  expectFailure("{scans.csv}" + rest + "--origin \"scan:7=0,0,1\"", 1,
+                "is of scan 12 in field 'scan', which has no origin: give one for each scan");
+  expectFailure("{scans.las}" + rest + "--origin \"source:7=0,0,1\"", 1,
+                "scans.las: field 'source' that numbers its scans is missing: give one of its fields: ");
 }
 
 TEST_F(Collide, VerdictsHoldForUncertainPoses)
