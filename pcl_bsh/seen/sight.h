@@ -66,11 +66,11 @@ inline double chordOf(double angle)
 /// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
 inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {
-  const double length = beam.norm();
-  double along = ball.distance, off = 0.0; // of the centre, seen in that direction
+  const Eigen::Vector3d unit = beam / beam.norm(); // products of both lengths would overflow
+  double along = ball.distance, off = 0.0;         // of the centre, seen in that direction
   if (ball.distance > 0.0) {
-    const double cosine = ball.way.dot(beam) / (ball.distance * length);
-    const double sine = ball.way.cross(beam).norm() / (ball.distance * length);
+    const double cosine = ball.way.dot(unit) / ball.distance;
+    const double sine = ball.way.cross(unit).norm() / ball.distance;
     const double sine_left = sine * speaks.cosine - cosine * speaks.sine;
     if (sine_left > 0.0 || cosine < 0.0) {
       along = ball.distance * (cosine * speaks.cosine + sine * speaks.sine);

@@ -36,7 +36,7 @@ Vector difference(const Point3& a, const Point3& b)
   return {Number(a[0]) - b[0], Number(a[1]) - b[1], Number(a[2]) - b[2]};
 }
 
-Eigen::Vector3d directionOf(const Vector& way)
+Eigen::Vector3d unitOf(const Vector& way)
 {
   const Number size = length(way);
   return {static_cast<double>(way[0] / size), static_cast<double>(way[1] / size), static_cast<double>(way[2] / size)};
@@ -99,7 +99,7 @@ public:
         Beam beam{difference(end, scan.origin), 0, 0, {}};
         beam.range = length(beam.way);
         beam.empty = returned ? Number(beam.range - view.uncertainty) : Number(scan.misses_beyond);
-        beam.direction = directionOf(beam.way);
+        beam.direction = unitOf(beam.way);
         directions_.push_back(beam.direction);
         beams_.push_back(beam);
       }
@@ -114,7 +114,7 @@ public:
     const Vector way = difference(place, origin_);
     const Number distance = length(way), radius = Number(ball) + tolerance.length;
     const bool around = distance <= radius;
-    const Eigen::Vector3d axis = around ? Eigen::Vector3d::UnitX().eval() : directionOf(way);
+    const Eigen::Vector3d axis = around ? Eigen::Vector3d::UnitX().eval() : unitOf(way);
     const double cone = around ? test::kPi : static_cast<double>(asin(radius / distance));
     if (around ? hasHoleAnywhere(tolerance.hole) : hasHole(directions_, axis, cone, grown(tolerance.hole)))
       return false;

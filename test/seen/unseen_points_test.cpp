@@ -424,6 +424,16 @@ TEST(MarkUnseenHardCases, FarFromTheWorldsOrigin)
   EXPECT_FALSE(isSeen({scan}, 0.2, {shift[0] + 5, shift[1], shift[2]}, 5.001));
 }
 
+TEST(MarkUnseenHardCases, CoordinatesWhoseProductsOverflow)
+{
+  ScanBeams scan;
+  const std::vector<double> ends = {0, 0, 0, 1, 0, 0};
+  scan.returns = viewOf(ends.data(), 2);
+  scan.origin = {0, -1.5e148, 0};
+  EXPECT_FALSE(isSeen({scan}, 0.25, {0, 0, -1.8e138}, 1.8e138)); // both beams end in it
+  EXPECT_TRUE(isSeen({scan}, 0.25, {0, -1e148, -1.8e138}, 1.8e138));
+}
+
 TEST(MarkUnseen, ShortensBeamsByTheirUncertainty)
 {
   const std::vector<double> ends = allAround(0.1, 12.5);
