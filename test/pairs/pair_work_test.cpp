@@ -111,6 +111,24 @@ TEST(PairWork, SheetsThatFaceEachOtherAtTheClearance)
   EXPECT_LT(stepsOf(far(16000), kFlags), 2e7);
 }
 
+TEST(PairWork, FlagsWithManyCandidatesOfBallsAreThoseOfPointsThatReachAsFar)
+{
+  HardPair pair = facingSheets(4000, 10, 10);
+  test::Random random(19);
+  for (Point3& p : pair.b) p[2] += random.uniform(-1e-3, 1e-3);
+  test::Cloud a(pair.a), b(pair.b);
+  const SphereHierarchy points_a(a.view()), points_b(b.view());
+  const FlagsResult expected = collisionFlags({points_a}, {points_b}, {10.0, Side::both});
+  EXPECT_GT(expected.colliding_a, 10u);
+  EXPECT_LT(expected.colliding_a, 3990u);
+  a.setRadii(std::vector<float>(pair.a.size(), 0.25f));
+  b.setRadii(std::vector<float>(pair.b.size(), 0.25f));
+  const SphereHierarchy balls_a(a.view()), balls_b(b.view());
+  const FlagsResult found = collisionFlags({balls_a}, {balls_b}, {9.5, Side::both});
+  EXPECT_EQ(found.a, expected.a);
+  EXPECT_EQ(found.b, expected.b);
+}
+
 TEST(PairWork, FlagsWithManyCandidatesAreThoseOfSearchesForNeighbors)
 {
   // So many candidates are left to each node that slabs are compared; searches for neighbours have none.
