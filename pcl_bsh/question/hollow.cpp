@@ -130,7 +130,7 @@ std::optional<Warning> warningOfHollow(const Question& question, const Answer& a
       samples.push_back({p, {q[0], q[1], q[2]}});
     }
   }
-  if (samples.empty()) return std::nullopt;
+  if (samples.empty() || !obstacle.mayClose()) return std::nullopt;
   windRound(samples, *surface.view().triangles);
   const auto held = std::find_if(samples.begin(), samples.end(),
                                  [](const Sample& sample) { return sample.turns != 0 && !sample.touches; });

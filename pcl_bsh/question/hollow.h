@@ -11,7 +11,8 @@ namespace pcl_bsh {
 /// Where faces of the obstacle close, no part of the input is near them, and some part is inside: `solid` is meant,
 /// perhaps. A hint, by samples: parts that are few among others may be overlooked. Of voxels of the input that meet the
 /// obstacle's box, 256 records at most are looked at, and 8 are samples; of a path, 16 poses. All triangles are passed
-/// once, which takes some 160 instructions each; whether faces close is found out only where they wind round a sample.
+/// once, which takes some 160 instructions each; whether faces close is found out where they wind round a sample, and
+/// by the second question about the obstacle. Where they are known not to, nothing is looked at.
 /// @param answer of the question, but for its warnings. @param surface of the obstacle, where it has faces. @param box
 ///   of the obstacle, in its frame
 std::optional<Warning> warningOfHollow(const Question& question, const Answer& answer, const Shape& input,

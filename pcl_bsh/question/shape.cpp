@@ -124,6 +124,12 @@ bool Shape::isClosed()
   return *is_closed_;
 }
 
+bool Shape::mayClose()
+{
+  if (std::exchange(asked_to_close_, true)) isClosed();
+  return is_closed_.value_or(true);
+}
+
 const Content& Shape::content()
 {
   if (!content_) content_ = std::make_shared<const Content>(*hierarchy_);

@@ -80,6 +80,9 @@ public:
   /// Whether its faces close: found out once, for a few hundred instructions a triangle. @pre as of solid()
   bool isClosed();
 
+  /// Whether its faces may close, which a question about it may ask: the second one finds out, for all that follow.
+  bool mayClose();
+
   /// What of it solids are asked about. Made once. @pre hierarchy() was called
   const Content& content();
 
@@ -120,6 +123,7 @@ private:
   struct Enclosing;
   std::shared_ptr<const Enclosing> solid_;
   std::optional<bool> is_closed_; ///< once it is asked for
+  bool asked_to_close_ = false;   ///< mayClose() was called
   std::shared_ptr<const Content> content_;
 
   /// What SeenSpace is of.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -168,16 +169,34 @@ Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
   return first;
 }
 
-/// For a record of the input: a triangle of the body that holds it, or what of the obstacle its body holds.
-std::uint32_t Solids::otherOf(const Pairing& pair, std::uint32_t record, const Eigen::Isometry3d& pose,
-                              Work& work) const
+/// For records of the input that are held at their poses, or whose bodies hold something there: a triangle of the body
+/// that holds it, or the first of the obstacle that its body holds. What a pose holds is found once.
+/// @param at poses and records @param others of the records: set
+void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const std::vector<Eigen::Isometry3d>& poses,
+                        std::vector<std::uint32_t>& others, Work& work) const
 {
-  if (pair.of_obstacle) return holderOf(pair.solid, pose, pair.content, a_.pose, record, &work);
-  for (const std::uint32_t held : heldAt(pair, pose, work)) {
-    const Records holders = holdersOf(pair.solid, a_.pose, pair.content, pose, {held}, &work);
-    if (std::binary_search(holders.begin(), holders.end(), record)) return held;
+  std::sort(at.begin(), at.end());
+  for (auto first = at.begin(); first != at.end();) {
+    const std::uint32_t pose = first->first;
+    const auto last = std::find_if(first, at.end(), [&](const PoseRecord& other) { return other.first != pose; });
+    if (pair.of_obstacle) {
+      for (; first != last; ++first)
+        others[first->second] = holderOf(pair.solid, poses[pose], pair.content, a_.pose, first->second, &work);
+      continue;
+    }
+    for (auto i = first; i != last; ++i) others[i->second] = kNothing;
+    std::size_t left = static_cast<std::size_t>(last - first);
+    for (const std::uint32_t held : heldAt(pair, poses[pose], work)) {
+      const Records holders = holdersOf(pair.solid, a_.pose, pair.content, poses[pose], {held}, &work);
+      for (auto i = first; i != last; ++i) {
+        if (others[i->second] != kNothing || !std::binary_search(holders.begin(), holders.end(), i->second)) continue;
+        others[i->second] = held;
+        --left;
+      }
+      if (left == 0) break;
+    }
+    first = last;
   }
-  return kNothing;
 }
 
 void Solids::addToPath(TrajectoryResult& found, Work& work) const
@@ -189,6 +208,7 @@ void Solids::addToPath(TrajectoryResult& found, Work& work) const
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
   for (const Pairing& pair : pairings_) {
     const FirstPoses first = firstPoses(pair, work);
+    std::vector<PoseRecord> of_others;
     for (std::size_t i = 0; i < first.possible.size(); ++i) {
       if (first.possible[i] == kNothing) continue;
       const bool certain = first.certain[i] != kNothing;
@@ -199,13 +219,13 @@ void Solids::addToPath(TrajectoryResult& found, Work& work) const
       if (!found.distance.empty() && !(found.distance[i] <= 0.0f)) {
         found.distance[i] = 0.0f;
         if (!found.closest_pose.empty()) found.closest_pose[i] = static_cast<std::int32_t>(first.possible[i]);
-        if (!found.closest_point.empty())
-          found.closest_point[i] = otherOf(pair, static_cast<std::uint32_t>(i), poses[first.possible[i]], work);
+        if (!found.closest_point.empty()) of_others.emplace_back(first.possible[i], static_cast<std::uint32_t>(i));
       }
       if (question_.swept > 0.0) takeContact(found.first_contact, first.possible[i]);
       if (question_.swept > 0.0 && certain && !found.certain_pose.empty())
         takeContact(found.certain_contact, first.certain[i]);
     }
+    findOthers(pair, std::move(of_others), poses, found.closest_point, work);
   }
   found.colliding = countOf(found.flags, Verdict::colliding);
   found.undecided = countOf(found.flags, Verdict::undecided);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -71,7 +72,9 @@ private:
   const Records& held(Pairing& pair, Work& work);
   Records heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const;
   void add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const;
-  std::uint32_t otherOf(const Pairing& pair, std::uint32_t record, const Eigen::Isometry3d& pose, Work& work) const;
+  using PoseRecord = std::pair<std::uint32_t, std::uint32_t>; ///< numbers of a pose, and of a record
+  void findOthers(const Pairing& pair, std::vector<PoseRecord> at, const std::vector<Eigen::Isometry3d>& poses,
+                  std::vector<std::uint32_t>& others, Work& work) const;
   FirstPoses firstPoses(const Pairing& pair, Work& work) const;
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;

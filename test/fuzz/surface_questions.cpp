@@ -124,8 +124,10 @@ void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, 
     require((answer.collisions.flags[i] == Verdict::colliding) == (held(i) || surface.a[i] == Verdict::colliding),
             "solid obstacle: another flag");
   PointDistances expected = brute_force::pointDistances(a, b);
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (held(i) && expected.distance[i] > 0.0) expected.distance[i] = -expected.distance[i];
+  for (std::size_t i = 0; i < labels.size(); ++i) { // of a ball, the depth is that of its far side
+    const double depth = expected.distance[i] + 2.0 * a.hierarchy().view().ownRadius(static_cast<std::uint32_t>(i));
+    if (held(i) && depth > 0.0) expected.distance[i] = -depth;
+  }
   requireSame(answer.distances.a.distance, expected.distance, "solid obstacle: other distances");
 }
 

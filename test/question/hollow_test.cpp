@@ -72,6 +72,20 @@ TEST_F(HollowTest, NotWhereFacesDoNotClose)
   EXPECT_TRUE(hollow().empty());
 }
 
+TEST_F(HollowTest, TheSecondQuestionFindsOutWhetherFacesClose)
+{
+  const auto mayClose = [&] {
+    Shape obstacle("robot.stl", viewOf(machine.view()));
+    obstacle.hierarchy({}, 1);
+    std::vector<bool> found;
+    for (int i = 0; i < 3; ++i) found.push_back(obstacle.mayClose());
+    return found;
+  };
+  EXPECT_EQ(mayClose(), (std::vector<bool>{true, true, true}));
+  machine.corners.resize(machine.corners.size() - 3);
+  EXPECT_EQ(mayClose(), (std::vector<bool>{true, false, false}));
+}
+
 TEST_F(HollowTest, NotWhereSomethingIsNearTheSurface)
 {
   add(2, 0, 0);
