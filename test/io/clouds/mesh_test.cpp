@@ -84,6 +84,7 @@ TEST(MeshFile, ReadsCornersOfObj)
               ElementsAre(Triangle{0, 1, 2}, Triangle{4, 0, 1}));
   EXPECT_EQ(areaOf(readMesh(folder.write("c.obj", vertices + "f 1 2 \\\n 3 4 # a square\n"))), 1.0);
   EXPECT_THAT(readMesh(folder.write("d.obj", "f 1 2 3\n" + vertices)).triangles, ElementsAre(Triangle{0, 1, 2}));
+  EXPECT_THAT(readMesh(folder.write("e.obj", vertices + "fo 1 2 3\n")).triangles, ElementsAre(Triangle{0, 1, 2}));
 }
 
 TEST(MeshFile, CutsPolygonsIntoTheirArea)
@@ -195,6 +196,8 @@ TEST(MeshFile, ReadsStl)
   std::string capitals = text;
   for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   EXPECT_EQ(areaOf(readMesh(folder.write("capitals.stl", capitals))), 1.0);
+  for (const std::string& end : {std::string(1, '\0'), std::string("\x1a"), std::string("\x1a\0\0", 3)})
+    EXPECT_EQ(areaOf(readMesh(folder.write("ended.stl", text + end))), 1.0);
   for (const char* title : {"made", "solid made by many programs", "solid\n facet"}) {
     const Mesh binary =
         readMesh(folder.write("c.stl", binaryStl({{0, 0, 0, 1, 0, 0, 1, 1, 0}, {0, 0, 0, 1, 1, 0, 0, 1, 0}}, title)));

@@ -30,7 +30,7 @@ Polygons parseObjFaces(std::string_view file)
   for (TextCursor text(file, '#'); text.nextLine();) {
     const std::string_view kind = text.word();
     if (kind == "v") ++vertices;
-    if (kind != "f") continue;
+    if (kind != "f" && kind != "fo") continue; // "fo": what old programs write
     while (!text.line().empty()) {
       if (text.line() == "\\") { // the face goes on in the next line
         if (!text.nextLine()) throw FormatError("is truncated: it ends in a face");

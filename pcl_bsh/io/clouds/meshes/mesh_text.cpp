@@ -133,7 +133,7 @@ ObjScan scanObj(std::string_view file)
     else if (kind == "vn") {
       ++scan.normals;
     }
-    else if (kind == "f" || kind == "p" || kind == "l") {
+    else if (kind == "f" || kind == "fo" || kind == "p" || kind == "l") {
       while (!text.line().empty()) {
         if (!namesItsOwnNormal(text.word())) scan.normals_follow_vertices = false;
       }

@@ -72,12 +72,20 @@ std::string keyword(TextCursor& text)
   return inSmallLetters(std::string(text.word().substr(0, 40)));
 }
 
+/// Less the bytes that some programs end a text with: zeros, and the sign that DOS ends files with.
+std::string_view withoutEndMarks(std::string_view text)
+{
+  constexpr std::string_view marks("\0\x1a", 2);
+  const std::size_t last = text.find_last_not_of(marks);
+  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
 bool isText(std::string_view file)
 {
   const auto count = countOf(file);
   if (count && header_bytes + count_bytes + *count * triangle_bytes == file.size()) return false;
   TextCursor text(file.substr(0, 1024));
-  return text.nextLine() && keyword(text) == "solid" && file.find('\0') == std::string_view::npos;
+  return text.nextLine() && keyword(text) == "solid" && withoutEndMarks(file).find('\0') == std::string_view::npos;
 }
 
 void readBinary(std::string_view file, Places& places, std::vector<Triangle>& triangles)
@@ -144,7 +152,7 @@ pcl::PCLPointCloud2 parseStl(std::string_view file, std::vector<Triangle>* trian
   Places places;
   std::vector<Triangle> found;
   if (isText(file))
-    readText(file, places, found);
+    readText(withoutEndMarks(file), places, found);
   else
     readBinary(file, places, found);
   if (triangles != nullptr) triangles->insert(triangles->end(), found.begin(), found.end());
