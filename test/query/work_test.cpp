@@ -2,6 +2,7 @@
 // What queries report of their work: by hand where the trees are small, and consistent elsewhere.
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/neighbors/neighbors.h>
@@ -187,6 +188,7 @@ TEST(Work, OfEveryQueryThatDescendsHasUpdates)
   expectUpdates("any", anyCollision({a}, placed, within<AnyRequest>(0.01)).work);
   expectUpdates("flags", collisionFlags({a}, placed, within<FlagsRequest>(0.01)).work);
   expectUpdates("distance", closestPair({a}, placed).work);
+  expectUpdates("distances", pointDistances({a}, placed).work);
   expectUpdates("contacts", nearestContacts({a}, placed, {0.01, 20}).work);
   expectUpdates("pairs", pairsWithin({a}, placed, {0.01, 100000}).work);
   expectUpdates("clusters", euclideanClusters(a, 0.05).work);
