@@ -77,7 +77,6 @@ public:
   const std::vector<BroadPair*>& pairsOf(ObjectId object) const { return places_[object].pairs; }
 
   /// Pairs that share no voxel any more are kept, with shared == 0, until no list refers to them.
-  bool hasParted() const { return !parted_.empty(); }
   void dropParted();
 
   /// Objects that have a voxel in common with the box, ascending. Some more do no harm.

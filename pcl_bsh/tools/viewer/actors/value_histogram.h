@@ -24,7 +24,6 @@ public:
   void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
             const ViewContent& content);
   void hide() { actor_->VisibilityOff(); }
-  bool isShown() const { return actor_->GetVisibility() != 0; }
 
 private:
   vtkNew<vtkContextActor> actor_;
