@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any two clouds, poses and clearance: all queries against brute force, and both hierarchies validated.
+// Any two clouds, poses and clearance, also where points and poses are uncertain: all queries against brute force, and
+// both hierarchies validated.
 #include "bytes.h"
 #include "scene.h"
 #include "support/question.h"
@@ -90,6 +91,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   request.threads = 1 + bytes.below(2);
   request.clearance = fuzz::anyClearance(bytes, placed_a, placed_b);
   fuzz::compareAnswers(placed_a, placed_b, request);
+  const double scale = std::isfinite(request.clearance) ? request.clearance : 1.0;
+  const std::optional<SphereHierarchy> uncertain_a = a.hierarchy(fuzz::anyUncertainty(bytes, scale)),
+                                       uncertain_b = b.hierarchy(fuzz::anyUncertainty(bytes, scale));
+  if (uncertain_a && uncertain_b)
+    fuzz::compareAnswers({*uncertain_a, placed_a.pose}, {*uncertain_b, placed_b.pose}, request);
   fuzz::requireSound(*first); // last: it builds the voxels that no query visited
   fuzz::requireSound(*second);
   return 0;

@@ -159,6 +159,16 @@ std::optional<SphereHierarchy> FuzzedCloud::hierarchy() const
   return built;
 }
 
+std::optional<SphereHierarchy> FuzzedCloud::hierarchy(const Uncertainty& uncertainty) const
+{
+  try {
+    return SphereHierarchy(withUncertainty(view(), {}, "cloud", uncertainty), options_);
+  }
+  catch (const std::invalid_argument&) { // what is too large for a float
+    return std::nullopt;
+  }
+}
+
 FuzzedMesh::FuzzedMesh(Bytes& bytes)
 {
   const auto flags = bytes.take<std::uint8_t>();
@@ -207,6 +217,20 @@ std::optional<SphereHierarchy> FuzzedMesh::hierarchy() const
   }
   require(sensible, "a mesh that makes no sense was accepted");
   return built;
+}
+
+Uncertainty anyUncertainty(Bytes& bytes, double clearance)
+{
+  const auto length = [&] {
+    const unsigned kind = bytes.below(8);
+    if (kind == 0) return bytes.take<double>();
+    return kind < 4 ? 0.0 : clearance * bytes.below(32) / 16;
+  };
+  Uncertainty uncertainty(length());
+  uncertainty.pose.length = length();
+  uncertainty.pose.angle = bytes.below(4) == 0 ? bytes.below(64) / 16.0 : 0.0;
+  for (double& x : uncertainty.pose.about) x = static_cast<double>(bytes.take<std::int8_t>());
+  return uncertainty;
 }
 
 Eigen::Isometry3d anyPose(Bytes& bytes)

@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/question/uncertainty.h>
 
 #include <cstdint>
 #include <optional>
@@ -21,6 +22,9 @@ public:
 
   /// None when the cloud is refused; refusing a good one or accepting a bad one is a Finding.
   std::optional<SphereHierarchy> hierarchy() const;
+
+  /// Of points that may be elsewhere; none where that is refused.
+  std::optional<SphereHierarchy> hierarchy(const Uncertainty& uncertainty) const;
 
 private:
   PointsView view() const;
@@ -53,6 +57,9 @@ private:
 
 /// Mostly rigid, sometimes nearly, sometimes not at all.
 Eigen::Isometry3d anyPose(Bytes& bytes);
+
+/// Of each point, and of a pose: about none, about as long as the clearance, or any.
+Uncertainty anyUncertainty(Bytes& bytes, double clearance);
 
 /// Half of them the distance of a pair of points, give or take the last bit.
 double anyClearance(Bytes& bytes, const Placed& a, const Placed& b);
