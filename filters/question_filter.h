@@ -110,9 +110,9 @@ public:
   /// comes out of the filter, too. Either way outputs stay as they were.
   void setProgress(std::function<bool(double)> progress) { question_.progress = std::move(progress); }
 
-  /// Called with each sentence that users should know beside the answer (pcl_bsh/question/warnings.h), of each kind
-  /// once in the filter's life, since clouds come in streams. How far points are apart is measured at the first query
-  /// alone. Default: PCL_WARN.
+  /// Called with each sentence that users should know beside the answer (pcl_bsh/question/warnings/warnings.h), of each
+  /// kind once in the filter's life, since clouds come in streams. How far points are apart is measured at the first
+  /// query alone. Default: PCL_WARN.
   void setWarn(std::function<void(const std::string&)> warn) { warn_ = std::move(warn); }
 
   /// What the last query cost.

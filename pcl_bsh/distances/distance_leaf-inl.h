@@ -14,7 +14,6 @@
 #include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
 
-#include <hwy/cache_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +67,6 @@ public:
     ++stamp_;
     std::uint32_t undecided = firstBits(leaf_.count);
     if (laid_flat_) {
-      fetchAhead();
       if (!findNearestTriangles(visit, lane, near)) return;
     }
     else {
@@ -205,18 +203,6 @@ private:
       own.high[k] = largestOf(axes[k], kLeafPoints);
     }
     return own;
-  }
-
-  /// What is read and written of the points lies anywhere in memory.
-  void fetchAhead() const
-  {
-    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
-      const std::uint32_t record = leaf_.record(i);
-      if (!leaf_.voxel->frame.lossless)
-        hwy::Prefetch(static_cast<const unsigned char*>(view_a_.data) + view_a_.stride * record + view_a_.offset[0]);
-      hwy::Prefetch(sheet_.distance + record);
-      hwy::Prefetch(sheet_.nearest + record);
-    }
   }
 
   /// The nearest triangle of b to each point of the leaf: floats leave those that may be, longer numbers decide.

@@ -4,7 +4,7 @@
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/question/scene_warnings.h>
+#include <pcl_bsh/question/warnings/scene_warnings.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <pybind11/stl.h>

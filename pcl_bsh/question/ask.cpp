@@ -6,10 +6,10 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/record_distance.h>
-#include <pcl_bsh/question/hollow.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/solids.h>
 #include <pcl_bsh/question/unseen.h>
+#include <pcl_bsh/question/warnings/hollow.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/question.h>
 #include <pcl_bsh/question/shape.h>
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <array>

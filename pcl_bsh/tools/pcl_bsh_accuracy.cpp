@@ -14,7 +14,7 @@
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/question/hollow.h>
+#include <pcl_bsh/question/warnings/hollow.h>
 
 #include "solid/meshes.h"
 #include "support/random.h"

@@ -6,7 +6,7 @@
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 
 #include <string>
 

@@ -8,7 +8,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/rounding.h>
-#include <pcl_bsh/question/scene_warnings.h>
+#include <pcl_bsh/question/warnings/scene_warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <algorithm>

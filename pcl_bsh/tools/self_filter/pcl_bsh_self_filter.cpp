@@ -16,7 +16,7 @@
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/format_error.h>
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <nlohmann/json.hpp>

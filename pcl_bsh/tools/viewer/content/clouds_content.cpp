@@ -13,7 +13,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/poses/pose_file.h>
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
 #include <cmath>

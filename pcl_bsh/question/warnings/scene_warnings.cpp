@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/question/scene_warnings.h>
+#include <pcl_bsh/question/warnings/scene_warnings.h>
 
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/question/warnings.h>
+#include <pcl_bsh/question/warnings/warnings.h>
 
 #include <pcl_bsh/base/plain_text.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/question/hollow.h>
+#include <pcl_bsh/question/warnings/hollow.h>
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/plain_text.h>
