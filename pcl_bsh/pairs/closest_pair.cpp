@@ -59,6 +59,8 @@ private:
 /// One of several searches that share what they find, and pause after some steps.
 class Sharing {
 public:
+  static constexpr bool kAreThere = true;
+
   explicit Sharing(SharedNearest& shared) : shared_(shared) {}
 
   void allow(const Pause& pause) { pause_ = pause; }
@@ -120,7 +122,7 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
-  if (request.accuracy.stopsEarly()) {
+  if (request.accuracy.mode == Accuracy::Mode::level) {
     const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
     progress.finish();
     const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();

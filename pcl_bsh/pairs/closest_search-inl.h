@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for the closest pair: depth first, nearest children first, until nothing left can be nearer.
+// The search for the closest pair: best first among some hundred pairs, then depth first, nearest children first, until
+// nothing left can be nearer.
 
 #if defined(PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
@@ -10,11 +11,16 @@
 
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/nearest.h>
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/traversal/pair_queue-inl.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,6 +32,7 @@ namespace { // the search is inlined where it is its translation unit's own
 
 /// No other thread searches. Its calls compile to nothing.
 struct NoOthers {
+  static constexpr bool kAreThere = false;
   static bool stops() { return false; }
   static void hear(Nearest&) {}
   static void tell(Nearest&, const PointPairs&) {}
@@ -33,7 +40,12 @@ struct NoOthers {
 
 } // namespace
 
-/// @tparam Others the searches of other threads: `stops()` before each pair is visited, whether to pause there;
+/// Steps between two dives: from the best pair down to a pair of leaves, by the nearest children. Best first alone
+/// finds near pairs late; each dive that finds none doubles the steps to the next one.
+inline constexpr std::uint32_t kStepsBetweenDives = 8;
+
+/// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
+/// there;
 ///   `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what is
 ///   nearer; `allow(pause)`: until when not to stop
 template <class Others>
@@ -45,20 +57,30 @@ public:
   : PairVisitor(by),
     walk_(a, b),
     pairs_(a, b, 0.0),
+    rule_(accuracy),
+    stop_check_(rule_, walk_.work.node_pairs),
     others_(std::move(others)),
     tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
   {
+    walk_.makeWholes();
   }
 
-  /// Searches until the end, or until it is stopped with pairs left().
+  /// Searches until the end, until the accuracy's budget is spent or, where there are other threads, for some steps:
+  /// pairs may be left().
   DistanceResult run()
   {
     stack_.clear();
-    walk_.seed(kInfinity, [this](LanePair pair, const PairWalk::Step& step, std::uint32_t lane) {
-      if (keep(pair, Opened::b, step, lane)) stack_.push_back(pair);
+    walk_.seedWhole(kInfinity, [this](LanePair pair, const PairWalk::Step& step) {
+      walk_.boundKeys(pair, step, keys_);
+      pair.key = keys_[0];
+      at_least_ = pair.key;
+      if (rule_.mayStop()) consider(walk_.lowest(pair)); // so that there is a pair, however soon it stops
+      if (canImprove(pair)) queue_.push(pair);
     });
-    nearestLast(stack_, 0);
-    visitPairs(walk_, stack_, *this);
+    searchBestFirst();
+    if (rule_.mayStop()) return result(walk_.work);
+    queue_.drainTo(stack_);
+    if (!Others::kAreThere && !stack_.empty()) visitPairs(walk_, stack_, *this);
     return result(walk_.work);
   }
 
@@ -90,8 +112,27 @@ public:
 
   // As visitPairs() asks.
 
-  /// Distances above this are of no interest.
-  double reach() const { return std::max(best_.to_beat, 0.0); }
+  static constexpr bool kBounds = true;
+
+  /// Distances above this are of no interest. A dive is for a nearer pair, though it may not be nearer by the
+  /// tolerance.
+  double reach() const { return std::max(diving_ ? best_.high : best_.to_beat, 0.0); }
+
+  /// Whether there is time for what opening a pair takes.
+  bool opens(const LanePair& pair, Opened opened)
+  {
+    if (!rule_.isTimed()) return true;
+    const Spaces& side = opened == Opened::a ? walk_.a : walk_.b;
+    const Lane& lane = opened == Opened::a ? pair.a : pair.b;
+    const Node& node = walk_.nodeOf(side, lane);
+    if (lane.space != kAboveVoxels || !node.isLeaf(lane.lane) ||
+        rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane])))
+      return true;
+    left_over_ = std::min(left_over_, pair.key);
+    at_least_ = pair.key;
+    consider(walk_.lowest(pair));
+    return false;
+  }
 
   Next visit(const LanePair& pair)
   {
@@ -100,15 +141,25 @@ public:
     return others_.stops() ? Next::stop : Next::go_on;
   }
 
+  Next opened(const LanePair& pair, Opened opened, const PairWalk::Step& step)
+  {
+    if (step.near == 0) return Next::go_on;
+    walk_.boundKeys(PairWalk::childOf(pair, opened, step, 0), step, keys_);
+    for (float& key : keys_) key = std::max(key, pair.key);
+    return Next::go_on;
+  }
+
   bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
   {
-    pair.key = walk_.boundKey(pair, step, lane);
-    return canImprove(pair);
+    pair.key = keys_[lane];
+    if (pair.key <= lowestKey() && !pairs_.mayOverlap()) pair.key = overlapOf(step, lane);
+    return canImprove(pair) || (diving_ && pair.key < best_.high);
   }
 
   Next compare(const LanePair& pair)
   {
     const ComparedLeaves leaves = walk_.compare(pair);
+    at_least_ = std::max(pair.key, lowestKey());
     if (walk_.areTriangles()) {
       eachTrianglePairNear(
           leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
@@ -118,7 +169,7 @@ public:
           });
       return Next::go_on;
     }
-    eachPairMaybeNearest(leaves, pairs_.haveRadii(), best_.to_beat, [&](std::uint32_t i, std::uint32_t j) {
+    eachPairMaybeNearest(leaves, pairs_.haveRadii(), best_.high, [&](std::uint32_t i, std::uint32_t j) {
       consider({leaves.a.record(i), leaves.b.record(j)});
       return false;
     });
@@ -126,13 +177,83 @@ public:
   }
 
 private:
+  /// Opens the pair with the least key, and every few steps dives for a near pair.
+  void searchBestFirst()
+  {
+    SearchPulse pulse({watch.progress}, queue_.size());
+    std::optional<LanePair> next;
+    std::uint32_t next_dive = 0, wait = kStepsBetweenDives;
+    double high_before = kInfinity;
+    const bool ends = !rule_.mayStop();
+    for (std::uint32_t steps = 0;; ++steps) {
+      if (!next) {
+        if (std::exchange(diving_, false)) {
+          wait = best_.high < high_before ? kStepsBetweenDives : 2 * wait;
+          next_dive = steps + wait;
+        }
+        if (queue_.isEmpty()) return;
+        next = queue_.pop();
+        if (!canImprove(*next)) { // and of those left, none but for its numbers
+          if (next->key <= best_.to_beat && !queue_.isEmpty()) {
+            next.reset();
+            continue;
+          }
+          queue_.clear();
+          return;
+        }
+        diving_ = steps == 0 || (steps >= next_dive && (tolerance_ > 0.0 || !ends));
+        high_before = best_.high;
+      }
+      if (ends ? steps >= kStepsAlone : stop_check_.isOver()) {
+        left_over_ = std::min(left_over_, std::min(next->key, queue_.least()));
+        if (ends) queue_.push(*next);
+        diving_ = false;
+        return;
+      }
+      pulse.step(queue_.size());
+      next = openNearestNext(*next);
+    }
+  }
+
+  /// Opens a pair and queues its children, but for one that comes next.
+  std::optional<LanePair> openNearestNext(const LanePair& pair)
+  {
+    expand(walk_, pair, step_, *this, [this](const LanePair& child) { stack_.push_back(child); });
+    if (stack_.empty()) return std::nullopt;
+    nearestLast(stack_, 0);
+    const LanePair nearest = stack_.back();
+    stack_.pop_back();
+    for (const LanePair& child : stack_)
+      if (canImprove(child)) queue(child);
+    stack_.clear();
+    if (diving_ || (canImprove(nearest) && nearest.key <= queue_.least())) return nearest;
+    if (canImprove(nearest)) queue(nearest);
+    return std::nullopt;
+  }
+
+  void queue(LanePair pair)
+  {
+    pair.key = std::max(pair.key, lowestKey());
+    queue_.push(pair);
+  }
+
+  /// Orders children that may be at a distance of 0, below that: by how far spheres overlap for their size.
+  static float overlapOf(const PairWalk::Step& step, std::uint32_t lane)
+  {
+    const float radius = step.children.r[lane] * step.children.stretch;
+    const float overlap = (step.gap[lane] + radius) / (radius + step.radius); // 0: one centre, 1: they touch
+    return overlap < 2.0f ? overlap - 2.0f : 0.0f;
+  }
+
   /// Nothing was passed over but what is no nearer than the best less the tolerance.
   Interval interval() const
   {
     if (!best_.pair) return {kInfinity, kInfinity};
     const double lower = std::nextafter(best_.gap, -kInfinity) - tolerance_;
-    return {std::max(tolerance_ > 0.0 ? std::nextafter(lower, -kInfinity) : lower, static_cast<double>(lowestKey())),
-            best_.high};
+    const double known = tolerance_ > 0.0  ? std::nextafter(lower, -kInfinity)
+                         : rule_.mayStop() ? std::min(std::max(lower, best_lower_), static_cast<double>(left_over_))
+                                           : lower;
+    return {std::max(known, static_cast<double>(lowestKey())), best_.high};
   }
 
   /// A pair is worth a visit if it may be nearer, or as near with smaller record numbers.
@@ -156,12 +277,14 @@ private:
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
       if (sign > 0 || (sign == 0 && *best_.pair < candidate)) return;
       if (sign == 0) {
+        best_lower_ = std::max(best_lower_, static_cast<double>(at_least_));
         best_.pair = candidate;
         others_.tell(best_, pairs_);
         return;
       }
     }
     best_.pair = candidate;
+    best_lower_ = static_cast<double>(at_least_);
     best_.gap = pairs_.distance.gap(posed);
     const bool zero = best_.gap == 0.0 && pairs_.distance.compare(posed, 0.0) == 0;
     best_.high = zero ? 0.0 : std::nextafter(best_.gap, kInfinity);
@@ -172,7 +295,16 @@ private:
   PairWalk walk_;
   PointPairs pairs_;
   const ScratchLease<PairStack> kept_stack_;
-  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of what is depth first; before that, of a step's children
+  PairWalk::Step step_;
+  PairQueue queue_;
+  alignas(32) float keys_[kLanes] = {};                      ///< of the children that the last step tested
+  float left_over_ = std::numeric_limits<float>::infinity(); ///< no pair that was left is nearer
+  float at_least_ = -std::numeric_limits<float>::infinity(); ///< the gaps that are considered
+  double best_lower_ = -kInfinity;                           ///< so much of the best one
+  bool diving_ = false;
+  const StopRule rule_;
+  StopCheck stop_check_;
   Others others_;
   Nearest best_;
   double tolerance_;

@@ -50,6 +50,31 @@ HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float*
   return ~far & firstBits(count);
 }
 
+/// The least distance from any of a leaf's `count` points to a slab, by how far that reaches towards each; sixteen are
+/// read. Bounded from below, as slabGaps() has it.
+HWY_INLINE float pointsGap(const float* x, const float* y, const float* z, std::size_t count, const Slab& slab)
+{
+  const LaneTag d;
+  const LaneVector nx = hn::Set(d, slab.normal.x), ny = hn::Set(d, slab.normal.y), nz = hn::Set(d, slab.normal.z);
+  const LaneVector h = hn::Set(d, slab.h), r = hn::Set(d, slab.radius);
+  LaneVector least = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, slab.center.x));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, slab.center.y));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, slab.center.z));
+    const LaneVector on = FacingSlabs::dot(nx, ny, nz, dx, dy, dz);
+    const LaneVector rest =
+        hn::Sqrt(squaredNorm(hn::Sub(dx, hn::Mul(on, nx)), hn::Sub(dy, hn::Mul(on, ny)), hn::Sub(dz, hn::Mul(on, nz))));
+    const LaneVector length = hn::Sqrt(squaredNorm(dx, dy, dz));
+    const LaneVector support = hn::Div(FacingSlabs::supportTimesLength(d, on, h, rest, r), length);
+    const LaneVector gap = hn::Sub(hn::Sub(length, support), FacingSlabs::supportMargin(d, length, r));
+    // A point in the centre has no distance to divide by, and squares may overflow: then nothing is known.
+    const LaneVector known = hn::IfThenElseZero(hn::IsFinite(gap), gap);
+    least = hn::Min(least, hn::IfThenElse(hn::FirstN(d, count - i), known, least));
+  }
+  return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
 /// Which of sixteen points are not proven to be farther than reach from the box [low, high]; the arrays go on that far.
 HWY_INLINE std::uint32_t pointsNearBox(const float* x, const float* y, const float* z, const float* low,
                                        const float* high, float reach, float margin)

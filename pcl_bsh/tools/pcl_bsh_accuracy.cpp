@@ -16,6 +16,7 @@
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -186,11 +187,17 @@ int study(const Options& options)
   const auto progress = [](const std::string& what, double done) {
     std::cerr << "> " << static_cast<int>(100 * done) << " %: " << what << '\n';
   };
+  std::vector<accuracy::Measurement> peers;
+  if (options.peers)
+    peers = accuracy::measurePeers(subject, std::min(options.repetitions, 3u),
+                                   [&](const std::string& what, double) { progress(what, 0.0); });
+  for (const accuracy::Measurement& m : peers) // ours to the same error, beside those of the dial
+    if (m.query == "distance" && m.actual_error > 1e-6 * subject.diameter)
+      subject.tolerances.push_back(accuracy::roundLengthDown(m.actual_error));
+  std::sort(subject.tolerances.begin(), subject.tolerances.end());
+  subject.tolerances.erase(std::unique(subject.tolerances.begin(), subject.tolerances.end()), subject.tolerances.end());
   accuracy::Study result = accuracy::runStudy(subject, options.repetitions, question.threads, progress);
-  if (options.peers) {
-    for (accuracy::Measurement& m : accuracy::measurePeers(subject, std::min(options.repetitions, 3u), progress))
-      result.measurements.push_back(std::move(m));
-  }
+  for (accuracy::Measurement& m : peers) result.measurements.push_back(std::move(m));
 
   std::string heading = describe(given_a, options.a) + " against " + describe(given_b, options.b) + ".";
   if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b) + ".";

@@ -27,6 +27,9 @@ inline constexpr float kLargeLeaf = 8.0f;
 /// The same of a node far away: there it is the leaf's bend that counts, the square of its size.
 inline constexpr float kLargeFarLeaf = 2.0f;
 
+/// A leaf this large beside a node is asked for its points where bounds are wanted: these say more than its sphere.
+inline constexpr float kLeafBesideNode = 0.5f;
+
 /// The centre of a's sphere in the frame of b.
 HWY_INLINE Point carriedCenter(const RelativeFrame& frame, const Node& node, std::uint32_t lane)
 {

@@ -116,9 +116,13 @@ public:
   /// The children that a step has found near, as bits, with the sphere test's figures; all in the frame of b's space.
   struct Step {
     Lane entered;           ///< the node whose children were tested
+    bool of_a = false;      ///< whether it is a's
     std::uint32_t near = 0; ///< bit i: child i is not proven to be apart
     std::uint32_t count = 0;
     float gap[kLanes]; ///< from the other sphere's centre to each child, by spheresNear()
+    /// If it was asked for: how far apart points are at least, by slabs and by leaves; lowest() where they do not tell.
+    float slab_gap[kLanes];
+    bool have_slabs = false; ///< likewise: whether slabs were compared
     const RelativeFrame* frame = nullptr;
     SphereLanes children;
     Point center;                                      ///< of the other sphere
@@ -140,18 +144,40 @@ public:
   };
 
   /// Tests the children of pair.a, once opened, against pair.b; or the other way round.
+  /// @tparam kBounds whether to tell how far apart they are, too, for boundKeys()
   /// @param reach how far apart points are still of interest, less their radii, in the clouds' unit
+  template <bool kBounds = false>
   void step(const LanePair& pair, Opened opened, double reach, Step& out)
   {
     if (opened == Opened::a)
-      testChildrenOfA(enter(a, pair.a), pair.b, reach, out);
+      testChildrenOfA<kBounds>(enter(a, pair.a), pair.b, reach, out);
     else
-      testChildrenOfB(pair.a, enter(b, pair.b), reach, out);
+      testChildrenOfB<kBounds>(pair.a, enter(b, pair.b), reach, out);
+    if (kBounds && out.near != 0 && out.have_slabs && std::isfinite(reach) && !distance.ofTriangles())
+      boundByLeafPoints(pair, opened, out); // triangles are not their leaves' points
     const bool is_larger = out.radius > kLargeLeaf * out.children.r[0] * out.children.stretch;
     const bool is_blunt = out.radius <= out.frame->bluntRadius();
     if (HWY_UNLIKELY(is_larger || is_blunt || mayBeFar(out.reach, out.radius) || distance.ofTriangles()) &&
         out.near != 0)
-      lookAgain(pair, opened, reach, out);
+      lookAgain<kBounds>(pair, opened, reach, out);
+  }
+
+  /// Before seedWhole(), and before pairs are visited that another walk was seeded with so.
+  void makeWholes()
+  {
+    if (a.storage.size != 0) a.makeWhole();
+    if (b.storage.size != 0) b.makeWhole();
+  }
+
+  /// Calls push(pair, step) for the pair of both clouds, as wholes, if they may meet; boundKeys() tell of the step.
+  template <class Push>
+  void seedWhole(double reach, const Push& push)
+  {
+    if (a.storage.size == 0 || b.storage.size == 0) return;
+    const LanePair pair{0.0f, {kAboveVoxels, a.whole(), 0}, {kAboveVoxels, b.whole(), 0}};
+    Step found;
+    testChildrenOfB<true>(pair.a, pair.b, reach, found);
+    if (found.near != 0) push(childOf(pair, Opened::b, found, 0), found);
   }
 
   /// Calls push(pair, step, lane) for every pair of children of the two roots that may meet.
@@ -164,7 +190,7 @@ public:
     Step found;
     for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
       const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};
-      testChildrenOfB(pair.a, pair.b, reach, found);
+      testChildrenOfB<false>(pair.a, pair.b, reach, found);
       for (std::uint32_t near = found.near; near != 0; near &= near - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
         push(childOf(pair, Opened::b, found, lane), found, lane);
@@ -207,6 +233,35 @@ public:
     return std::isnan(bound) ? -std::numeric_limits<float>::infinity() : roundDown(bound);
   }
 
+  /// lowerBound() of all children of a step that was asked for bounds, as keys; or minus infinity.
+  /// @param pair one of the children, whichever
+  void boundKeys(const LanePair& pair, const Step& step, float* keys) const
+  {
+    const LaneTag d;
+    const LaneVector error = hn::Set(d, step.frame->pruneReach(0.0) * (1.0f + kReachMargin));
+    const LaneVector skew = hn::Set(d, roundUp(step.frame->skew()) + 4 * kReachMargin);
+    const LaneVector unit = hn::Set(d, roundToFloat(b.frame(pair.b.space).unit));
+    const LaneVector radius = hn::Set(d, step.radius);
+    const LaneVector none = hn::Set(d, -std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      const LaneVector gap = hn::LoadU(d, step.gap + i);
+      const LaneVector r = hn::Mul(hn::LoadU(d, step.children.r + i), hn::Set(d, step.children.stretch));
+      const LaneVector sizes = hn::Add(hn::Add(hn::Abs(gap), hn::Add(r, r)), radius);
+      const LaneVector by_spheres = hn::Sub(hn::Sub(gap, radius), hn::Mul(sizes, hn::Set(d, 2 * kSphereMargin)));
+      const LaneVector by_slabs = hn::Mul(hn::LoadU(d, step.slab_gap + i), hn::Set(d, 1.0f - kSphereMargin));
+      const LaneVector bound = hn::Sub(hn::IfThenElse(hn::Gt(by_slabs, by_spheres), by_slabs, by_spheres), error);
+      const LaneVector key = hn::Mul(hn::Sub(bound, hn::Mul(hn::Abs(bound), skew)), unit);
+      hn::StoreU(hn::IfThenElse(hn::IsFinite(key), key, none), d, keys + i);
+    }
+    if (HWY_LIKELY(step.radius > step.frame->bluntRadius())) return;
+    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      LanePair child = pair;
+      (step.of_a ? child.a : child.b).lane = lane;
+      keys[lane] = std::max(keys[lane], boundKey(child, step, lane));
+    }
+  }
+
   /// Two leaves, and which points of a's may be near b's. @param reach as step() takes it; none: all of them
   ComparedLeaves compare(const LanePair& pair, std::optional<double> reach = std::nullopt)
   {
@@ -228,6 +283,7 @@ private:
     return {node.begin[lane.lane], 0, 0};
   }
 
+  template <bool kBounds>
   void testChildrenOfA(const Lane& entered, const Lane& lane_b, double reach, Step& out)
   {
     const RelativeFrame& frame = frames.find(entered.space, lane_b.space);
@@ -236,32 +292,147 @@ private:
     carry(frame.m.data(), frame.g.data(), node.x, node.y, node.z, kLanes, out.x, out.y, out.z);
     work.volumes_carried += node.count;
     out.entered = entered;
+    out.of_a = true;
     out.children = {out.x, out.y, out.z, node.r, frame.stretch_a};
     const Point center{other.x[lane_b.lane], other.y[lane_b.lane], other.z[lane_b.lane]};
     test(frame, node.count, center, other.r[lane_b.lane] * frame.stretch_b, reach, out);
+    if (kBounds) forgetBounds(out);
     if (out.near == 0 || !haveSlabs(entered, lane_b)) return;
     const Slabs &own = slabsOf(a, entered), &others = slabsOf(b, lane_b);
     alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];
     carry(frame.m.data(), kNowhere, own.x, own.y, own.z, kLanes, nx, ny, nz);
-    out.near &=
-        ~slabsApart(out.children, {nx, ny, nz, own.h}, slabOf(others, lane_b.lane, center, out.radius), out.reach);
+    compareSlabs<kBounds>({nx, ny, nz, own.h}, slabOf(others, lane_b.lane, center, out.radius), out);
   }
 
+  template <bool kBounds>
   void testChildrenOfB(const Lane& lane_a, const Lane& entered, double reach, Step& out)
   {
     const RelativeFrame& frame = frames.find(lane_a.space, entered.space);
     const Node& node = nodeOf(b, entered);
     const Node& other = nodeOf(a, lane_a);
     out.entered = entered;
+    out.of_a = false;
     out.children = {node.x, node.y, node.z, node.r, frame.stretch_b};
     const Point center = carriedCenter(frame, other, lane_a.lane);
     ++work.volumes_carried;
     test(frame, node.count, center, other.r[lane_a.lane] * frame.stretch_a, reach, out);
+    if (kBounds) forgetBounds(out);
     if (out.near == 0 || !haveSlabs(lane_a, entered)) return;
     const Slabs &own = slabsOf(b, entered), &others = slabsOf(a, lane_a);
     Slab other_slab = slabOf(others, lane_a.lane, center, out.radius);
     other_slab.normal = carryPoint(frame.m.data(), kNowhere, other_slab.normal);
-    out.near &= ~slabsApart(out.children, {own.x, own.y, own.z, own.h}, other_slab, out.reach);
+    compareSlabs<kBounds>({own.x, own.y, own.z, own.h}, other_slab, out);
+  }
+
+  static void forgetBounds(Step& out)
+  {
+    std::fill_n(out.slab_gap, kLanes, std::numeric_limits<float>::lowest());
+    out.have_slabs = false;
+  }
+
+  template <bool kBounds>
+  static void compareSlabs(const SlabLanes& slabs, const Slab& other, Step& out)
+  {
+    if constexpr (!kBounds) {
+      out.near &= ~slabsApart(out.children, slabs, other, out.reach);
+      return;
+    }
+    out.have_slabs = true;
+    slabGaps(out.children, slabs, other, out.slab_gap);
+    out.near &= ~gapsBeyond(out.slab_gap, out.reach);
+  }
+
+  /// Of a leaf and a node that is not much larger: by how far the node reaches towards each of the leaf's points.
+  HWY_NOINLINE void boundByLeafPoints(const LanePair& pair, Opened opened, Step& out)
+  {
+    const bool of_a = opened == Opened::a;
+    const Spaces &own = of_a ? a : b, &others = of_a ? b : a;
+    const Lane& other = of_a ? pair.b : pair.a;
+    const Node& node = nodeOf(own, out.entered);
+    const bool other_is_leaf = isLeaf(others, other);
+    const auto radiusOf = [&](std::uint32_t lane) { return out.children.r[lane] * out.children.stretch; };
+    const auto isAsked = [&](std::uint32_t lane) {
+      return other_is_leaf ? out.radius > kLeafBesideNode * radiusOf(lane)
+                           : node.isLeaf(lane) && radiusOf(lane) > kLeafBesideNode * out.radius;
+    };
+    std::uint32_t asked = 0;
+    for (std::uint32_t bits = out.near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (isAsked(lane)) asked |= 1u << lane;
+    }
+    if (asked == 0) return;
+    const bool carries_slab = of_a == other_is_leaf; // the slab is a's; else the points are
+    const Slabs& slabs = other_is_leaf ? slabsOf(own, out.entered) : slabsOf(others, other);
+    const auto slabOfNode = [&](std::uint32_t lane, const Point& center, float radius) {
+      Slab slab = slabOf(slabs, lane, center, radius);
+      if (carries_slab) slab.normal = carryPoint(out.frame->m.data(), kNowhere, slab.normal);
+      return slab;
+    };
+    LeafPoints points;
+    const float *x = nullptr, *y = nullptr, *z = nullptr;
+    const auto take = [&](const LeafRange& leaf) {
+      if (carries_slab) {
+        x = leaf.x(), y = leaf.y(), z = leaf.z();
+        return;
+      }
+      carryLeaf(*out.frame, leaf, points);
+      x = points.x, y = points.y, z = points.z;
+    };
+    LeafRange leaf;
+    Slab slab{};
+    if (other_is_leaf)
+      take(leaf = this->leaf(others, other));
+    else
+      slab = slabOfNode(other.lane, out.center, out.radius);
+    for (; asked != 0; asked &= asked - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(asked));
+      if (other_is_leaf)
+        slab = slabOfNode(lane, {out.children.x[lane], out.children.y[lane], out.children.z[lane]}, radiusOf(lane));
+      else
+        take(leaf = leafOf(own, out.entered.space, node, lane));
+      raise(out, lane, pointsGap(x, y, z, leaf.count, slab));
+    }
+  }
+
+  static void raise(Step& out, std::uint32_t lane, float gap)
+  {
+    out.slab_gap[lane] = std::max(out.slab_gap[lane], gap);
+    if (gap * (1.0f - kSphereMargin) > out.reach) out.near &= ~(1u << lane);
+  }
+
+  /// Of nodes far from each other for their size: by how far both reach towards each other.
+  HWY_NOINLINE void boundBySupports(const LanePair& child, Step& out)
+  {
+    std::uint32_t far = out.near & spheresFar(out.gap, out.children.r, out.children.stretch, out.radius, kFarNodes);
+    if (far == 0) return;
+    const Spaces &own = out.of_a ? a : b, &others = out.of_a ? b : a;
+    const Lane& other = out.of_a ? child.b : child.a;
+    const Slabs &slabs = slabsOf(own, out.entered), &cross = crossSlabsOf(own, out.entered),
+                &other_slabs = slabsOf(others, other), &other_cross = crossSlabsOf(others, other);
+    const std::uint32_t k = other.lane;
+    CrossedSlabs held{{other_slabs.x[k], other_slabs.y[k], other_slabs.z[k]},
+                      {other_cross.x[k], other_cross.y[k], other_cross.z[k]},
+                      other_slabs.h[k],
+                      other_cross.h[k],
+                      out.center,
+                      out.radius};
+    alignas(32) float gaps[kLanes];
+    const float* m = out.frame->m.data();
+    if (out.of_a) {
+      alignas(32) float n[3][kLanes], c[3][kLanes];
+      carry(m, kNowhere, slabs.x, slabs.y, slabs.z, kLanes, n[0], n[1], n[2]);
+      carry(m, kNowhere, cross.x, cross.y, cross.z, kLanes, c[0], c[1], c[2]);
+      supportGaps(out.children, {n[0], n[1], n[2], slabs.h}, {c[0], c[1], c[2], cross.h}, held, gaps);
+    }
+    else {
+      held.normal = carryPoint(m, kNowhere, held.normal);
+      held.cross = carryPoint(m, kNowhere, held.cross);
+      supportGaps(out.children, {slabs.x, slabs.y, slabs.z, slabs.h}, {cross.x, cross.y, cross.z, cross.h}, held, gaps);
+    }
+    for (; far != 0; far &= far - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+      raise(out, lane, gaps[lane]);
+    }
   }
 
   /// `near` of the first `count` children, against a sphere of the other side, its radius stretched.
@@ -278,6 +449,7 @@ private:
   }
 
   /// What spheres say least about.
+  template <bool kBounds>
   HWY_NOINLINE void lookAgain(const LanePair& pair, Opened opened, double reach, Step& out)
   {
     const bool of_a = opened == Opened::a;
@@ -298,8 +470,10 @@ private:
     if (out.radius <= out.frame->bluntRadius() && facing.areInVoxels())
       out.near &= ~separation_.asGiven(facing, out.near);
     if (out.near != 0 && out.radius > kLargeLeaf * facing.radiusOf(0) && isLeafApart(pair, opened, reach)) out.near = 0;
-    if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b))
-      out.near &= ~separation_.byExtent(facing, out.gap, out.near);
+    if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b)) {
+      if (kBounds) boundBySupports(child, out);
+      if (out.near != 0) out.near &= ~separation_.byExtent(facing, out.gap, out.near);
+    }
     if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
       out.near &= ~separation_.byTriangles(facing, out.near);
   }
@@ -341,6 +515,12 @@ private:
   {
     Voxel& voxel = side.storage.voxels[lane.space];
     return voxel.slabs.of(voxel, side.storage.view, work)[lane.node];
+  }
+
+  const Slabs& crossSlabsOf(const Spaces& side, const Lane& lane)
+  {
+    Voxel& voxel = side.storage.voxels[lane.space];
+    return voxel.cross_slabs.of(voxel, side.storage.view, work)[lane.node];
   }
 
   static GivenSphere givenSphere(const Spaces& side, const Lane& lane)

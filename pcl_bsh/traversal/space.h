@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/geometry/relative_frame.h>
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
@@ -13,10 +14,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <deque>
 #include <vector>
 
 namespace pcl_bsh {
+
+/// In place of a node's number above the voxels: the one that Spaces::makeWhole() makes.
+inline constexpr std::uint32_t kWhole = 0xffffffffu;
 
 /// A cloud's spaces. Voxels are built as a walk enters them.
 class Spaces {
@@ -31,13 +36,44 @@ public:
   /// @pre a voxel was entered through voxel() before.
   const Node& node(std::uint32_t space, std::uint32_t index) const
   {
-    return space == kAboveVoxels ? storage.top[index] : storage.voxels[space].nodes[index];
+    if (space != kAboveVoxels) return storage.voxels[space].nodes[index];
+    return index == kWhole ? whole_ : storage.top[index];
+  }
+
+  /// The node whose first child the whole cloud is.
+  std::uint32_t whole() const { return storage.top[0].count == 1 ? 0 : kWhole; }
+
+  /// Before a walk comes to whole(), or to pairs with it that another walk left. @pre points
+  void makeWhole()
+  {
+    const Node& root = storage.top[0];
+    whole_ = {};
+    whole_.addChild(0, static_cast<std::uint32_t>(storage.voxel_count), 0);
+    whole_.lowest[0] = *std::min_element(root.lowest, root.lowest + root.count);
+    const auto middleOf = [&root](const float* at) {
+      float low = at[0] - root.r[0], high = at[0] + root.r[0];
+      for (std::uint32_t i = 1; i < root.count; ++i)
+        low = std::min(low, at[i] - root.r[i]), high = std::max(high, at[i] + root.r[i]);
+      return 0.5f * low + 0.5f * high;
+    };
+    whole_.x[0] = middleOf(root.x), whole_.y[0] = middleOf(root.y), whole_.z[0] = middleOf(root.z);
+    double radius = 0.0; // around the children's spheres: floats, whose differences doubles hardly round
+    for (std::uint32_t i = 0; i < root.count; ++i) {
+      const auto from = [i](const float* at, float to) { return static_cast<double>(at[i]) - static_cast<double>(to); };
+      const double dx = from(root.x, whole_.x[0]), dy = from(root.y, whole_.y[0]), dz = from(root.z, whole_.z[0]);
+      radius = std::max(radius, std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(root.r[i]));
+    }
+    whole_.r[0] = roundUp(radius * (1.0 + kDoubleMargin));
+    whole_.clearUnused();
   }
 
   const Voxel& voxel(std::uint32_t space, Work& work) const { return storage.built(space, work); }
 
   const SphereHierarchy::Storage& storage;
   const Eigen::Isometry3d& pose;
+
+private:
+  Node whole_;
 };
 
 /// Memory of one FrameTable after another, to be had by a ScratchLease.

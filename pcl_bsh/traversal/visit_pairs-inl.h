@@ -25,6 +25,8 @@ enum class Next : std::uint8_t { go_on, prune, stop };
 struct PairVisitor {
   explicit PairVisitor(const Watch& by = {}) : watch(by) {}
 
+  static constexpr bool kBounds = false; ///< whether steps tell how far apart children are
+
   const Watch watch; ///< who watches the walk, and may end it
 
   /// Before a pair is looked at: whether it is of no interest any more, or the walk is to stop with it on the stack.
@@ -49,7 +51,7 @@ Next expand(PairWalk& walk, const Pair& pair, PairWalk::Step& step, Visitor& vis
   const Opened opened = walk.choose(pair);
   if (opened == Opened::neither) return visitor.compare(pair);
   if (!visitor.opens(pair, opened)) return Next::prune;
-  walk.step(pair, opened, visitor.reach(), step);
+  walk.template step<Visitor::kBounds>(pair, opened, visitor.reach(), step);
   if (visitor.opened(pair, opened, step) == Next::stop) return Next::stop;
   for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));

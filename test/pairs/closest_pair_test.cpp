@@ -208,6 +208,47 @@ TEST(ClosestPair, PrunesMostOfTheWork) // bounds: twice what it takes today
   EXPECT_LT(inside.leaf_pairs, 19000u);
 }
 
+/// A body of many voxels, far from another one: it is compared as a whole until the other one's spheres are as small.
+TEST(ClosestPair, ComparesASmallCloudAsAWhole)
+{
+  Random random(65);
+  const Cloud a(test::makePoints(Shape::sphere, 20000, 10, random)),
+      b(test::makePoints(Shape::sphere, 2000, 0.5, random));
+  HierarchyOptions options;
+  options.voxel_edge = 0.125;
+  const SphereHierarchy ha(a.view()), hb(b.view(), options);
+  ASSERT_GT(hb.statistics().voxels, 100u);
+  const Eigen::Isometry3d pose(Eigen::Translation3d(40, 10, 5));
+  const Work work = closestPair({ha}, {hb, pose}, {Accuracy::tolerance(2.5)}).work;
+  EXPECT_LT(work.node_pairs, 200u); // with each of its voxels from the start, ten times as many
+}
+
+/// Leaves that are large beside what comes near them are asked for their points, and few are compared.
+TEST(ClosestPair, ComparesFewLeavesOfASparseCloud)
+{
+  Random random(66);
+  const Cloud a(test::makePoints(Shape::sphere, 1000, 10, random)),
+      b(test::makePoints(Shape::sphere, 5000, 0.5, random));
+  const SphereHierarchy ha(a.view()), hb(b.view());
+  const Eigen::Isometry3d pose = Eigen::Translation3d(11, 2, 1) * random.pose(0.1);
+  const DistanceResult found = closestPair({ha}, {hb, pose});
+  EXPECT_EQ(found.distance, brute_force::closestPair({ha}, {hb, pose}).distance);
+  EXPECT_LT(found.work.leaf_pairs, 20u);
+  EXPECT_LT(found.work.exact_decisions, 30u);
+}
+
+/// Near surfaces, of which best first alone would look at all before one pair of points.
+TEST(ClosestPair, ToleranceDivesForANearPair)
+{
+  Random random(67);
+  const Cloud a(test::makePoints(Shape::sphere, 50000, 1, random));
+  const SphereHierarchy ha(a.view());
+  const Work work =
+      closestPair({ha}, {ha, Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.02, 0.01))}, {Accuracy::tolerance(0.02)})
+          .work;
+  EXPECT_LT(work.node_pairs, 5000u);
+}
+
 TEST(ClosestPair, WorkIsTheSameOnEachFreshHierarchy)
 {
   Random random(9);

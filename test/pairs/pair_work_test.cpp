@@ -57,7 +57,7 @@ TEST(PairWork, OneContactCostsWhatTheClosestPairDoes)
   expectLinear("one contact", cubes, 1000, kOneContact);
   const double closest =
       stepsOf(cubes(8000), [](const Placed& a, const Placed& b, double) { return closestPair(a, b, {}); });
-  EXPECT_LT(stepsOf(cubes(8000), kOneContact), 1.1 * closest);
+  EXPECT_LT(stepsOf(cubes(8000), kOneContact), 1.5 * closest); // the closest pair asks leaves for their points, too
 }
 
 TEST(PairWork, OneContactOfBallsThatAllOverlap)

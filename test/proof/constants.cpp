@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/triangle/flat_triangle.h>
 #include <pcl_bsh/geometry/triangle/separation.h>
 #include <pcl_bsh/simd/roundings.h>
+#include <pcl_bsh/simd/supports.h>
 #include <pcl_bsh/trajectory/pose_path.h>
 
 #include <cstdio>
@@ -32,6 +33,8 @@ int main()
   PCL_BSH_PRINT(kNeighborShare);
   PCL_BSH_PRINT(kNeighborMargin);
   PCL_BSH_PRINT(kSlabMargin);
+  PCL_BSH_PRINT(kSupportShare);
+  PCL_BSH_PRINT(kDistanceShare);
   PCL_BSH_PRINT(kSeparationError);
   PCL_BSH_PRINT(kFlatMargin);
   PCL_BSH_PRINT(kFlatShare);

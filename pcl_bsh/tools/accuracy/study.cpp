@@ -77,12 +77,15 @@ public:
   void time(Query query, const Accuracy& accuracy, std::vector<std::vector<double>>& seconds) const
   {
     seconds.resize(subject_.poses.size());
-    for (std::size_t i = 0; i < seconds.size(); ++i) {
-      const Eigen::Isometry3d& pose = subject_.poses[i];
-      const Stopwatch watch(threads_);
+    const auto ask = [&](const Eigen::Isometry3d& pose) {
       if (query == Query::any) anyCollision({a_}, {b_, pose}, anyRequest(accuracy));
       if (query == Query::flags) collisionFlags({a_}, {b_, pose}, flagsRequest(accuracy));
       if (query == Query::distance) closestPair({a_}, {b_, pose}, {accuracy});
+    };
+    ask(subject_.poses.front()); // what was asked before, of another kind perhaps, has left other memory in the caches
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+      const Stopwatch watch(threads_);
+      ask(subject_.poses[i]);
       seconds[i].push_back(watch.seconds());
     }
   }
@@ -151,11 +154,14 @@ private:
 };
 
 /// Tolerances from a millionth of the object up, levels until nothing is left open, budgets up to twice the exact time.
-std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, double diameter)
+std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, const Subject& subject)
 {
+  const double diameter = subject.diameter;
   std::vector<Accuracy> dial = {Accuracy::exact()};
   for (const double part : {1e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2})
     dial.push_back(Accuracy::tolerance(roundLength(part * diameter)));
+  if (query == Query::distance)
+    for (const double length : subject.tolerances) dial.push_back(Accuracy::tolerance(length));
   for (unsigned level = 0; level <= 16; ++level) {
     dial.push_back(Accuracy::level(level));
     if (laboratory.judge(query, dial.back()).certified_error <= 1e-9 * diameter) break;
@@ -239,6 +245,17 @@ double roundLength(double length)
   return std::strtod((std::to_string(rounded) + "e" + std::to_string(static_cast<int>(decade))).c_str(), nullptr);
 }
 
+double roundLengthDown(double length)
+{
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(length)));
+  for (double units = std::floor(length * std::pow(10.0, digits)); units > 0.0; --units) {
+    const double rounded =
+        std::strtod((std::to_string(static_cast<int>(units)) + "e" + std::to_string(-digits)).c_str(), nullptr);
+    if (rounded <= length) return rounded;
+  }
+  return length;
+}
+
 Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress)
 {
   Study study;
@@ -248,7 +265,7 @@ Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, c
   std::vector<Trial> trials;
   for (const Query query : {Query::any, Query::flags, Query::distance}) {
     progress(std::string("range of the dial for ") + nameOf(query), 0.05);
-    for (const Accuracy& accuracy : dialOf(query, laboratory, subject.diameter))
+    for (const Accuracy& accuracy : dialOf(query, laboratory, subject))
       trials.push_back({accuracy, query, laboratory.judge(query, accuracy), {}});
   }
   for (unsigned repetition = 0; repetition < repetitions; ++repetition) {

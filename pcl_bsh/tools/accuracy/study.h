@@ -17,6 +17,7 @@ struct Subject {
   std::vector<Eigen::Isometry3d> poses; ///< T_a_b
   double diameter = 0.0;                ///< of a's bounding box
   std::string unit;                     ///< of lengths, for titles; empty: not known
+  std::vector<double> tolerances = {};  ///< of the distance, to be measured beside those of the dial
 };
 
 struct Spread {
@@ -66,5 +67,8 @@ Spread meanSpreadOf(const std::vector<std::vector<double>>& samples);
 
 /// The nearest of 1, 3 and 10 times a power of ten. @param length > 0
 double roundLength(double length);
+
+/// To two digits, and no more than it is. @param length > 0
+double roundLengthDown(double length);
 
 } // namespace pcl_bsh::accuracy
