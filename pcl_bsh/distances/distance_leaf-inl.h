@@ -14,7 +14,6 @@
 #include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
