@@ -42,7 +42,7 @@ struct NoOthers {
 
 /// Steps between two dives: from the best pair down to a pair of leaves, by the nearest children. Best first alone
 /// finds near pairs late; each dive that finds none doubles the steps to the next one.
-inline constexpr std::uint32_t kStepsBetweenDives = 8;
+inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
 /// there;
@@ -201,7 +201,7 @@ private:
           queue_.clear();
           return;
         }
-        diving_ = steps == 0 || (steps >= next_dive && (tolerance_ > 0.0 || !ends));
+        diving_ = steps >= next_dive;
         high_before = best_.high;
       }
       if (ends ? steps >= kStepsAlone : stop_check_.isOver()) {
