@@ -50,18 +50,13 @@ struct LongVector {
   LongCoordinate operator[](std::size_t k) const { return {value[k], tail[k], error}; }
 };
 
-/// A pose's product with a point, its twelve numbers as they are.
 inline Vector3<LongNumber> placedLong(const Eigen::Isometry3d& pose, const Point3& p)
 {
-  Vector3<LongNumber> at;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    at[k] = LongNumber(pose.translation()[row]);
-    for (std::size_t j = 0; j < 3; ++j)
-      if (const double r = pose.linear()(row, static_cast<Eigen::Index>(j)); r != 0.0)
-        at[k] += LongNumber(r) * LongNumber(p[j]);
-  }
-  return at;
+  return placedBy<LongNumber>(
+      [&pose](std::size_t row, std::size_t column) {
+        return pose.matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+      },
+      p);
 }
 
 /// x - y, one coordinate. Where neither has a tail, the rounding error of the difference is all of it.

@@ -45,9 +45,8 @@ struct NoOthers {
 inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
-/// there;
-///   `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what is
-///   nearer; `allow(pause)`: until when not to stop
+///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
+///   is nearer; `allow(pause)`: until when not to stop
 template <class Others>
 class ClosestSearch : public PairVisitor {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();

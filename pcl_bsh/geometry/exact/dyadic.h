@@ -46,31 +46,13 @@ public:
 
   int sign() const { return integer_.sign(); }
 
-  Dyadic& operator*=(const Dyadic& other)
-  {
-    integer_ *= other.integer_;
-    exponent_ += other.exponent_;
-    return *this;
-  }
-
   Dyadic& operator+=(const Dyadic& other)
   {
-    if (other.sign() == 0) return *this;
-    if (shareExponent(other.exponent_))
-      integer_ += other.integer_;
-    else
-      integer_ += shifted(other);
-    return *this;
+    return combine(other, [](Integer& x, const Integer& y) { x += y; });
   }
-
   Dyadic& operator-=(const Dyadic& other)
   {
-    if (other.sign() == 0) return *this;
-    if (shareExponent(other.exponent_))
-      integer_ -= other.integer_;
-    else
-      integer_ -= shifted(other);
-    return *this;
+    return combine(other, [](Integer& x, const Integer& y) { x -= y; });
   }
 
   Dyadic operator-() const
@@ -107,18 +89,20 @@ public:
   }
 
 private:
-  /// Takes the exponent if it is less. @return whether it is this one's now
-  bool shareExponent(int exponent)
+  /// Combines the integers, once they have one exponent: of the two numbers the lesser.
+  template <class Operation>
+  Dyadic& combine(const Dyadic& other, const Operation& operation)
   {
-    if (sign() == 0) exponent_ = exponent;
-    if (exponent_ <= exponent) return exponent_ == exponent;
-    integer_ <<= static_cast<unsigned>(exponent_ - exponent);
-    exponent_ = exponent;
-    return true;
-  }
-  Integer shifted(const Dyadic& other) const
-  {
-    return other.integer_ << static_cast<unsigned>(other.exponent_ - exponent_);
+    if (other.sign() == 0) return *this;
+    if (sign() == 0) exponent_ = other.exponent_;
+    if (exponent_ < other.exponent_) {
+      operation(integer_, Integer(other.integer_ << static_cast<unsigned>(other.exponent_ - exponent_)));
+      return *this;
+    }
+    if (exponent_ > other.exponent_) integer_ <<= static_cast<unsigned>(exponent_ - other.exponent_);
+    exponent_ = other.exponent_;
+    operation(integer_, other.integer_);
+    return *this;
   }
 
   Integer integer_ = 0;

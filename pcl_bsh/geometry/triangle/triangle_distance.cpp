@@ -206,13 +206,7 @@ int TriangleDistance::compare(const Triangle3& a, const Triangle3& b, double cle
 template <class Number>
 std::array<Number, 3> TriangleDistance::placed(const Pose& pose, const Point3& p) const
 {
-  std::array<Number, 3> at;
-  for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = Number(pose[k][3]);
-    for (std::size_t j = 0; j < 3; ++j) // upright poses are half zeros
-      if (pose[k][j] != 0.0) at[k] += Number(pose[k][j]) * Number(p[j]);
-  }
-  return at;
+  return placedBy<Number>([&pose](std::size_t row, std::size_t column) { return pose[row][column]; }, p);
 }
 
 template <class Number, class Pair>
