@@ -2,6 +2,7 @@
 #include "support/verdicts.h"
 
 #include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/clashes/extent.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <gtest/gtest.h>
@@ -262,6 +263,54 @@ TEST(Clashes, RefusesWhatMakesNoSense)
   }
   scan.found.first_pose.clear();
   EXPECT_THROW(scan.clashes(), std::invalid_argument);
+}
+
+TEST(Extent, HoldsAllFinitePointsOfTheView)
+{
+  const float nan = std::nanf("");
+  const std::vector<float> xyz = {nan, 9, 9, 1, -2, 3, 9, 9, nan, -4, 5, 0.5f, 7, 7, 7};
+  PointsView view = viewOf(xyz.data(), 4);
+  const std::optional<Extent> all = extentOf(view);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->low, (Point3{-4, -2, 0.5}));
+  EXPECT_EQ(all->high, (Point3{1, 5, 3}));
+  const std::int32_t some[] = {2, 1};
+  view.indices = some;
+  view.index_count = 2;
+  EXPECT_EQ(extentOf(view)->low, (Point3{1, -2, 3})) << "of the subset";
+  EXPECT_EQ(extentOf(view)->high, (Point3{1, -2, 3}));
+  view.index_count = 1;
+  EXPECT_FALSE(extentOf(view)) << "none is finite";
+}
+
+TEST(Extent, OfTrianglesHoldsTheirCorners)
+{
+  const std::vector<double> xyz = {0, 0, 0, 4, 0, 0, 0, 3, -1};
+  const std::vector<Triangle> triangles = {{0, 1, 2}};
+  const PointsView view = viewOf(TrianglesView{viewOf(xyz.data(), 3), triangles[0].data(), 1});
+  EXPECT_EQ(extentOf(view)->low, (Point3{0, 0, -1}));
+  EXPECT_EQ(extentOf(view)->high, (Point3{4, 3, 0}));
+}
+
+TEST(Extent, IsNearUpToTheDistanceAlongEachAxis)
+{
+  const Extent box = {{0, 0, 0}, {1, 1, 1}};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const double side : {-1.0, 1.0}) {
+      Extent other = box;
+      other.low[k] += side * 1.5, other.high[k] += side * 1.5;
+      EXPECT_TRUE(box.isNear(other, 0.5)) << k << side;
+      EXPECT_FALSE(box.isNear(other, 0.499)) << k << side;
+    }
+}
+
+TEST(Clashes, AreThereNowWhenNewOrPersisting)
+{
+  EXPECT_TRUE(isPresent(ClashStatus::fresh));
+  EXPECT_TRUE(isPresent(ClashStatus::persisting));
+  for (const ClashStatus status :
+       {ClashStatus::resolved, ClashStatus::not_visited, ClashStatus::not_scanned, ClashStatus::unseen})
+    EXPECT_FALSE(isPresent(status)) << nameOf(status);
 }
 
 } // namespace

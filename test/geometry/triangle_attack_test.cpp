@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -235,6 +236,48 @@ TEST(TriangleAttack, KernelIsTheSameOnEveryTarget)
     if (first.empty()) first = found;
     EXPECT_EQ(found, first) << target;
   });
+}
+
+/// Far from its frame's origin a triangle is stored as coarsely as its coordinates are; its error says so, and what the
+/// kernel adds.
+template <class Number>
+void expectErrorHoldsCorners(Random& random)
+{
+  using Real = long double;
+  const double far = std::exp2(random.integer(0, 20)), slack = random.chance(0.5) ? 0.0 : 0.125;
+  Triangle3 t;
+  const Point3 at = random.point([&] { return far * random.uniform(-1, 1); });
+  for (Point3& corner : t)
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = at[k] + random.uniform(-1, 1);
+  const FlatTriangle<Number> flat = flatten<Number>(t, slack);
+  const Real stored[3][2] = {{0, 0}, {flat.length, 0}, {flat.apex_x, flat.apex_y}};
+  Real least = std::numeric_limits<Real>::infinity(); // of the orders of corners
+  for (std::size_t first = 0; first < 3; ++first) {
+    Real apart = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point3& corner = t[(first + i) % 3];
+      Real squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        Real off = k < 2 ? -stored[i][k] : 0;
+        for (std::size_t m = 0; m < 3; ++m) off += Real{flat.rows[3 * k + m]} * (Real{corner[m]} - flat.origin[m]);
+        squared += off * off;
+      }
+      apart = std::max(apart, std::sqrt(squared));
+    }
+    least = std::min(least, apart);
+  }
+  const Real kernel = kFlatTriangleUnits * Real{kFlatUnit<Number>} * flat.length;
+  ASSERT_GE(flat.error, least + slack + kernel) << far;
+  ASSERT_LE(flat.error, 1.01L * (least + slack + kernel + 64 * Real{kDoubleUnit} * far)) << far;
+}
+
+TEST(FlatTriangle, ErrorHoldsWhereItsCornersAreStored)
+{
+  Random random(5);
+  for (int i = 0; i < 1000 && !HasFatalFailure(); ++i) {
+    expectErrorHoldsCorners<float>(random);
+    expectErrorHoldsCorners<double>(random);
+  }
 }
 
 TEST(FlatTriangle, OfSegmentsAndPoints)

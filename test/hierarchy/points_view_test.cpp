@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/hierarchy/points_view.h>
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <memory>
+#include <set>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -83,6 +86,29 @@ TEST(Placed, IsCopiedAndAssigned)
   std::vector<Placed> many(3, placed);
   many.front() = Placed{a};
   EXPECT_EQ(closestPair(many.front(), many.back()).distance, 7.0);
+}
+
+template <class Scalar>
+void expectEachCoordinateInChecksum()
+{
+  std::vector<Scalar> xyz = {1, 2, 3, 4, 5, 6};
+  const PointsView view = viewOf(xyz.data(), 2);
+  std::set<std::uint64_t> sums = {checksumOf(view)};
+  for (std::size_t k = 0; k < xyz.size(); ++k) {
+    std::vector<Scalar> other = xyz;
+    other[k] += 1;
+    EXPECT_TRUE(sums.insert(checksumOf(viewOf(other.data(), 2))).second) << "coordinate " << k;
+    std::swap(other = xyz, xyz), std::swap(other[k], other[(k + 1) % xyz.size()]);
+    EXPECT_TRUE(sums.insert(checksumOf(viewOf(other.data(), 2))).second) << "exchanged " << k;
+  }
+  EXPECT_TRUE(sums.insert(checksumOf(viewOf(xyz.data(), 1))).second) << "one point less";
+  EXPECT_EQ(checksumOf(view), checksumOf(viewOf(std::vector<Scalar>(xyz).data(), 2)));
+}
+
+TEST(PointsView, ChecksumsKnowEachCoordinateAndItsPlace)
+{
+  expectEachCoordinateInChecksum<float>();
+  expectEachCoordinateInChecksum<double>();
 }
 
 } // namespace

@@ -259,5 +259,19 @@ TEST(TrianglesView, HasAChecksum)
   EXPECT_NE(checksumOf(view), before);
 }
 
+/// So that their trees are as fine as the vertices, and cost no more memory.
+TEST(TrianglesView, BallsHaveTheTypeOfTheVertices)
+{
+  const std::vector<float> single = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::vector<double> twofold(single.begin(), single.end());
+  const Corners corners = {0, 1, 2};
+  const PointsView of_floats = viewOf(trianglesOf(single, corners)), of_doubles = viewOf(trianglesOf(twofold, corners));
+  EXPECT_EQ(of_floats.scalar, Scalar::float32);
+  EXPECT_EQ(of_floats.stride, 3 * sizeof(float));
+  EXPECT_EQ(of_doubles.scalar, Scalar::float64);
+  EXPECT_EQ(of_doubles.stride, 3 * sizeof(double));
+  EXPECT_LT(of_doubles.off_middle, 1e-7 * of_floats.off_middle);
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -143,6 +143,8 @@ double betweenFraction(const Numbers& n)
   return between.error > 0x1p-500 && between.error < 0x1p500 ? static_cast<double>(off / between.error) : 0.0;
 }
 
+constexpr double kUnit = 4.0; ///< of the frame: lengths of nodes are in it, those of supports in the cloud's
+
 /// A direction, a rotation, two normals and three lengths, of 16 numbers: what the support lacks of that of the two
 /// slabs and the sphere, but for its margin, as a part of the margin.
 double supportFraction(const Numbers& n)
@@ -153,7 +155,7 @@ double supportFraction(const Numbers& n)
   if (!(away.norm() > 0.1 && own.norm() > 0.1 && cross.norm() > 0.1)) return 0.0;
   const Eigen::Matrix3d turn = poseAt({n[3], n[4], n[5], n[6], 0, 0, 0}, 0).linear();
   LocalFrame frame;
-  frame.unit = 1.0;
+  frame.unit = kUnit;
   Node node{};
   node.count = 1;
   node.r[0] = static_cast<float>(std::abs(n[13]) + 0.1);
@@ -167,9 +169,9 @@ double supportFraction(const Numbers& n)
   const RealVector u = set(slabs, own, n[14]), v = set(crosses, cross, n[15]);
   const double found = NodeSupport(frame, node, 0, slabs, crosses).along(turn.transpose() * (away / away.norm()));
   const RealVector direction = turn.cast<Real>().transpose() * away.cast<Real>().normalized();
-  const Real on_u = direction.dot(u), on_v = direction.dot(v), radius = node.r[0];
-  const Real support =
-      std::abs(on_u) * slabs.h[0] + std::abs(on_v) * crosses.h[0] + (direction - on_u * u - on_v * v).norm() * radius;
+  const Real on_u = direction.dot(u), on_v = direction.dot(v), radius = kUnit * Real{node.r[0]};
+  const Real support = std::abs(on_u) * kUnit * slabs.h[0] + std::abs(on_v) * kUnit * crosses.h[0] +
+                       (direction - on_u * u - on_v * v).norm() * radius;
   const Real margin = Real{kSupportError} * (support + radius);
   return static_cast<double>((support + margin - Real{found}) / margin);
 }

@@ -255,5 +255,15 @@ TEST(QuestionOptions, AreKnownByTheCodesOfTheCore)
   EXPECT_EQ(named(Input::surface), "") << "of a mesh itself";
 }
 
+TEST(QuestionOptions, AreOfTheQuestionsThatShareTheirKind)
+{
+  using Kind = QuestionKind;
+  EXPECT_TRUE(isOf(Kind::any, Kind::collisions));
+  EXPECT_TRUE(isOf(Kind::any, Kind::distances));
+  EXPECT_TRUE(isOf(Kind::collisions, Kind::any));
+  EXPECT_FALSE(isOf(Kind::collisions, Kind::distances));
+  EXPECT_FALSE(isOf(Kind::distances, Kind::collisions));
+}
+
 } // namespace
 } // namespace pcl_bsh

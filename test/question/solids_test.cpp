@@ -149,6 +149,7 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(found.collisions.poses[0].colliding_points, 1u);
   EXPECT_EQ(found.collisions.poses[1].colliding_points, 1u);
   EXPECT_EQ(found.collisions.poses[2].colliding_points, 0u);
+  EXPECT_FALSE(found.collisions.first_contact) << "nobody asked for the motion between poses";
   question.wanted.poses = false;
   question.swept = 0.01;
   question.path = {at(0), at(0)};
@@ -156,6 +157,26 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   ASSERT_TRUE(found.collisions.first_contact);
   EXPECT_EQ(found.collisions.first_contact->pose, 0u);
   EXPECT_EQ(found.collisions.first_contact->fraction, 0.0);
+}
+
+/// The first contact that is certain is that of points which are held wherever they truly are.
+TEST_F(SolidsTest, OnAWayWhatIsCertainlyInsideMeetsForCertain)
+{
+  const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
+  points = {{0, 0, 0}};
+  question.clearance = 0.0;
+  question.wanted.flags = question.wanted.contacts = true;
+  question.swept = 0.01;
+  question.uncertainty.length = 0.25;
+  question.path = {at(0), at(0)};
+  Answer found = answer();
+  ASSERT_TRUE(found.collisions.certain_contact);
+  EXPECT_EQ(found.collisions.certain_contact->pose, 0u);
+  EXPECT_EQ(found.collisions.certain_contact->fraction, 0.0);
+  question.path = {at(1.125), at(1.125)}; // outside, or inside
+  found = answer();
+  EXPECT_TRUE(found.collisions.first_contact);
+  EXPECT_FALSE(found.collisions.certain_contact);
 }
 
 TEST_F(SolidsTest, ASurfaceInsideCollides)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/warnings/scene_warnings.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
@@ -7,8 +8,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -261,6 +264,84 @@ TEST(Warnings, StreamsHearEachKindOnce)
   EXPECT_THAT(told(a, gaps), IsEmpty());
   EXPECT_THAT(told(a, nothing), ElementsAre(HasSubstr("b: has no finite point")));
   EXPECT_THAT(told(nothing, a), IsEmpty());
+}
+
+NamedObject named(const std::string& name, const std::string& cloud, double x, bool fixed = false)
+{
+  NamedObject made;
+  made.name = name;
+  made.fixed = fixed;
+  made.parts = {{cloud, at(0)}};
+  made.pose = at(x);
+  return made;
+}
+
+/// Of a scene: a wall, and a cart that moves.
+struct WallAndCart {
+  Cloud wall{plane(31)}, cart{plane(4)};
+  std::map<std::string, NamedCloud> clouds = {{"wall", wall.named("wall")}, {"cart", cart.named("cart")}};
+  std::vector<NamedObject> objects = {named("wall", "wall", 0, true), named("cart", "cart", 0)};
+
+  std::vector<std::string> told(std::optional<double> duration = 1.0) const
+  {
+    return warningsOf(objects, clouds, 0.05, duration);
+  }
+};
+
+TEST(SceneWarnings, OfObjectsThatNeverMeet)
+{
+  WallAndCart scene;
+  EXPECT_THAT(scene.told(), IsEmpty());
+  scene.objects[1].pose = at(5e6);
+  EXPECT_THAT(scene.told(),
+              ElementsAre(testing::AllOf(HasSubstr("'wall'"), HasSubstr("'cart'"), HasSubstr("4.99997e+06"))));
+  scene.objects[1].fixed = true;
+  EXPECT_THAT(scene.told(), IsEmpty()) << "neither moves";
+  scene.objects[1].fixed = false;
+  scene.objects[1].motion = VelocityMotion{{-5e6, 0, 0}};
+  EXPECT_THAT(scene.told(1.0), IsEmpty()) << "it comes";
+  EXPECT_THAT(scene.told(1e-9), testing::SizeIs(1));
+  EXPECT_THAT(scene.told(0.0), testing::SizeIs(1));
+  EXPECT_THAT(scene.told(std::nullopt), IsEmpty()) << "nobody knows for how long";
+  scene.objects[0].fixed = false;
+  scene.objects[1].fixed = true;
+  EXPECT_THAT(scene.told(1.0), testing::SizeIs(1)) << "what is fixed does not move, whatever its motion is";
+  EXPECT_THAT(scene.told(std::nullopt), testing::SizeIs(1));
+}
+
+/// Of several objects each that is far from all others, before it and behind it.
+TEST(SceneWarnings, OfObjectsFarFromTheOthers)
+{
+  WallAndCart scene;
+  for (const auto& [count, lost] : {std::pair(3u, 0u), {3u, 1u}, {3u, 2u}, {4u, 0u}, {4u, 1u}, {4u, 2u}, {4u, 3u}}) {
+    scene.objects.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      scene.objects.push_back(
+          named("object " + std::to_string(i), "cart", i == lost ? 5e6 : 3.0 * static_cast<double>(i)));
+    EXPECT_THAT(scene.told(), ElementsAre(testing::AllOf(HasSubstr("the other objects"),
+                                                         HasSubstr("'object " + std::to_string(lost) + "'"))));
+  }
+}
+
+TEST(SceneWarnings, OfHolesBetweenPointsOfWhatMayMeet)
+{
+  WallAndCart scene;
+  std::vector<float> twofold = plane(12);
+  for (float& x : twofold) x *= 2.0f;
+  const Cloud coarse(twofold), finer(plane(12));
+  scene.clouds = {{"a", coarse.named("a", true)}, {"b", finer.named("b", true)}, {"c", finer.named("c", true)}};
+  scene.objects = {named("one", "b", 0), named("two", "c", 0)};
+  ASSERT_THAT(scene.told(), testing::SizeIs(1));
+  EXPECT_THAT(scene.told()[0], testing::AllOf(HasSubstr("b"), HasSubstr("c")));
+  const std::string of_finer = scene.told()[0];
+  scene.objects.push_back(named("three", "a", 0, true));
+  ASSERT_THAT(scene.told(), testing::SizeIs(1)) << "of the two with the widest holes";
+  EXPECT_NE(scene.told()[0], of_finer);
+  for (NamedObject& object : scene.objects) object.fixed = true;
+  EXPECT_THAT(scene.told(), IsEmpty()) << "nothing moves";
+  scene.objects = {named("alone", "a", 0)};
+  scene.objects[0].parts.emplace_back("b", at(0));
+  EXPECT_THAT(scene.told(), IsEmpty()) << "parts of one object";
 }
 
 } // namespace

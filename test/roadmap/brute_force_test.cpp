@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The oracle itself, against answers known beforehand.
 #include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include "support/question.h"
 #include "support/random_clouds.h"
@@ -129,6 +130,20 @@ TEST_F(BruteForce, ChecksTheRequest)
   EXPECT_THROW(brute_force::anyCollision(pa_, pb_, within(-1)), std::invalid_argument);
   EXPECT_THROW(brute_force::collisionFlags(pa_, pb_, within(nan)), std::invalid_argument);
   EXPECT_THROW(brute_force::closestPair(pa_, pb_, {Accuracy::tolerance(-1)}), std::invalid_argument);
+}
+
+TEST_F(BruteForce, CountsThePosesOfEachVerdict)
+{
+  Cloud p({{0, 0, 0}}), q({{0, 0, 0}});
+  p.setUncertainties(0.25, {});
+  const SphereHierarchy hp(p.view()), hq(q.view());
+  const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
+  const std::vector<Eigen::Isometry3d> poses = {at(0), at(1), at(1.125), at(0.5), at(4)};
+  const AnyAtPoses found = brute_force::anyCollisionAtPoses({hp}, hq, poses, within(1.0));
+  EXPECT_EQ(found.flags, (std::vector<Verdict>{Verdict::colliding, Verdict::undecided, Verdict::undecided,
+                                               Verdict::colliding, Verdict::free}));
+  EXPECT_EQ(found.colliding, 2u);
+  EXPECT_EQ(found.undecided, 2u);
 }
 
 } // namespace

@@ -5,6 +5,8 @@
 #include "scene_worlds.h"
 #include "swept_twin.h"
 
+#include <pcl_bsh/scene/swept/object_motion.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -398,6 +400,30 @@ TEST(SweptObject, NoChangeHidesAMotion)
   EXPECT_GT(added, 10u);
   EXPECT_GT(reshaped, 100u);
   EXPECT_GT(detoured, 100u);
+}
+
+/// Both the shift and the turn count, of points at the corners of the box.
+TEST(ObjectMotion, NoPointIsFasterThanItsSpeed)
+{
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    Leg leg;
+    leg.turn = random.uniform(0, 8) * axis.normalized();
+    leg.to.linear() = Eigen::AngleAxisd(leg.turn.norm(), leg.turn.normalized()).toRotationMatrix();
+    leg.center = Eigen::Vector3d(random.uniform(-1, 1), 0, 0);
+    leg.to.translation() = Eigen::Vector3d(random.uniform(-3, 3), random.uniform(-3, 3), 0);
+    const Box3 box{{-1, -2, -3}, {1, 2, 3}};
+    const ObjectMotion motion(leg, box);
+    double fastest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d p((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 2 : -2, (corner & 4) != 0 ? 3 : -3);
+      for (int step = 0; step < 64; ++step)
+        fastest = std::max(fastest, (leg.at((step + 1) / 64.0) * p - leg.at(step / 64.0) * p).norm() * 64.0);
+    }
+    EXPECT_GE(motion.speed(), fastest * (1.0 - 1e-12));
+    EXPECT_GE(motion.rounding(), 64 * kDoubleUnit * fastest);
+  }
 }
 
 } // namespace
