@@ -63,4 +63,24 @@ TEST(JsonDocument, ReplacesWhatIsNoUtf8)
   EXPECT_EQ(validUtf8(std::string("a\0\n", 3)), std::string("a\0\n", 3));
 }
 
+TEST(JsonDocument, ShowsUpToSixtyCharactersWhole)
+{
+  const std::string longest(58, 'a'); // and two quotes
+  EXPECT_EQ(shown(Json(longest)), "\"" + longest + "\"");
+  EXPECT_EQ(shown(Json(longest + "a")), "\"" + longest + "a...");
+}
+
+TEST(JsonDocument, IsPrintedWithLinesAndLettersAsTheyAre)
+{
+  EXPECT_EQ(printed(Json{{"a", "\xc3\xa4"}}), "{\n  \"a\": \"\xc3\xa4\"\n}\n");
+  EXPECT_EQ(shown(Json("\xc3\xa4")), "\"\\u00e4\"") << "messages are for any terminal";
+}
+
+TEST(JsonDocument, KeysOfObjectsThatWereClosedDoNotCount)
+{
+  EXPECT_EQ(parseJson(R"({"a": {"b": 1}, "c": {"b": 2}, "b": 3})").size(), 3U);
+  EXPECT_THAT([] { parseJson(R"({"a": {"b": 1}, "c": 1, "a": 3})"); }, refusedWith("the key \"a\" twice"));
+  EXPECT_THAT([] { parseJson(std::string(102, '[') + std::string(102, ']')); }, refusedWith("nests deeper than 100"));
+}
+
 } // namespace pcl_bsh::io

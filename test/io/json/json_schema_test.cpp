@@ -43,6 +43,22 @@ TEST(JsonSchema, NamesPlaceFaultAndRemedyOfEachKeyword)
             "d.json: has none or several of 'a', 'b': give one");
 }
 
+TEST(JsonSchema, SizesAndLimitsAreInclusive)
+{
+  EXPECT_EQ(faultOf(R"({"minItems": 1, "maxItems": 2})", "[1]"), "");
+  EXPECT_EQ(faultOf(R"({"minItems": 1, "maxItems": 2})", "[1, 2]"), "");
+  EXPECT_EQ(faultOf(R"({"minItems": 1, "maxItems": 2})", "[1, 2, 3]"),
+            "d.json: [1,2,3] is no list of that length: give another");
+  EXPECT_EQ(faultOf(R"({"minProperties": 1, "maxProperties": 2})", R"({"a": 1})"), "");
+  EXPECT_EQ(faultOf(R"({"minProperties": 1, "maxProperties": 2})", R"({"a": 1, "b": 2})"), "");
+  EXPECT_EQ(faultOf(R"({"minProperties": 1, "maxProperties": 2})", "{}"),
+            "d.json: {} is no object of that size: give another");
+  EXPECT_EQ(faultOf(R"({"maxProperties": 1})", R"({"a": 1, "b": 2})"),
+            "d.json: {\"a\":1,\"b\":2} is no object of that size: give another");
+  EXPECT_EQ(faultOf(R"({"maximum": 1})", "1"), "");
+  EXPECT_EQ(faultOf(R"({"exclusiveMinimum": 1})", "1.5"), "");
+}
+
 TEST(JsonSchema, DefinitionsNameWhatTheyAre)
 {
   const std::string schema = R"({"title": "not for messages", "items": {"$ref": "#/definitions/pair"}, "definitions":

@@ -27,4 +27,26 @@ TEST(NearestName, IsFoundWithAndWithoutPrefix)
   EXPECT_EQ(suggestion("crop", {}), "there is none to name");
 }
 
+TEST(NearestName, TakesTheFirstOfThoseAsNear)
+{
+  EXPECT_EQ(nearestName("aa", {"ab", "ac"}), "ab");
+  EXPECT_EQ(nearestName("aa", {"bb", "ac", "ab"}), "ac");
+  EXPECT_EQ(nearestName("aa", {"bb"}), "bb") << "however far";
+}
+
+TEST(NearestName, PartsOfThreeLettersCountAsOneMistake)
+{
+  EXPECT_EQ(nearestName("box", {"boa", "filters.crop_box_of_all"}), "boa") << "one letter, too, and before";
+  EXPECT_EQ(nearestName("box", {"bea", "filters.crop_box_of_all"}), "filters.crop_box_of_all");
+  EXPECT_EQ(nearestName("bo", {"cea", "filters.crop_box_of_all"}), "cea") << "two letters are no part";
+  EXPECT_EQ(nearestName("a.box", {"a.bea", "filters.a.box_of_all"}), "a.bea") << "with a prefix the whole name counts";
+}
+
+TEST(NearestName, ListsNames)
+{
+  EXPECT_EQ(listed({}), "");
+  EXPECT_EQ(listed({"a"}), "a");
+  EXPECT_EQ(listed({"a", "b", "c"}), "a, b, c");
+}
+
 } // namespace pcl_bsh::io

@@ -2,11 +2,16 @@
 #include "defect.h"
 
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/byte_source.h>
 #include <pcl_bsh/io/text/file_bytes.h>
+
+#include <gmock/gmock.h>
 
 #include <sys/stat.h>
 
+#include <memory>
 #include <thread>
+#include <utility>
 
 namespace pcl_bsh::io {
 
@@ -51,6 +56,73 @@ TEST(FileBytes, ComeThroughPipes)
   writer = through("");
   EXPECT_THROW(FileBytes{pipe}, files::FileError);
   writer.join();
+}
+
+TEST(FileBytes, OfAFileThatIsAsLongAsMayBeReadAreNotKnownToBeAll)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "abcd");
+  EXPECT_EQ(FileBytes(file, 3).view(), "abc");
+  EXPECT_FALSE(FileBytes(file, 3).isWhole());
+  EXPECT_EQ(FileBytes(file, 4).view(), "abcd");
+  EXPECT_FALSE(FileBytes(file, 4).isWhole()) << "nobody has looked behind the last";
+  EXPECT_TRUE(FileBytes(file, 5).isWhole());
+}
+
+/// What FileBytes and openBytes() refuse, each with what to do.
+TEST(FileBytes, AreRefusedWithReasons)
+{
+  const TemporaryFolder folder;
+  folder.write("empty", "");
+  const auto fault = [](const auto& open) -> std::string {
+    try {
+      open();
+    }
+    catch (const files::FileError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::pair<const char*, const char*> cases[] = {{"none", "no such file: check the name"},
+                                                       {"empty/none", "no such file: check the name"},
+                                                       {"empty", "is empty: export or copy the file again"},
+                                                       {"", "is a folder: name a file in it"}};
+  for (const auto& [name, wrong] : cases) {
+    EXPECT_THAT(fault([&] { FileBytes(folder / name); }), testing::EndsWith(wrong)) << name;
+    EXPECT_THAT(fault([&] { openBytes(folder / name); }), testing::EndsWith(wrong)) << name;
+  }
+  EXPECT_THAT(fault([] { FileBytes("/dev/null"); }), testing::HasSubstr("is neither a file nor a pipe"));
+}
+
+TEST(ByteSource, ReadsFromAnyPlace)
+{
+  const TemporaryFolder folder;
+  const std::string content = "0123456789";
+  const std::unique_ptr<ByteSource> file = openBytes(folder.write("file", content));
+  HeldBytes held(content);
+  for (ByteSource* const source : {file.get(), static_cast<ByteSource*>(&held)}) {
+    EXPECT_EQ(source->size(), 10U);
+    EXPECT_EQ(source->text(0, 10), content);
+    EXPECT_EQ(source->text(3, 4), "3456");
+    EXPECT_EQ(source->text(9, 1), "9");
+    EXPECT_EQ(source->text(10, 0), "");
+    EXPECT_EQ(source->text(0, 1), "0") << "again, from before";
+  }
+  fs::resize_file(folder / "file", 5);
+  EXPECT_EQ(file->text(2, 3), "234");
+  EXPECT_THAT([&] { file->text(4, 2); },
+              testing::ThrowsMessage<files::FileError>(testing::HasSubstr("became shorter while it was read")));
+}
+
+TEST(FileBytes, KnowWhatIsAPipe)
+{
+  const TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_TRUE(isPipe(pipe));
+  EXPECT_TRUE(isPipe("-"));
+  EXPECT_FALSE(isPipe(folder.write("file", "a")));
+  EXPECT_FALSE(isPipe(folder / "none"));
 }
 
 } // namespace pcl_bsh::io

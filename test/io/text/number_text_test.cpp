@@ -23,4 +23,12 @@ TEST(NumberText, QuotesCells)
   EXPECT_EQ(csvText("a,\"b\"\nc"), "\"a,\"\"b\"\"\nc\"");
 }
 
+TEST(NumberText, QuotesEachCharacterThatCellsEndAt)
+{
+  for (const std::string end : {",", "\n", "\r"}) EXPECT_EQ(csvText("a" + end), "\"a" + end + "\"");
+  EXPECT_EQ(csvText("\""), "\"\"\"\"");
+  EXPECT_EQ(csvText("a;b c\td"), "a;b c\td");
+  EXPECT_EQ(csvText(""), "");
+}
+
 } // namespace pcl_bsh::io
