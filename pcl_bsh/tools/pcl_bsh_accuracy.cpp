@@ -29,7 +29,8 @@ using namespace pcl_bsh;
 constexpr auto program = "pcl_bsh_accuracy";
 constexpr auto footer =
     R"(Queries whether the clouds collide, where, and their distance, at every setting: exact, tolerance, level of
-detail, budgets. Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png. A or B may be a pipe, or - for standard input.
+detail, budgets. Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png, and, of PCL's ways beside ours,
+rivals.csv. A or B may be a pipe, or - for standard input.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: a robot in a hall, at ten poses about (1.5, 2, 0)
@@ -39,7 +40,7 @@ Example: a wagon on its way
 
 constexpr std::size_t most_poses = 20; // of a trajectory's; every setting is measured at each, several times
 
-constexpr std::array results = {"accuracy.csv", "accuracy.json", "accuracy.md", "accuracy.png"};
+constexpr std::array results = {"accuracy.csv", "accuracy.json", "accuracy.md", "accuracy.png", "rivals.csv"};
 
 struct Options {
   std::filesystem::path a, b, out, trajectory;

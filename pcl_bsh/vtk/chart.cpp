@@ -140,6 +140,7 @@ public:
     space.frame = {frame_.left, frame_.bottom, frame_.right, frame_.top};
     space.mark_radius = mark_radius;
     for (const Series& series : chart_.series) drawLine(pencil, series, space);
+    for (const Series& series : chart_.series) drawSpreads(pencil, series, space);
     for (const Span& span : chart_.spans) drawSpan(pencil, span, space);
     for (const Series& series : chart_.series) drawMarks(pencil, series, space);
     drawLabels(pencil, space);
@@ -194,6 +195,18 @@ private:
     }
   }
 
+  void drawSpreads(Pencil& pencil, const Series& series, LabelSpace& space) const
+  {
+    for (const ChartPoint& point : series.points) {
+      if (point.spread == std::array<double, 2>{}) continue;
+      constexpr double cap = 6.0;
+      const double y = yOf(point.y), low = xOf(point.spread[0]), high = xOf(point.spread[1]);
+      pencil.line({{low, y}, {high, y}}, series.color, 2.0f);
+      for (const double x : {low, high}) pencil.line({{x, y - cap}, {x, y + cap}}, series.color, 2.0f);
+      space.taken.push_back({low, y - cap, high, y + cap});
+    }
+  }
+
   void drawMarks(Pencil& pencil, const Series& series, LabelSpace& space) const
   {
     const double radius = series.faint ? 4.0 : mark_radius;
@@ -216,10 +229,24 @@ private:
       pencil.line({{from, y}, {from + head, y + side}}, ink, 2.0f);
       pencil.line({{to, y}, {to - head, y + side}}, ink, 2.0f);
     }
-    const double middle = 0.5 * (from + to);
+    const double middle = widestGap(from, to);
     pencil.fill({middle - 0.5 * size[0] - 8.0, y - 14.0, middle + 0.5 * size[0] + 8.0, y + 14.0}, lowest_ground);
     pencil.text(middle, y, span.text, label_size, ink);
     space.taken.push_back({from, y - 14.0, to, y + 14.0});
+  }
+
+  /// The middle of the widest part of a span without marks of the lowest row.
+  double widestGap(double from, double to) const
+  {
+    std::vector<double> stops = {from, to};
+    for (const Series& series : chart_.series)
+      for (const ChartPoint& point : series.points)
+        if (point.y <= chart_.lowest_y && xOf(point.x) > from && xOf(point.x) < to) stops.push_back(xOf(point.x));
+    std::sort(stops.begin(), stops.end());
+    std::size_t widest = 1;
+    for (std::size_t i = 2; i < stops.size(); ++i)
+      if (stops[i] - stops[i - 1] > stops[widest] - stops[widest - 1]) widest = i;
+    return 0.5 * (stops[widest - 1] + stops[widest]);
   }
 
   void drawLabels(Pencil& pencil, const LabelSpace& space) const

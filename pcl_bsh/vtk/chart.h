@@ -29,6 +29,7 @@ struct Axis {
 struct ChartPoint {
   double x = 0.0, y = 0.0;
   std::string label; ///< empty: none. A label without a free place is left out: the earlier ones of a series stay
+  std::array<double, 2> spread = {}; ///< of x, drawn as a bar across the mark; both 0: none
 };
 
 /// The shape of a series' points.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A benchmark that measures wrongly is worse than none: its medians, workloads and peers are tested like anything else.
 #include "harness.h"
+#include "peer/box_tree.h"
 #include "peer/uniform_grid.h"
 #include "rigid_racers.h"
 #include "workload/hall.h"
@@ -186,6 +187,32 @@ TEST(ExistencePeers, AgreeWithBruteForce)
         std::vector<std::uint8_t> flags(scene.a.size());
         peer->flag(scene.a, 0, scene.a.size(), d, flags.data());
         EXPECT_EQ(flags, truth) << "racer " << &peer - peers.data() << ", d = " << d;
+      }
+    }
+  }
+}
+
+/// Turned ones, too, and clearances at which whole boxes are settled at once.
+TEST(BoxTrees, FlagWhatBruteForceFlagsAndCountLittle)
+{
+  const Points a = statue(700, 3), b = statue(600, 4);
+  const BoxTree tree_a(a), tree_b(b);
+  BoxPair boxes(tree_a, tree_b);
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  for (const double shift : {0.0, 1.0, 2.0, 5.0}) {
+    const RigidPose pose = {{c, -s, 0, s, c, 0, 0, 0, 1}, {shift, 0.1, 0.2}};
+    const Points there = moved(b, pose);
+    for (const float d : {0.01f, 0.2f, 3.0f, 100.0f}) {
+      std::vector<std::uint8_t> truth, flags;
+      for (const Point& p : a) truth.push_back(bruteForceDistance(there, p) <= d ? 1 : 0);
+      BoxWork work;
+      boxes.flag(pose, d, flags, work);
+      EXPECT_EQ(flags, truth) << shift << ' ' << d;
+      const bool any = std::count(truth.begin(), truth.end(), 1) > 0;
+      EXPECT_EQ(boxes.any(pose, d, work), any) << shift << ' ' << d;
+      EXPECT_LE(work.updates, 2 * tree_b.nodes().size());
+      if (d == 100.0f) {
+        EXPECT_EQ(work.tests, 2u);
       }
     }
   }

@@ -32,29 +32,41 @@ def answer(command, case):
     return run.stdout.strip() if run.returncode == 0 else "error"
 
 
+def answers(programs):
+    """@param programs names and commands @return a row for each case, with the answer of each program under its name"""
+    for case in json.loads((FOLDER / "cases.json").read_text())["cases"]:
+        yield {"case": case["name"], "exact": str(case["colliding_pairs"]),
+               **{name: answer(shlex.split(command), case) for name, command in programs}}
+
+
+def table(rows, names):
+    """The lines of a table in Markdown, as its rows become known."""
+    yield "| case | exact |" + "".join(f" {name} |" for name in names)
+    yield "|---|---|" + "---|" * len(names)
+    wrong, cases = [0] * len(names), 0
+    for number, group in itertools.groupby(rows, key=lambda row: row["case"].split(",")[0].split()[0]):
+        group = list(group)
+        cases += len(group)
+        cells = []
+        for i, name in enumerate(names):
+            missed = sum(row[name] != row["exact"] for row in group)
+            wrong[i] += missed
+            cells.append("right" if missed == 0 else f"**{group[0][name]}**" if len(group) == 1 else f"**{missed} wrong**")
+        if any(cell != "right" for cell in cells):
+            exact = group[0]["exact"] if len(group) == 1 else f"{len(group)} cases"
+            yield f"| {number} | {exact} |" + "".join(f" {cell} |" for cell in cells)
+    yield f"| wrong, of {cases} | |" + "".join(f" {count} |" for count in wrong)
+
+
 def main(arguments):
     if not arguments or any("=" not in argument for argument in arguments):
         sys.stderr.write(__doc__)
         return 2
     programs = [argument.split("=", 1) for argument in arguments]
-    cases = json.loads((FOLDER / "cases.json").read_text())["cases"]
-    print("| case | exact |" + "".join(f" {name} |" for name, _ in programs))
-    print("|---|---|" + "---|" * len(programs))
-    wrong = [0] * len(programs)
-    for number, group in itertools.groupby(cases, key=lambda case: case["name"].split(",")[0].split()[0]):
-        group = list(group)
-        truths = [str(case["colliding_pairs"]) for case in group]
-        cells = []
-        for i, (_, command) in enumerate(programs):
-            answers = [answer(shlex.split(command), case) for case in group]
-            missed = sum(found != truth for found, truth in zip(answers, truths))
-            wrong[i] += missed
-            cells.append("right" if missed == 0 else f"**{answers[0]}**" if len(group) == 1 else f"**{missed} wrong**")
-        if any(cell != "right" for cell in cells):
-            exact = truths[0] if len(group) == 1 else f"{len(group)} cases"
-            print(f"| {number} | {exact} |" + "".join(f" {cell} |" for cell in cells), flush=True)
-    print(f"| wrong, of {len(cases)} | |" + "".join(f" {count} |" for count in wrong))
-    return 1 if wrong[0] else 0
+    rows = []
+    for line in table((rows.append(row) or row for row in answers(programs)), [name for name, _ in programs]):
+        print(line, flush=True)
+    return 1 if any(row[programs[0][0]] != row["exact"] for row in rows) else 0
 
 
 if __name__ == "__main__":

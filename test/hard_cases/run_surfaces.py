@@ -10,7 +10,6 @@ mean), or fails where it has no answer. It has 60 s. A cell has how many records
 wrong labels count as well; *on the surface* counts as inside or outside for a program that tells no surface. Rows in
 which all are right are left out. The exit code is 1 where the first program is wrong.
 """
-import itertools
 import json
 import pathlib
 import shlex
@@ -33,9 +32,48 @@ def answer(command, kind, case):
 
 
 def wrong_of(found, truth, surface_told):
+    """How many digits are wrong; or what there is instead of digits."""
     if found is None or not found.isdigit():
-        return found
-    return sum(f != t and (surface_told or t != "2") for f, t in zip(found, truth)) + abs(len(found) - len(truth))
+        return found or "none"
+    return str(sum(f != t and (surface_told or t != "2") for f, t in zip(found, truth)) + abs(len(found) - len(truth)))
+
+
+def answers(programs):
+    """@param programs names and commands
+    @return a row for each case: under the name of each program how many records are wrong, and after a semicolon how
+    many insides are; none: it does not answer"""
+    for case in json.loads((FOLDER / "cases.json").read_text())["cases"]:
+        if "open_edges" in case:
+            continue
+        labels = "".join(map(str, case.get("labels", []))) if "points" in case else ""
+        row = {"case": case["name"]}
+        for i, (name, command) in enumerate(programs):
+            command = shlex.split(command)
+            found = answer(command, "within", case)
+            if i == 0:
+                row["records"] = str(len(found))
+            truth = "".join("1" if k in set(case["colliding"]) else "0" for k in range(int(row["records"])))
+            row[name] = wrong_of(found, truth, True)
+            if labels:
+                found = answer(command, "labels", case)
+                row[name] += "; " + wrong_of(found, labels, found is not None and "2" in found)
+        yield row
+
+
+def table(rows, names):
+    """The lines of a table in Markdown, as its rows become known. A case counts as wrong where its program answered."""
+    def cell(text):
+        return "; ".join("right" if part == "0" else part if part == "none" else f"**{part}**" for part in text.split("; "))
+    yield "| case | records |" + "".join(f" {name} |" for name in names)
+    yield "|---|---|" + "---|" * len(names)
+    cases, wrong = 0, [0] * len(names)
+    for row in rows:
+        cells = [cell(row[name]) for name in names]
+        cases += 1
+        wrong = [count + ("**" in text) for count, text in zip(wrong, cells)]
+        if any("**" in text for text in cells):
+            yield f"| {row['case']} | {row['records']} |" + "".join(f" {text} |" for text in cells)
+    yield f"| cases, of them wrong | {cases} |" + "".join(f" {count} |" for count in wrong)
 
 
 def main(arguments):
@@ -43,32 +81,10 @@ def main(arguments):
         sys.stderr.write(__doc__)
         return 2
     programs = [argument.split("=", 1) for argument in arguments]
-    cases = [case for case in json.loads((FOLDER / "cases.json").read_text())["cases"] if "open_edges" not in case]
-    print("| case | records |" + "".join(f" {name} |" for name, _ in programs))
-    print("|---|---|" + "---|" * len(programs))
-    first_wrong = 0
-    for case in cases:
-        labels = "".join(map(str, case.get("labels", []))) if "points" in case else ""
-        count = None
-        cells = []
-        for i, (_, command) in enumerate(programs):
-            command = shlex.split(command)
-            found = answer(command, "within", case)
-            count = len(found) if i == 0 else count
-            truth = "".join("1" if k in set(case["colliding"]) else "0" for k in range(count))
-            missed = wrong_of(found, truth, True)
-            cell = "no answer" if missed is None else "right" if missed == 0 else f"**{missed}**"
-            misled = 0
-            if labels:
-                found = answer(command, "labels", case)
-                misled = wrong_of(found, labels, found is not None and "2" in found)
-                cell += "; " + ("no answer" if misled is None else "right" if misled == 0 else f"**{misled}**")
-            first_wrong += i == 0 and bool(missed or misled)
-            cells.append(cell)
-        if any(cell not in ("right", "right; right") for cell in cells):
-            print(f"| {case['name']} | {count} |" + "".join(f" {cell} |" for cell in cells), flush=True)
-    print(f"| cases | {len(cases)} |" + " |" * len(programs))
-    return 1 if first_wrong else 0
+    rows = []
+    for line in table((rows.append(row) or row for row in answers(programs)), [name for name, _ in programs]):
+        print(line, flush=True)
+    return 1 if any(set(row[programs[0][0]].split("; ")) != {"0"} for row in rows) else 0
 
 
 if __name__ == "__main__":

@@ -124,36 +124,45 @@ public:
   std::vector<Measurement> run()
   {
     const std::vector<double> leaves = leavesFor(subject_);
+    const Cloud& asking = a_asks_ ? *a_.cloud : *b_.cloud;
+    const Cloud::Ptr asked = a_asks_ ? b_.cloud : a_.cloud;
     for (const float epsilon : {0.0f, 0.5f, 2.0f}) {
       Tree tree;
       tree.setEpsilon(epsilon);
-      tree.setInputCloud(a_asks_ ? b_.cloud : a_.cloud);
       begin(epsilon == 0.0f ? "k-d tree" : "approximate k-d tree", "epsilon", epsilon);
-      const Cloud& asking = a_asks_ ? *a_.cloud : *b_.cloud;
-      measure("flags", [&](const Eigen::Affine3f& to_b) { return flagsOf(asking, tree, to_b); });
-      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, nearestIn(tree), to_b); });
+      const double making = secondsOf([&] { tree.setInputCloud(asked); });
+      measure("flags", making, [&](const Eigen::Affine3f& to_b) { return flagsOf(asking, tree, to_b); });
+      measure("distance", making,
+              [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, nearestIn(tree), to_b); });
     }
     for (const double leaf : leaves) {
       if (leaf < subject_.clearance) continue; // finds still less, and takes much memory
       begin("octree", "leaf", leaf);
       Octree tree(leaf);
-      tree.setInputCloud(a_asks_ ? b_.cloud : a_.cloud);
-      tree.addPointsFromInputCloud();
-      const Cloud& asking = a_asks_ ? *a_.cloud : *b_.cloud;
-      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, roughlyIn(tree), to_b); });
-      measure("flags", [&](const Eigen::Affine3f& to_b) { return sharedVoxels(asking, tree, to_b); });
+      const double making = secondsOf([&] {
+        tree.deleteTree();
+        tree.setInputCloud(asked);
+        tree.addPointsFromInputCloud();
+      });
+      measure("distance", making,
+              [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, roughlyIn(tree), to_b); });
+      measure("flags", making, [&](const Eigen::Affine3f& to_b) { return sharedVoxels(asking, tree, to_b); });
     }
     for (const double leaf : leaves) {
       begin("VoxelGrid + k-d tree", "leaf", leaf);
-      const Cloud::Ptr thin_a = thinned(a_.cloud, leaf), thin_b = thinned(b_.cloud, leaf);
+      Cloud::Ptr thin_a, thin_b;
+      const double thinning_a = secondsOf([&] { thin_a = thinned(a_.cloud, leaf); });
+      const double thinning_b = secondsOf([&] { thin_b = thinned(b_.cloud, leaf); });
       Tree tree;
-      tree.setInputCloud(a_asks_ ? thin_b : thin_a);
-      const Cloud& asking = a_asks_ ? *thin_a : *thin_b;
-      measure("distance", [&](const Eigen::Affine3f& to_b) { return nearestOf(asking, nearestIn(tree), to_b); });
-      // Flags are wanted of every point of a.
-      tree.setInputCloud(a_asks_ ? thin_b : a_.cloud);
+      const Cloud& few = a_asks_ ? *thin_a : *thin_b;
+      const double making = secondsOf([&] { tree.setInputCloud(a_asks_ ? thin_b : thin_a); });
+      measure("distance", thinning_a + thinning_b + making,
+              [&](const Eigen::Affine3f& to_b) { return nearestOf(few, nearestIn(tree), to_b); });
+      // Flags are wanted of every point of a, which therefore is not thinned.
       const Cloud& flagging = a_asks_ ? *a_.cloud : *thin_b;
-      measure("flags", [&](const Eigen::Affine3f& to_b) { return flagsOf(flagging, tree, to_b); });
+      const double making_all = secondsOf([&] { tree.setInputCloud(a_asks_ ? thin_b : a_.cloud); });
+      measure("flags", thinning_b + making_all,
+              [&](const Eigen::Affine3f& to_b) { return flagsOf(flagging, tree, to_b); });
     }
     return std::move(measurements_);
   }
@@ -169,8 +178,22 @@ private:
     progress_(knob_ + " " + setting_, 0.9);
   }
 
+  /// The median of the repetitions.
+  template <class Make>
+  double secondsOf(const Make& make) const
+  {
+    std::vector<double> seconds;
+    for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
+      const Stopwatch watch(1);
+      make();
+      seconds.push_back(watch.seconds());
+    }
+    return spreadOf(seconds).median;
+  }
+
+  /// @param making seconds that were spent before there was anything to ask
   template <class Ask>
-  void measure(const char* query, const Ask& ask)
+  void measure(const char* query, double making, const Ask& ask)
   {
     Measurement m;
     m.query = query;
@@ -191,7 +214,8 @@ private:
     if (m.query == "flags")
       m.actual_error = static_cast<double>(m.wrong) /
                        static_cast<double>(subject_.poses.size() * std::max<std::size_t>(1, a_.cloud->size()));
-    m.seconds = meanSpreadOf(seconds);
+    m.seconds = spreadOfPoses(seconds);
+    m.once = {making + m.seconds.low, making + m.seconds.median, making + m.seconds.high};
     measurements_.push_back(std::move(m));
   }
 

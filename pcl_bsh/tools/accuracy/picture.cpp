@@ -4,6 +4,7 @@
 #include <pcl_bsh/base/plain_text.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -59,32 +60,43 @@ double errorOf(const Measurement& m, const View& view)
   return view.scale * (m.peer ? m.actual_error : m.certified_error);
 }
 
-vtk::ChartPoint pointOf(const Measurement& m, const View& view)
+/// Of which question a series has the times.
+enum class Asked { again, once };
+
+vtk::ChartPoint pointOf(const Measurement& m, const View& view, Asked asked)
 {
-  return {m.seconds.median, errorOf(m, view), m.setting};
+  const Spread& time = asked == Asked::once ? m.once : m.seconds;
+  return {time.median, errorOf(m, view), m.setting, {time.low, time.high}};
 }
 
-vtk::Series oursOf(const Study& study, const View& view)
+vtk::Series oursOf(const Study& study, const View& view, Asked asked)
 {
-  vtk::Series series{"pcl_bsh, guaranteed", vtk::distinctColor(0), vtk::Mark::circle, true, true, false, {}};
+  const bool once = asked == Asked::once;
+  vtk::Series series{
+      once ? "" : "pcl_bsh, guaranteed", vtk::distinctColor(0), vtk::Mark::circle, true, !once, once, {}};
   for (const Measurement* m : frontier(study, view.query, view.negligible / view.scale))
-    series.points.push_back(pointOf(*m, view));
+    series.points.push_back(pointOf(*m, view, asked));
   std::reverse(series.points.begin(), series.points.end()); // exact has the first choice of a place for its label
   return series;
 }
 
-/// A way of PCL's, by the knobs it covers.
-vtk::Series peerOf(const Study& study, const View& view, const std::string& knob, std::size_t color, vtk::Mark mark)
+/// A way of PCL's: its name, and how it is drawn.
+struct Way {
+  const char* knob;
+  std::size_t color;
+  vtk::Mark mark;
+};
+
+constexpr std::array ways = {Way{"k-d tree", 6, vtk::Mark::diamond}, Way{"VoxelGrid + k-d tree", 1, vtk::Mark::square},
+                             Way{"octree", 2, vtk::Mark::triangle}};
+
+vtk::Series peerOf(const Study& study, const View& view, const Way& way, Asked asked)
 {
-  vtk::Series series{"PCL " + knob + (mark == vtk::Mark::diamond ? "" : ", no guarantee"),
-                     vtk::distinctColor(color),
-                     mark,
-                     false,
-                     false,
-                     false,
-                     {}};
+  const bool once = asked == Asked::once;
+  const std::string name = std::string("PCL ") + way.knob + (way.mark == vtk::Mark::diamond ? "" : ", no guarantee");
+  vtk::Series series{once ? "" : name, vtk::distinctColor(way.color), way.mark, false, false, once, {}};
   for (const Measurement& m : study.measurements)
-    if (m.query == view.query && m.knob == knob) series.points.push_back(pointOf(m, view));
+    if (m.query == view.query && m.knob == way.knob) series.points.push_back(pointOf(m, view, asked));
   return series;
 }
 
@@ -102,11 +114,11 @@ vtk::Chart chartOf(const Study& study, const View& view)
 {
   vtk::Chart chart;
   chart.lowest_y = view.negligible;
-  const vtk::Series ours = oursOf(study, view);
-  const vtk::Series tree = peerOf(study, view, "k-d tree", 6, vtk::Mark::diamond);
-  chart.series = {ours, tree, peerOf(study, view, "VoxelGrid + k-d tree", 1, vtk::Mark::square),
-                  peerOf(study, view, "octree", 2, vtk::Mark::triangle)};
-  chart.spans = spansOf(ours, tree);
+  for (const Asked asked : {Asked::again, Asked::once}) {
+    chart.series.push_back(oursOf(study, view, asked));
+    for (const Way& way : ways) chart.series.push_back(peerOf(study, view, way, asked));
+  }
+  chart.spans = spansOf(chart.series[0], chart.series[1]);
   const auto isEmpty = [](const vtk::Series& series) { return series.points.empty(); };
   chart.series.erase(std::remove_if(chart.series.begin(), chart.series.end(), isEmpty), chart.series.end());
   return chart;
@@ -162,12 +174,13 @@ std::vector<vtk::Chart> chartsOf(const Subject& subject, const Study& study)
   vtk::Chart flags = chartOf(study, {"flags", 1.0 / colliding_share, 0.0});
   const std::vector<vtk::Tick> times = decades(timesOf({distance, flags}), timeText);
   distance.title = "How far apart are the clouds?";
-  distance.x = {"time per pose", times};
+  const std::string time = "time of a query, quartiles (small: asked once)";
+  distance.x = {time, times};
   distance.y = {"error of the distance",
                 decades(errorsOf(distance), [&](double length) { return lengthText(length, subject.unit); })};
   distance.lowest = "exact";
   flags.title = "Which points collide?";
-  flags.x = {"time per pose", times};
+  flags.x = {time, times};
   flags.y = {"wrong or undecided / colliding", decades(errorsOf(flags), [](double share) {
                return share > 1.0 ? plainText(share) + " x" : plainText(100.0 * share) + " %";
              })};

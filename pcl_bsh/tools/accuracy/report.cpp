@@ -34,17 +34,42 @@ std::string milliseconds(double seconds)
 
 void writeCsv(std::ostream& out, const Study& study)
 {
-  out << "query,knob,setting,poses,time_median_s,time_low_s,time_high_s,node_pairs,updates,leaf_pairs,"
-         "exact_decisions,certified,certified_error,actual_error,wrong\n";
+  out << "query,knob,setting,poses,time_median_s,time_quartile_1_s,time_quartile_3_s,once_median_s,once_quartile_1_s,"
+         "once_quartile_3_s,node_pairs,updates,leaf_pairs,exact_decisions,certified,certified_error,actual_error,"
+         "wrong\n";
   for (const Measurement& m : study.measurements) {
     out << m.query << ',' << m.knob << ',' << m.setting << ',' << m.poses << ','
-        << format("%.6e,%.6e,%.6e", m.seconds.median, m.seconds.low, m.seconds.high) << ',' << m.work.node_pairs << ','
+        << format("%.6e,%.6e,%.6e", m.seconds.median, m.seconds.low, m.seconds.high) << ','
+        << format("%.6e,%.6e,%.6e", m.once.median, m.once.low, m.once.high) << ',' << m.work.node_pairs << ','
         << m.work.updates() << ',' << m.work.leaf_pairs << ',' << m.work.exact_decisions << ',' << (m.certified ? 1 : 0)
         << ',' << format("%.9g,%.9g", m.certified_error, m.actual_error) << ',' << m.wrong << '\n';
   }
 }
 
-/// All that the other two have.
+/// What the table of PCL's ways says.
+void writeRivalsCsv(std::ostream& out, const Study& study)
+{
+  out << "query,PCL,setting,error measured,time [us],quartile 1 [us],quartile 3 [us],once [us],pcl_bsh,error at most,"
+         "time of pcl_bsh [us],its quartile 1 [us],its quartile 3 [us],pcl_bsh once,once of pcl_bsh [us]\n";
+  const auto times = [](const Spread& s) {
+    return format("%.4g,%.4g,%.4g", 1e6 * s.median, 1e6 * s.low, 1e6 * s.high);
+  };
+  for (const Rival& rival : rivalsOf(study)) {
+    const Measurement& peer = *rival.peer;
+    out << peer.query << ',' << peer.knob << ',' << peer.setting << ',' << format("%.3g,", peer.actual_error)
+        << times(peer.seconds) << format(",%.4g,", 1e6 * peer.once.median);
+    if (rival.ours)
+      out << rival.ours->setting << format(",%.3g,", rival.ours->certified_error) << times(rival.ours->seconds);
+    else
+      out << "none,,,,";
+    if (rival.once)
+      out << ',' << rival.once->setting << format(",%.4g\n", 1e6 * rival.once->once.median);
+    else
+      out << ",none,\n";
+  }
+}
+
+/// All that the others have.
 nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject, const Study& study)
 {
   using Json = nlohmann::ordered_json;
@@ -58,6 +83,7 @@ nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject
                                       {"setting", m.setting},
                                       {"peer", m.peer},
                                       {"seconds", spread(m.seconds)},
+                                      {"once", spread(m.once)},
                                       {"work",
                                        {{"node_pairs", m.work.node_pairs},
                                         {"updates", m.work.updates()},
@@ -69,9 +95,12 @@ nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject
                                       {"wrong", m.wrong}});
   report["rivals"] = Json::array();
   for (const Rival& rival : rivalsOf(study))
-    report["rivals"].push_back({{"peer", rival.peer->knob + ' ' + rival.peer->setting},
+    report["rivals"].push_back({{"query", rival.peer->query},
+                                {"peer", rival.peer->knob + ' ' + rival.peer->setting},
                                 {"ours", rival.ours ? Json(rival.ours->setting) : Json()},
-                                {"met", rival.isMet()}});
+                                {"met", rival.isMet()},
+                                {"ours_once", rival.once ? Json(rival.once->setting) : Json()},
+                                {"met_once", rival.isMetOnce()}});
   for (const FitMeasurement& m : study.fits)
     report["fits"].push_back({{"fit", m.fit},
                               {"build", spread(m.build)},
@@ -84,44 +113,59 @@ nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject
 void writeTable(std::ostream& out, const Study& study, const std::string& query)
 {
   const bool distance = query == "distance";
-  out << "| knob | setting | time [ms], median | low .. high | "
+  out << "| knob | setting | time [ms], median | quartiles | asked once [ms] | "
       << (distance ? "error at most [unit]" : "undecided [%]") << " | "
       << (distance ? "off exact [unit], largest" : "wrong [answers]") << " | sphere tests a query |\n"
-      << "|---|---|---:|---:|---:|---:|---:|\n";
+      << "|---|---|---:|---:|---:|---:|---:|---:|\n";
   for (const Measurement& m : study.measurements) {
     if (m.query != query) continue;
     const std::string error = !m.certified ? "no proof"
                               : distance   ? format("%.3g", m.certified_error)
                                            : format("%.3g", 100 * m.certified_error);
     out << "| " << m.knob << " | `" << m.setting << "` | " << milliseconds(m.seconds.median) << " | "
-        << milliseconds(m.seconds.low) << " .. " << milliseconds(m.seconds.high) << " | " << error << " | "
-        << (distance ? format("%.3g", m.actual_error) : std::to_string(m.wrong)) << " | "
+        << milliseconds(m.seconds.low) << " .. " << milliseconds(m.seconds.high) << " | " << milliseconds(m.once.median)
+        << " | " << error << " | " << (distance ? format("%.3g", m.actual_error) : std::to_string(m.wrong)) << " | "
         << (m.peer ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
         << " |\n";
   }
 }
 
-/// Each of PCL's ways, and what is certified to its error: the rows that we lose are named.
-void writeRivals(std::ostream& out, const Study& study)
+/// Each of PCL's ways to an answer, and what is certified to its error: the rows that we lose are named.
+void writeRivals(std::ostream& out, const Study& study, const std::string& query)
 {
-  const std::vector<Rival> rivals = rivalsOf(study);
-  if (!rivals.empty()) {
-    out << "\n### Against PCL's ways\n\nFor each of them, the fastest setting that is certified to at most the error "
-           "measured of it.\n\n"
-        << "| PCL | error measured [unit] | time [ms] | pcl_bsh | error at most [unit] | time [ms] | sooner |\n"
-        << "|---|---:|---:|---|---:|---:|---|\n";
-    for (const Rival& rival : rivals) {
-      const Measurement& peer = *rival.peer;
-      out << "| " << peer.knob << " `" << peer.setting << "` | " << format("%.3g", peer.actual_error) << " | "
-          << milliseconds(peer.seconds.median) << " | ";
-      if (rival.ours)
-        out << '`' << rival.ours->setting << "` | " << format("%.3g", rival.ours->certified_error) << " | "
-            << milliseconds(rival.ours->seconds.median);
-      else
-        out << "none | - | -";
-      out << " | " << (rival.isMet() ? "pcl_bsh" : "**PCL**") << " |\n";
-    }
+  std::vector<Rival> rivals = rivalsOf(study);
+  rivals.erase(std::remove_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return r.peer->query != query; }),
+               rivals.end());
+  if (rivals.empty()) return;
+  const bool distance = query == "distance";
+  const char* const unit = distance ? "[unit]" : "[%]";
+  const auto error = [&](double value) { return format("%.3g", distance ? value : 100.0 * value); };
+  const auto setting = [](const Measurement* ours, double seconds) {
+    return ours ? '`' + ours->setting + "` " + milliseconds(seconds) : std::string("none");
+  };
+  out << "\n### Against PCL's ways\n\nFor each of them, the fastest setting that is certified to at most the error "
+         "measured of it; *once*: with all that has to be made for one question, thinned clouds and trees.\n\n"
+      << "| PCL | error measured " << unit << " | time [ms] | pcl_bsh [ms] | error at most " << unit
+      << " | sooner | once [ms] | pcl_bsh once [ms] | sooner |\n|---|---:|---:|---|---:|---|---:|---|---|\n";
+  std::string lost;
+  for (const Rival& rival : rivals) {
+    const Measurement& peer = *rival.peer;
+    out << "| " << peer.knob << " `" << peer.setting << "` | " << error(peer.actual_error) << " | "
+        << milliseconds(peer.seconds.median) << " | "
+        << setting(rival.ours, rival.ours ? rival.ours->seconds.median : 0.0) << " | "
+        << (rival.ours ? error(rival.ours->certified_error) : "-") << " | " << (rival.isMet() ? "pcl_bsh" : "**PCL**")
+        << " | " << milliseconds(peer.once.median) << " | "
+        << setting(rival.once, rival.once ? rival.once->once.median : 0.0) << " | "
+        << (rival.isMetOnce() ? "pcl_bsh" : "**PCL**") << " |\n";
+    for (const auto& [met, when] : {std::pair(rival.isMet(), ""), std::pair(rival.isMetOnce(), ", once")})
+      if (!met) lost += (lost.empty() ? "" : "; ") + peer.knob + " `" + peer.setting + '`' + when;
   }
+  out << "\nPCL is sooner: " << (lost.empty() ? "nowhere" : lost) << ".\n";
+}
+
+/// Settings that contradict each other.
+void writeBeaten(std::ostream& out, const Study& study)
+{
   const std::vector<Beaten> beaten = beatenOf(study);
   if (beaten.empty()) return;
   out << "\nSettings that another one beats, being no wider and more than 5 % faster:";
@@ -176,25 +220,25 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
       << heading << "\n\n"
       << format("Clearance %g, ", subject.clearance) << counted(subject.poses.size(), "pose")
       << format(", diameter of the first cloud %.4g (the clouds' unit). ", subject.diameter)
-      << "Trees are built before. Times are of one query, on one thread its processor time, averaged over the poses: "
-         "the median of the repetitions, and "
-         "from their tenth to their nine tenths.\n\n"
+      << "Times are of one query, on one thread its processor time: median and quartiles over the poses (of a single "
+         "pose, over the repetitions), trees built before; *asked once*: with all that is built for the question.\n\n"
       << advice(subject, study)
       << "\n![error against time](accuracy.png)\n\n"
          "The line joins the settings that no other setting beats in both time and error. Its errors are guaranteed.";
   if (std::any_of(study.measurements.begin(), study.measurements.end(), [](const Measurement& m) { return m.peer; }))
     out << " PCL's errors are the largest that were measured at these poses: nothing bounds them at others. PCL's "
-           "times "
-           "include moving the points of the smaller cloud to the pose, and for each of them a search in a tree of the "
-           "larger cloud. Trees and thinned clouds are made before, as the sphere trees are.";
+           "times include moving the points of the smaller cloud to the pose, and for each of them a search in a tree "
+           "of the larger cloud.";
   out << "\n\n## Smallest distance\n\n"
          "The answer is an interval that holds the exact distance. Its width, the largest over the poses, is the "
          "error.\n\n";
   writeTable(out, study, "distance");
-  writeRivals(out, study);
+  writeRivals(out, study, "distance");
+  writeBeaten(out, study);
   out << "\n## Flags per point\n\nAn undecided point is called neither free nor colliding. The "
          "wrong answers of a tolerance are those that it allows.\n\n";
   writeTable(out, study, "flags");
+  writeRivals(out, study, "flags");
   out << "\n## Any collision\n\nThe share of poses that stay undecided.\n\n";
   writeTable(out, study, "any");
   out << "\n## Fits of spheres\n\n| fit | build, both clouds [ms] | mean leaf radius [unit] | exact flags [ms] | exact "
@@ -243,6 +287,8 @@ void writeReports(const std::filesystem::path& folder, const std::string& headin
                   const Study& study)
 {
   files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
+  if (!rivalsOf(study).empty())
+    files::replaceFile(folder / "rivals.csv", [&](std::ostream& out) { writeRivalsCsv(out, study); });
   cli::writeJson(folder / "accuracy.json", toJson(heading, subject, study));
   files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
   vtk::writeChartsPng(chartsOf(subject, study), 1600, 800, folder / "accuracy.png");

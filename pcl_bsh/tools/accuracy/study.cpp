@@ -77,17 +77,30 @@ public:
   void time(Query query, const Accuracy& accuracy, std::vector<std::vector<double>>& seconds) const
   {
     seconds.resize(subject_.poses.size());
-    const auto ask = [&](const Eigen::Isometry3d& pose) {
-      if (query == Query::any) anyCollision({a_}, {b_, pose}, anyRequest(accuracy));
-      if (query == Query::flags) collisionFlags({a_}, {b_, pose}, flagsRequest(accuracy));
-      if (query == Query::distance) closestPair({a_}, {b_, pose}, {accuracy});
-    };
-    ask(subject_.poses.front()); // what was asked before, of another kind perhaps, has left other memory in the caches
+    // What was asked before, of another kind perhaps, has left other memory in the caches.
+    ask(query, accuracy, {a_}, {b_, subject_.poses.front()});
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       const Stopwatch watch(threads_);
-      ask(subject_.poses[i]);
+      ask(query, accuracy, {a_}, {b_, subject_.poses[i]});
       seconds[i].push_back(watch.seconds());
     }
+  }
+
+  /// Seconds of one query about clouds that nothing was asked about before, at each pose.
+  Spread timeOnce(Query query, const Accuracy& accuracy, unsigned repetitions) const
+  {
+    std::vector<std::vector<double>> seconds(subject_.poses.size());
+    HierarchyOptions options;
+    options.threads = threads_;
+    for (unsigned repetition = 0; repetition < repetitions; ++repetition) {
+      for (std::size_t i = 0; i < seconds.size(); ++i) {
+        const Stopwatch watch(threads_);
+        const SphereHierarchy a(subject_.a, options), b(subject_.b, options);
+        ask(query, accuracy, {a}, {b, subject_.poses[i]});
+        seconds[i].push_back(watch.seconds());
+      }
+    }
+    return spreadOfPoses(seconds);
   }
 
   /// What the answers at a setting are worth.
@@ -136,6 +149,13 @@ public:
   }
 
 private:
+  void ask(Query query, const Accuracy& accuracy, const Placed& a, const Placed& b) const
+  {
+    if (query == Query::any) anyCollision(a, b, anyRequest(accuracy));
+    if (query == Query::flags) collisionFlags(a, b, flagsRequest(accuracy));
+    if (query == Query::distance) closestPair(a, b, {accuracy});
+  }
+
   AnyRequest anyRequest(const Accuracy& accuracy) const { return {subject_.clearance, accuracy}; }
 
   FlagsRequest flagsRequest(const Accuracy& accuracy) const
@@ -168,7 +188,7 @@ std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, const Su
   }
   std::vector<std::vector<double>> seconds;
   laboratory.time(query, Accuracy::exact(), seconds);
-  const double exact = meanSpreadOf(seconds).median;
+  const double exact = spreadOfPoses(seconds).median;
   for (const char* text : {"1e-5", "3e-5", "1e-4", "3e-4", "0.001", "0.003", "0.01", "0.03", "0.1", "0.3", "1", "3"}) {
     const Accuracy budget = Accuracy::parse(std::string("time=") + text);
     if (budget.value >= exact / 300.0 && budget.value <= 2.0 * exact) dial.push_back(budget);
@@ -222,19 +242,15 @@ Spread spreadOf(std::vector<double> values)
   const auto at = [&](double part) {
     return values[static_cast<std::size_t>(std::lround(part * static_cast<double>(values.size() - 1)))];
   };
-  return {at(0.1), at(0.5), at(0.9)};
+  return {at(0.25), at(0.5), at(0.75)};
 }
 
-Spread meanSpreadOf(const std::vector<std::vector<double>>& samples)
+Spread spreadOfPoses(const std::vector<std::vector<double>>& samples)
 {
-  Spread mean;
-  for (const std::vector<double>& of_pose : samples) {
-    const Spread spread = spreadOf(of_pose);
-    mean.low += spread.low / static_cast<double>(samples.size());
-    mean.median += spread.median / static_cast<double>(samples.size());
-    mean.high += spread.high / static_cast<double>(samples.size());
-  }
-  return mean;
+  if (samples.size() == 1) return spreadOf(samples.front());
+  std::vector<double> medians;
+  for (const std::vector<double>& of_pose : samples) medians.push_back(spreadOf(of_pose).median);
+  return spreadOf(medians);
 }
 
 double roundLength(double length)
@@ -270,17 +286,17 @@ Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, c
   }
   for (unsigned repetition = 0; repetition < repetitions; ++repetition) {
     progress("repetition " + std::to_string(repetition + 1) + " of " + std::to_string(repetitions),
-             0.1 + 0.7 * repetition / repetitions);
-    for (Trial& trial : trials) {
-      laboratory.time(trial.query, trial.accuracy, trial.seconds);
-    }
+             0.1 + 0.5 * repetition / repetitions);
+    for (Trial& trial : trials) laboratory.time(trial.query, trial.accuracy, trial.seconds);
   }
+  progress("asked once", 0.6);
+  const unsigned few = std::min(repetitions, 3u);
   for (Trial& trial : trials) {
-    trial.measurement.seconds = meanSpreadOf(trial.seconds);
+    trial.measurement.seconds = spreadOfPoses(trial.seconds);
+    trial.measurement.once = laboratory.timeOnce(trial.query, trial.accuracy, few);
     study.measurements.push_back(std::move(trial.measurement));
   }
   progress("fits of spheres", 0.8);
-  const unsigned few = std::min(repetitions, 3u);
   study.fits.push_back(measureFit(subject, SphereFit::box_center, "box centre", few, threads));
   study.fits.push_back(measureFit(subject, SphereFit::ritter, "Ritter", few, threads));
   study.fits.push_back(measureFit(subject, SphereFit::minimal, "minimal", few, threads));

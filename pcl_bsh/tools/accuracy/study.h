@@ -21,7 +21,7 @@ struct Subject {
 };
 
 struct Spread {
-  double low = 0.0, median = 0.0, high = 0.0; ///< tenth, half and nine tenths of the repetitions
+  double low = 0.0, median = 0.0, high = 0.0; ///< quartiles: a quarter, half and three quarters of the values are below
 };
 
 /// One setting of one query, over all poses.
@@ -30,7 +30,8 @@ struct Measurement {
   std::string knob;  ///< which of the dials, or which peer
   std::string setting;
   bool peer = false; ///< not ours
-  Spread seconds;    ///< of one query: of each pose over the repetitions, averaged over the poses
+  Spread seconds;    ///< of one query, all built before: spreadOfPoses()
+  Spread once;       ///< of one query and of all that is built for it, likewise
   Work work;         ///< of all poses together
   bool certified = true;
   double certified_error = 0.0; ///< distance: widest interval of all poses; flags, any: share left undecided
@@ -44,7 +45,7 @@ struct FitMeasurement {
   std::string fit;
   Spread build;                ///< seconds, both clouds, everything built
   double mean_leaf_radius = 0; ///< of a
-  Spread flags, distance;      ///< seconds of an exact query, averaged over the poses
+  Spread flags, distance;      ///< seconds of an exact query, the mean of the poses
 };
 
 struct Study {
@@ -61,9 +62,9 @@ Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, c
 
 Spread spreadOf(std::vector<double> values);
 
-/// The mean of the poses' spreads: an interruption at one pose in one repetition moves no median.
-/// @param samples of each pose, one a repetition
-Spread meanSpreadOf(const std::vector<std::vector<double>>& samples);
+/// Over the poses, of the median of each: an interruption in one repetition moves nothing. Of a single pose, over its
+/// repetitions. @param samples of each pose, one a repetition; neither may be empty
+Spread spreadOfPoses(const std::vector<std::vector<double>>& samples);
 
 /// The nearest of 1, 3 and 10 times a power of ten. @param length > 0
 double roundLength(double length);

@@ -16,7 +16,8 @@ Measurement measured(const std::string& query, const std::string& knob, const st
   m.query = query;
   m.knob = knob;
   m.setting = setting;
-  m.seconds = {seconds, seconds, seconds};
+  m.seconds = {0.9 * seconds, seconds, 1.2 * seconds};
+  m.once = {2 * seconds, 2 * seconds, 3 * seconds};
   m.certified_error = error;
   return m;
 }
@@ -75,12 +76,17 @@ TEST(AccuracyPicture, DrawsOursAtTheGuaranteedAndOthersAtTheMeasuredError)
   const std::vector<vtk::Chart> charts = chartsOf(subject, studied());
   ASSERT_EQ(charts.size(), 2u);
   const vtk::Chart& distance = charts[0];
-  ASSERT_EQ(distance.series.size(), 3u);
+  ASSERT_EQ(distance.series.size(), 6u); // three, and the same asked once
   EXPECT_TRUE(distance.series[0].joined);
   EXPECT_EQ(distance.series[0].points.front().label, "exact");
   EXPECT_EQ(distance.series[0].points.back().y, 0.8);
   EXPECT_EQ(distance.series[2].points.front().y, 0.6);
   EXPECT_LE(distance.series[1].points.front().y, distance.lowest_y); // rounding of float
+  EXPECT_THAT(distance.series[2].points.front().spread, ElementsAre(0.9 * 2e-2, 1.2 * 2e-2));
+  EXPECT_TRUE(distance.series[5].faint);
+  EXPECT_EQ(distance.series[5].name, "");
+  EXPECT_EQ(distance.series[5].points.front().x, 2 * 2e-2);
+  EXPECT_EQ(distance.series[5].points.front().y, 0.6);
   ASSERT_EQ(distance.spans.size(), 1u);
   EXPECT_EQ(distance.spans[0].text, "250 x faster");
   EXPECT_EQ(distance.y.ticks.front().text, "1 cm");

@@ -11,7 +11,7 @@ Measurement at(const std::string& setting, double seconds, double error, bool pe
   Measurement m;
   m.query = "distance";
   m.setting = setting;
-  m.seconds = {seconds, seconds, seconds};
+  m.seconds = m.once = {seconds, seconds, seconds};
   m.peer = peer;
   m.certified = !peer;
   (peer ? m.actual_error : m.certified_error) = error;
@@ -40,6 +40,45 @@ TEST(AccuracyRivals, NoneIsMetWhereNothingIsAsAccurate)
   ASSERT_EQ(rivals.size(), 1u);
   EXPECT_EQ(rivals[0].ours, nullptr);
   EXPECT_FALSE(rivals[0].isMet());
+}
+
+TEST(AccuracyRivals, OnceIsAnotherChoiceThanAgain)
+{
+  Study study;
+  study.measurements = {at("exact", 1e-4, 0.0), at("tolerance=0.1", 2e-5, 0.1), at("thin", 3e-5, 0.2, true)};
+  study.measurements[0].once.median = 2e-3;
+  study.measurements[1].once.median = 3e-3;
+  study.measurements[2].once.median = 2.5e-3;
+  const Rival rival = rivalsOf(study).front();
+  EXPECT_EQ(rival.ours->setting, "tolerance=0.1");
+  EXPECT_EQ(rival.once->setting, "exact");
+  EXPECT_TRUE(rival.isMetOnce());
+  study.measurements[2].once.median = 1.9e-3;
+  EXPECT_FALSE(rivalsOf(study).front().isMetOnce());
+  EXPECT_TRUE(rivalsOf(study).front().isMet());
+}
+
+TEST(AccuracyRivals, FlagsAreNotAnsweredByATolerance)
+{
+  Study study;
+  study.measurements = {at("exact", 1e-4, 0.0), at("tolerance=0.1", 2e-5, 0.0), at("level=3", 3e-5, 0.01),
+                        at("thin", 5e-5, 0.02, true), at("distance", 1e-6, 0.0)};
+  for (Measurement& m : study.measurements) m.query = m.setting == "distance" ? "distance" : "flags";
+  study.measurements[1].knob = "tolerance";
+  const std::vector<Rival> rivals = rivalsOf(study);
+  ASSERT_EQ(rivals.size(), 1u);
+  EXPECT_EQ(rivals[0].ours->setting, "level=3");
+}
+
+TEST(AccuracyRivals, ASpreadIsThatOfThePosesMedians)
+{
+  const Spread poses = spreadOfPoses({{1, 1, 90}, {2, 2, 2}, {3, 3, 3}, {80, 4, 4}, {5, 5, 5}});
+  EXPECT_EQ(poses.low, 2.0);
+  EXPECT_EQ(poses.median, 3.0);
+  EXPECT_EQ(poses.high, 4.0);
+  const Spread one = spreadOfPoses({{5, 1, 2, 4, 3}});
+  EXPECT_EQ(one.low, 2.0);
+  EXPECT_EQ(one.high, 4.0);
 }
 
 TEST(AccuracyRivals, ASettingIsBeatenWhereAnotherIsFasterByMoreThanNoise)

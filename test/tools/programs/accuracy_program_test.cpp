@@ -73,7 +73,10 @@ TEST_F(AccuracyProgram, MeasuresEveryKnobAndIsNeverWrongWhereCertified)
   for (const Row& row : rows()) {
     ++knobs[row.at("knob")];
     const double certified = std::stod(row.at("certified_error")), actual = std::stod(row.at("actual_error"));
-    EXPECT_GT(std::stod(row.at("time_median_s")), 0.0);
+    EXPECT_GT(std::stod(row.at("time_quartile_1_s")), 0.0);
+    EXPECT_LE(std::stod(row.at("time_quartile_1_s")), std::stod(row.at("time_median_s")));
+    EXPECT_LE(std::stod(row.at("time_median_s")), std::stod(row.at("time_quartile_3_s")));
+    EXPECT_GT(std::stod(row.at("once_median_s")), 0.0);
     if (row.at("certified") != "1") continue;
     if (row.at("query") == "distance")
       EXPECT_LE(actual, certified + 1e-12) << row.at("setting");
