@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What groups of triangles are told of what was found of these, and what is left of a mesh.
+#include <pcl_bsh/filters/gathered_result.h>
+#include <pcl_bsh/filters/used_vertices.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Groups = std::vector<std::vector<std::size_t>>;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr Verdict none = Verdict::free, hit = Verdict::colliding, maybe = Verdict::undecided;
+
+TrajectoryResult gathered(const TrajectoryResult& found, std::size_t groups, const Groups& of)
+{
+  return gatheredResult(found, groups, [&](std::size_t t) { return of[t]; });
+}
+
+TEST(GatheredResult, HasTheGravestOfEachGroup)
+{
+  TrajectoryResult found;
+  found.flags = {none, hit, maybe, none, maybe};
+  const TrajectoryResult result = gathered(found, 4, {{0}, {0}, {1, 2}, {1}, {0}});
+  EXPECT_THAT(result.flags, ElementsAre(hit, maybe, maybe, none)) << "a group of none is free";
+  EXPECT_EQ(result.colliding, 1U);
+  EXPECT_EQ(result.undecided, 2U);
+  EXPECT_THAT(result.distance, IsEmpty());
+  EXPECT_THAT(result.first_pose, IsEmpty());
+  EXPECT_THAT(result.certain_pose, IsEmpty());
+  EXPECT_THAT(result.closest_pose, IsEmpty());
+  EXPECT_THAT(result.closest_point, IsEmpty());
+}
+
+TEST(GatheredResult, HasTheFirstPosesThatThereAre)
+{
+  TrajectoryResult found;
+  found.flags = {hit, hit, maybe, none};
+  found.first_pose = {5, 0, 3, -1};
+  found.certain_pose = {5, 2, -1, -1};
+  const TrajectoryResult result = gathered(found, 4, {{0}, {0, 1}, {1, 2}, {0, 3}});
+  EXPECT_THAT(result.first_pose, ElementsAre(0, 0, 3, -1));
+  EXPECT_THAT(result.certain_pose, ElementsAre(2, 2, -1, -1));
+}
+
+TEST(GatheredResult, HasTheSmallestDistanceWithItsPoseAndPoint)
+{
+  TrajectoryResult found;
+  found.flags = {hit, hit, hit, none, hit};
+  found.distance = {0.5f, 0.25f, 0.25f, nan, 0.0f};
+  found.closest_pose = {1, 7, 6, -1, 9};
+  found.closest_point = {10, 11, 12, kNothing, 14};
+  TrajectoryResult result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}});
+  EXPECT_THAT(result.distance, ElementsAre(0.25f, 0.25f, 0.0f));
+  EXPECT_THAT(result.closest_pose, ElementsAre(6, 6, 9)) << "of the same distance, the first pose";
+  EXPECT_THAT(result.closest_point, ElementsAre(12u, 12u, 14u));
+  found.closest_pose.clear();
+  result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}});
+  EXPECT_THAT(result.closest_point, ElementsAre(11u, 12u, 14u)) << "without poses, the first triangle";
+  EXPECT_THAT(result.closest_pose, IsEmpty());
+  found.flags.clear();
+  result = gathered(found, 4, {{0}, {0}, {0}, {1}, {2}});
+  EXPECT_EQ(result.distance[0], 0.25f) << "distances alone";
+  EXPECT_TRUE(std::isnan(result.distance[1]));
+  EXPECT_TRUE(std::isnan(result.distance[3]));
+  EXPECT_EQ(result.closest_point[3], kNothing);
+}
+
+TEST(GatheredResult, KeepsContactsAndWorkAndNoSummaries)
+{
+  TrajectoryResult found;
+  found.flags = {hit};
+  found.first_contact = FirstContact{3, 0.25};
+  found.certain_contact = FirstContact{4, 0.5};
+  found.work.leaf_pairs = 7;
+  found.poses.resize(2);
+  const TrajectoryResult result = gathered(found, 1, {{0}});
+  ASSERT_TRUE(result.first_contact && result.certain_contact);
+  EXPECT_EQ(result.first_contact->pose, 3U);
+  EXPECT_EQ(result.certain_contact->fraction, 0.5);
+  EXPECT_EQ(result.work.leaf_pairs, 7U);
+  EXPECT_THAT(result.poses, IsEmpty());
+}
+
+TEST(UsedVertices, AreNumberedInTheirOrder)
+{
+  std::vector<std::vector<int>> faces = {{4, 1, 6}, {}, {1, 4}};
+  EXPECT_THAT(keepUsedVertices(8, faces), ElementsAre(1, 4, 6));
+  EXPECT_THAT(faces, ElementsAre(ElementsAre(1, 0, 2), IsEmpty(), ElementsAre(0, 1)));
+  faces = {{0}, {2}};
+  EXPECT_THAT(keepUsedVertices(3, faces), ElementsAre(0, 2)) << "the first and the last";
+  faces.clear();
+  EXPECT_THAT(keepUsedVertices(3, faces), IsEmpty());
+}
+
+TEST(UsedVertices, ValuesAreThoseOfWhatIsKept)
+{
+  EXPECT_THAT(keptValues(std::vector<float>{1, 2, 3}, {1, 0, 1}), ElementsAre(1.0f, 3.0f));
+  EXPECT_THAT(keptValues(std::vector<float>{1}, {1, 1, 1}), ElementsAre(1.0f)) << "of fewer values than flags";
+  EXPECT_THAT(keptValues(std::vector<float>{}, {}), IsEmpty());
+}
+
+} // namespace
+} // namespace pcl_bsh
