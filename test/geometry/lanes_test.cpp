@@ -163,11 +163,62 @@ std::string wrongBoxes(Random& random)
   return "";
 }
 
+/// The nearest two of some points of another leaf, of each of sixteen, and which the nearest is; less radii, or not.
+template <bool kBalls>
+std::string wrongNearestTwo(Random& random)
+{
+  LeafPoints points;
+  alignas(64) float x[kLeafPoints], y[kLeafPoints], z[kLeafPoints], radii[kLeafPoints];
+  for (float* const axis : {points.x, points.y, points.z, x, y, z})
+    for (std::size_t i = 0; i < kLeafPoints; ++i) axis[i] = anyFloat(random, -1, 1);
+  for (float& radius : radii) radius = anyFloat(random, 0, 1);
+  const float scale = anyFloat(random, 0.125, 0.5);
+  NearestTwo nearest;
+  nearest.clear();
+  float first[kLeafPoints], second[kLeafPoints];
+  std::fill(first, first + kLeafPoints, std::numeric_limits<float>::infinity());
+  std::fill(second, second + kLeafPoints, std::numeric_limits<float>::infinity());
+  std::int32_t name[kLeafPoints];
+  std::fill(name, name + kLeafPoints, -1);
+  for (std::int32_t leaf = 0; leaf < 2; ++leaf) { // the second one beside what the first has left
+    const auto others = static_cast<std::uint32_t>(random.integer(0, 0xffff));
+    takeNearestTwo<kBalls>(points, kLeafPoints, x, y, z, radii, scale, others, 100 * leaf, nearest);
+    for (std::size_t i = 0; i < kLeafPoints; ++i)
+      for (std::size_t j = 0; j < kLeafPoints; ++j) {
+        if ((others >> j & 1) == 0) continue;
+        const double dx = double{points.x[i]} - x[j], dy = double{points.y[i]} - y[j], dz = double{points.z[i]} - z[j];
+        const double squared = dx * dx + dy * dy + dz * dz;
+        const auto value = static_cast<float>(kBalls ? std::sqrt(squared) - double{radii[j]} * scale : squared);
+        if (value < first[i]) name[i] = 100 * leaf + static_cast<std::int32_t>(j);
+        second[i] = std::min(second[i], std::max(first[i], value));
+        first[i] = std::min(first[i], value);
+      }
+    for (float& at : x) at = anyFloat(random, -1, 1);
+  }
+  const auto differ = [](float a, float b) { return a != b && !(std::abs(a - b) < 1e-5f); };
+  for (std::size_t i = 0; i < kLeafPoints; ++i) {
+    if (differ(nearest.first[i], first[i])) return "the nearest";
+    if (differ(nearest.second[i], second[i])) return "the second nearest";
+    if (differ(first[i], second[i]) && nearest.name[i] != name[i]) return "the name of the nearest";
+  }
+  return "";
+}
+
+std::string wrongExtremes(Random& random)
+{
+  std::vector<float> values(static_cast<std::size_t>(random.integer(1, 40)));
+  for (float& x : values) x = anyFloat(random, -4, 4);
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (largestOf(values.data(), values.size()) != *most) return "the largest";
+  return smallestOf(values.data(), values.size()) == *least ? "" : "the smallest";
+}
+
 std::string wrongLanesOnTarget()
 {
   Random random(31);
   for (int i = 0; i < 3000; ++i)
-    for (const auto& look : {wrongSmallestLanes, wrongSorting, wrongSpheres, wrongBoxes})
+    for (const auto& look : {wrongSmallestLanes, wrongSorting, wrongSpheres, wrongBoxes, wrongNearestTwo<false>,
+                             wrongNearestTwo<true>, wrongExtremes})
       if (const std::string wrong = look(random); !wrong.empty()) return wrong;
   return "none";
 }

@@ -211,7 +211,7 @@ class Scanner:
             return
         if re.match(r"(?:break|continue|return|co_\w+|else)\b", text):
             return
-        declared = re.match(r"(?:(?:const|static|constexpr|thread_local|alignas\([^)]*\))\s+)*[A-Za-z_][\w:]*(?:<[^;=]*>)?(?:::\w+)*"
+        declared = re.match(r"(?:(?:const|static|constexpr|thread_local|unsigned|long|alignas\([^)]*\))\s+)*[A-Za-z_][\w:]*(?:<[^;=]*>)?(?:::\w+)*"
                             r"(?:\s+const)?\s*(?:[*&]+\s*(?:const\s+)?|\s)\s*([A-Za-z_]\w*)\s*(=[^=]|\(|\{|;|$|\[|,)", text)
         if declared and not re.match(r"(?:\*|&)", text):
             if re.match(r".*\b(?:constexpr|static)\b", text[:declared.start(1)]) or not declared.group(2).startswith("="):

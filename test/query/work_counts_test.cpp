@@ -36,6 +36,8 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -120,7 +122,7 @@ std::vector<Eigen::Isometry3d> wayOf(const test::Scene& scene)
 /// Asks about two clouds all that can be asked of them, each of hierarchies that nothing has built yet.
 class Asked {
 public:
-  Asked(const test::Scene& scene, Table& table) : scene_(scene), table_(table) {}
+  Asked(test::Scene scene, Table& table) : scene_(std::move(scene)), table_(table) {}
 
   void all()
   {
@@ -260,7 +262,7 @@ private:
     table_.add(name, query(placed_a, placed_b));
   }
 
-  const test::Scene& scene_;
+  const test::Scene scene_;
   Table& table_;
 };
 
@@ -313,9 +315,9 @@ Cloud cloudOf(const test::Mesh& mesh, bool wide)
   return cloud;
 }
 
-void askAll(Table& table, const test::Scene& scene)
+void askAll(Table& table, test::Scene scene)
 {
-  Asked(scene, table).all();
+  Asked(std::move(scene), table).all();
 }
 
 TEST(WorkCounts, OfSmallClouds)
@@ -337,6 +339,23 @@ TEST(WorkCounts, OfClouds)
     askAll(table, sceneOf(std::move(a), std::move(b), odd ? 0.05 : 0.125, number % 4 < 2, random));
   }
   table.check("clouds");
+}
+
+/// Where most points collide, many at once.
+TEST(WorkCounts, OfDenseClouds)
+{
+  Table table;
+  Random random(10);
+  for (const bool turned : {false, true}) {
+    const auto points = [&] { return cloudOf(test::makePoints(test::Shape::uniform, 6000, 0.5, random), turned, 0.0); };
+    const Cloud a = points(), b = points();
+    for (const double clearance : {0.01, 0.05, 0.2}) {
+      Asked asked(sceneOf(a, b, clearance, turned, random), table);
+      asked.pairs();
+      asked.flags();
+    }
+  }
+  table.check("dense clouds");
 }
 
 TEST(WorkCounts, OfSheets)
