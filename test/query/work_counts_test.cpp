@@ -358,6 +358,32 @@ TEST(WorkCounts, OfDenseClouds)
   table.check("dense clouds");
 }
 
+/// Places of many points each that lie closer together than floats tell.
+TEST(WorkCounts, OfCrowdedClouds)
+{
+  Table table;
+  Random random(11);
+  for (const double spread : {1e-6, 1e-4, 4e-3}) {
+    const std::vector<Point3> places = test::makePoints(test::Shape::uniform, 12, 1000.0, random);
+    const auto points = [&] {
+      std::vector<Point3> crowded;
+      for (const Point3& place : places)
+        for (int i = 0; i < 50; ++i)
+          crowded.push_back({place[0] + spread * random.uniform(-1, 1), place[1] + spread * random.uniform(-1, 1),
+                             place[2] + spread * random.uniform(-1, 1)});
+      return cloudOf(crowded, true, 0.0);
+    };
+    const Cloud a = points(), b = points();
+    test::Scene scene{a, b, Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), 0.1 * spread, ""};
+    Asked asked(scene, table);
+    asked.pairs();
+    asked.flags();
+    asked.distances();
+    asked.neighbors();
+  }
+  table.check("crowded clouds");
+}
+
 TEST(WorkCounts, OfSheets)
 {
   Table table;
@@ -513,6 +539,12 @@ TEST(WorkCounts, OfScenes)
       if (i % 4 == 0) made.parts.push_back({"second", made.parts[0].hierarchy, Eigen::Isometry3d::Identity()});
       scene.add(std::move(made));
     }
+    std::vector<Point3> plain = sheet(900, 0.0, random);
+    for (Point3& p : plain) p = {8 * p[0], 8 * p[1], p[2] - 1.25};
+    const Cloud ground = cloudOf(plain, false, 0.0); // which lies in many voxels of the grid
+    HierarchyOptions fine;
+    fine.voxel_edge = 0.5;
+    scene.add(fixedObject("ground", std::make_shared<SphereHierarchy>(ground.view(), fine)));
     table.add(name, scene.query());
     for (int step = 0; step < 4; ++step) table.add(name, scene.step(0.25));
   };

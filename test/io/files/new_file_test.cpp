@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/new_file.h>
+#include <pcl_bsh/io/files/one_line.h>
+#include <pcl_bsh/io/files/unfinished.h>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +41,45 @@ TEST(NewFile, RefusesWhatHasBecomeShorterOrIsGone)
   }
   EXPECT_EQ(contentOf(file), "short");
   EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(NewFile, IsGoneUnlessItIsKept)
+{
+  const TemporaryFolder folder;
+  {
+    NewFile file(folder / "left");
+    file.append("abc");
+    EXPECT_EQ(contentOf(folder / "left"), "abc");
+  }
+  EXPECT_EQ(folder.files(), 0U);
+  {
+    NewFile file(folder / "kept");
+    file.append("head, ");
+    file.append("and more");
+    file.append("");
+    file.append(".");
+    file.replaceHead("HEAD");
+    file.keep();
+    static_cast<void>(discardUnfinished()); // as when the program is told to stop
+  }
+  EXPECT_EQ(contentOf(folder / "kept"), "HEAD, and more.");
+  EXPECT_THROW(NewFile(folder / "kept"), FileError) << "nobody's file is written to";
+  EXPECT_EQ(contentOf(folder / "kept"), "HEAD, and more.");
+}
+
+TEST(NewFile, IsRemovedWhenTheProgramIsToldToStop)
+{
+  const TemporaryFolder folder;
+  NewFile file(folder / "file");
+  static_cast<void>(discardUnfinished());
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(OneLine, HasNoCharacterThatSteersATerminal)
+{
+  EXPECT_EQ(oneLine("a\nb\x1b[31m\x7f\tc"), "a?b?[31m??c");
+  EXPECT_EQ(oneLine(std::string("\0 ~", 3)), "? ~");
+  EXPECT_EQ(oneLine("\xc3\xa4"), "\xc3\xa4");
 }
 
 } // namespace pcl_bsh::files

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -323,6 +324,47 @@ TEST(ReplaceFile, MakesNoFileWhileUnfinishedOnesAreListed)
   EXPECT_EQ(folder.files(), 0U);
   lock.unlock();
   maker.join();
+}
+
+TEST(ReplaceFile, WritesToStandardOutputWhereAsked)
+{
+  const TemporaryFolder folder;
+  for (const char* name : {"-", "/dev/stdout"}) {
+    EXPECT_NO_THROW(requireWritable(name)) << name;
+    testing::internal::CaptureStdout();
+    replaceFile(name, [](std::ostream& out) { out << "abc" << std::flush << std::string(100000, 'd'); });
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "abc" + std::string(100000, 'd')) << name;
+  }
+  EXPECT_FALSE(fs::exists("-"));
+}
+
+/// Of a thousand names beside the file.
+TEST(ReplaceFile, TakesAFreeNameIfThereIsOne)
+{
+  const TemporaryFolder folder;
+  for (int i = 0; i < 999; ++i) folder.write("file.part" + std::to_string(i), "");
+  replaceFile(folder / "file", [](std::ostream& out) { out << "abc"; });
+  EXPECT_EQ(contentOf(folder / "file"), "abc");
+  folder.write("file.part999", "");
+  EXPECT_THROW(replaceFile(folder / "file", [](std::ostream& out) { out << "d"; }), FileError);
+  EXPECT_EQ(contentOf(folder / "file"), "abc");
+  EXPECT_EQ(folder.files(), 1001U);
+}
+
+/// A program that is started meanwhile does not hold the file open.
+TEST(ReplaceFile, IsNotInherited)
+{
+  const TemporaryFolder folder;
+  FileReplacement file(folder / "file");
+  std::size_t found = 0;
+  for (int descriptor = 0; descriptor < 256; ++descriptor) {
+    std::error_code error;
+    const fs::path target = fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor), error);
+    if (error || target.filename() != "file.part0") continue;
+    ++found;
+    EXPECT_NE(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, 0);
+  }
+  EXPECT_EQ(found, 1U);
 }
 
 } // namespace pcl_bsh::files

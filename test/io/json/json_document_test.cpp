@@ -80,6 +80,7 @@ TEST(JsonDocument, KeysOfObjectsThatWereClosedDoNotCount)
 {
   EXPECT_EQ(parseJson(R"({"a": {"b": 1}, "c": {"b": 2}, "b": 3})").size(), 3U);
   EXPECT_THAT([] { parseJson(R"({"a": {"b": 1}, "c": 1, "a": 3})"); }, refusedWith("the key \"a\" twice"));
+  EXPECT_EQ(parseJson(std::string(101, '[') + std::string(101, ']')).size(), 1U);
   EXPECT_THAT([] { parseJson(std::string(102, '[') + std::string(102, ']')); }, refusedWith("nests deeper than 100"));
 }
 

@@ -78,6 +78,16 @@ TEST(JsonSchema, AlternativesTellTheFaultOfTheOneMeant)
   EXPECT_EQ(faultOf(schema, "null"), "d.json: null is no valid value: give another");
 }
 
+TEST(JsonSchema, AlternativesMayBeLists)
+{
+  const std::string schema = R"({"oneOf": [{"type": "number"}, {"type": "array", "minItems": 1, "maxItems": 2},
+      {"type": "array", "minItems": 3, "maxItems": 3}]})";
+  for (const char* document : {"1", "[1]", "[1, 2]", "[1, 2, 3]"}) EXPECT_EQ(faultOf(schema, document), "") << document;
+  EXPECT_NE(faultOf(schema, "[]"), "");
+  EXPECT_NE(faultOf(schema, "[1, 2, 3, 4]"), "");
+  EXPECT_EQ(faultOf(schema, "\"a\""), "d.json: \"a\" is no valid value: give another");
+}
+
 TEST(JsonSchema, RefusesKeywordsThatItWouldNotCheck)
 {
   EXPECT_THROW(JsonSchema(R"({"items": {"uniqueItems": true}})"), std::logic_error);

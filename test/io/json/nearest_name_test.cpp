@@ -42,6 +42,12 @@ TEST(NearestName, PartsOfThreeLettersCountAsOneMistake)
   EXPECT_EQ(nearestName("a.box", {"a.bea", "filters.a.box_of_all"}), "a.bea") << "with a prefix the whole name counts";
 }
 
+TEST(NearestName, PrefixesCountForThoseAlone)
+{
+  EXPECT_EQ(nearestName("crop_bx", {"crap_by__", "filters.crop_box"}), "filters.crop_box");
+  EXPECT_EQ(nearestName("filters.crop_bx", {"crop_bx", "filters.crop_box"}), "filters.crop_box");
+}
+
 TEST(NearestName, ListsNames)
 {
   EXPECT_EQ(listed({}), "");

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace pcl_bsh::io {
 
@@ -196,6 +197,49 @@ TEST_F(PoseFile, WhatIsWrittenReadsBackToTheSameBits)
   ASSERT_EQ(again.size(), poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_TRUE(again[i].matrix() == poses[i].matrix()) << i;
   EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST_F(PoseFile, TellsTheWorstOfItsMatrices)
+{
+  const std::string good = "1 0 0 0 0 1 0 0 0 0 1 0\n", bad = "1 1e-5 0 0 0 1 0 0 0 0 1 0\n",
+                    worst = "1 4e-5 0 0 0 1 0 0 0 0 1 0\n";
+  std::vector<std::string> first, last, one;
+  readPoses(folder.write("poses.txt", worst + good + bad), &first);
+  readPoses(folder.write("poses.txt", good + bad + worst), &last);
+  readPoses(folder.write("poses.txt", good + bad), &one);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first, last);
+  EXPECT_THAT(first[0], HasSubstr("2 of 3 poses: the worst |R'R - I| is 5.6"));
+  EXPECT_THAT(one.at(0), HasSubstr("1 of 2 poses: the worst |R'R - I| is 1.4"));
+}
+
+TEST_F(PoseFile, ColumnsOfOtherMeaningsAreLeftOut)
+{
+  const std::string half = "0.70710678118654752";
+  expectQuarterTurn(
+      read("w tx ty tz qx qy qz qw pw speed_x\n9 0 0 0 0 0 0 1 9 9\n9 1 2 3 0 0 " + half + " " + half + " 9 9\n"));
+}
+
+TEST_F(PoseFile, RowsOfAMatrixAreAlike)
+{
+  EXPECT_EQ(numbersOf("1;2;3").size(), 3U);
+  EXPECT_EQ(numbersOf("1 2 3 4;5 6 7 8").size(), 8U);
+  EXPECT_EQ(numbersOf("1,2,3,4\n5,6,7,8").size(), 8U);
+  for (const char* text : {"1 2;3 4", "1 2 3;4 5 6", "1 2 3 4;5", "1;2 3 4 5", "1 2 3 4;5 6 7", "1 2 3 4;;1 2 3 4"})
+    EXPECT_THROW(numbersOf(text), FormatError) << text;
+}
+
+TEST_F(PoseFile, APoseOfAFileIsAMatrix)
+{
+  EXPECT_TRUE(readPose(folder.write("pose", "0 -1 0 1 1 0 0 2 0 0 1 3")).isApprox(quarter_turn[1], 1e-15));
+  EXPECT_TRUE(readPose(folder.write("pose", "0 -1 0 1\n1 0 0 2\n0 0 1 3\n0 0 0 1")).isApprox(quarter_turn[1], 1e-15));
+  for (const auto& [text, wrong] : {std::pair("1 2 3 0 0 0", "holds 6 numbers: give the 12 or 16 numbers"),
+                                    {"1 2 3", "holds 3 numbers: give"},
+                                    {"1", "holds 1 number: give"}}) {
+    const auto file = folder.write("pose", text);
+    const auto read_it = [&] { readPose(file); };
+    EXPECT_THAT(read_it, testing::ThrowsMessage<files::FileError>(HasSubstr(wrong)));
+  }
 }
 
 } // namespace pcl_bsh::io

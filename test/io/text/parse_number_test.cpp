@@ -78,4 +78,37 @@ TEST(ParseNumber, RefusesWhatIsNoNumberOfTheType)
   EXPECT_EQ(defectOf([] { parseNumber<double>("abc"); }), "'abc' is not a number");
 }
 
+TEST(ParseNumber, ExponentsMayHaveAPlus)
+{
+  EXPECT_EQ(parseNumber<double>("1e+3"), 1000);
+  for (const char* huge : {"1e+400", "0.0001e+5000", "-0.001e+99999999999999999999"})
+    EXPECT_THROW(parseNumber<double>(huge), FormatError) << huge;
+  EXPECT_EQ(parseNumber<double>("0." + std::string(500, '0') + "1e+100"), 0);
+}
+
+TEST(ParseNumber, TellsWhatToDo)
+{
+  const auto remedyOf = [](const char* word) -> std::string {
+    try {
+      parseNumber<double>(word);
+    }
+    catch (const FormatError& error) {
+      return error.remedy();
+    }
+    return "";
+  };
+  for (const char* mixed : {"1,5", "1;5", "1 5", "1\t5"})
+    EXPECT_EQ(remedyOf(mixed), "write a decimal point, and one separator in all lines") << mixed;
+  for (const char* damaged : {"abc", "1.5x", "", "1e400"}) EXPECT_EQ(remedyOf(damaged), remedy_for_damage) << damaged;
+}
+
+TEST(ParseNumber, EachDigitLooksLikeANumber)
+{
+  for (char digit = '0'; digit <= '9'; ++digit) {
+    EXPECT_TRUE(looksLikeNumber(std::string("-") + digit + "a")) << digit;
+    EXPECT_TRUE(parseNumber<double>(std::string("0.") + digit + "e-400") == 0.0) << digit;
+  }
+  for (const char* word : {"/1", ":1", "-", "+.", "-x1"}) EXPECT_FALSE(looksLikeNumber(word)) << word;
+}
+
 } // namespace pcl_bsh::io

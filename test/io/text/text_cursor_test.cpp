@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "defect.h"
 
+#include <pcl_bsh/io/text/number_line.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
 #include <array>
@@ -168,6 +169,23 @@ TEST(TextCursor, ErrorsNameTheLine)
   EXPECT_EQ(defectOf([&] { text.requireEndOfLine(); }), "line 3 has more values than it should, from '5' on");
   EXPECT_EQ(text.number<int>(), 5);
   EXPECT_EQ(defectOf([&] { text.number<int>(); }), "line 3 has fewer values than it should");
+}
+
+/// Not by way of words: such lines are read at once.
+TEST(NumberLine, IsReadWithItsEnd)
+{
+  std::array<double, 2> values{};
+  const std::pair<const char*, std::size_t> blanks[] = {{"1 2", 3},     {"1 2\n3", 4}, {" 1\t2 \r\n", 7}, {"1 2\r3", 4},
+                                                        {"1 2\r\n", 5}, {"1", 0},      {"1 2 3", 0},      {"1 x", 0},
+                                                        {"", 0},        {"+1 2", 0},   {"1 1e400", 0},    {"1,2", 0}};
+  for (const auto& [text, bytes] : blanks) EXPECT_EQ(readNumberLine(text, ' ', values), bytes) << text;
+  const std::pair<const char*, std::size_t> commas[] = {{"1,2", 3},  {" 1 , 2 \n", 8}, {"1 2", 0},
+                                                        {"1,,2", 0}, {"1,2,", 0},      {",1", 0}};
+  for (const auto& [text, bytes] : commas) EXPECT_EQ(readNumberLine(text, ',', values), bytes) << text;
+  EXPECT_EQ(readNumberLine("1\t2\n", '\t', values), 4U);
+  EXPECT_EQ(readNumberLine("1\t\t2\n", '\t', values), 0U);
+  EXPECT_EQ(readNumberLine("3 4\n", ' ', values), 4U);
+  EXPECT_EQ(values, (std::array<double, 2>{3, 4}));
 }
 
 } // namespace pcl_bsh::io
