@@ -23,35 +23,36 @@ LION = f"{DATA}/statue_lion_takanawa.pcd {DATA}/statue_lion_takanawa.pcd"
 
 # File of rows: the benchmark programs that make it, and their options.
 PROGRAMS = {
-    "cold.csv": ["bench_cold --distances 1,5,20 --repeat 21"],
+    "cold.csv": ["bench_cold --size 300000 --distances 1,5,20 --racers pcl_bsh,fitted_grid,nanoflann --repeat 5"],
     "distances.csv": ["bench_distances --scene terrain,lion --clock cpu --repeat 3"],
     "flags_terrain.csv": ["bench_flags --scene terrain --sizes 1000000 --distances 1,5,20 --orders scan,shuffled --clock cpu --repeat 5"],
-    "flags_uneven.csv": ["bench_flags --scene hall,sweep,lidar,lion --sizes 1000000 --distances 1,5,20 --clock cpu --repeat 3"],
-    "growth.csv": ["bench_growth --clock cpu --repeat 1 --sizes 2000,16000"],
-    "laz.csv": ["bench_laz --clock cpu --threads 1 --repeat 5"],
-    "many_poses.csv": ["bench_rigid --sizes 100000 --poses 60 --racers pcl_bsh --many-poses 200000 --motions 20000"],
+    "flags_uneven.csv": ["bench_flags --scene hall,sweep,lidar,lion --sizes 300000 --distances 1,5,20 --orders scan --threads 1 "
+                         "--racers pcl_bsh,pcl_bsh_warm,fitted_grid,nanoflann --clock cpu --repeat 3"],
+    "growth.csv": ["bench_growth --clock cpu --repeat 1 --sizes 1000,8000"],
+    "laz.csv": ["bench_laz --clock cpu --threads 1 --repeat 3"],
+    "many_poses.csv": ["bench_rigid --sizes 100000 --poses 12 --racers pcl_bsh --many-poses 20000 --motions 200 --clock cpu"],
     "rigid_100k.csv": ["bench_rigid --sizes 100000 --poses 300"],
-    "scene.csv": ["bench_scene --clock cpu"],
-    "search.csv": ["bench_search --scene terrain,autzen --clock cpu --repeat 5"],
+    "scene.csv": ["bench_scene --clock cpu --cloud 1000000 --objects 300 --steps 30"],
+    "search.csv": ["bench_search --scene terrain,lion --size 300000 --queries 10000 --orders scan --clock cpu --repeat 3"],
     "seen.csv": ["bench_seen --clock cpu --repeat 5"],
     "self_filter.csv": ["bench_self_filter --clock cpu --frames 10"],
     "sites.csv": ["bench_sites {work} --scales 0.53,5.3,53 --repeat 1"],
     "surface.csv": ["bench_surface --clock cpu"],
     "trajectory.csv": ["bench_trajectory --scale 0.1"],
-    "tight.csv": ["bench_trajectory --scale 0.1 --scenes tight --racers pcl_bsh --threads 1 --densities 0 --clock cpu"],
+    "tight.csv": ["bench_trajectory --scale 0.02 --scenes tight --racers pcl_bsh --threads 1 --densities 0 --warm-poses 5 --clock cpu"],
     "uncertain_poses.csv": ["bench_uncertainty --scene terrain,lion --query flags,path,swept,poses,scene --clearances 5 --clock cpu --repeat 7"],
-    "uncertainty.csv": ["bench_uncertainty --scene terrain,lion --query flags,lists,any,path --clock cpu"],
+    "uncertainty.csv": ["bench_uncertainty --scene terrain,lion --query flags,lists,any,path --clock cpu --repeat 2"],
     "volumes.csv": [f"bench_volumes {clouds} --name {name} --clearance {clearance} --pose={pose} --clock cpu"
                     for name, clouds, clearance, pose in (("building", MAN, 0.5, "-7,0,-2.6,0,0,0"),
                                                           ("rooms", ROOMS, 0.05, "1.79387,0.720047,0,0,0,0.6931"),
                                                           ("lion", LION, 0.02, "0.05,0,0,0,0,0"))],
 }
 
-# What the study of accuracy is run on: clouds, options, and the poses, near ones and far ones.
+# What the study of accuracy is run on: clouds, options, how many poses, and about which, near and far ones; none: along the path.
 STUDIES = {
-    "building": (f"{MAN} --vertices-only --clearance 0.5", "-7,0,-2.6,0,0,0", "-30,10,3,0,0,0.3"),
-    "rooms": (f"{ROOMS} --clearance 0.05", "1.79387,0.720047,0,0,0,0.6931", "30,10,3,0,0,0.3"),
-    "tunnel": ("{work}/tunnel/scan.ply {work}/tunnel/wagon.ply --clearance 0.05", "", "100,400,50,0,0,0.3"),
+    "building": (f"{MAN} --vertices-only --clearance 0.5 --repeat 5", 10, "-7,0,-2.6,0,0,0", "-30,10,3,0,0,0.3"),
+    "rooms": (f"{ROOMS} --clearance 0.05 --repeat 1", 3, "1.79387,0.720047,0,0,0,0.6931", "30,10,3,0,0,0.3"),
+    "tunnel": ("{work}/tunnel/scan.ply {work}/tunnel/wagon.ply --clearance 0.05 --repeat 1", 5, "", "0,60,10,0,0,0.3"),
 }
 
 
@@ -91,11 +92,11 @@ def studies(build):
     """PCL's ways and ours on all clouds; and our settings of the smallest distance at near poses."""
     rivals, dial = [], []
     with tempfile.TemporaryDirectory() as work:
-        subprocess.run([build / "bin" / "pcl_bsh_tunnel", f"{work}/tunnel", "--scale", "0.02"], check=True, stdout=subprocess.DEVNULL)
-        for clouds, (options, near, far) in STUDIES.items():
+        subprocess.run([build / "bin" / "pcl_bsh_tunnel", f"{work}/tunnel", "--scale", "0.005"], check=True, stdout=subprocess.DEVNULL)
+        for clouds, (options, count, near, far) in STUDIES.items():
             for poses, pose in (("near", near), ("far", far)):
-                where = ["--pose=" + pose, "--poses", "10"] if pose else ["--trajectory", f"{work}/tunnel/poses.txt"]
-                command = [build / "bin" / "pcl_bsh_accuracy", *options.format(work=work).split(), *where, "--repeat", "3", "--peers",
+                where = [f"--pose={pose}", "--poses", str(count)] if pose else ["--trajectory", f"{work}/tunnel/poses.txt"]
+                command = [build / "bin" / "pcl_bsh_accuracy", *options.format(work=work).split(), *where, "--peers",
                            "--unit", "m", "--out", f"{work}/study"]
                 print(" ".join(map(str, command)), flush=True)
                 subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

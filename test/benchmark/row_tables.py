@@ -40,13 +40,15 @@ def ratio(number):
 # Tables ---------------------------------------------------------------------------------------------------------------
 
 def flags(rows):
-    yield "| order | d | pcl_bsh | tuned grid | plain grid | nanoflann | PCL KdTreeFLANN | nanoflann / ours | PCL / ours |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+    yield "| order | d | pcl_bsh | asked again | tuned grid | plain grid | nanoflann | PCL KdTreeFLANN | nanoflann / ours | PCL / ours |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
     for order in ("scan", "shuffled"):
         for d in ("1.00", "5.00", "20.0"):
             of = {racer: rows.one("total [ms]", order=order, d=d, threads="1", racer=racer)
                   for racer in ("pcl_bsh", "grid", "plain_grid", "nanoflann", "pcl_kdtree")}
-            yield (f"| {order} | {float(d):.0f} | " + " | ".join(short(value) for value in of.values()) +
+            again = rows.one("query [ms]", order=order, d=d, threads="1", racer="pcl_bsh_warm")
+            ours, *others = of.values()
+            yield (f"| {order} | {float(d):.0f} | " + " | ".join(short(value) for value in (ours, again, *others)) +
                    f" | {ratio(of['nanoflann'] / of['pcl_bsh'])} | {ratio(of['pcl_kdtree'] / of['pcl_bsh'])} |")
 
 
@@ -86,6 +88,17 @@ def paths(rows):
                            for threads, racer in (("1", "pcl_bsh"), ("2", "pcl_bsh"), ("1", "boxes")))
         yield (f"| {title} | {float(first['scan']) / 1e6:.4g} M / {float(first['model']) / 1e3:.0f} k / {int(first['poses']):,} | "
                f"{one:.2g} s | {two:.2g} s | {boxes:.3g} s |")
+
+
+def tight(rows):
+    """What else is asked, against the flags."""
+    yield "| question | query | of the flags' time | node pairs |"
+    yield "|---|---|---|---|"
+    for row in rows:
+        told = re.fullmatch(r"(.*); node pairs (\d+); ratio: to the flags", row["remark"])
+        if told and row["scene"] == "tight":
+            yield (f"| {told.group(1)} | {short(float(row['query [ms]']), ' ms')} | {float(row['times ours']):.2f} | "
+                   f"{int(told.group(2)):.3g} |")
 
 
 def sites(rows):
@@ -159,15 +172,38 @@ def uncertain_poses(rows):
 
 def uneven(rows):
     """Milliseconds at three clearances, and of ours when asked again."""
-    yield "| scene, d = 1 / 5 / 20 | points | pcl_bsh | asked again | tuned grid | plain grid | nanoflann |"
-    yield "|---|---|---|---|---|---|---|"
+    yield "| scene, d = 1 / 5 / 20 | points | pcl_bsh | asked again | fitted grid | nanoflann |"
+    yield "|---|---|---|---|---|---|"
     for scene, title in (("hall", "hall: half of the points on one statue"), ("sweep", "made sweep of a spinning lidar"),
                          ("lidar", "lidar sweeps a and b"), ("lion", "lion against its shifted copy")):
         of = rows.where(scene=scene, order="scan")
         cells = [" / ".join(short(of.one(column, d=d, racer=racer)) for d in ("1.00", "5.00", "20.0"))
-                 for column, racer in (("total [ms]", "pcl_bsh"), ("query [ms]", "pcl_bsh_warm"), ("total [ms]", "grid"),
-                                       ("total [ms]", "plain_grid"), ("total [ms]", "nanoflann"))]
+                 for column, racer in (("total [ms]", "pcl_bsh"), ("query [ms]", "pcl_bsh_warm"), ("total [ms]", "fitted_grid"),
+                                       ("total [ms]", "nanoflann"))]
         yield f"| {title} | {int(of[0]['points']):,} | " + " | ".join(cells) + " |"
+
+
+def cold(rows):
+    """Processor milliseconds, median and least, and pages touched for the first time."""
+    racers = (("pcl_bsh", "pcl_bsh"), ("fitted_grid", "fitted grid"), ("nanoflann", "nanoflann"))
+    yield "| question | d | " + " | ".join(title for _, title in racers) + " | ours / fitted grid | faults, ours / fitted grid |"
+    yield "|---|---|" + "---|" * 5
+    for question in ("flags", "any"):
+        for d in ("1.00", "5.00", "20.0"):
+            of = {racer: rows.where(order="scan", question=question, d=d, racer=racer)[0] for racer, _ in racers}
+            medians, leasts = ({racer: float(row[column]) for racer, row in of.items()} for column in ("cpu [ms]", "least cpu [ms]"))
+            yield (f"| {question} | {float(d):.0f} | " + " | ".join(f"{short(medians[racer])}, {short(leasts[racer])}" for racer, _ in racers) +
+                   f" | {medians['pcl_bsh'] / medians['fitted_grid']:.2f}, {leasts['pcl_bsh'] / leasts['fitted_grid']:.2f} | " +
+                   " / ".join(f"{float(of[racer]['faults']):,.0f}" for racer in ("pcl_bsh", "fitted_grid")) + " |")
+
+
+def many(rows):
+    yield "| any collision | a call for each | one call |"
+    yield "|---|---|---|"
+    for single, batch, kinds in (("any, single", "any, batch, 1 threads", "poses"), ("any on motions, a call for each", "any on motions, one call, 1 threads", "motions in")):
+        for of in rows.where(query=single):
+            once = rows.one("median [us]", query=batch, **{"class": of["class"]})
+            yield f"| {kinds} {of['class']} | {short(float(of['median [us]']))} | {short(once)} |"
 
 
 def growth(rows):
@@ -181,13 +217,13 @@ def growth(rows):
 def search(rows):
     racers = (("pcl_kdtree", "PCL k-d tree"), ("nanoflann", "nanoflann"), ("pcl_octree", "PCL octree"), ("grid", "grid"))
     yield "| task | " + " | ".join(f"terrain: {title}" if i == 0 else title for i, (_, title) in enumerate(racers)) + " | " + \
-        " | ".join(f"Autzen: {title}" if i == 0 else title for i, (_, title) in enumerate(racers)) + " |"
+        " | ".join(f"lion: {title}" if i == 0 else title for i, (_, title) in enumerate(racers)) + " |"
     yield "|---|" + "---|" * 8
     for task, title in (("build", "build"), ("radius30", "radius, 30 neighbours"), ("radius300", "radius, 300 neighbours"),
                         ("radius30_1", "nearest within a radius"), ("knn1", "k = 1"), ("knn8", "k = 8"), ("knn30", "k = 30"),
                         ("probes", "is there any point in this ball? (batch)")):
         cells = []
-        for scene in ("terrain", "autzen"):
+        for scene in ("terrain", "lion"):
             for racer, _ in racers:
                 found = rows.where(scene=scene, order="scan", task=task, racer=racer)
                 cells.append(ratio(float(found[0]["ratio"])) if found else "")
@@ -217,13 +253,12 @@ def self_filter(rows):
 
 
 def laz(rows):
-    yield "| points | format | LAZ | MB/s of the file | MB/s of records | the same as LAS |"
-    yield "|---|---|---|---|---|---|"
+    yield "| points | format | LAZ | the same as LAS | LAZ / LAS |"
+    yield "|---|---|---|---|---|"
     for row in rows.where(file="cloud.laz", threads="1"):
-        las = rows.where(points=row["points"], format=row["format"], file="cloud.las")[0]
-        cells = [short(float(row["[s] of 10^7 points"]), " s"), short(float(row["MB/s of the file"])), short(float(row["MB/s of records"])),
-                 short(float(las["[s] of 10^7 points"]), " s")]
-        yield f"| {row['points']} | {row['format']} | " + " | ".join(cells) + " |"
+        las = rows.where(points=row["points"], format=row["format"], file="cloud.las").one("[s] of 10^7 points")
+        seconds = float(row["[s] of 10^7 points"])
+        yield f"| {row['points']} | {row['format']} | {short(seconds, ' s')} | {short(las, ' s')} | {ratio(seconds / las)} |"
 
 
 def scene(rows):
@@ -262,8 +297,9 @@ def accuracy(rows):
     yield ("| poses | question | PCL | error measured | time, quartiles [us] | pcl_bsh | error at most | time, quartiles [us] | sooner | "
            "PCL once [us] | pcl_bsh once [us] | sooner once |")
     yield "|---|---|---|---:|---:|---|---:|---:|---|---:|---:|---|"
-    for row in rows.where(clouds="building"):
-        if row["PCL"] == "approximate k-d tree" or (row["poses"] == "far" and row["query"] == "flags"):
+    of = rows.where(clouds="building")
+    for row in [*of.where(poses="near", query="distance"), *of.where(poses="near", query="flags"), *of.where(poses="far", query="distance")]:
+        if row["PCL"] == "approximate k-d tree":
             continue
         far = row["query"] == "distance"
         def error(text):
@@ -299,15 +335,20 @@ def accuracy_lost(rows):
 
 
 def dial(rows):
-    """Our settings of the smallest distance."""
+    """Our settings of the smallest distance, but those that a peer's error asked for."""
     yield "| clouds | setting | time, quartiles [us] | asked once [us] | interval at most [m] | off exact at most [m] | sphere tests |"
     yield "|---|---|---:|---:|---:|---:|---:|"
+    shown = set()
     for row in rows:
+        setting = (row["clouds"], row["setting"])
+        if row["clouds"] == "rooms" or setting in shown or re.match(r"tolerance=(?![0.]*[13](e-\d+)?$)", row["setting"]):
+            continue
+        shown.add(setting)
         time, low, high, once = (short(1e6 * float(row[column])) for column in ("time_median_s", "time_quartile_1_s", "time_quartile_3_s", "once_median_s"))
         yield (f"| {row['clouds']} | `{row['setting']}` | {time} ({low} .. {high}) | {once} | {float(row['certified_error']):.3g} | "
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, rigid, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
-          surfaces, bodies, paths, scene, accuracy, accuracy_lost, dial, laz, sites]
+TABLES = [flags, uneven, cold, rigid, many, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
+          surfaces, bodies, paths, tight, scene, accuracy, accuracy_lost, dial, laz, sites]
 TABLES = {table.__name__: table for table in TABLES}
