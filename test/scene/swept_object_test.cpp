@@ -402,6 +402,30 @@ TEST(SweptObject, NoChangeHidesAMotion)
   EXPECT_GT(detoured, 100u);
 }
 
+/// More pairs than are told apart: both sides are flagged all the same.
+TEST(SweptObject, ACrowdThatPassesACrowdIsFlaggedOnBothSides)
+{
+  std::vector<Point3> moving(300, Point3{0, 0, 0}), fixed = moving;
+  moving.push_back({0, 5, 0});
+  fixed.push_back({0, -5, 0});
+  const Cloud a(moving, doubles), b(fixed, doubles);
+  SceneOptions options;
+  options.effects.swept = true;
+  options.clearance = 0.5;
+  options.tolerance = 0.05;
+  Scene scene(options);
+  SceneObject swarm = object("swarm", std::make_shared<SphereHierarchy>(a.view()), at(-3, 0, 0));
+  swarm.motion = VelocityMotion{{6, 0, 0}};
+  scene.add(swarm);
+  scene.add(fixedObject("still", std::make_shared<SphereHierarchy>(b.view())));
+  const SceneResult result = scene.step(1);
+  ASSERT_EQ(result.swept.size(), 2u);
+  for (const FlaggedPart& part : result.swept) {
+    EXPECT_EQ(part.colliding, 300u) << part.object;
+    EXPECT_EQ(part.flags.back(), Verdict::free) << part.object;
+  }
+}
+
 /// Both the shift and the turn count, of points at the corners of the box.
 TEST(ObjectMotion, NoPointIsFasterThanItsSpeed)
 {

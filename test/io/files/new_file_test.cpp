@@ -67,6 +67,20 @@ TEST(NewFile, IsGoneUnlessItIsKept)
   EXPECT_EQ(contentOf(folder / "kept"), "HEAD, and more.");
 }
 
+/// What has the name of a file that is gone is nobody's unfinished file.
+TEST(NewFile, IsForgottenWhenItIsGone)
+{
+  const TemporaryFolder folder;
+  NewFile(folder / "file").append("abc");
+  EXPECT_THROW(NewFile(folder / "none" / "file"), FileError);
+  folder.write("file", "of somebody else");
+  fs::create_directory(folder / "none");
+  folder.write("none/file", "as well");
+  static_cast<void>(discardUnfinished());
+  EXPECT_EQ(contentOf(folder / "file"), "of somebody else");
+  EXPECT_EQ(contentOf(folder / "none/file"), "as well");
+}
+
 TEST(NewFile, IsRemovedWhenTheProgramIsToldToStop)
 {
   const TemporaryFolder folder;
