@@ -6,6 +6,7 @@
 #include <pcl_bsh/python/threads/callback.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/warnings/hollow.h>
 
 #include <memory>
 #include <string>
@@ -51,15 +52,14 @@ struct Asked {
   /// What ask() answers, computed without the interpreter's lock; its warnings are told.
   Answer answer();
 
-  /// The same of a query that no question has.
-  template <class Query>
-  auto answer(Query&& query)
+  /// The same of a query that no question has. @param nearest of what it answers, as nearestOf() has it
+  template <class Query, class Nearest>
+  auto answer(Query&& query, const Nearest& nearest)
   {
     std::vector<Warning> warnings;
     auto found = unlocked([&] {
       auto answer = query();
-      const bool spacings = question.wanted.spacings;
-      warnings = warningsOf(question, input.facts(spacings), obstacle.facts(spacings));
+      warnings = warningsOf(question, nearest(answer), input, obstacle);
       return answer;
     });
     warn(warnings);

@@ -246,11 +246,12 @@ DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pos
   DistanceRequest request;
   request.accuracy = accuracyOf(accuracy);
   request.threads = asked.question.threads = threads;
-  return asked.answer([&] {
+  const auto find = [&] {
     DistanceResult found = closestPair(asked.a, asked.b, request);
     addHeld(asked.question, asked.input, asked.obstacle, found);
     return found;
-  });
+  };
+  return asked.answer(find, [](const DistanceResult& found) { return found.distance; });
 }
 
 /// A property for one of the pair's rows.

@@ -16,6 +16,8 @@ namespace {
 
 constexpr auto kContacts = R"(The pairs of points that collide, nearest first, with their distances and normals.
 
+A mesh is its surface here: what is inside of it, `collision_flags` tells with `solid`.
+
 Parameters
 ----------
 a, b : SphereHierarchy
@@ -80,7 +82,7 @@ Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optio
   Asked asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
   asked.question.clearance = clearance;
-  return asked.answer([&] {
+  const auto find = [&] {
     const ContactsResult found = nearestContacts(asked.a, asked.b, request);
     Contacts columns;
     columns.complete = found.complete;
@@ -92,7 +94,8 @@ Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optio
       columns.normal.insert(columns.normal.end(), contact.normal.begin(), contact.normal.end());
     }
     return columns;
-  });
+  };
+  return asked.answer(find, [](const Contacts& found) { return nearestOf(found.distance); });
 }
 
 py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
@@ -101,7 +104,9 @@ py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double c
   Asked asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
   asked.question.clearance = clearance;
-  const PairsWithin found = asked.answer([&] { return pairsWithin(asked.a, asked.b, request); });
+  const PairsWithin found = asked.answer(
+      [&] { return pairsWithin(asked.a, asked.b, request); },
+      [](const PairsWithin& pairs) { return pairs.pairs.empty() ? nearestOf(std::vector<double>()) : 0.0; });
   if (!found.complete)
     throw py::value_error("pairs_within: there are more than " + counted(request.most, "pair") +
                           ": ask nearest_contacts() for the nearest, or for more");

@@ -69,7 +69,12 @@ Examples
 constexpr auto kHausdorffDistance =
     R"(The symmetric Hausdorff distance, without measuring every point: that of `symmetric_distances`, bit for bit, for less.
 
-Parameters are those of `point_distances`.
+Parameters
+----------
+a, b : SphereHierarchy
+    Of meshes, the surfaces: `solid` is for `symmetric_distances`.
+pose_a, pose_b, threads, progress
+    As of `point_distances`.
 
 Returns
 -------
@@ -96,6 +101,9 @@ SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<doub
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
   asked.set(options, QuestionKind::distances);
+  if (question.input_solid && !both_ways)
+    throw InvalidOption("input_solid", "is about distances of b, which this does not tell",
+                        "ask symmetric_distances()");
   question.progress = progressOf(progress);
   question.wanted.distances = question.wanted.intervals = true;
   question.wanted.both_ways = both_ways;
@@ -121,7 +129,8 @@ HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const Pose
 {
   Asked asked(a, pose_a, b, pose_b);
   const HausdorffRequest request{threads, progressOf(progress)};
-  return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); });
+  return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); },
+                      [](const HausdorffDistance&) { return 0.0; }); // which has nothing to do with what is inside
 }
 
 std::optional<py::array_t<double>> intervalArray(const py::object& self)

@@ -45,11 +45,12 @@ array([1, 1, 0], dtype=uint8)
 
 constexpr auto kClosestAtPoses = R"(The smallest distance, b at each of many poses.
 
-Parameters are those of `any_collision_at_poses`.
+Parameters are those of `any_collision_at_poses`, but for `clearance` and `accuracy`.
 
 Returns
 -------
 distances : ndarray of float64, (m,)
+    Of what a solid holds, negative: the depth of the deepest.
 pairs : ndarray of int32, (m, 2)
     Rows of a and b; -1 when a cloud is empty.
 )";
@@ -103,23 +104,29 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
   request.accuracy = accuracyOf(accuracy);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyAtPoses found = asked.answer([&] {
+  const auto find = [&] {
     AnyAtPoses of_surfaces = anyCollisionAtPoses(asked.a, b, list, request);
     addHeld(asked.question, asked.input, asked.obstacle, list, of_surfaces.flags);
     return of_surfaces;
-  });
-  return arrayFrom(std::move(found.flags));
+  };
+  return arrayFrom(asked.answer(find, [](const AnyAtPoses& found) { return nearestOf(found.flags); }).flags);
 }
 
-std::pair<py::array_t<double>, py::array_t<std::int32_t>> closestAtPosesOf(const Cloud& a, const Cloud& b,
-                                                                           const ArrayLike& poses,
-                                                                           const PoseLike& pose_a, unsigned threads,
-                                                                           const ProgressLike& progress)
+std::pair<py::array_t<double>, py::array_t<std::int32_t>>
+closestAtPosesOf(const Cloud& a, const Cloud& b, const ArrayLike& poses, const PoseLike& pose_a, unsigned threads,
+                 bool solid, bool input_solid, const ProgressLike& progress)
 {
   Asked asked("a", a, pose_a, "b", b);
+  asked.question.solid = solid;
+  asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   const DistanceRequest request(threads, progressOf(progress));
-  DistancesAtPoses found = asked.answer([&] { return closestPairAtPoses(asked.a, b, list, request); });
+  const auto find = [&] {
+    DistancesAtPoses of_surfaces = closestPairAtPoses(asked.a, b, list, request);
+    addHeld(asked.question, asked.input, asked.obstacle, list, of_surfaces.distances, of_surfaces.pairs);
+    return of_surfaces;
+  };
+  DistancesAtPoses found = asked.answer(find, [](const DistancesAtPoses& all) { return nearestOf(all.distances); });
   found.pairs.resize(list.size(), {kNothing, kNothing});
   return {arrayFrom(std::move(found.distances)), arrayFrom(found.pairs)};
 }
@@ -142,14 +149,14 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  AnyOnMotions found = asked.answer([&] {
+  const auto find = [&] {
     AnyOnMotions of_surfaces = anyCollisionOnMotions(asked.a, model, list, edges, request);
     std::vector<Eigen::Isometry3d> starts;
     for (const PoseMotion& edge : edges) starts.push_back(list[edge.from]);
     addHeld(asked.question, asked.input, asked.obstacle, starts, of_surfaces.flags);
     return of_surfaces;
-  });
-  return arrayFrom(std::move(found.flags));
+  };
+  return arrayFrom(asked.answer(find, [](const AnyOnMotions& found) { return nearestOf(found.flags); }).flags);
 }
 
 } // namespace
@@ -160,7 +167,8 @@ void bindManyPoses(py::module_& module)
              py::kw_only(), "pose_a"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1, "solid"_a = false,
              "input_solid"_a = false, "progress"_a = py::none());
   module.def("closest_pair_at_poses", &closestAtPosesOf, kClosestAtPoses, "a"_a, "b"_a, "poses"_a, py::kw_only(),
-             "pose_a"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
+             "pose_a"_a = py::none(), "threads"_a = 1, "solid"_a = false, "input_solid"_a = false,
+             "progress"_a = py::none());
   module.def("any_collision_on_motions", &onMotionsOf, kOnMotions, "scan"_a, "model"_a, "poses"_a, "motions"_a,
              "clearance"_a = 0.0, py::kw_only(), "swept"_a, "pose_scan"_a = py::none(), "pivot"_a = py::none(),
              "threads"_a = 1, "solid"_a = false, "input_solid"_a = false, "progress"_a = py::none());

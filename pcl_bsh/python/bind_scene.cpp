@@ -96,15 +96,15 @@ SceneResult resultOf(SharedScene& shared, Ask&& ask)
     SceneResult answer = ask(scene);
     if (shared.told == scene.size()) return answer;
     shared.told = scene.size();
-    std::map<std::string, NamedCloud> clouds;
+    std::map<std::string, Shape> clouds;
     std::vector<NamedObject> objects;
     for (ObjectId id = 0; id < scene.size(); ++id) {
       const SceneObject& object = scene[id];
       objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
       for (const ScenePart& part : object.parts) {
         const std::string name = object.parts.size() == 1 ? object.name : object.name + "." + part.name;
-        clouds.emplace(name, static_cast<const Cloud&>(*part.hierarchy).named(name).facts(true));
-        objects.back().parts.push_back({name, part.pose});
+        clouds.emplace(name, static_cast<const Cloud&>(*part.hierarchy).named(name));
+        objects.back().parts.push_back({name, part.pose, part.solid});
       }
     }
     warnings = warningsOf(objects, clouds, scene.options().clearance, std::nullopt);

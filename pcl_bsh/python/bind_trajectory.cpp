@@ -114,11 +114,14 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
   if (!pivot.is_none()) request.pivot = point3Of("pivot", pivot);
   request.threads = threads;
   request.progress = progressOf(progress);
-  run.result = asked.answer([&] {
-    TrajectoryResult found = collideAlong(asked.a, model, list, request);
+  const auto find = [&] {
+    TrajectoryRequest wanted = request;
+    wanted.flags = flags || solid || input_solid; // which what is held is counted by
+    TrajectoryResult found = collideAlong(asked.a, model, list, wanted);
     addHeld(asked.question, asked.input, asked.obstacle, found);
     return found;
-  });
+  };
+  run.result = asked.answer(find, [](const TrajectoryResult& found) { return nearestOf(found); });
   request.progress = nullptr; // it refers to an argument of this call
   return run;
 }

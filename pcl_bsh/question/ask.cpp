@@ -189,7 +189,8 @@ private:
     TrajectoryRequest request;
     static_cast<Effort&>(request) = nextEffort();
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
-    request.flags = wanted_.flags || wanted_.contacts || wanted_.poses;
+    const bool flags = wanted_.flags || wanted_.contacts || wanted_.poses;
+    request.flags = flags || !solids_->none(); // which what is held is counted by
     request.distances = request.closest_poses = wanted_.contacts || wanted_.distances;
     request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;
@@ -197,6 +198,7 @@ private:
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
     solids_->addToPath(answer_.collisions, answer_.work);
+    if (!flags) answer_.collisions.flags.clear();
     if (wanted_.closest) {
       answer_.closest = closestOf(answer_.collisions);
       answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
@@ -265,8 +267,8 @@ private:
     const NamedCloud input = input_.facts(wanted_.spacings), obstacle = obstacle_.facts(wanted_.spacings);
     answer_.density = {input.spacing, obstacle.spacing};
     for (Warning& warning : warningsOf(question_, input, obstacle)) answer_.warnings.push_back(std::move(warning));
-    if (auto hollow = warningOfHollow(question_, answer_, input_, a_, obstacle_, b_.hierarchy(), obstacle.box))
-      answer_.warnings.push_back(std::move(*hollow));
+    for (Warning& hollow : warningsOfHollow(question_, nearestOf(question_, answer_), input_, obstacle_))
+      answer_.warnings.push_back(std::move(hollow));
   }
 
   const Question& question_;

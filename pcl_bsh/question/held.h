@@ -27,6 +27,11 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, Trajectory
 void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
              std::vector<Verdict>& verdicts);
 
+/// @param distances of the surfaces, one for each pose, and where there are any, @param pairs that realise them: those
+///   of what is held become negative
+void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+             std::vector<double>& distances, std::vector<PointPair>& pairs);
+
 /// Of the two as they stand.
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest);
 void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances); ///< of the input

@@ -2,26 +2,53 @@
 #include <pcl_bsh/question/shape.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/made_once.h>
 #include <pcl_bsh/geometry/triangle/open_edges.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/solid/enclosure.h>
 
+#include <atomic>
 #include <utility>
 
 namespace pcl_bsh {
 
-struct Shape::Enclosing {
-  explicit Enclosing(const TrianglesView& triangles) : solid(triangles) {}
-  const Solid solid;
-  const SolidBodies bodies{solid};
+struct Shape::Faces {
+  struct Enclosing {
+    explicit Enclosing(const TrianglesView& triangles) : solid(triangles) {}
+    const Solid solid;
+    const SolidBodies bodies{solid};
+  };
+  MadeOnce<const Enclosing> enclosing;
+  MadeOnce<const bool> closed;
+  std::atomic<bool> asked{false}; ///< isKnownToClose() was called
 };
+
+struct Shape::Built {
+  MadeOnce<const Content> content;
+  MadeOnce<const NamedCloud> facts; ///< without a spacing
+};
+
+namespace {
+
+/// What make() gives, or what another copy of a shape has made.
+template <class T, class Make>
+const T& madeOnce(MadeOnce<const T>& made, const Make& make)
+{
+  bool kept = false;
+  const T* const known = made.get();
+  return known ? *known : *made.keep(make(), kept);
+}
+
+} // namespace
 
 Shape::Shape(std::string name, const PointsView& points, std::vector<RecordField> fields)
 : name_(std::move(name)),
   view_([points] { return points; }),
   fields_([fields = std::move(fields)] { return fields; }),
-  is_surface_(points.triangles != nullptr)
+  is_surface_(points.triangles != nullptr),
+  surface_(std::make_shared<Faces>()),
+  built_(std::make_shared<Built>())
 {
 }
 
@@ -29,7 +56,9 @@ Shape::Shape(std::string name, std::function<PointsView()> points, std::function
 : name_(std::move(name)),
   view_(std::move(points)),
   fields_(std::move(fields)),
-  watched_(true)
+  watched_(true),
+  surface_(std::make_shared<Faces>()),
+  built_(std::make_shared<Built>())
 {
   is_surface_ = view_().triangles != nullptr; // what cannot be read is refused here, not at the first use
 }
@@ -37,7 +66,9 @@ Shape::Shape(std::string name, std::function<PointsView()> points, std::function
 Shape::Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy)
 : name_(std::move(name)),
   is_surface_(hierarchy && hierarchy->view().triangles),
-  hierarchy_(std::move(hierarchy))
+  hierarchy_(std::move(hierarchy)),
+  surface_(std::make_shared<Faces>()),
+  built_(std::make_shared<Built>())
 {
 }
 
@@ -67,7 +98,7 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
   options.threads = threads;
   Uncertainty built_with = uncertainty;
   hierarchy_ = std::make_shared<SphereHierarchy>(withUncertainty(view, fields, name_, uncertainty), options);
-  content_.reset();
+  built_ = std::make_shared<Built>();
   uncertainty_ = std::move(built_with);
   uncertainties_ = uncertainties;
   first_seen_ = seen;
@@ -104,9 +135,9 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
 
 const SolidBodies& Shape::solid()
 {
+  const TrianglesView& triangles = *hierarchy_->view().triangles;
   try {
-    if (!solid_) solid_ = std::make_shared<const Enclosing>(*hierarchy_->view().triangles);
-    return solid_->bodies;
+    return madeOnce(surface_->enclosing, [&] { return std::make_unique<const Faces::Enclosing>(triangles); }).bodies;
   }
   catch (const InvalidInput& error) {
     throw InvalidInput(Input::surface, name_, error.wrong(), error.remedy());
@@ -115,25 +146,23 @@ const SolidBodies& Shape::solid()
 
 bool Shape::isClosed()
 {
-  if (!is_closed_) {
+  if (surface_->enclosing.get()) return true;
+  return madeOnce(surface_->closed, [this] {
     const TrianglesView& triangles = *hierarchy_->view().triangles;
-    is_closed_ = solid_ || findOpenEdges(triangles.count, [&](std::size_t i) {
-                             return triangles.triangle(static_cast<std::uint32_t>(i));
-                           }).closed();
-  }
-  return *is_closed_;
+    const auto corners = [&](std::size_t i) { return triangles.triangle(static_cast<std::uint32_t>(i)); };
+    return std::make_unique<const bool>(findOpenEdges(triangles.count, corners).closed());
+  });
 }
 
-bool Shape::mayClose()
+std::optional<bool> Shape::isKnownToClose()
 {
-  if (std::exchange(asked_to_close_, true)) isClosed();
-  return is_closed_.value_or(true);
+  if (!surface_->asked.exchange(true)) return std::nullopt;
+  return isClosed();
 }
 
 const Content& Shape::content()
 {
-  if (!content_) content_ = std::make_shared<const Content>(*hierarchy_);
-  return *content_;
+  return madeOnce(built_->content, [this] { return std::make_unique<const Content>(*hierarchy_); });
 }
 
 void Shape::setPatches(std::vector<float> spacings)
@@ -143,7 +172,9 @@ void Shape::setPatches(std::vector<float> spacings)
 
 NamedCloud Shape::facts(bool spacing) const
 {
-  NamedCloud facts = namedCloud(name_, *hierarchy_);
+  NamedCloud facts =
+      madeOnce(built_->facts, [this] { return std::make_unique<const NamedCloud>(namedCloud("", *hierarchy_)); });
+  facts.name = name_;
   if (!spacing || is_surface_ || hierarchy_->view().radii) return facts;
   {
     const std::lock_guard lock(measured_->one_at_a_time);

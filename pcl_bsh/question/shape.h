@@ -56,6 +56,9 @@ public:
   ///   withUncertainty() asks for
   const SphereHierarchy& hierarchy(const Uncertainty& uncertainty, unsigned threads);
 
+  /// That was built last. @pre there is one
+  const SphereHierarchy& hierarchy() const { return *hierarchy_; }
+
   /// How wide the holes beside each record are taken to be, and what gapes wider.
   struct Patches {
     std::optional<double> asked; ///< none: usualGap()
@@ -73,15 +76,15 @@ public:
   /// @throws InvalidInput as scansOf() and SeenSpace do
   const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads);
 
-  /// What its faces enclose. Made once. @pre isSurface(), and hierarchy() was called
+  /// What its faces enclose. Made once for all copies. @pre isSurface(), and hierarchy() was called
   /// @throws InvalidInput naming it, as Solid does
   const SolidBodies& solid();
 
   /// Whether its faces close: found out once, for a few hundred instructions a triangle. @pre as of solid()
   bool isClosed();
 
-  /// Whether its faces may close, which a question about it may ask: the second one finds out, for all that follow.
-  bool mayClose();
+  /// The same for who asks at each question about it: nothing at the first, whose user may never ask again.
+  std::optional<bool> isKnownToClose();
 
   /// What of it solids are asked about. Made once. @pre hierarchy() was called
   const Content& content();
@@ -119,12 +122,10 @@ private:
   };
   std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
 
-  /// Once they are asked for.
-  struct Enclosing;
-  std::shared_ptr<const Enclosing> solid_;
-  std::optional<bool> is_closed_; ///< once it is asked for
-  bool asked_to_close_ = false;   ///< mayClose() was called
-  std::shared_ptr<const Content> content_;
+  struct Faces; ///< what is known of them, for all copies
+  std::shared_ptr<Faces> surface_;
+  struct Built; ///< what is known of the hierarchy, likewise
+  std::shared_ptr<Built> built_;
 
   /// What SeenSpace is of.
   struct Looked {

@@ -356,6 +356,23 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
   });
 }
 
+void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+             std::vector<double>& distances, std::vector<PointPair>& pairs)
+{
+  if (pairs.empty()) return; // one of them has nothing that could be held
+  Question at_pose = question;
+  at_pose.path.reset();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    at_pose.pose = poses[i];
+    DistanceResult closest;
+    closest.distance = distances[i];
+    closest.pair = pairs[i];
+    addHeld(at_pose, input, obstacle, closest);
+    distances[i] = closest.distance;
+    pairs[i] = *closest.pair;
+  }
+}
+
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.turn(closest); });

@@ -24,7 +24,8 @@
 // What is inside of a solid part collides, at any clearance: so do the records that it holds, and the triangles of the
 // body that holds them. Smallest distances are negative then, the depth of the deepest. A first contact of a motion
 // that begins inside is its first instant, and a response is stuck there (Outcome). Of swept motion, what is held at
-// its beginning or its end is flagged, beside what meets a surface on the way. Contacts are those of surfaces.
+// any instant is flagged, and each body that holds something then, or comes within the tolerance of that. Contacts are
+// those of surfaces.
 #pragma once
 
 #include <pcl_bsh/export.h>

@@ -3,8 +3,11 @@
 
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/solid/labels.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -102,6 +105,40 @@ void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const Stand
   };
   if (const auto pair = deepest(b, a)) found.pair = pair;
   if (const auto pair = deepest(a, b)) found.pair = PointPair{pair->b, pair->a};
+}
+
+/// A place that comes into a body, or leaves it, meets its surface. One that comes out of a hollow meets the surface of
+/// the hollow alone, and the bodies round it hold it from then on: they wound round it before.
+std::vector<std::uint32_t> SceneSolids::entered(const SweptPart& solid, const SweptPart& other, double tolerance,
+                                                Work& work) const
+{
+  const SphereHierarchy* places = &known_.at(&other.hierarchy).content->places();
+  std::optional<const SphereHierarchy> middles; // of balls, which are held where these are
+  PointsView view = places->view();
+  if (std::exchange(view.radii, nullptr)) places = &middles.emplace(view);
+  const Reach reach(0.0, solid.hierarchy.storage().uncertainty, other.hierarchy.storage().uncertainty,
+                    Places::possible);
+  std::vector<Verdict> of_places(view.count), of_solid(solid.hierarchy.view().count);
+  flagContacts({*places, other.pose, other.motion}, solid, reach.most, tolerance, Places::measured, of_places, of_solid,
+               work);
+  std::vector<std::int32_t> met;
+  for (std::size_t i = 0; i < of_places.size(); ++i)
+    if (of_places[i] != Verdict::free) met.push_back(static_cast<std::int32_t>(i));
+  std::vector<std::uint32_t> triangles;
+  if (met.empty()) return triangles;
+  view.indices = met.data();
+  view.index_count = met.size();
+  const SphereHierarchy passing(view);
+  const SolidBodies& bodies = *known_.at(&solid.hierarchy).bodies;
+  for (const SolidBodies::Body& body : bodies.all()) {
+    const bool is_met = std::any_of(body.triangles.begin(), body.triangles.end(),
+                                    [&](std::uint32_t triangle) { return of_solid[triangle] != Verdict::free; });
+    const Eigen::Isometry3d pose = solid.at(0.0).pose;
+    if (is_met || anyWithin({passing, other.at(0.0).pose}, {bodies.solidOf(body), pose}, &work))
+      triangles.insert(triangles.end(), body.triangles.begin(), body.triangles.end());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
 }
 
 } // namespace pcl_bsh

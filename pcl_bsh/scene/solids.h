@@ -4,12 +4,14 @@
 
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/scene/swept/sweep.h>
 #include <pcl_bsh/solid/enclosure.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 namespace pcl_bsh {
 
@@ -44,6 +46,12 @@ public:
 
   /// The deepest that is held.
   void turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const;
+
+  /// Triangles, ascending, of each body of a solid that may hold a place of the other at an instant of their motion,
+  /// but for those whose place stays inside of it: it holds them at the beginning. What such a body does not hold comes
+  /// within the tolerance of a place that it does.
+  std::vector<std::uint32_t> entered(const SweptPart& solid, const SweptPart& other, double tolerance,
+                                     Work& work) const;
 
 private:
   struct Known {

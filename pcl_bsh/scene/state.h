@@ -163,6 +163,8 @@ private:
   void findSwept(EffectCost& spent);
   void findSelf(EffectCost& spent);
 
+  void addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                       std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
   void addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
                  std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
 

@@ -85,9 +85,79 @@ def test_scenes(points):
         scene.add("open", pcl_bsh.SphereHierarchy.of_triangles(CORNERS, FACES[:-1]), solid=True)
 
 
+HOLLOW = "its faces close round places of .* without `{}`"
+
+
+def test_queries_tell_of_a_mesh_that_is_hollow_by_mistake():
+    tank, probe = box(4.0), pcl_bsh.SphereHierarchy(np.array([[0.5, 0.25, 0], [0, 0, 0]]))
+    far = np.diag([1, 1, 1, 1.0]) + np.eye(4, k=3) * 30
+    queries = {
+        "any": lambda a, b, pose, **w: pcl_bsh.any_collision(a, b, pose_b=pose, **w),
+        "flags": lambda a, b, pose, **w: pcl_bsh.collision_flags(a, b, pose_b=pose, **w),
+        "indices": lambda a, b, pose, **w: pcl_bsh.colliding_indices(a, b, pose_b=pose, **w),
+        "closest": lambda a, b, pose, **w: pcl_bsh.closest_pair(a, b, pose_b=pose, **w),
+        "distances": lambda a, b, pose, **w: pcl_bsh.point_distances(a, b, pose_b=pose, **w),
+        "symmetric": lambda a, b, pose, **w: pcl_bsh.symmetric_distances(a, b, pose_b=pose, **w),
+        "any at poses": lambda a, b, pose, **w: pcl_bsh.any_collision_at_poses(a, b, [pose], **w),
+        "closest at poses": lambda a, b, pose, **w: pcl_bsh.closest_pair_at_poses(a, b, [pose], **w),
+        "motions": lambda a, b, pose, **w: pcl_bsh.any_collision_on_motions(a, b, [pose], [[0, 0]], swept=0.1, **w),
+        "path": lambda a, b, pose, **w: pcl_bsh.collide_along(a, b, [pose], **w),
+        "contacts": lambda a, b, pose: pcl_bsh.nearest_contacts(a, b, pose_b=pose),
+        "pairs": lambda a, b, pose: pcl_bsh.pairs_within(a, b, pose_b=pose),
+    }
+    for name, ask in queries.items():
+        with pytest.warns(UserWarning, match="(b|model): " + HOLLOW.format("solid")):
+            ask(probe, tank, np.eye(4))
+        if name != "distances":
+            with pytest.warns(UserWarning, match="(a|scan): " + HOLLOW.format("input_solid")):
+                ask(tank, probe, np.eye(4))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            ask(probe, tank, far)
+            if name not in ("contacts", "pairs"):
+                ask(probe, tank, np.eye(4), solid=True)
+            if name not in ("contacts", "pairs", "distances"):
+                ask(tank, probe, np.eye(4), input_solid=True)
+        assert not [w for w in told if "close round" in str(w.message)], name
+    with pytest.warns(UserWarning, match="'tank': its faces close round places of 'probe'"):
+        scene = pcl_bsh.Scene(any=True)
+        scene.add("tank", tank, fixed=True)
+        scene.add("probe", probe)
+        scene.query()
+
+
+def test_closest_pairs_at_poses_are_those_of_each(points):
+    tank, robot = box(4.0), box(0.5)
+    poses = np.array([turned(i) for i in range(4)])
+    poses[:, :3, 3] = [[0, 0, 0], [1, 2, 0.5], [3.8, 0, 0], [9, 0, 0]]
+    for a, b, words in ((robot, tank, {"solid": True}), (tank, robot, {"input_solid": True}),
+                        (tank, robot, {"solid": True, "input_solid": True}),
+                        (pcl_bsh.SphereHierarchy(points), tank, {"solid": True})):
+        distances, pairs = pcl_bsh.closest_pair_at_poses(a, b, poses, **words)
+        for i, pose in enumerate(poses):
+            one = pcl_bsh.closest_pair(a, b, pose_b=pose, **words)
+            assert distances[i] == one.distance and tuple(pairs[i]) == (one.a, one.b)
+        assert distances[0] < 0
+
+
+def test_a_path_counts_what_is_held_without_flags(points):
+    scan, tank = pcl_bsh.SphereHierarchy(points), box(4.0)
+    run = pcl_bsh.collide_along(scan, tank, [np.eye(4)], flags=False, distances=True, solid=True)
+    assert run.flags is None and run.colliding == len(points)
+
+
 def test_what_does_not_close_is_refused(points):
     open_box = pcl_bsh.SphereHierarchy.of_triangles(CORNERS, FACES[:-1])
     with pytest.raises(ValueError, match="b: 3 edges are open"):
         pcl_bsh.any_collision(pcl_bsh.SphereHierarchy(points), open_box, solid=True)
     with pytest.raises(ValueError, match="a has no faces"):
         pcl_bsh.any_collision(pcl_bsh.SphereHierarchy(points), open_box, input_solid=True)
+
+
+def test_options_that_would_change_nothing_are_refused(points):
+    scan = pcl_bsh.SphereHierarchy(points)
+    with pytest.raises(ValueError, match="input_solid: is about distances of b"):
+        pcl_bsh.point_distances(box(), scan, input_solid=True)
+    for ask in (pcl_bsh.nearest_contacts, pcl_bsh.pairs_within, pcl_bsh.hausdorff_distance):
+        with pytest.raises(TypeError):
+            ask(scan, box(), solid=True)

@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
 
 namespace pcl_bsh {
 namespace {
@@ -74,16 +77,75 @@ TEST_F(HollowTest, NotWhereFacesDoNotClose)
 
 TEST_F(HollowTest, TheSecondQuestionFindsOutWhetherFacesClose)
 {
-  const auto mayClose = [&] {
+  const auto known = [&] {
     Shape obstacle("robot.stl", viewOf(machine.view()));
     obstacle.hierarchy({}, 1);
-    std::vector<bool> found;
-    for (int i = 0; i < 3; ++i) found.push_back(obstacle.mayClose());
+    std::vector<std::optional<bool>> found;
+    for (int i = 0; i < 3; ++i) found.push_back(obstacle.named("a copy").isKnownToClose());
     return found;
   };
-  EXPECT_EQ(mayClose(), (std::vector<bool>{true, true, true}));
+  EXPECT_EQ(known(), (std::vector<std::optional<bool>>{std::nullopt, true, true}));
   machine.corners.resize(machine.corners.size() - 3);
-  EXPECT_EQ(mayClose(), (std::vector<bool>{true, false, false}));
+  EXPECT_EQ(known(), (std::vector<std::optional<bool>>{std::nullopt, false, false}));
+}
+
+TEST_F(HollowTest, EachQuestionTellsTheSame)
+{
+  Shape input("hall.ply", viewOf(points.data(), points.size() / 3)), obstacle("robot.stl", viewOf(machine.view()));
+  std::vector<std::string> told;
+  for (int i = 0; i < 3; ++i)
+    for (const Warning& warning : ask(question, input, obstacle).warnings) told.push_back(warning.text);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[0], told[1]);
+  EXPECT_EQ(told[0], told[2]);
+}
+
+TEST_F(HollowTest, CopiesShareWhatTheyEnclose)
+{
+  Shape obstacle("robot.stl", viewOf(machine.view()));
+  obstacle.hierarchy({}, 1);
+  Shape one = obstacle.named("one"), other = obstacle.named("other");
+  EXPECT_EQ(&one.solid(), &other.solid());
+  EXPECT_EQ(&one.content(), &other.content());
+  one.hierarchy({0.5}, 1); // built anew
+  EXPECT_NE(&one.content(), &other.content());
+}
+
+TEST_F(HollowTest, ToldOfAnInputThatClosesRoundTheObstacle)
+{
+  Shape input("robot.stl", viewOf(machine.view())), obstacle("hall.ply", viewOf(points.data(), points.size() / 3));
+  const auto told = [&] {
+    std::vector<Warning> all = ask(question, input, obstacle).warnings;
+    all.erase(std::remove_if(all.begin(), all.end(), [](const Warning& w) { return w.kind != WarningKind::hollow; }),
+              all.end());
+    return all;
+  };
+  ASSERT_EQ(told().size(), 1u);
+  EXPECT_THAT(told()[0].text, testing::AllOf(testing::StartsWith("robot.stl: "), HasSubstr("`input_solid`")));
+  question.pose.translation().x() = 10;
+  EXPECT_TRUE(told().empty());
+  question.pose_of_input.translation().x() = 10;
+  EXPECT_EQ(told().size(), 1u);
+  question.input_solid = true;
+  EXPECT_TRUE(told().empty());
+}
+
+/// As faces ask it, which run queries that no question has.
+TEST_F(HollowTest, NearestDecidesWhereTheAskerHasTheAnswer)
+{
+  Shape input("hall.ply", viewOf(points.data(), points.size() / 3)), obstacle("robot.stl", viewOf(machine.view()));
+  input.hierarchy({}, 1);
+  obstacle.hierarchy({}, 1);
+  const auto told = [&](double nearest) { return warningsOfHollow(question, nearest, input, obstacle).size(); };
+  EXPECT_EQ(told(nearestOf(std::vector<Verdict>(3, Verdict::free))), 1u);
+  EXPECT_EQ(told(nearestOf(std::vector<Verdict>{Verdict::free, Verdict::undecided})), 0u);
+  EXPECT_EQ(told(nearestOf(std::vector<double>{std::nan(""), 0.1, 0.01})), 0u);
+  EXPECT_EQ(told(nearestOf(std::vector<double>{std::nan(""), 0.1})), 1u) << "farther than a hundredth of 7 m";
+  EXPECT_EQ(told(-1.0), 0u);
+  TrajectoryResult found;
+  EXPECT_EQ(told(nearestOf(found)), 1u);
+  found.first_pose = {-1, 0};
+  EXPECT_EQ(told(nearestOf(found)), 0u);
 }
 
 TEST_F(HollowTest, NotWhereSomethingIsNearTheSurface)

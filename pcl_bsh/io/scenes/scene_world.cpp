@@ -157,11 +157,11 @@ Obstacle shapeOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
   }
 }
 
-/// By a hierarchy of its own: that of the scene is built only where effects go.
-NamedCloud measured(const CloudSource& source, const PointsView& view)
+/// With a hierarchy of its own: that of the scene is built only where effects go.
+Shape namedShape(const CloudSource& source, const PointsView& view)
 {
   const std::string name = source.file.empty() ? "cloud '" + source.name + "'" : source.file.string();
-  return measuredCloud(name, SphereHierarchy(view));
+  return Shape(name, std::make_shared<const SphereHierarchy>(view));
 }
 
 const std::string& placeOf(const std::string& cloud, const SceneFile& file)
@@ -195,17 +195,17 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   std::set<std::string> used;
   for (const ObjectEntry& object : file.objects)
     for (const PartEntry& part : object.parts) used.insert(part.cloud);
-  std::map<std::string, NamedCloud> named;
+  std::map<std::string, Shape> named;
   for (const CloudSource& source : file.clouds) {
     if (used.count(source.name) == 0) continue;
     if (reading) reading(source);
     load(source, file, clouds_[source.name]);
-    named.emplace(source.name, measured(source, clouds_[source.name].hierarchy->view()));
+    named.emplace(source.name, namedShape(source, clouds_[source.name].hierarchy->view()));
   }
   std::vector<NamedObject> objects;
   for (const ObjectEntry& object : file.objects) {
     objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
-    for (const PartEntry& part : object.parts) objects.back().parts.push_back({part.cloud, part.pose});
+    for (const PartEntry& part : object.parts) objects.back().parts.push_back({part.cloud, part.pose, object.solid});
   }
   const double duration = static_cast<double>(file.steps) * file.dt;
   for (std::string& line : warningsOf(objects, named, file.options.clearance, duration))

@@ -6,9 +6,12 @@
 #include <pcl_bsh/geometry/triangle/winding.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/solid/bodies.h>
+#include <pcl_bsh/solid/labels.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,7 +21,7 @@ namespace {
 constexpr std::size_t most_poses = 16;
 constexpr std::size_t most_records = 256; // of a pose
 constexpr std::size_t most_samples = 8;   // of all poses that are looked at, or one of each
-constexpr double near_share = 0.01;       // of the box's diagonal, where no clearance says what is near
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Spread over a list: `most` of its places at most.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most)
@@ -29,40 +32,18 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t most)
   return places;
 }
 
-/// Whether the answer tells of something near the obstacle's surface, or does not say.
-bool isNear(const Question& question, const Answer& answer, double near)
+/// Records of the content that are in the surface's box, at most so many.
+std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const SphereHierarchy& content,
+                                     const Eigen::Isometry3d& T_surface_content)
 {
-  const Wanted& wanted = question.wanted;
-  const TrajectoryResult& found = answer.collisions;
-  if (wanted.any && answer.any.verdict != Verdict::free) return true;
-  if (!answer.indices.a.empty() || !answer.indices.b.empty()) return true;
-  if (std::any_of(answer.obstacle_flags.begin(), answer.obstacle_flags.end(),
-                  [](Verdict verdict) { return verdict == Verdict::colliding || verdict == Verdict::undecided; }))
-    return true;
-  if (wanted.collisions()) {
-    const auto taken = [](std::int32_t pose) { return pose >= 0; };
-    return found.colliding + found.undecided > 0 ||
-           std::any_of(found.first_pose.begin(), found.first_pose.end(), taken);
-  }
-  const auto within = [near](double distance) { return distance <= near; };
-  if (question.path) return std::any_of(found.distance.begin(), found.distance.end(), within);
-  if (wanted.closest) return within(answer.closest.distance);
-  const std::vector<double>& distances = answer.distances.a.distance;
-  return distances.empty() || std::any_of(distances.begin(), distances.end(), within);
-}
-
-/// Records of the input that are in the obstacle's box, at most so many.
-std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const SphereHierarchy& input,
-                                     const Eigen::Isometry3d& T_obstacle_input)
-{
-  const SphereHierarchy::Storage& storage = input.storage();
+  const SphereHierarchy::Storage& storage = content.storage();
   std::vector<std::uint32_t> voxels;
   for (std::uint32_t v = 0; v < storage.voxel_count; ++v) {
     const LocalFrame& frame = storage.voxels[v].frame;
     const Eigen::Vector3d middle = Eigen::Map<const Eigen::Vector3d>(frame.origin.data());
     const Eigen::Vector3d reach = frame.unit * Eigen::Map<const Eigen::Vector3d>(frame.reach.data());
-    const Eigen::Vector3d turned = T_obstacle_input.linear().cwiseAbs() * reach;
-    const Eigen::Vector3d at = T_obstacle_input * middle;
+    const Eigen::Vector3d turned = T_surface_content.linear().cwiseAbs() * reach;
+    const Eigen::Vector3d at = T_surface_content * middle;
     if (box.intersects(Eigen::AlignedBox3d(at - turned, at + turned))) voxels.push_back(v);
   }
   std::vector<std::uint32_t> records;
@@ -75,16 +56,16 @@ std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const Spher
     storage.forEachRecord(v, [&](std::uint32_t record) {
       if (place++ % step != 0 || records.size() >= 2 * most_records) return;
       const Point3 p = storage.view.point(record);
-      if (box.contains(T_obstacle_input * Eigen::Vector3d(p[0], p[1], p[2]))) records.push_back(record);
+      if (box.contains(T_surface_content * Eigen::Vector3d(p[0], p[1], p[2]))) records.push_back(record);
     });
   }
   return records;
 }
 
-/// A place of the input.
+/// A place of the content.
 struct Sample {
-  Point3 given, in_obstacle;
-  int turns = 0; ///< of the surface round it
+  Point3 given, at; ///< at: as the surface sees it, rounded: what is deep inside stays so
+  int turns = 0;    ///< of the surface round it
   bool touches = false;
 };
 
@@ -98,7 +79,7 @@ void windRound(std::vector<Sample>& samples, const TrianglesView& triangles)
     const auto [low_z, high_z] = std::minmax({t[0][2], t[1][2], t[2][2]});
     const double high_x = std::max({t[0][0], t[1][0], t[2][0]});
     for (Sample& sample : samples) {
-      const Point3& p = sample.in_obstacle;
+      const Point3& p = sample.at;
       if (!(p[1] >= low_y && p[1] <= high_y && p[2] >= low_z && p[2] <= high_z && p[0] <= high_x)) continue;
       if (!isFinite(t)) continue;
       const Winding::Crossing met = winding.crossing(p, t);
@@ -108,39 +89,120 @@ void windRound(std::vector<Sample>& samples, const TrianglesView& triangles)
   }
 }
 
+/// The first that is inside.
+std::optional<Point3> enclosed(std::vector<Sample>& samples, Shape& surface, std::optional<bool> closes)
+{
+  if (!closes) windRound(samples, *surface.hierarchy().view().triangles);
+  const auto is_inside = [&](const Sample& sample) {
+    return closes ? labelPlace(surface.solid().whole(), sample.at) == Label::inside
+                  : sample.turns != 0 && !sample.touches;
+  };
+  const auto inside = std::find_if(samples.begin(), samples.end(), is_inside);
+  if (inside == samples.end() || !surface.isClosed()) return std::nullopt;
+  return inside->given;
+}
+
 } // namespace
 
-std::optional<Warning> warningOfHollow(const Question& question, const Answer& answer, const Shape& input,
-                                       const Placed& placed_input, Shape& obstacle, const SphereHierarchy& surface,
-                                       const Eigen::AlignedBox3d& box)
+std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& content,
+                                  const std::vector<Eigen::Isometry3d>& T_surface_content)
 {
-  if (!obstacle.isSurface() || question.solid || box.isEmpty() || placed_input.hierarchy().empty()) return std::nullopt;
-  if (isNear(question, answer, near_share * box.diagonal().norm())) return std::nullopt;
+  const Eigen::AlignedBox3d box = surface.facts(false).box;
+  if (box.isEmpty() || content.empty()) return std::nullopt;
   const DefaultFloatEnvironment environment;
-  const SphereHierarchy& scan = placed_input.hierarchy();
-  const std::vector<Eigen::Isometry3d> all_poses = question.poses();
-  const std::vector<std::size_t> poses = spread(all_poses.size(), most_poses);
-  std::vector<Sample> samples; // whose places in the obstacle are rounded: what is deep inside stays so
+  std::vector<Sample> samples;
+  const std::vector<std::size_t> poses = spread(T_surface_content.size(), most_poses);
   for (const std::size_t k : poses) {
-    const Eigen::Isometry3d T_obstacle_input = all_poses[k].inverse() * placed_input.pose;
-    const std::vector<std::uint32_t> records = recordsIn(box, scan, T_obstacle_input);
+    const Eigen::Isometry3d& pose = T_surface_content[k];
+    const std::vector<std::uint32_t> records = recordsIn(box, content, pose);
     for (const std::size_t i : spread(records.size(), std::max<std::size_t>(1, most_samples / poses.size()))) {
-      const Point3 p = scan.view().point(records[i]);
-      const Eigen::Vector3d q = T_obstacle_input * Eigen::Vector3d(p[0], p[1], p[2]);
+      const Point3 p = content.view().point(records[i]);
+      const Eigen::Vector3d q = pose * Eigen::Vector3d(p[0], p[1], p[2]);
       samples.push_back({p, {q[0], q[1], q[2]}});
     }
   }
-  if (samples.empty() || !obstacle.mayClose()) return std::nullopt;
-  windRound(samples, *surface.view().triangles);
-  const auto held = std::find_if(samples.begin(), samples.end(),
-                                 [](const Sample& sample) { return sample.turns != 0 && !sample.touches; });
-  if (held == samples.end() || !obstacle.isClosed()) return std::nullopt;
-  const Point3& p = held->given;
-  return Warning{WarningKind::hollow,
-                 plainText(obstacle.name(), ": its faces close round places of ", input.name(), ", as (", p[0], ", ",
-                           p[1], ", ", p[2],
-                           "), with none near them: without `solid` what a mesh encloses is free: give it if this is "
-                           "not hollow")};
+  if (samples.empty()) return std::nullopt;
+  const std::optional<bool> closes = surface.isKnownToClose();
+  if (!closes.value_or(true)) return std::nullopt;
+  return enclosed(samples, surface, closes);
+}
+
+double nearTo(const Shape& surface)
+{
+  const Eigen::AlignedBox3d box = surface.facts(false).box;
+  return box.isEmpty() ? 0.0 : 0.01 * box.diagonal().norm();
+}
+
+Warning warningOfHollow(const std::string& surface, const char* option, const std::string& content, const Point3& place)
+{
+  return {WarningKind::hollow, plainText(surface, ": its faces close round places of ", content, ", as (", place[0],
+                                         ", ", place[1], ", ", place[2], "), with none near them: without `", option,
+                                         "` what a mesh encloses is free: give it if this is not hollow")};
+}
+
+double nearestOf(const std::vector<Verdict>& verdicts)
+{
+  const auto is_near = [](Verdict verdict) { return verdict == Verdict::colliding || verdict == Verdict::undecided; };
+  return std::any_of(verdicts.begin(), verdicts.end(), is_near) ? 0.0 : infinity;
+}
+
+double nearestOf(const std::vector<double>& distances)
+{
+  double nearest = infinity;
+  for (const double distance : distances) nearest = std::fmin(nearest, distance);
+  return nearest;
+}
+
+double nearestOf(const TrajectoryResult& found)
+{
+  const auto taken = [](std::int32_t pose) { return pose >= 0; };
+  const bool any = found.colliding + found.undecided > 0 || found.first_contact ||
+                   std::any_of(found.first_pose.begin(), found.first_pose.end(), taken);
+  return any ? 0.0 : infinity;
+}
+
+double nearestOf(const Question& question, const Answer& answer)
+{
+  const Wanted& wanted = question.wanted;
+  if (wanted.any && answer.any.verdict != Verdict::free) return 0.0;
+  if (!answer.indices.a.empty() || !answer.indices.b.empty()) return 0.0;
+  if (wanted.collisions()) return std::min(nearestOf(answer.obstacle_flags), nearestOf(answer.collisions));
+  if (question.path) {
+    const std::vector<float>& distances = answer.collisions.distance;
+    return nearestOf(std::vector<double>(distances.begin(), distances.end()));
+  }
+  if (wanted.closest) return answer.closest.distance;
+  return answer.distances.a.distance.empty() ? 0.0 : nearestOf(answer.distances.a.distance);
+}
+
+std::vector<Warning> warningsOfHollow(const Question& question, double nearest, Shape& input, Shape& obstacle)
+{
+  std::vector<Warning> warnings;
+  const auto look = [&](Shape& surface, bool solid, const char* option, const Shape& content, bool is_obstacle) {
+    if (!surface.isSurface() || solid || !(nearest > 0.0)) return;
+    if (nearest <= nearTo(surface)) return;
+    std::vector<Eigen::Isometry3d> poses = question.poses();
+    for (Eigen::Isometry3d& pose : poses) {
+      pose = pose.inverse() * question.pose_of_input;
+      if (!is_obstacle) pose = pose.inverse();
+    }
+    if (const auto place = placeWithin(surface, content.hierarchy(), poses))
+      warnings.push_back(warningOfHollow(surface.name(), option, content.name(), *place));
+  };
+  look(obstacle, question.solid, "solid", input, true);
+  const Wanted& wanted = question.wanted;
+  const bool one_way =
+      wanted.measures() && !wanted.both_ways && !wanted.collisions(); // which it would change nothing of
+  if (!one_way) look(input, question.input_solid, "input_solid", obstacle, false);
+  return warnings;
+}
+
+std::vector<Warning> warningsOf(const Question& question, double nearest, Shape& input, Shape& obstacle)
+{
+  const bool spacings = question.wanted.spacings;
+  std::vector<Warning> warnings = warningsOf(question, input.facts(spacings), obstacle.facts(spacings));
+  for (Warning& hollow : warningsOfHollow(question, nearest, input, obstacle)) warnings.push_back(std::move(hollow));
+  return warnings;
 }
 
 } // namespace pcl_bsh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/warnings/scene_warnings.h>
 
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/question/warnings/hollow.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
@@ -15,23 +17,36 @@ using Objects = std::vector<NamedObject>;
 using Clouds = std::map<std::string, NamedCloud>;
 
 constexpr int instants = 100; // at which an object's box is taken: a box about all of them is meant
+constexpr int looks = 16;     // instants at which what is inside of an object is looked for
+
+/// The box about an object as it stands in its own frame.
+Box boxOf(const NamedObject& object, const Clouds& clouds)
+{
+  Box box;
+  for (const NamedObject::Part& part : object.parts) box.extend(boxAlong(clouds.at(part.cloud).box, {part.pose}));
+  return box;
+}
+
+/// Where an object is at so many instants after the first, unless it does not move.
+std::vector<Eigen::Isometry3d> posesOf(const NamedObject& object, double duration, int count)
+{
+  std::vector<Eigen::Isometry3d> poses = {poseAt(object.motion, object.pose, 0.0)};
+  for (int i = 1; i <= count && !object.fixed && duration > 0; ++i)
+    poses.push_back(poseAt(object.motion, object.pose, i * duration / count));
+  return poses;
+}
 
 /// The box about an object and all of its motion, in the world.
 Box boxOf(const NamedObject& object, const Clouds& clouds, double duration)
 {
-  Box box;
-  for (const auto& [cloud, pose] : object.parts) box.extend(boxAlong(clouds.at(cloud).box, {pose}));
-  std::vector<Eigen::Isometry3d> poses = {poseAt(object.motion, object.pose, 0.0)};
-  for (int i = 1; i <= instants && !object.fixed && duration > 0; ++i)
-    poses.push_back(poseAt(object.motion, object.pose, i * duration / instants));
-  return boxAlong(box, poses);
+  return boxAlong(boxOf(object, clouds), posesOf(object, duration, instants));
 }
 
 /// Whether a point of the one cloud may meet a point of the other: those of two objects, not both of which are fixed.
 bool mayMeet(const Objects& objects, const std::string& a, const std::string& b)
 {
   const auto has = [](const NamedObject& object, const std::string& cloud) {
-    return std::any_of(object.parts.begin(), object.parts.end(), [&](const auto& part) { return part.first == cloud; });
+    return std::any_of(object.parts.begin(), object.parts.end(), [&](const auto& part) { return part.cloud == cloud; });
   };
   for (const NamedObject& one : objects)
     for (const NamedObject& other : objects)
@@ -82,6 +97,85 @@ void warnOfFrames(const Objects& objects, const Clouds& clouds, double clearance
   }
 }
 
+/// Of objects that may be hollow by mistake.
+class Hollows {
+public:
+  Hollows(const Objects& objects, std::map<std::string, Shape>& shapes, const Clouds& clouds, double clearance,
+          double duration)
+  : objects_(objects),
+    shapes_(shapes),
+    clearance_(clearance)
+  {
+    for (const NamedObject& object : objects) {
+      const std::vector<Eigen::Isometry3d> poses = posesOf(object, duration, looks - 1);
+      const Box box = boxOf(object, clouds);
+      std::vector<Box> boxes;
+      for (const Eigen::Isometry3d& pose : poses) boxes.push_back(boxAlong(box, {pose}));
+      poses_.push_back(poses);
+      boxes_.push_back(std::move(boxes));
+    }
+  }
+
+  /// One sentence for each object that closes round something.
+  void tell(std::vector<std::string>& told)
+  {
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      if (const auto warning = warningOf(i)) addOnce(warning->text, told);
+  }
+
+private:
+  template <class T>
+  static const T& at(const std::vector<T>& of_instants, std::size_t k)
+  {
+    return of_instants[std::min(k, of_instants.size() - 1)];
+  }
+
+  std::optional<Warning> warningOf(std::size_t i)
+  {
+    for (const NamedObject::Part& part : objects_[i].parts) {
+      if (part.solid || !shapes_.at(part.cloud).isSurface()) continue;
+      for (std::size_t j = 0; j < objects_.size(); ++j)
+        if (j != i && !(objects_[i].fixed && objects_[j].fixed))
+          if (auto warning = warningOf(i, part, j)) return warning;
+    }
+    return std::nullopt;
+  }
+
+  /// Of a part of object i round object j.
+  std::optional<Warning> warningOf(std::size_t i, const NamedObject::Part& part, std::size_t j)
+  {
+    std::vector<std::size_t> meeting; // instants
+    for (std::size_t k = 0; k < std::max(poses_[i].size(), poses_[j].size()); ++k)
+      if (at(boxes_[i], k).intersects(at(boxes_[j], k))) meeting.push_back(k);
+    if (meeting.empty()) return std::nullopt;
+    Shape& surface = shapes_.at(part.cloud);
+    for (const NamedObject::Part& other : objects_[j].parts) {
+      const SphereHierarchy& content = shapes_.at(other.cloud).hierarchy();
+      for (const std::size_t k : meeting) {
+        const Eigen::Isometry3d of_surface = at(poses_[i], k) * part.pose, of_content = at(poses_[j], k) * other.pose;
+        const auto place = placeWithin(surface, content, {of_surface.inverse() * of_content});
+        if (!place) continue;
+        if (isNear(surface, of_surface, content, of_content)) return std::nullopt; // which its effects tell of
+        return warningOfHollow("'" + objects_[i].name + "'", "solid", "'" + objects_[j].name + "'", *place);
+      }
+    }
+    return std::nullopt;
+  }
+
+  bool isNear(const Shape& surface, const Eigen::Isometry3d& of_surface, const SphereHierarchy& content,
+              const Eigen::Isometry3d& of_content) const
+  {
+    return closestPair({content, of_content}, {surface.hierarchy(), of_surface}).distance <=
+           std::max(clearance_, nearTo(surface));
+  }
+
+  const Objects& objects_;
+  std::map<std::string, Shape>& shapes_;
+  const double clearance_;
+  std::vector<std::vector<Eigen::Isometry3d>> poses_; ///< of each object, at each instant, or one where it rests
+  std::vector<std::vector<Box>> boxes_;
+};
+
 } // namespace
 
 std::vector<std::string> warningsOf(const Objects& objects, const Clouds& clouds, double clearance,
@@ -91,6 +185,16 @@ std::vector<std::string> warningsOf(const Objects& objects, const Clouds& clouds
   for (const auto& [name, cloud] : clouds) addTexts(warningsOf(cloud, clearance), told);
   warnOfDensity(objects, clouds, clearance, told);
   warnOfFrames(objects, clouds, clearance, duration, told);
+  return told;
+}
+
+std::vector<std::string> warningsOf(const Objects& objects, std::map<std::string, Shape>& shapes, double clearance,
+                                    std::optional<double> duration)
+{
+  Clouds clouds;
+  for (const auto& [name, shape] : shapes) clouds.emplace(name, shape.facts(true));
+  std::vector<std::string> told = warningsOf(objects, clouds, clearance, duration);
+  Hollows(objects, shapes, clouds, clearance, duration.value_or(0.0)).tell(told);
   return told;
 }
 

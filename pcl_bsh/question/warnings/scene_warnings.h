@@ -3,13 +3,12 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/question/shape.h>
 #include <pcl_bsh/scene/motion.h>
 
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -17,10 +16,17 @@ namespace pcl_bsh {
 
 /// An object of a scene, as far as warnings depend on it.
 struct NamedObject {
+  /// One of its clouds.
+  struct Part {
+    std::string cloud;                                      ///< which
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_object_cloud
+    bool solid = false;                                     ///< a mesh that counts with what it encloses
+  };
+
   std::string name;
   bool fixed = false;
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> parts; ///< which cloud, T_object_cloud
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();       ///< T_world_object
+  std::vector<Part> parts;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_world_object
   Motion motion;
 };
 
@@ -31,6 +37,12 @@ struct NamedObject {
 std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,
                                     const std::map<std::string, NamedCloud>& clouds, double clearance,
                                     std::optional<double> duration);
+
+/// The same with spacings, and of meshes that are no solids and close round places of another object, at up to 16
+/// instants of the motion, where no surface is near.
+/// @param shapes of the clouds. Their hierarchy() was called
+std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects, std::map<std::string, Shape>& shapes,
+                                    double clearance, std::optional<double> duration);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

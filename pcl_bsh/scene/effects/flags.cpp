@@ -95,6 +95,22 @@ void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, c
   for (std::size_t i = 0; i < flags_b.size(); ++i) flags_b[i] = graver(flags_b[i], found.b[i]);
 }
 
+/// What is held at its beginning and its end, and bodies that something passes through on the way.
+void Scene::State::addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                                   std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
+{
+  const Verdict verdict = areUncertain({a.hierarchy}, {b.hierarchy}) ? Verdict::undecided : Verdict::colliding;
+  const auto add_entered = [&](const SweptPart& solid, const SweptPart& other, std::vector<Verdict>& of_solid) {
+    for (const std::uint32_t triangle : solids.entered(solid, other, options.tolerance, pair.memory.work))
+      of_solid[triangle] = graver(of_solid[triangle], verdict);
+  };
+  const bool met = std::any_of(flags_a.begin(), flags_a.end(), isNotFree);
+  for (const double s : {0.0, 1.0}) addHeldAt(s, a, b, parts, pair, flags_a, flags_b);
+  if (!met) return;
+  if (bodies[parts.a].object.parts[parts.part_a].solid) add_entered(a, b, flags_a);
+  if (bodies[parts.b].object.parts[parts.part_b].solid) add_entered(b, a, flags_b);
+}
+
 void Scene::State::findSwept(EffectCost& spent)
 {
   std::vector<std::vector<PairFlags>> found(grid.pairs().size());
@@ -103,8 +119,7 @@ void Scene::State::findSwept(EffectCost& spent)
                   PairFlags flags{parts, std::vector<Verdict>(a.hierarchy.view().count),
                                   std::vector<Verdict>(b.hierarchy.view().count)};
                   flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
-                  if (areSolid(parts))
-                    for (const double s : {0.0, 1.0}) addHeldAt(s, a, b, parts, pair, flags.a, flags.b);
+                  if (areSolid(parts)) addHeldOnTheWay(a, b, parts, pair, flags.a, flags.b);
                   if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
                 });
   result.swept = mergedFlags(bodies, found);
