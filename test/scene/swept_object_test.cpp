@@ -402,6 +402,25 @@ TEST(SweptObject, NoChangeHidesAMotion)
   EXPECT_GT(detoured, 100u);
 }
 
+/// By more than half a turn, which poses alone do not tell.
+TEST(SweptObject, TurnsAsItsResponseLedIt)
+{
+  for (const Response response : {Response::none, Response::stop, Response::slide}) {
+    SceneOptions options;
+    options.effects.first_contact = true;
+    options.effects.response = response;
+    Scene scene(options);
+    const Cloud bar({{0, 0, 0}, {0.5, 0, 0}}, doubles);
+    SceneObject made = object("bar", std::make_shared<SphereHierarchy>(bar.view()));
+    made.motion = VelocityMotion{{1, 0, 0}, {0, 0, 4}};
+    scene.add(std::move(made));
+    const SceneResult result = scene.step(1);
+    ASSERT_EQ(result.swept_motions.size(), 1u);
+    EXPECT_TRUE(result.swept_motions[0].leg.turn.isApprox(Eigen::Vector3d(0, 0, 4), 1e-12))
+        << static_cast<int>(response);
+  }
+}
+
 /// More pairs than are told apart: both sides are flagged all the same.
 TEST(SweptObject, ACrowdThatPassesACrowdIsFlaggedOnBothSides)
 {
