@@ -8,6 +8,7 @@
 #define PCL_BSH_FLAGS_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/flags/axis_gap.h>
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/uncertain-inl.h>
 #include <pcl_bsh/flags/visit-inl.h>
@@ -156,10 +157,10 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, const FlagVisit& 
   return hit;
 }
 
-/// Calls compare(record, triangle, squared, near) for the triangles of b whose balls may be near enough to open points
-/// of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those; until it
-/// returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's frame, at
-/// least; or zeros
+/// Calls compare(leaf, record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
+/// points of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those;
+/// until it returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's
+/// frame, at least; or zeros
 template <class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                       const std::uint32_t& hit, const LeafPoints& points, const float* radii, const PointsView& view,
@@ -185,7 +186,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
       squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
-      if (compare(record, triangle, squared, near)) return;
+      if (compare(other, record, triangle, squared, near)) return;
     }
   }
 }
@@ -202,7 +203,8 @@ inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visi
   if (hit == open) return hit;
   eachTriangleNear(
       obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work,
-      [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
+      [&](const LeafRange&, std::uint32_t record, const FlatRecord& triangle, const float* squared,
+          std::uint32_t near) {
         const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
         const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
           std::uint32_t decided = among & atMost(squared, band.hit);
@@ -241,6 +243,7 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
   Doubtful doubtful[kMost];
   const bool of_triangles = query.a.hierarchy().view().triangles != nullptr;
   CarriedTriangles own;
+  AxisGap<LeafRange> gap(query, leaf);
   bool is_carried = false;
   std::size_t count = 0;
   const auto decide = [&] { // once floats have found what they can
@@ -256,7 +259,8 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
     count = 0;
   };
   eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work,
-                   [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
+                   [&](const LeafRange& other, std::uint32_t record, const FlatRecord& triangle, const float* squared,
+                       std::uint32_t near) {
                      if (surely > 0.0) hit |= near & atMost(squared, triangle.band(obstacle.frame, surely).hit);
                      if (hit == open) return true;
                      const LaneVector more = hn::Set(d, obstacle.reach + roundUp(triangle.error(obstacle.frame)));
@@ -278,6 +282,7 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
                        hit |= found.within;
                        near &= ~found.within & ~found.apart;
                        if (near == 0) return hit == open;
+                       if (gap.isBeyond(triangle.flat.rows + 6, other, work)) return false;
                      }
                      doubtful[count++] = {record, near};
                      if (count == kMost) decide();
@@ -287,17 +292,16 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
   return hit;
 }
 
-/// The same where points have radii.
+/// The same where points have radii. @param facingOf(candidate) bits of a leaf's points that may matter
+template <class FacingOf>
 inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                              const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work)
+                              const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work,
+                              const FacingOf& facingOf)
 {
   const std::uint32_t open = visit.open_points[lane];
   std::uint32_t hit = 0;
-  for (const ObstacleSphere& candidate : visit.near[lane]) {
-    if (hit == open) break;
-    ++work.leaf_pairs;
-    const LeafRange other = candidate.leaf(*obstacle.voxel);
-    eachBallPairNear(obstacle.frame, points, open, leaf, other, query.pairs.reach.length(),
+  const auto compare = [&](const LeafRange& other) {
+    eachBallPairNear(obstacle.frame, points, open & ~hit, leaf, other, query.pairs.reach.length(),
                      query.surePairs().surelyOfBalls(),
                      [&](std::uint32_t i, std::uint32_t j, float squared, bool surely) {
                        if ((hit >> i & 1) != 0) return false;
@@ -311,6 +315,18 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
                        }
                        return hit == open;
                      });
+  };
+  for (const ObstacleSphere& candidate : visit.near[lane]) {
+    if (hit == open) break;
+    ++work.leaf_pairs;
+    const LeafRange other = candidate.leaf(*obstacle.voxel);
+    const std::uint32_t facing = facingOf(candidate);
+    if (facing == firstBits(other.count)) {
+      compare(other);
+      continue;
+    }
+    for (std::uint32_t bits = facing; bits != 0 && hit != open; bits &= bits - 1)
+      compare({other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits)), 1});
   }
   return hit;
 }

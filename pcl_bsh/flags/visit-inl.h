@@ -31,9 +31,11 @@ struct ObstacleVoxel {
   float sure_reach;   ///< what comes within it collides
   float accept_reach; ///< what comes within it may count as colliding; no less
   float blunt_radius;
-  DistanceBand band;            ///< of what collides, where points are uncertain: for certain
-  DistanceBand possible;        ///< of what may collide
-  const Slabs* slabs = nullptr; ///< of its nodes, once asked for
+  DistanceBand band;                  ///< of what collides, where points are uncertain: for certain
+  DistanceBand possible;              ///< of what may collide
+  const Slabs* slabs = nullptr;       ///< of its nodes, once asked for
+  const Slabs* cross_slabs = nullptr; ///< likewise, where triangles are long
+  bool has_long_triangles = false;    ///< about as long as the voxel is wide: balls of nodes say little about them
 };
 
 /// One node of a on its way through b, its children tested all at once.
@@ -49,8 +51,14 @@ struct FlagVisit {
   bool has_slabs = false;                                       ///< whether the following are set
   alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
   const Slabs* slabs = nullptr;                                 ///< the children's
-  BoundingSphere around;                                        ///< holds them all; in the frame of a's voxel
-  QueryBall ball;                                               ///< likewise, in the obstacle voxel's frame
+  bool may_have_slabs = false;                                  ///< whether they may be asked for on the way
+  bool has_cross_slabs = false;                                 ///< whether the following are set, too
+  alignas(32) float cx[kLanes], cy[kLanes], cz[kLanes];         ///< normals of the children's cross slabs
+  const Slabs* cross_slabs = nullptr;
+  std::uint32_t carried = 0;                ///< bits of the leaves whose points are in `points`
+  LeafPoints points[kLanes];                ///< of leaves, in the obstacle voxel's frame
+  BoundingSphere around;                    ///< holds them all; in the frame of a's voxel
+  QueryBall ball;                           ///< likewise, in the obstacle voxel's frame
   std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
 
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet

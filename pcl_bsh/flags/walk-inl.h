@@ -14,6 +14,7 @@
 #include <pcl_bsh/flags/leaf-inl.h>
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/runs-inl.h>
+#include <pcl_bsh/simd/crossed_lanes-inl.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -64,8 +65,9 @@ public:
           {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
            frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame)});
+           query_.acceptance.band(frame), nullptr, nullptr, hasLongTriangles(b_, other)});
     }
+    allowed_ = steps() + kStepsOfVoxel + kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
@@ -73,6 +75,7 @@ public:
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
+    has_long_triangles_ = hasLongTriangles(a_, voxel);
     knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
     if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0, false);
@@ -95,6 +98,20 @@ private:
   /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
   /// may fit them or not; the work then depends on that, the result does not.
   bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
+
+  /// Whether triangles of a voxel are about as long as all of it: then spheres of nodes are as large as the voxel's
+  /// own, and two slabs tell where their triangles are.
+  static bool hasLongTriangles(const Spaces& side, std::uint32_t voxel)
+  {
+    const Voxel& of = side.storage.voxels[voxel];
+    return side.storage.view.triangles &&
+           static_cast<double>(of.largest_radius) > kLongTriangle * static_cast<double>(of.radius) * of.frame.unit;
+  }
+
+  std::uint64_t steps() const
+  {
+    return found.work.node_pairs + kLeafPoints * found.work.leaf_pairs + found.work.exact_decisions;
+  }
 
   bool knowsSlabs(std::uint32_t obstacle) const
   {
@@ -124,7 +141,7 @@ private:
   /// Whether a triangle may be near the sphere of a voxel of a, which need not be built if not.
   HWY_NOINLINE bool isNearTriangles(std::uint32_t voxel)
   {
-    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const ObstacleVoxel& obstacle) {
+    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](ObstacleVoxel& obstacle) {
       const Point center{obstacle.frame.g[0], obstacle.frame.g[1], obstacle.frame.g[2]};
       const float radius = a_.storage.voxels[voxel].radius * obstacle.frame.stretch_a;
       return isNearTriangles(obstacle, obstacle.voxel->nodes[0], center, radius);
@@ -132,13 +149,20 @@ private:
   }
 
   /// The same of a sphere, carried, and the triangles below a node.
-  bool isNearTriangles(const ObstacleVoxel& obstacle, const Node& node, const Point& center, float radius)
+  bool isNearTriangles(ObstacleVoxel& obstacle, const Node& node, const Point& center, float radius)
   {
     const SphereLanes spheres{node.x, node.y, node.z, node.r, obstacle.frame.stretch_b};
     const QueryBall ball{center.x, center.y, center.z, radius + obstacle.reach, 0.0f};
     found.work.node_pairs += node.count;
-    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
-         near &= near - 1) {
+    std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count);
+    if (near != 0 && obstacle.has_long_triangles && steps() > allowed_) {
+      fitSlabs(obstacle);
+      const auto index = &node - obstacle.voxel->nodes.data();
+      const Slab sphere{{0.0f, 0.0f, 0.0f}, radius, center, radius};
+      for (const Slabs* const slabs : {obstacle.slabs + index, obstacle.cross_slabs + index})
+        near &= ~slabsApart(spheres, {slabs->x, slabs->y, slabs->z, slabs->h}, sphere, obstacle.reach);
+    }
+    for (; near != 0; near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
       if (!node.isLeaf(lane)) {
         if (isNearTriangles(obstacle, obstacle.voxel->nodes[node.child[lane]], center, radius)) return true;
@@ -177,7 +201,9 @@ private:
       const auto to =
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
-      visit.has_slabs = (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)) && takeSlabs(visit);
+      visit.has_slabs = false;
+      visit.may_have_slabs = mayHaveSlabs(visit);
+      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle))) takeSlabs(visit);
       visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
       if (query_.certain)
         uncertain_.settle(visit, obstacles_[visit.obstacle], from, to, found.work,
@@ -228,6 +254,7 @@ private:
   void enter(FlagVisit& visit, std::uint32_t obstacle)
   {
     visit.obstacle = obstacle;
+    visit.carried = 0;
     const RelativeFrame& frame = obstacles_[obstacle].frame;
     carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, visit.x, visit.y,
           visit.z);
@@ -247,20 +274,121 @@ private:
     }
   }
 
+  void fitSlabs(ObstacleVoxel& obstacle)
+  {
+    Voxel& voxel = b_.storage.voxels[reached_[static_cast<std::size_t>(&obstacle - obstacles_.data())]];
+    if (!obstacle.slabs) obstacle.slabs = voxel.slabs.of(voxel, b_.storage.view, found.work);
+    if (!obstacle.cross_slabs && obstacle.has_long_triangles)
+      obstacle.cross_slabs = voxel.cross_slabs.of(voxel, b_.storage.view, found.work);
+  }
+
+  /// Whether slabs of the visit's children and of the obstacle can be compared, and say more than spheres: of points,
+  /// or of long triangles. Spheres hold triangles that are short beside a voxel as they hold points.
+  bool mayHaveSlabs(const FlagVisit& visit) const
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const auto areBalls = [](const Spaces& side) { return side.storage.view.radii && !side.storage.view.triangles; };
+    return obstacle.voxel->frame.unit == a_voxel_->frame.unit && !areBalls(a_) && !areBalls(b_) &&
+           (!pairs_.ofTriangles() || has_long_triangles_ || obstacle.has_long_triangles);
+  }
+
   /// Has the visit's children, and the obstacle, compared as slabs too. Where surfaces face each other across the
-  /// clearance, spheres leave most of b as candidates. @return false where slabs cannot be compared
-  bool takeSlabs(FlagVisit& visit)
+  /// clearance, spheres leave most of b as candidates. @pre mayHaveSlabs()
+  HWY_NOINLINE void takeSlabs(FlagVisit& visit)
   {
     ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    if (pairs_.haveRadii() || obstacle.voxel->frame.unit != a_voxel_->frame.unit) return false;
-    if (!obstacle.slabs)
-      obstacle.slabs =
-          b_.storage.voxels[reached_[visit.obstacle]].slabs.of(*obstacle.voxel, b_.storage.view, found.work);
-    visit.slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, a_.storage.view, found.work) +
-                  (visit.node - a_voxel_->nodes.data());
-    carry(obstacle.frame.m.data(), kNowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny,
-          visit.nz);
-    return true;
+    Voxel& own = a_.storage.voxels[voxel_];
+    const auto index = visit.node - a_voxel_->nodes.data();
+    const float* const m = obstacle.frame.m.data();
+    fitSlabs(obstacle);
+    visit.slabs = own.slabs.of(*a_voxel_, a_.storage.view, found.work) + index;
+    carry(m, kNowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny, visit.nz);
+    visit.has_slabs = true;
+    if (!has_long_triangles_) return;
+    visit.cross_slabs = own.cross_slabs.of(*a_voxel_, a_.storage.view, found.work) + index;
+    carry(m, kNowhere, visit.cross_slabs->x, visit.cross_slabs->y, visit.cross_slabs->z, kLanes, visit.cx, visit.cy,
+          visit.cz);
+  }
+
+  /// Of the children in `near`, those that a sphere of b may be near to, as its slabs and theirs tell.
+  HWY_INLINE std::uint32_t nearSlabs(FlagVisit& visit, const ObstacleSphere& candidate, const Point& center,
+                                     float radius, std::uint32_t near)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    const auto index = candidate.node - obstacle.voxel->nodes.data();
+    const Slab slab = slabOf(obstacle.slabs[index], candidate.lane, center, radius);
+    near &= ~slabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, slab, obstacle.reach);
+    if (near == 0 || !pairs_.ofTriangles()) return near;
+    return nearCrossSlabs(visit, candidate, slab, near);
+  }
+
+  /// The same across the slabs of long triangles, and of leaves of points by each point.
+  HWY_NOINLINE std::uint32_t nearCrossSlabs(FlagVisit& visit, const ObstacleSphere& candidate, const Slab& slab,
+                                            std::uint32_t near)
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
+    CrossedSlabs held{slab.normal, {0.0f, 0.0f, 0.0f}, slab.h, 0.0f, slab.center, slab.radius};
+    if (obstacle.has_long_triangles) {
+      const Slabs& cross = obstacle.cross_slabs[candidate.node - obstacle.voxel->nodes.data()];
+      held.cross = {cross.x[candidate.lane], cross.y[candidate.lane], cross.z[candidate.lane]};
+      held.cross_h = cross.h[candidate.lane];
+    }
+    static constexpr float kNone[kLanes] = {};
+    near &= ~crossedSlabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h},
+                               has_long_triangles_ ? SlabLanes{visit.cx, visit.cy, visit.cz, visit.cross_slabs->h}
+                                                   : SlabLanes{kNone, kNone, kNone, kNone},
+                               held, obstacle.reach);
+    const bool by_own_points = obstacle.has_long_triangles && !a_.storage.view.triangles;
+    if (!by_own_points && !isLeafOfPoints(candidate)) return near;
+    for (std::uint32_t bits = near & visit.leaves; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      ++found.work.node_pairs;
+      bool is_near = false;
+      if (by_own_points) {
+        const LeafPoints& points = carriedPoints(visit, lane);
+        is_near = (pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, held, obstacle.reach) &
+                   visit.open_points[lane]) != 0;
+      }
+      else {
+        is_near = facingLeaf(visit, lane, candidate.leaf(*obstacle.voxel)) != 0;
+      }
+      if (!is_near) near &= ~(1u << lane);
+    }
+    return near;
+  }
+
+  /// Whether a is of long triangles, and this is a leaf of points.
+  bool isLeafOfPoints(const ObstacleSphere& candidate) const
+  {
+    return has_long_triangles_ && !b_.storage.view.triangles && candidate.isLeaf();
+  }
+
+  /// Which points of such a leaf may be near to long triangles of a leaf of a. @pre visit.has_slabs
+  std::uint32_t facingLeaf(const FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf) const
+  {
+    const CrossedSlabs held{{visit.nx[lane], visit.ny[lane], visit.nz[lane]},
+                            {visit.cx[lane], visit.cy[lane], visit.cz[lane]},
+                            visit.slabs->h[lane],
+                            visit.cross_slabs->h[lane],
+                            {visit.x[lane], visit.y[lane], visit.z[lane]},
+                            visit.r[lane]};
+    return pointsNearSlabs(leaf.x(), leaf.y(), leaf.z(), leaf.count, held, obstacles_[visit.obstacle].reach);
+  }
+
+  /// Points of a leaf among the children, in the frame of the obstacle.
+  const LeafPoints& carriedPoints(FlagVisit& visit, std::uint32_t lane)
+  {
+    if ((visit.carried >> lane & 1) == 0)
+      carryLeaf(obstacles_[visit.obstacle].frame, leafOf(visit, lane), visit.points[lane]);
+    visit.carried |= 1u << lane;
+    return visit.points[lane];
+  }
+
+  LeafRange leafOf(const FlagVisit& visit, std::uint32_t lane) const
+  {
+    return {a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
   }
 
   /// Of the children in `near`, those that are apart from a sphere of b, though their spheres and slabs are not.
@@ -321,11 +449,9 @@ private:
     std::uint32_t near = lanes & (query_.certain ? uncertain_.near(visit, obstacle, candidate, lanes)
                                                  : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
-    if (visit.has_slabs) {
-      const Slab slab =
-          slabOf(obstacle.slabs[&node - obstacle.voxel->nodes.data()], k, {ball.x, ball.y, ball.z}, radius);
-      near &= ~slabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, slab, obstacle.reach);
-      if (near == 0) return;
+    if (visit.may_have_slabs) {
+      if (!visit.has_slabs && pairs_.ofTriangles() && steps() > allowed_) takeSlabs(visit);
+      if (visit.has_slabs && (near = nearSlabs(visit, candidate, {ball.x, ball.y, ball.z}, radius, near)) == 0) return;
     }
     if ((near &= ~separated(visit, candidate, radius, near)) == 0) return;
     if (b_.storage.view.triangles && candidate.isLeaf() && (near = nearTriangles(visit, candidate, near)) == 0) return;
@@ -363,7 +489,7 @@ private:
   HWY_INLINE void settleByPoints(FlagVisit& visit, const ObstacleSphere& candidate)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    if (!(obstacle.sure_reach > visit.smallest)) return;
+    if (!(obstacle.sure_reach > visit.smallest) || obstacle.has_long_triangles) return;
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
     // A point of the candidate can be that near only if its sphere comes within the clearance less the child's radius.
@@ -387,10 +513,8 @@ private:
     for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
-      const LeafRange leaf{a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
-      LeafPoints points;
-      carryLeaf(obstacles_[visit.obstacle].frame, leaf, points);
-      const std::uint32_t hit = collidingPoints(visit, lane, leaf, points);
+      const LeafRange leaf = leafOf(visit, lane);
+      const std::uint32_t hit = collidingPoints(visit, lane, leaf, carriedPoints(visit, lane));
       tellBits(sink_, Finding::colliding, hit, [&leaf](std::uint32_t i) { return leaf.record(i); });
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] != 0) continue;
@@ -408,7 +532,11 @@ private:
     if (b_.storage.view.triangles)
       return a_.storage.view.radii ? hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work)
                                    : hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work);
-    if (pairs_.haveRadii()) return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work);
+    if (pairs_.haveRadii())
+      return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work, [&](const ObstacleSphere& candidate) {
+        const LeafRange other = candidate.leaf(*obstacle.voxel);
+        return visit.has_slabs && isLeafOfPoints(candidate) ? facingLeaf(visit, lane, other) : firstBits(other.count);
+      });
     if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
     return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),
                               points, query_, found.work);
@@ -442,8 +570,12 @@ private:
   static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
   static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
 
-  std::uint32_t voxel_ = kNoVoxel; ///< of a
-  bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
+  std::uint32_t voxel_ = kNoVoxel;              ///< of a
+  static constexpr double kLongTriangle = 0.25; ///< its ball's radius, in radii of its voxel
+
+  std::uint64_t allowed_ = 0;       ///< steps, before slabs of long triangles are fitted
+  bool has_long_triangles_ = false; ///< a's voxel
+  bool knows_slabs_ = false;        ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
   std::deque<FlagVisit>& visits_;
   std::vector<ObstacleVoxel>& obstacles_;

@@ -34,7 +34,7 @@ struct LanesVerdict {
 ///
 /// Apart: along any direction, the gap between two triangles is no more than their distance. So nothing that led to a
 /// direction can make a verdict wrong; it only has to be measured well. Directions are tried from the flat triangle to
-/// each corner, and across both triangles.
+/// each corner, across both triangles, and across the longest side of each: of needles, that tells most.
 ///
 /// Rounding bound. Let v be a direction in the frame, w the same turned, C the greatest distance of a lane's corner
 /// from the flat triangle's origin, and L its longest side. One of v and w is as computed; the other errs by 3 u of
@@ -114,21 +114,36 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
     }
     consider(hn::Max(low_z, hn::Neg(high_z)), spread(1.0f));
 
-    std::uint32_t open = lanes & block & ~(bitsOf(d, apart) << i) & ~(bitsOf(d, within) << i);
-    if (open != 0) { // across the lane's triangle
-      LaneVector ux = hn::Sub(x[1], x[0]), uy = hn::Sub(y[1], y[0]), uz = hn::Sub(z[1], z[0]);
-      LaneVector vx = hn::Sub(x[2], x[0]), vy = hn::Sub(y[2], y[0]), vz = hn::Sub(z[2], z[0]);
-      const LaneVector nx = hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)), ny = hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
-                       nz = hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx));
-      const LaneVector on_x = turned(spread(rows[0]), spread(rows[1]), spread(rows[2]), nx, ny, nz),
-                       on_y = turned(spread(rows[3]), spread(rows[4]), spread(rows[5]), nx, ny, nz);
-      const LaneVector end = hn::Mul(on_x, length), apex = hn::Add(hn::Mul(on_x, apex_x), hn::Mul(on_y, apex_y));
-      const LaneVector low = hn::Min(hn::Min(zero, end), apex), high = hn::Max(hn::Max(zero, end), apex);
-      const LaneVector at[3] = {dot(nx, ny, nz, 0), dot(nx, ny, nz, 1), dot(nx, ny, nz, 2)};
-      const LaneVector own_low = hn::Min(hn::Min(at[0], at[1]), at[2]),
-                       own_high = hn::Max(hn::Max(at[0], at[1]), at[2]);
-      consider(hn::Max(hn::Sub(own_low, high), hn::Sub(low, own_high)),
-               hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)));
+    const std::uint32_t open = lanes & block & ~(bitsOf(d, apart) << i) & ~(bitsOf(d, within) << i);
+    if (open != 0) {
+      const auto considerBoth = [&](LaneVector ux, LaneVector uy, LaneVector uz) HWY_ATTR { // ways along it
+        const LaneVector on_x = turned(spread(rows[0]), spread(rows[1]), spread(rows[2]), ux, uy, uz),
+                         on_y = turned(spread(rows[3]), spread(rows[4]), spread(rows[5]), ux, uy, uz);
+        const LaneVector end = hn::Mul(on_x, length), apex = hn::Add(hn::Mul(on_x, apex_x), hn::Mul(on_y, apex_y));
+        const LaneVector low = hn::Min(hn::Min(zero, end), apex), high = hn::Max(hn::Max(zero, end), apex);
+        const LaneVector at[3] = {dot(ux, uy, uz, 0), dot(ux, uy, uz, 1), dot(ux, uy, uz, 2)};
+        const LaneVector own_low = hn::Min(hn::Min(at[0], at[1]), at[2]),
+                         own_high = hn::Max(hn::Max(at[0], at[1]), at[2]);
+        consider(hn::Max(hn::Sub(own_low, high), hn::Sub(low, own_high)),
+                 hn::Add(hn::Add(hn::Mul(ux, ux), hn::Mul(uy, uy)), hn::Mul(uz, uz)));
+      };
+      const auto considerAcross = [&](LaneVector ux, LaneVector uy, LaneVector uz, LaneVector vx, LaneVector vy,
+                                      LaneVector vz) HWY_ATTR {
+        considerBoth(hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)), hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
+                     hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx)));
+      };
+      const LaneVector ux = hn::Sub(x[1], x[0]), uy = hn::Sub(y[1], y[0]), uz = hn::Sub(z[1], z[0]);
+      const LaneVector vx = hn::Sub(x[2], x[0]), vy = hn::Sub(y[2], y[0]), vz = hn::Sub(z[2], z[0]);
+      considerAcross(ux, uy, uz, vx, vy, vz);
+      if ((open & ~(bitsOf(d, apart) << i)) != 0) {
+        const LaneVector wx = hn::Sub(x[2], x[1]), wy = hn::Sub(y[2], y[1]), wz = hn::Sub(z[2], z[1]);
+        const LaneVector u = squaredNorm(ux, uy, uz), v = squaredNorm(vx, vy, vz), w = squaredNorm(wx, wy, wz);
+        const auto longest = [&](LaneVector of_u, LaneVector of_v, LaneVector of_w) HWY_ATTR {
+          return hn::IfThenElse(hn::Gt(w, hn::Max(u, v)), of_w, hn::IfThenElse(hn::Gt(v, u), of_v, of_u));
+        };
+        considerAcross(spread(rows[0]), spread(rows[1]), spread(rows[2]), longest(ux, vx, wx), longest(uy, vy, wy),
+                       longest(uz, vz, wz));
+      }
     }
     const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
     found.apart |= bitsOf(d, hn::And(apart, in_range)) << i & block;

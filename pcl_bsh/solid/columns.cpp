@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A triangle is put into columns and cubes that it misses by this share of their width, which is far above what double
+/// A triangle is put into columns that it misses by this share of their width, which is far above what double
 /// arithmetic gets wrong.
 constexpr double kPad = 0x1p-12;
 
@@ -37,6 +37,7 @@ std::size_t mostBytes(std::size_t triangles)
 }
 constexpr std::size_t kFinerEntries = 16, kFinerCells = 8;
 constexpr std::uint32_t kCrowded = 128;
+constexpr std::uint32_t kTooCrowded = 4096;  ///< for a column without strips
 constexpr std::uint32_t kMostColumns = 4096; ///< along an axis
 
 double shareOf(double x, double of)
@@ -63,26 +64,6 @@ Point3 middleOf(const TrianglesView& view)
     middle[k] = *half;
   }
   return middle;
-}
-
-/// Calls visit(p) for the corners of that part of a convex polygon which lies between two planes across an axis; some
-/// twice.
-template <class Visit>
-void forEachCorner(const Point3* corners, std::size_t count, std::size_t axis, double low, double high,
-                   const Visit& visit)
-{
-  for (std::size_t i = 0; i < count; ++i) {
-    const Point3 &u = corners[i], &v = corners[i + 1 < count ? i + 1 : 0];
-    if (u[axis] >= low && u[axis] <= high) visit(u);
-    const bool upward = u[axis] < v[axis];
-    for (const double at : {upward ? low : high, upward ? high : low}) {
-      if ((u[axis] < at) == (v[axis] < at) || !(std::abs(at) < kInfinity)) continue;
-      const double share = (at - u[axis]) / (v[axis] - u[axis]);
-      Point3 p;
-      for (std::size_t k = 0; k < 3; ++k) p[k] = u[k] + (v[k] - u[k]) * share;
-      visit(p);
-    }
-  }
 }
 
 } // namespace
@@ -141,14 +122,13 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
     for (std::size_t k = 0; k < 3; ++k) box.low[k] = before.low[axes_[k]], box.high[k] = before.high[axes_[k]];
   }
 
-  for (std::size_t k = 0; k < 3; ++k) cubes_per_[k] = shareOf(kCubes, high_[k] - low_[k]);
-  cubes_.assign(kCubes * kCubes, 0);
+  cubes_ = Cubes(low_, high_);
   std::vector<std::uint32_t> all;
   all.reserve(view_.count);
   for (std::uint32_t i = 0; i < view_.count; ++i) {
     if (!(boxes_[i].low[0] <= boxes_[i].high[0])) continue;
     all.push_back(i);
-    markCubes(seenTriangle(i));
+    cubes_.mark(seenTriangle(i));
   }
   makeGrid(low_, high_, all, false);
   refine();
@@ -171,22 +151,25 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   }
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
-  bool may_have_more = !finer;
   double most_entries =
       finer ? static_cast<double>(kFinerEntries) * count : static_cast<double>(mostEntries(triangles.size()));
   const double most_cells = finer ? static_cast<double>(kFinerCells) * count : count + 4096.0;
   const auto along = [](double length, double per) { return std::max(1.0, std::ceil(length * per)); };
   double per = shareOf(1.0, longest);
   if (!(per < kInfinity)) per = 0.0;
-  for (int step = 0; per > 0.0 && step < 64; ++step) {
-    const double next = per * 1.2;
-    const double cells = along(width, next) * along(height, next);
-    if (may_have_more && shadows.entries(next) > most_entries && cells < kFewColumns * count) {
-      most_entries += static_cast<double>(moreEntries(triangles.size()));
-      may_have_more = false;
+  const auto refine = [&] {
+    double cells = along(width, per) * along(height, per);
+    for (int step = 0; per > 0.0 && step < 64; ++step) {
+      const double next = per * 1.2, next_cells = along(width, next) * along(height, next);
+      if (next_cells > most_cells || shadows.entries(next) > most_entries || next * longest > kMostColumns) break;
+      per = next, cells = next_cells;
     }
-    if (cells > most_cells || shadows.entries(next) > most_entries || next * longest > kMostColumns) break;
-    per = next;
+    return cells;
+  };
+  if (refine() < kFewColumns * count && !finer) {
+    most_entries += static_cast<double>(moreEntries(triangles.size()));
+    const double cells = refine();
+    if (makeStrips(triangles, 0.5 * shadows.entries(per) / cells)) return true;
   }
   Grid grid;
   std::vector<std::uint32_t> ends;
@@ -210,6 +193,43 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { entries_[ends[cell]++] = i; });
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) cells_.push_back({std::exchange(begin, ends[i]), ends[i]});
   grids_.push_back(grid);
+  return true;
+}
+
+/// Brings entries into strips.
+Columns::Cell Columns::inStrips(std::uint32_t begin, std::uint32_t count)
+{
+  std::uint32_t* const first = entries_.data() + begin;
+  stripped_.push_back({begin, Strips(first, first + count, [this](std::uint32_t i) { return seenTriangle(i); })});
+  return {Cell::kStrips, static_cast<std::uint32_t>(stripped_.size() - 1)};
+}
+
+/// In place of the first grid: one column, in strips. @return false where a ray meets more than `most` of them on the
+/// mean, for they lie in all directions
+bool Columns::makeStrips(const std::vector<std::uint32_t>& triangles, double most)
+{
+  constexpr std::uint32_t kSamples = 8; // along each axis
+  entries_ = triangles;
+  const Cell cell = inStrips(0, static_cast<std::uint32_t>(triangles.size()));
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < kSamples; ++i)
+    for (std::uint32_t j = 0; j < kSamples; ++j) {
+      const auto at = [&](std::uint32_t step, std::size_t k) {
+        return low_[k] + (high_[k] - low_[k]) * (step + 0.37) / kSamples;
+      };
+      stripped_[cell.end].strips.collect(entries_.data(), {at(i, 0), at(j, 1), low_[2]}, 0.0, found);
+    }
+  if (static_cast<double>(found.size()) > most * kSamples * kSamples) {
+    entries_.clear();
+    stripped_.clear();
+    return false;
+  }
+  const double width = high_[0] - low_[0], height = high_[1] - low_[1];
+  Grid grid{low_[0], low_[1], shareOf(1.0, width), shareOf(1.0, height), kPad * std::max(width, height), 1, 1, 0};
+  if (!(grid.per_x < kInfinity)) grid.per_x = 0.0;
+  if (!(grid.per_y < kInfinity)) grid.per_y = 0.0;
+  grids_.push_back(grid);
+  cells_.push_back(cell);
   return true;
 }
 
@@ -249,7 +269,8 @@ void Columns::forEachCell(const Grid& grid, std::uint32_t triangle, const Visit&
   }
 }
 
-/// Gives crowded columns finer grids, the most crowded first, as far as memory goes.
+/// Gives crowded columns strips where triangles are long for them, and finer grids elsewhere, the most crowded first,
+/// as far as memory goes; strips where it does not.
 void Columns::refine()
 {
   const std::size_t most = mostBytes(view_.count);
@@ -266,7 +287,8 @@ void Columns::refine()
   while (!crowded.empty()) {
     const auto [count, cell, index] = crowded.top();
     crowded.pop();
-    if (entries_.size() * sizeof(std::uint32_t) + cells_.size() * sizeof(Cell) + finer_bytes * count > most) continue;
+    const bool has_room =
+        entries_.size() * sizeof(std::uint32_t) + cells_.size() * sizeof(Cell) + finer_bytes * count <= most;
     const Grid grid = grids_[index];
     const std::size_t place = cell - grid.first;
     const auto column = static_cast<double>(place % grid.columns), row = static_cast<double>(place / grid.columns);
@@ -274,9 +296,12 @@ void Columns::refine()
     if (grid.per_x > 0.0) low[0] = grid.x + column / grid.per_x, high[0] = grid.x + (column + 1.0) / grid.per_x;
     if (grid.per_y > 0.0) low[1] = grid.y + row / grid.per_y, high[1] = grid.y + (row + 1.0) / grid.per_y;
     // Finer than what double arithmetic tells apart at the largest coordinate is of no use.
-    if (!(std::max(high[0] - low[0], high[1] - low[1]) * kPad * kPad > error_)) continue;
+    const bool is_wide = std::max(high[0] - low[0], high[1] - low[1]) * kPad * kPad > error_;
     some.assign(entries_.begin() + cells_[cell].begin, entries_.begin() + cells_[cell].end);
-    if (!makeGrid(low, high, some, true)) continue;
+    if (!has_room || !is_wide || !makeGrid(low, high, some, true)) {
+      if (count > kTooCrowded) cells_[cell] = inStrips(cells_[cell].begin, count);
+      continue;
+    }
     const auto finer = static_cast<std::uint32_t>(grids_.size() - 1);
     cells_[cell] = {Cell::kGrid, finer};
     note(finer);
@@ -295,6 +320,8 @@ void Columns::collect(std::uint32_t index, const Point3& at, double error, std::
       const Cell& cell = cells_[grid.first + std::size_t{j} * grid.columns + i];
       if (cell.begin == Cell::kGrid)
         collect(cell.end, at, error, found);
+      else if (cell.begin == Cell::kStrips)
+        stripped_[cell.end].strips.collect(entries_.data() + stripped_[cell.end].begin, at, error, found);
       else
         found.insert(found.end(), entries_.begin() + cell.begin, entries_.begin() + cell.end);
     }
@@ -307,6 +334,11 @@ Columns::Range Columns::above(const Point3& at, double error, std::vector<std::u
     if (!(error <= grid.pad)) break;
     const Cell& cell = cells_[grid.first + std::size_t{indexOf(at[1], grid.y, grid.per_y, grid.rows)} * grid.columns +
                               indexOf(at[0], grid.x, grid.per_x, grid.columns)];
+    if (cell.begin == Cell::kStrips) {
+      several.clear();
+      stripped_[cell.end].strips.collect(entries_.data() + stripped_[cell.end].begin, at, error, several);
+      return {several.data(), several.data() + several.size()};
+    }
     if (cell.begin != Cell::kGrid) return {entries_.data() + cell.begin, entries_.data() + cell.end};
     index = cell.end;
   }
@@ -317,76 +349,12 @@ Columns::Range Columns::above(const Point3& at, double error, std::vector<std::u
   return {several.data(), several.data() + several.size()};
 }
 
-bool Columns::isClear(const Point3& at, double reach) const noexcept
-{
-  constexpr std::uint32_t kWidest = 32;
-  std::array<std::uint32_t, 3> from, to;
-  for (std::size_t k = 0; k < 3; ++k) {
-    from[k] = indexOf(at[k] - reach, low_[k], cubes_per_[k], kCubes);
-    to[k] = indexOf(at[k] + reach, low_[k], cubes_per_[k], kCubes);
-    if (to[k] - from[k] >= kWidest) return false;
-  }
-  const std::uint64_t row = (~std::uint64_t{0} >> (kCubes - 1 - (to[2] - from[2]))) << from[2];
-  for (std::uint32_t i = from[0]; i <= to[0]; ++i) {
-    std::uint64_t met = 0;
-    for (std::uint32_t j = from[1]; j <= to[1]; ++j) met |= cubes_[i * kCubes + j];
-    if ((met & row) != 0) return false;
-  }
-  return true;
-}
-
-/// Marks the cubes that a triangle may meet: of each slab along the first axis and each row of it along the second,
-/// those that the part of the triangle there reaches along the last.
-void Columns::markCubes(const Triangle3& t)
-{
-  Point3 pad;
-  std::array<std::uint32_t, 3> from, to;
-  const auto cube = [&](double x, std::size_t axis) { return indexOf(x, low_[axis], cubes_per_[axis], kCubes); };
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto [least, most] = std::minmax({t[0][k], t[1][k], t[2][k]});
-    pad[k] = kPad * (high_[k] - low_[k]) / kCubes;
-    from[k] = cube(least - pad[k], k), to[k] = cube(most + pad[k], k);
-  }
-  const auto mark = [&](std::uint32_t i, std::uint32_t j, std::uint32_t low, std::uint32_t high) {
-    cubes_[i * kCubes + j] |= (~std::uint64_t{0} >> (kCubes - 1 - (high - low))) << low;
-  };
-  const auto isWide = [&](std::size_t axis) { return to[axis] - from[axis] > 1; };
-  if (!isWide(0) && !isWide(1) && !isWide(2)) {
-    for (std::uint32_t i = from[0]; i <= to[0]; ++i)
-      for (std::uint32_t j = from[1]; j <= to[1]; ++j) mark(i, j, from[2], to[2]);
-    return;
-  }
-  // The first and the last stand for what lies beyond, too.
-  const auto low = [&](std::uint32_t i, std::size_t axis) {
-    return i == 0 ? -kInfinity : low_[axis] + i / cubes_per_[axis] - pad[axis];
-  };
-  const auto high = [&](std::uint32_t i, std::size_t axis) {
-    return i + 1 == kCubes || !(cubes_per_[axis] > 0.0) ? kInfinity
-                                                        : low_[axis] + (i + 1) / cubes_per_[axis] + pad[axis];
-  };
-  std::array<Point3, 9> part;
-  for (std::uint32_t i = from[0]; i <= to[0]; ++i) {
-    std::size_t corners = 0;
-    double bottom = kInfinity, top = -kInfinity;
-    forEachCorner(t.data(), 3, 0, low(i, 0), high(i, 0), [&](const Point3& p) {
-      part[corners++] = p;
-      bottom = std::min(bottom, p[1]), top = std::max(top, p[1]);
-    });
-    if (corners == 0) continue;
-    const std::uint32_t last = cube(top + pad[1], 1);
-    for (std::uint32_t j = cube(bottom - pad[1], 1); j <= last; ++j) {
-      double least = kInfinity, most = -kInfinity;
-      forEachCorner(part.data(), corners, 1, low(j, 1), high(j, 1),
-                    [&](const Point3& p) { least = std::min(least, p[2]), most = std::max(most, p[2]); });
-      if (least <= most) mark(i, j, cube(least - pad[2], 2), cube(most + pad[2], 2));
-    }
-  }
-}
-
 std::size_t Columns::bytes() const noexcept
 {
-  return boxes_.capacity() * sizeof(Box) + grids_.capacity() * sizeof(Grid) + cells_.capacity() * sizeof(Cell) +
-         entries_.capacity() * sizeof(std::uint32_t) + cubes_.capacity() * sizeof(std::uint64_t);
+  std::size_t strips = stripped_.capacity() * sizeof(Stripped);
+  for (const Stripped& of : stripped_) strips += of.strips.bytes();
+  return strips + boxes_.capacity() * sizeof(Box) + grids_.capacity() * sizeof(Grid) +
+         cells_.capacity() * sizeof(Cell) + entries_.capacity() * sizeof(std::uint32_t) + cubes_.bytes();
 }
 
 } // namespace pcl_bsh

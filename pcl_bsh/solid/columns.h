@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd.
+// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd, and in
+// strips where they are long for it.
 //
 // A point's winding number needs the triangles of its own column only. Beside the grid stands a coarse one of cubes
 // that tells where the surface surely is not.
@@ -7,6 +8,8 @@
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/solid/cubes.h>
+#include <pcl_bsh/solid/strips.h>
 
 #include <array>
 #include <cstddef>
@@ -67,7 +70,7 @@ public:
 
   /// Whether surely no triangle meets the cube of the places within `reach` of `at`, per axis. False where the cube is
   /// too large to tell at little cost.
-  bool isClear(const Point3& at, double reach) const noexcept;
+  bool isClear(const Point3& at, double reach) const noexcept { return cubes_.areClear(at, reach); }
 
   std::size_t bytes() const noexcept;
 
@@ -80,13 +83,17 @@ private:
     std::uint32_t first; ///< cell of the first column
   };
 
-  /// Of entries_, or a finer grid.
+  /// Of entries_, or a finer grid, or strips.
   struct Cell {
-    static constexpr std::uint32_t kGrid = ~std::uint32_t{0};
-    std::uint32_t begin, end; ///< kGrid and its number, where there is a finer grid
+    static constexpr std::uint32_t kGrid = ~std::uint32_t{0}, kStrips = kGrid - 1;
+    std::uint32_t begin, end; ///< kGrid or kStrips and its number, where there is one
   };
 
-  static constexpr std::size_t kCubes = 64; ///< along each axis: a word is a row of cubes
+  /// Strips of a column's entries, which are in their order.
+  struct Stripped {
+    std::uint32_t begin;
+    Strips strips;
+  };
 
   static std::uint32_t indexOf(double x, double low, double per, std::uint32_t count) noexcept
   {
@@ -99,8 +106,9 @@ private:
   template <class Visit>
   void forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
   void refine();
+  Cell inStrips(std::uint32_t begin, std::uint32_t count);
+  bool makeStrips(const std::vector<std::uint32_t>& triangles, double most);
   void collect(std::uint32_t grid, const Point3& at, double error, std::vector<std::uint32_t>& found) const;
-  void markCubes(const Triangle3& triangle);
 
   TrianglesView view_;
   Point3 origin_ = {};
@@ -111,8 +119,8 @@ private:
   std::vector<Grid> grids_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> entries_;
-  Point3 cubes_per_ = {}; ///< cubes for each unit
-  std::vector<std::uint64_t> cubes_;
+  std::vector<Stripped> stripped_;
+  Cubes cubes_;
 };
 
 } // namespace pcl_bsh

@@ -68,6 +68,24 @@ inline TestMesh boxMesh(double x, double y, double z)
   return mesh;
 }
 
+/// Needles that share a corner above the origin and end side by side on a circle about it; closed by as many below.
+/// @param height of that corner, and depth of the one below
+inline TestMesh fanMesh(std::uint32_t sides, double radius, double height, bool closed)
+{
+  TestMesh mesh;
+  mesh.vertices = {{0, 0, height}, {0, 0, -height}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double turn = 2 * std::numbers::pi * i / sides;
+    mesh.vertices.push_back({radius * std::cos(turn), radius * std::sin(turn), 0});
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t here = 2 + i, next = 2 + (i + 1) % sides;
+    mesh.triangles.push_back({0, here, next});
+    if (closed) mesh.triangles.push_back({1, next, here});
+  }
+  return mesh;
+}
+
 inline TestMesh sphereMesh(double radius, std::uint32_t columns)
 {
   return gridMesh(columns, columns / 2, [&](double u, double v) -> Point3 {

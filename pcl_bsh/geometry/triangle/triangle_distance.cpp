@@ -6,6 +6,7 @@
 #include <pcl_bsh/geometry/exact/nearest_double.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/double_distance.h>
+#include <pcl_bsh/geometry/triangle/facing.h>
 #include <pcl_bsh/geometry/triangle/nearest_features.h>
 
 #include <algorithm>
@@ -209,6 +210,11 @@ std::array<Number, 3> TriangleDistance::placed(const Pose& pose, const Point3& p
   return placedBy<Number>([&pose](std::size_t row, std::size_t column) { return pose[row][column]; }, p);
 }
 
+LongCorners TriangleDistance::longCorners(const Pose& pose, const Triangle3& t) const
+{
+  return {placed<LongNumber>(pose, t[0]), placed<LongNumber>(pose, t[1]), placed<LongNumber>(pose, t[2])};
+}
+
 template <class Number, class Pair>
 NearestFeatures<Number> TriangleDistance::nearest(const Pair& pair) const
 {
@@ -234,6 +240,17 @@ Fraction<Number> TriangleDistance::squared(const Pair& pair, const Features& fea
       return placed<Number>(a_, pair.a[i]);
   };
   return squaredDistance<Number>(features, corner_a, [&](std::size_t j) { return placed<Number>(b_, pair.b[j]); });
+}
+
+/// The distance where it is known by the planes of both: of what features are nearest, long numbers cannot be sure
+/// where many are.
+template <class Pair>
+std::optional<LongNumber> TriangleDistance::facing(const Pair& pair) const
+{
+  if constexpr (std::is_same_v<Pair, PointPair>)
+    return std::nullopt;
+  else
+    return gapOfFacing(longCorners(a_, pair.a), longCorners(b_, pair.b));
 }
 
 /// Which features are nearest, by the quickest numbers that are sure.
@@ -273,8 +290,19 @@ int TriangleDistance::settle(const Pair& pair, const ExactDistance::Sum& reach, 
     return sum;
   };
   bool by_integers = false, sure = true;
+  const LongNumber length = sumOf(LongNumber(pair.radius));
+  if (const std::optional<LongNumber> gap = facing(pair)) {
+    const int side = (*gap - length).sign(sure);
+    if (sure) return ++stages.long_numbers, side;
+  }
+  if constexpr (std::is_same_v<Pair, TrianglePair>) {
+    sure = true;
+    if (length.sign(sure) >= 0 && sure && areFacesBeyond(longCorners(a_, pair.a), longCorners(b_, pair.b), length))
+      return ++stages.long_numbers, 1;
+  }
+  sure = true;
   const Features features = nearestFeatures(pair, by_integers);
-  const int side = compareRoot(squared<LongNumber>(pair, features), sumOf(LongNumber(pair.radius)), sure);
+  const int side = compareRoot(squared<LongNumber>(pair, features), length, sure);
   if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
   ++stages.integers;
   return compareRoot(squared<Dyadic>(pair, features), sumOf(Dyadic(pair.radius)), sure);
@@ -292,6 +320,14 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
   if (x.low + shift - slack > y.high) return ++stages.doubles, 1;
   if (this == &other && first.a == second.a && first.b == second.b && shift == 0.0) return ++stages.doubles, 0;
   bool by_integers = false, sure = true;
+  if (first.radius == second.radius) {
+    const std::optional<LongNumber> gap = facing(first), other_gap = gap ? other.facing(second) : std::nullopt;
+    if (gap && other_gap) {
+      const int side = (*gap - *other_gap).sign(sure);
+      if (sure) return ++stages.long_numbers, side;
+      sure = true;
+    }
+  }
   const Features of_first = nearestFeatures(first, by_integers);
   const Features of_second = other.nearestFeatures(second, by_integers);
   if (first.radius == second.radius) {
@@ -310,6 +346,9 @@ template <class Pair>
 double TriangleDistance::rounded(const Pair& pair, Stages& stages) const
 {
   bool by_integers = false;
+  if (pair.radius == 0.0) {
+    if (const std::optional<LongNumber> gap = facing(pair)) return ++stages.long_numbers, gap->value();
+  }
   const Features features = nearestFeatures(pair, by_integers);
   if (pair.radius == 0.0) {
     const double length = nearestRoot(squared<LongNumber>(pair, features));

@@ -16,10 +16,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace pcl_bsh {
 
 struct Features;
+class LongNumber;
 template <class Number>
 struct Fraction;
 template <class Number>
@@ -99,10 +101,13 @@ private:
 
   template <class Number>
   std::array<Number, 3> placed(const Pose& pose, const Point3& p) const;
+  std::array<std::array<LongNumber, 3>, 3> longCorners(const Pose& pose, const Triangle3& t) const;
   template <class Number, class Pair>
   NearestFeatures<Number> nearest(const Pair& pair) const;
   template <class Number, class Pair>
   Fraction<Number> squared(const Pair& pair, const Features& features) const;
+  template <class Pair>
+  std::optional<LongNumber> facing(const Pair& pair) const;
   template <class Pair>
   Features nearestFeatures(const Pair& pair, bool& by_integers) const;
   template <class Pair>

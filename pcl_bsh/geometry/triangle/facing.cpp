@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/triangle/facing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace pcl_bsh {
+namespace {
+
+bool areEqual(const LongNumber& x, const LongNumber& y)
+{
+  return x.value() == y.value() && x.tail() == y.tail() && x.error() == 0.0 && y.error() == 0.0;
+}
+
+/// Whether all corners are at one exact place along an axis.
+bool isAcross(const LongCorners& t, std::size_t axis)
+{
+  return areEqual(t[0][axis], t[1][axis]) && areEqual(t[0][axis], t[2][axis]);
+}
+
+struct Place {
+  double x = 0.0, y = 0.0;
+};
+
+/// Twice the area of u, v, w; positive where they turn left.
+double turn(const Place& u, const Place& v, const Place& w)
+{
+  return (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
+}
+
+/// Of coordinates up to a scale that are off by a few roundings of it: what a turn errs by is far below this share of
+/// its square.
+constexpr double kTurnDoubt = 0x1p-40;
+
+/// Whether a place is surely inside. @param doubt of turns
+bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
+{
+  const double turns[3] = {turn(t[0], t[1], at), turn(t[1], t[2], at), turn(t[2], t[0], at)};
+  return (turns[0] > doubt && turns[1] > doubt && turns[2] > doubt) ||
+         (turns[0] < -doubt && turns[1] < -doubt && turns[2] < -doubt);
+}
+
+/// Whether a place surely is inside both: the middle of what they have in common, as doubles find it.
+bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b)
+{
+  double scale = 0.0;
+  for (const auto* t : {&a, &b})
+    for (const Place& p : *t) scale = std::max({scale, std::abs(p.x), std::abs(p.y)});
+  if (!(scale > 0x1p-400 && scale < 0x1p400)) return false;
+  constexpr std::size_t kMost = 12; ///< corners: cut by a line, a convex polygon has one more
+  Place part[kMost], cut[kMost];
+  std::size_t count = 3;
+  std::copy(a.begin(), a.end(), part);
+  const double side = turn(b[0], b[1], b[2]) < 0.0 ? -1.0 : 1.0;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Place &from = b[j], &to = b[(j + 1) % 3];
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count && left + 2 <= kMost; ++i) {
+      const Place &u = part[i], &v = part[(i + 1) % count];
+      const double of_u = side * turn(from, to, u), of_v = side * turn(from, to, v);
+      if (of_u >= 0.0) cut[left++] = u;
+      if ((of_u < 0.0) == (of_v < 0.0)) continue;
+      const double share = of_u / (of_u - of_v);
+      cut[left++] = {u.x + share * (v.x - u.x), u.y + share * (v.y - u.y)};
+    }
+    count = left;
+    std::copy(cut, cut + count, part);
+  }
+  if (count == 0) return false;
+  Place middle;
+  for (std::size_t i = 0; i < count; ++i) middle.x += part[i].x, middle.y += part[i].y;
+  middle.x /= static_cast<double>(count), middle.y /= static_cast<double>(count);
+  const double doubt = kTurnDoubt * scale * scale;
+  return isInside(a, middle, doubt) && isInside(b, middle, doubt);
+}
+
+} // namespace
+
+std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b)
+{
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!isAcross(a, axis) || !isAcross(b, axis)) continue;
+    const std::size_t x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const auto isAbove = [&](const Vector3<LongNumber>& p, const Vector3<LongNumber>& q) {
+      return areEqual(p[x], q[x]) && areEqual(p[y], q[y]);
+    };
+    bool is_above = false;
+    for (const auto& p : a)
+      for (const auto& q : b) is_above = is_above || isAbove(p, q);
+    if (!is_above) {
+      const auto placesOf = [&](const LongCorners& t) {
+        std::array<Place, 3> places;
+        for (std::size_t i = 0; i < 3; ++i) places[i] = {(t[i][x] - a[0][x]).value(), (t[i][y] - a[0][y]).value()};
+        return places;
+      };
+      double most = 0.0;
+      for (const auto* t : {&a, &b})
+        for (const auto& p : *t) most = std::max({most, p[x].error(), p[y].error()});
+      if (most != 0.0 || !surelyMeet(placesOf(a), placesOf(b))) return std::nullopt;
+    }
+    const LongNumber gap = a[0][axis] - b[0][axis];
+    bool sure = true;
+    const int sign = gap.sign(sure);
+    if (gap.error() != 0.0 || !sure) return std::nullopt;
+    return sign < 0 ? -gap : gap;
+  }
+  return std::nullopt;
+}
+
+bool areFacesBeyond(const LongCorners& a, const LongCorners& b, const LongNumber& length)
+{
+  for (const LongCorners* face : {&a, &b}) {
+    const LongCorners &own = *face, &other = face == &a ? b : a;
+    const Vector3<LongNumber> normal = cross(own[1] - own[0], own[2] - own[0]);
+    const LongNumber square = dot(normal, normal), limit = square * (length * length);
+    int sides = 0;
+    bool all_beyond = true;
+    for (const Vector3<LongNumber>& corner : other) {
+      const LongNumber height = dot(normal, corner - own[0]);
+      bool sure = true;
+      sides += height.sign(sure);
+      all_beyond = all_beyond && sure && (height * height - limit).sign(sure) > 0 && sure;
+    }
+    if (all_beyond && (sides == 3 || sides == -3)) return true;
+  }
+  return false;
+}
+
+} // namespace pcl_bsh

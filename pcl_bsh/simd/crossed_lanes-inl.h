@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lies both in a sphere and in two slabs, against the like, and against points: long triangles that lie side by
+// side are there, where their sphere is as large as one of them is long.
+
+#if defined(PCL_BSH_SIMD_CROSSED_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_SIMD_CROSSED_LANES_INL_H_
+#undef PCL_BSH_SIMD_CROSSED_LANES_INL_H_
+#else
+#define PCL_BSH_SIMD_CROSSED_LANES_INL_H_
+#endif
+
+#include <pcl_bsh/simd/point_lanes-inl.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Which of a leaf's `count` points are not proven to be farther than reach from what lies both in a sphere and in two
+/// slabs, along either normal; sixteen are read. Margins as FacingSlabs has them.
+HWY_INLINE std::uint32_t pointsNearSlabs(const float* x, const float* y, const float* z, std::size_t count,
+                                         const CrossedSlabs& held, float reach)
+{
+  const LaneTag d;
+  const LaneVector more = hn::Set(d, kSlabMargin), radius = hn::Set(d, held.radius);
+  std::uint32_t far = 0;
+  for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, held.center.x));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, held.center.y));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, held.center.z));
+    const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), radius);
+    const LaneVector margin = hn::Mul(lengths, more);
+    const auto beyond = [&](const Point& normal, float h) HWY_ATTR {
+      const LaneVector on =
+          FacingSlabs::dot(hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z), dx, dy, dz);
+      const LaneVector limit = hn::Set(d, (h + reach) * (1.0f + kSphereMargin));
+      return hn::Gt(hn::Sub(hn::Abs(on), margin), limit);
+    };
+    const auto apart = hn::Or(beyond(held.normal, held.h), beyond(held.cross, held.cross_h));
+    far |= bitsOf(d, hn::And(apart, hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)))) << i;
+  }
+  return ~far & firstBits(count);
+}
+
+/// Bit i: what is in sphere i and in two slabs is proven to be more than reach away from the other, along one of both
+/// normals of either, or across what both are longest along.
+///
+/// Whatever led to a direction u, the gap along it is a bound; it is measured for |u|. A part of u along a normal
+/// reaches as far as its slab, the rest as far as the sphere (NodeSupport). Normals of 0 say nothing, and leave all to
+/// the sphere. kSlabMargin of all lengths pays for what normals are off, as FacingSlabs has it, and for float
+/// arithmetic: the rest of u errs by 8 roundings of it, a product with u by 4.
+HWY_INLINE std::uint32_t crossedSlabsApart(const SphereLanes& spheres, const SlabLanes& slabs,
+                                           const SlabLanes& cross_slabs, const CrossedSlabs& other, float reach)
+{
+  struct Vector3 {
+    LaneVector x, y, z;
+  };
+  const LaneTag d;
+  const auto spread = [d](const Point& p) HWY_ATTR {
+    return Vector3{hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
+  };
+  const auto dot = [](const Vector3& a, const Vector3& b)
+                       HWY_ATTR { return FacingSlabs::dot(a.x, a.y, a.z, b.x, b.y, b.z); };
+  const auto across = [](const Vector3& a, const Vector3& b) HWY_ATTR {
+    return Vector3{hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+                   hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+  };
+  const Vector3 other_normal = spread(other.normal), other_cross = spread(other.cross);
+  const LaneVector other_h = hn::Set(d, other.h), other_cross_h = hn::Set(d, other.cross_h),
+                   other_r = hn::Set(d, other.radius);
+  std::uint32_t apart = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const auto load = [&](const SlabLanes& of) HWY_ATTR {
+      return Vector3{hn::LoadU(d, of.x + i), hn::LoadU(d, of.y + i), hn::LoadU(d, of.z + i)};
+    };
+    const Vector3 normal = load(slabs), cross = load(cross_slabs);
+    const LaneVector h = hn::LoadU(d, slabs.h + i), cross_h = hn::LoadU(d, cross_slabs.h + i);
+    const LaneVector r = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
+    const Vector3 between{hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, other.center.x)),
+                          hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, other.center.y)),
+                          hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, other.center.z))};
+    const LaneVector lengths =
+        hn::Add(hn::Add(hn::Add(hn::Abs(between.x), hn::Abs(between.y)), hn::Abs(between.z)), hn::Add(r, other_r));
+    const LaneVector least =
+        hn::Add(hn::Set(d, reach * (1.0f + kSphereMargin)), hn::Mul(lengths, hn::Set(d, kSlabMargin)));
+    const auto support = [&](const Vector3& u, const Vector3& n, const Vector3& c, LaneVector of_n, LaneVector of_c,
+                             LaneVector of_rest) HWY_ATTR {
+      const LaneVector on_n = dot(u, n), on_c = dot(u, c);
+      const auto less = [&](LaneVector all, LaneVector nk, LaneVector ck)
+                            HWY_ATTR { return hn::Sub(hn::Sub(all, hn::Mul(on_n, nk)), hn::Mul(on_c, ck)); };
+      const LaneVector rest = hn::Sqrt(squaredNorm(less(u.x, n.x, c.x), less(u.y, n.y, c.y), less(u.z, n.z, c.z)));
+      return hn::Add(hn::Add(hn::Mul(hn::Abs(on_n), of_n), hn::Mul(hn::Abs(on_c), of_c)), hn::Mul(rest, of_rest));
+    };
+    auto proven = hn::Lt(h, h);
+    const auto tell = [&](const Vector3& u) HWY_ATTR {
+      const LaneVector both = hn::Add(support(u, normal, cross, h, cross_h, r),
+                                      support(u, other_normal, other_cross, other_h, other_cross_h, other_r));
+      const LaneVector square = squaredNorm(u.x, u.y, u.z);
+      const auto beyond = hn::Gt(hn::Sub(hn::Abs(dot(u, between)), both), hn::Mul(least, hn::Sqrt(square)));
+      proven = hn::Or(proven, hn::And(beyond, hn::Gt(square, hn::Set(d, 0x1p-40f))));
+    };
+    tell(other_cross);
+    tell(cross);
+    tell(normal);
+    tell(other_normal);
+    tell(across(across(normal, cross), across(other_normal, other_cross)));
+    apart |= bitsOf(d, hn::And(proven, hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)))) << i;
+  }
+  return apart;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
