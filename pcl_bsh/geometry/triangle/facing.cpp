@@ -75,6 +75,24 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b)
   return isInside(a, middle, doubt) && isInside(b, middle, doubt);
 }
 
+/// Whether one of the corners of t surely lies on a closed triangle, seen along an axis: where both touch along parts
+/// of their edges, no place is inside both.
+bool surelyTouch(const LongCorners& t, const LongCorners& closed, std::size_t x, std::size_t y)
+{
+  for (const Vector3<LongNumber>& p : t) {
+    bool sure = true;
+    int left = 0, right = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vector3<LongNumber>&from = closed[j], &to = closed[(j + 1) % 3];
+      const LongNumber turned = (to[x] - from[x]) * (p[y] - from[y]) - (to[y] - from[y]) * (p[x] - from[x]);
+      const int sign = turned.sign(sure);
+      left += sign > 0, right += sign < 0;
+    }
+    if (sure && (left == 0) != (right == 0)) return true;
+  }
+  return false;
+}
+
 } // namespace
 
 std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b)
@@ -97,7 +115,9 @@ std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b
       double most = 0.0;
       for (const auto* t : {&a, &b})
         for (const auto& p : *t) most = std::max({most, p[x].error(), p[y].error()});
-      if (most != 0.0 || !surelyMeet(placesOf(a), placesOf(b))) return std::nullopt;
+      if (most != 0.0) return std::nullopt;
+      if (!surelyMeet(placesOf(a), placesOf(b)) && !surelyTouch(a, b, x, y) && !surelyTouch(b, a, x, y))
+        return std::nullopt;
     }
     const LongNumber gap = a[0][axis] - b[0][axis];
     bool sure = true;
