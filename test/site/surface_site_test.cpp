@@ -30,6 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using Json = nlohmann::json;
 
 /// A crate two metres wide, and a site of points on one of its faces, about it and far away.
@@ -227,8 +228,40 @@ TEST_F(SurfaceSite, TilesInTheMiddleOfALargeSolidAreAskedAbout)
   const std::string about = "collide site large.off --pose=-4500,-4500,-4500,0,0,0 --clearance 0 --report r.json";
   ASSERT_EQ(run("pcl_bsh_site", about + " --solid", folder.path()).exit_code, 0);
   EXPECT_EQ(json("r.json")["colliding"], 8000);
+  EXPECT_THAT(json("r.json")["warnings"].dump(), Not(HasSubstr("close round")));
   ASSERT_EQ(run("pcl_bsh_site", about, folder.path()).exit_code, 0);
   EXPECT_EQ(json("r.json")["colliding"], 0);
+}
+
+/// A crate that is thrice as large, round the middle of the scan.
+TEST_F(SurfaceSite, TellsWhereFacesCloseRoundThePoints)
+{
+  const auto warned = [&](const std::string& arguments, const std::string& mesh = "large.off") {
+    const Outcome done = run("pcl_bsh_site", "collide site " + mesh + " --report r.json " + arguments, folder.path());
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    const bool told = done.err.find("its faces close round places of ") != std::string::npos;
+    EXPECT_EQ(told, json("r.json")["warnings"].dump().find("close round") != std::string::npos);
+    return told;
+  };
+  std::string large = crate_text;
+  for (std::size_t at = large.find('2', 10); at != std::string::npos && at < large.find("\n4");
+       at = large.find('2', at + 1))
+    large.replace(at, 1, "60");
+  folder.write("large.off", large);
+  const std::string in = " --pose=-30,-30,-30,0,0,0";
+  io::writePoses(folder / "in.txt", {Eigen::Isometry3d(Eigen::Translation3d(-30, -30, -30))});
+  for (const std::string kind : {"--clearance 0.1", "--any --clearance 0.1", "--closest", "--distances"}) {
+    SCOPED_TRACE(kind);
+    EXPECT_TRUE(warned(kind + in));
+    EXPECT_FALSE(warned(kind + in + " --solid"));
+    EXPECT_FALSE(warned(kind + " --pose=-200,0,0,0,0,0"));
+    EXPECT_FALSE(warned(kind, "crate.off")) << "points lie on it";
+  }
+  EXPECT_TRUE(warned("--clearance 0.1 --trajectory in.txt"));
+  EXPECT_FALSE(warned("--clearance 26 --trajectory in.txt")) << "something collides";
+  const std::string open = std::string(large).replace(large.find("8 6 0"), 5, "8 5 0");
+  folder.write("large.off", open);
+  EXPECT_FALSE(warned("--clearance 0.1" + in));
 }
 
 TEST_F(SurfaceSite, RefusesSolidsThatDoNotClose)

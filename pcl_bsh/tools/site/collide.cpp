@@ -17,6 +17,7 @@
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/hollow_site.h>
 #include <pcl_bsh/site/see_site.h>
 
 #include "clashes.h"
@@ -88,6 +89,12 @@ public:
 
   NamedCloud facts() const { return shape_.facts(true); }
 
+  std::optional<Warning> hollow(const Asking& asking, std::optional<double> nearest) const
+  {
+    Shape shape = shape_;
+    return site::warningOfHollow(asking.site, namedSite(asking.site).name, asking.options.question, nearest, shape);
+  }
+
   site::SiteFlags flags(Asking& asking) const
   {
     const site::SiteFlags found =
@@ -153,6 +160,7 @@ public:
 
   const site::PlacedSite& placed() const { return placed_; }
   NamedCloud facts() const { return namedSite(site_); }
+  std::optional<Warning> hollow(const Asking& /*asking*/, std::optional<double> /*nearest*/) const { return {}; }
 
   /// Flags of both sides: each in tiles of its own.
   site::SiteFlags flags(Asking& asking) const
@@ -210,6 +218,8 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
 {
   auto& [site, poses, options, out, clashes, warn, request, report, tiles] = asking;
   const Question& question = options.question;
+  std::optional<double> nearest; // where the answer tells
+  const auto nearest_of = [](bool collides) { return collides ? 0.0 : std::numeric_limits<double>::infinity(); };
   const auto put_tiles = [&](const auto& found) {
     asking.tiles = found.tiles;
     putTiles(report, "tiles", found.tiles);
@@ -220,14 +230,19 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
     const site::SiteAny found = site::anyCollision(site, obstacle.placed(), request);
     report["collides"] = found.verdict == Verdict::colliding;
     report["undecided"] = found.verdict == Verdict::undecided;
+    nearest = nearest_of(found.verdict != Verdict::free);
     put_tiles(found);
     break;
   }
-  case SiteQuestion::flags:
-    put_tiles(obstacle.flags(asking));
+  case SiteQuestion::flags: {
+    const site::SiteFlags found = obstacle.flags(asking);
+    nearest = nearest_of(found.colliding + found.undecided > 0);
+    put_tiles(found);
     break;
+  }
   case SiteQuestion::closest: {
     const site::SiteClosest found = site::closestPair(site, obstacle.placed(), request);
+    nearest = found.distance;
     report["distance"] = orNull(found.distance);
     report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
     if (found.point) {
@@ -250,6 +265,7 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
     clashes.addTo(request);
     const site::SitePassage found = obstacle.along(asking);
     putPassage(report, found, question);
+    nearest = nearest_of(found.colliding + found.undecided > 0);
     obstacle.finish(asking, found);
     put_tiles(found);
     break;
@@ -257,6 +273,7 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
   }
   std::vector<std::string> told;
   addTexts(warningsOf(question, namedSite(site), obstacle.facts()), told);
+  if (const auto hollow = obstacle.hollow(asking, nearest)) addOnce(hollow->text, told);
   return told;
 }
 
