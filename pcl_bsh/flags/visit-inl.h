@@ -52,7 +52,6 @@ struct FlagVisit {
   alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
   const Slabs* slabs = nullptr;                                 ///< the children's
   bool may_have_slabs = false;                                  ///< whether they may be asked for on the way
-  bool has_cross_slabs = false;                                 ///< whether the following are set, too
   alignas(32) float cx[kLanes], cy[kLanes], cz[kLanes];         ///< normals of the children's cross slabs
   const Slabs* cross_slabs = nullptr;
   std::uint32_t carried = 0;                ///< bits of the leaves whose points are in `points`

@@ -14,7 +14,7 @@
 #include <pcl_bsh/flags/leaf-inl.h>
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/runs-inl.h>
-#include <pcl_bsh/simd/crossed_lanes-inl.h>
+#include <pcl_bsh/flags/slabs-inl.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -36,6 +36,7 @@ public:
     spheres_(scratch.spheres),
     reached_(scratch.reached),
     flat_(scratch.flat),
+    slabs_(a_, b_, pairs_.ofTriangles(), obstacles_, reached_, found.work),
     uncertain_(query, scratch.uncertain),
     separation_(pairs_.distance, a_, b_, found.work)
   {
@@ -65,7 +66,7 @@ public:
           {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
            frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), nullptr, nullptr, hasLongTriangles(b_, other)});
+           query_.acceptance.band(frame), nullptr, nullptr, FlagSlabs::hasLongTriangles(b_, other)});
     }
     allowed_ = steps() + kStepsOfVoxel + kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
@@ -75,7 +76,7 @@ public:
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
-    has_long_triangles_ = hasLongTriangles(a_, voxel);
+    slabs_.begin(voxel, *a_voxel_);
     knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
     if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
     descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0, false);
@@ -98,15 +99,6 @@ private:
   /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
   /// may fit them or not; the work then depends on that, the result does not.
   bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
-
-  /// Whether triangles of a voxel are about as long as all of it: then spheres of nodes are as large as the voxel's
-  /// own, and two slabs tell where their triangles are.
-  static bool hasLongTriangles(const Spaces& side, std::uint32_t voxel)
-  {
-    const Voxel& of = side.storage.voxels[voxel];
-    return side.storage.view.triangles &&
-           static_cast<double>(of.largest_radius) > kLongTriangle * static_cast<double>(of.radius) * of.frame.unit;
-  }
 
   std::uint64_t steps() const
   {
@@ -156,11 +148,8 @@ private:
     found.work.node_pairs += node.count;
     std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count);
     if (near != 0 && obstacle.has_long_triangles && steps() > allowed_) {
-      fitSlabs(obstacle);
-      const auto index = &node - obstacle.voxel->nodes.data();
-      const Slab sphere{{0.0f, 0.0f, 0.0f}, radius, center, radius};
-      for (const Slabs* const slabs : {obstacle.slabs + index, obstacle.cross_slabs + index})
-        near &= ~slabsApart(spheres, {slabs->x, slabs->y, slabs->z, slabs->h}, sphere, obstacle.reach);
+      slabs_.fit(obstacle);
+      near = slabs_.nearSphere(obstacle, node, spheres, center, radius, near);
     }
     for (; near != 0; near &= near - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
@@ -202,8 +191,9 @@ private:
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
       visit.has_slabs = false;
-      visit.may_have_slabs = mayHaveSlabs(visit);
-      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle))) takeSlabs(visit);
+      visit.may_have_slabs = slabs_.mayHave(visit);
+      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)))
+        slabs_.take(visit);
       visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
       if (query_.certain)
         uncertain_.settle(visit, obstacles_[visit.obstacle], from, to, found.work,
@@ -274,123 +264,6 @@ private:
     }
   }
 
-  void fitSlabs(ObstacleVoxel& obstacle)
-  {
-    Voxel& voxel = b_.storage.voxels[reached_[static_cast<std::size_t>(&obstacle - obstacles_.data())]];
-    if (!obstacle.slabs) obstacle.slabs = voxel.slabs.of(voxel, b_.storage.view, found.work);
-    if (!obstacle.cross_slabs && obstacle.has_long_triangles)
-      obstacle.cross_slabs = voxel.cross_slabs.of(voxel, b_.storage.view, found.work);
-  }
-
-  /// Whether slabs of the visit's children and of the obstacle can be compared, and say more than spheres: of points,
-  /// or of long triangles. Spheres hold triangles that are short beside a voxel as they hold points.
-  bool mayHaveSlabs(const FlagVisit& visit) const
-  {
-    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    const auto areBalls = [](const Spaces& side) { return side.storage.view.radii && !side.storage.view.triangles; };
-    return obstacle.voxel->frame.unit == a_voxel_->frame.unit && !areBalls(a_) && !areBalls(b_) &&
-           (!pairs_.ofTriangles() || has_long_triangles_ || obstacle.has_long_triangles);
-  }
-
-  /// Has the visit's children, and the obstacle, compared as slabs too. Where surfaces face each other across the
-  /// clearance, spheres leave most of b as candidates. @pre mayHaveSlabs()
-  HWY_NOINLINE void takeSlabs(FlagVisit& visit)
-  {
-    ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    Voxel& own = a_.storage.voxels[voxel_];
-    const auto index = visit.node - a_voxel_->nodes.data();
-    const float* const m = obstacle.frame.m.data();
-    fitSlabs(obstacle);
-    visit.slabs = own.slabs.of(*a_voxel_, a_.storage.view, found.work) + index;
-    carry(m, kNowhere, visit.slabs->x, visit.slabs->y, visit.slabs->z, kLanes, visit.nx, visit.ny, visit.nz);
-    visit.has_slabs = true;
-    if (!has_long_triangles_) return;
-    visit.cross_slabs = own.cross_slabs.of(*a_voxel_, a_.storage.view, found.work) + index;
-    carry(m, kNowhere, visit.cross_slabs->x, visit.cross_slabs->y, visit.cross_slabs->z, kLanes, visit.cx, visit.cy,
-          visit.cz);
-  }
-
-  /// Of the children in `near`, those that a sphere of b may be near to, as its slabs and theirs tell.
-  HWY_INLINE std::uint32_t nearSlabs(FlagVisit& visit, const ObstacleSphere& candidate, const Point& center,
-                                     float radius, std::uint32_t near)
-  {
-    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    const auto index = candidate.node - obstacle.voxel->nodes.data();
-    const Slab slab = slabOf(obstacle.slabs[index], candidate.lane, center, radius);
-    near &= ~slabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, slab, obstacle.reach);
-    if (near == 0 || !pairs_.ofTriangles()) return near;
-    return nearCrossSlabs(visit, candidate, slab, near);
-  }
-
-  /// The same across the slabs of long triangles, and of leaves of points by each point.
-  HWY_NOINLINE std::uint32_t nearCrossSlabs(FlagVisit& visit, const ObstacleSphere& candidate, const Slab& slab,
-                                            std::uint32_t near)
-  {
-    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    CrossedSlabs held{slab.normal, {0.0f, 0.0f, 0.0f}, slab.h, 0.0f, slab.center, slab.radius};
-    if (obstacle.has_long_triangles) {
-      const Slabs& cross = obstacle.cross_slabs[candidate.node - obstacle.voxel->nodes.data()];
-      held.cross = {cross.x[candidate.lane], cross.y[candidate.lane], cross.z[candidate.lane]};
-      held.cross_h = cross.h[candidate.lane];
-    }
-    static constexpr float kNone[kLanes] = {};
-    near &= ~crossedSlabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h},
-                               has_long_triangles_ ? SlabLanes{visit.cx, visit.cy, visit.cz, visit.cross_slabs->h}
-                                                   : SlabLanes{kNone, kNone, kNone, kNone},
-                               held, obstacle.reach);
-    const bool by_own_points = obstacle.has_long_triangles && !a_.storage.view.triangles;
-    if (!by_own_points && !isLeafOfPoints(candidate)) return near;
-    for (std::uint32_t bits = near & visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      ++found.work.node_pairs;
-      bool is_near = false;
-      if (by_own_points) {
-        const LeafPoints& points = carriedPoints(visit, lane);
-        is_near = (pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, held, obstacle.reach) &
-                   visit.open_points[lane]) != 0;
-      }
-      else {
-        is_near = facingLeaf(visit, lane, candidate.leaf(*obstacle.voxel)) != 0;
-      }
-      if (!is_near) near &= ~(1u << lane);
-    }
-    return near;
-  }
-
-  /// Whether a is of long triangles, and this is a leaf of points.
-  bool isLeafOfPoints(const ObstacleSphere& candidate) const
-  {
-    return has_long_triangles_ && !b_.storage.view.triangles && candidate.isLeaf();
-  }
-
-  /// Which points of such a leaf may be near to long triangles of a leaf of a. @pre visit.has_slabs
-  std::uint32_t facingLeaf(const FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf) const
-  {
-    const CrossedSlabs held{{visit.nx[lane], visit.ny[lane], visit.nz[lane]},
-                            {visit.cx[lane], visit.cy[lane], visit.cz[lane]},
-                            visit.slabs->h[lane],
-                            visit.cross_slabs->h[lane],
-                            {visit.x[lane], visit.y[lane], visit.z[lane]},
-                            visit.r[lane]};
-    return pointsNearSlabs(leaf.x(), leaf.y(), leaf.z(), leaf.count, held, obstacles_[visit.obstacle].reach);
-  }
-
-  /// Points of a leaf among the children, in the frame of the obstacle.
-  const LeafPoints& carriedPoints(FlagVisit& visit, std::uint32_t lane)
-  {
-    if ((visit.carried >> lane & 1) == 0)
-      carryLeaf(obstacles_[visit.obstacle].frame, leafOf(visit, lane), visit.points[lane]);
-    visit.carried |= 1u << lane;
-    return visit.points[lane];
-  }
-
-  LeafRange leafOf(const FlagVisit& visit, std::uint32_t lane) const
-  {
-    return {a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
-  }
-
   /// Of the children in `near`, those that are apart from a sphere of b, though their spheres and slabs are not.
   std::uint32_t separated(const FlagVisit& visit, const ObstacleSphere& candidate, float radius, std::uint32_t near)
   {
@@ -450,8 +323,9 @@ private:
                                                  : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
     if (visit.may_have_slabs) {
-      if (!visit.has_slabs && pairs_.ofTriangles() && steps() > allowed_) takeSlabs(visit);
-      if (visit.has_slabs && (near = nearSlabs(visit, candidate, {ball.x, ball.y, ball.z}, radius, near)) == 0) return;
+      if (!visit.has_slabs && pairs_.ofTriangles() && steps() > allowed_) slabs_.take(visit);
+      if (visit.has_slabs && (near = slabs_.nearOf(visit, candidate, {ball.x, ball.y, ball.z}, radius, near)) == 0)
+        return;
     }
     if ((near &= ~separated(visit, candidate, radius, near)) == 0) return;
     if (b_.storage.view.triangles && candidate.isLeaf() && (near = nearTriangles(visit, candidate, near)) == 0) return;
@@ -513,8 +387,8 @@ private:
     for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
-      const LeafRange leaf = leafOf(visit, lane);
-      const std::uint32_t hit = collidingPoints(visit, lane, leaf, carriedPoints(visit, lane));
+      const LeafRange leaf = slabs_.leafOf(visit, lane);
+      const std::uint32_t hit = collidingPoints(visit, lane, leaf, slabs_.carriedPoints(visit, lane));
       tellBits(sink_, Finding::colliding, hit, [&leaf](std::uint32_t i) { return leaf.record(i); });
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] != 0) continue;
@@ -535,7 +409,8 @@ private:
     if (pairs_.haveRadii())
       return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work, [&](const ObstacleSphere& candidate) {
         const LeafRange other = candidate.leaf(*obstacle.voxel);
-        return visit.has_slabs && isLeafOfPoints(candidate) ? facingLeaf(visit, lane, other) : firstBits(other.count);
+        return visit.has_slabs && slabs_.isLeafOfPoints(candidate) ? slabs_.facingLeaf(visit, lane, other)
+                                                                   : firstBits(other.count);
       });
     if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
     return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),
@@ -570,18 +445,16 @@ private:
   static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
   static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
 
-  std::uint32_t voxel_ = kNoVoxel;              ///< of a
-  static constexpr double kLongTriangle = 0.25; ///< its ball's radius, in radii of its voxel
-
-  std::uint64_t allowed_ = 0;       ///< steps, before slabs of long triangles are fitted
-  bool has_long_triangles_ = false; ///< a's voxel
-  bool knows_slabs_ = false;        ///< whether those of a's voxel may be used without fitting any
+  std::uint32_t voxel_ = kNoVoxel; ///< of a
+  std::uint64_t allowed_ = 0;      ///< steps, before slabs of long triangles are fitted
+  bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
   std::deque<FlagVisit>& visits_;
   std::vector<ObstacleVoxel>& obstacles_;
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
   FlatRecords& flat_;
+  FlagSlabs slabs_;
   UncertainWalk uncertain_; ///< where points are
   const Separation separation_;
 };
