@@ -3,8 +3,7 @@
 #include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/check_request.h>
-#include <pcl_bsh/pairs/interval_search.h>
-#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/pairs/closest_goal.h>
 
 #include <optional>
 
@@ -24,23 +23,26 @@ namespace {
 /// Stops the search where the rule's time is over, or is too short for a voxel that would have to be built.
 class Hurried : public NoObserver {
 public:
-  explicit Hurried(const StopRule& rule) : rule_(rule) {}
+  explicit Hurried(const StopRule& rule) : rule_(rule), check_(rule, kNoTests) {}
 
   bool stops(const PairWalk& walk, const LanePair& pair)
   {
-    if (asked_++ % 16 == 0 && rule_.isOver()) return true; // a clock costs as much as a step
+    if (check_.isOver()) return true;
     const Opened opened = walk.choose(pair);
     if (opened == Opened::neither) return false;
     const Spaces& side = opened == Opened::a ? walk.a : walk.b;
     const Lane& lane = opened == Opened::a ? pair.a : pair.b;
     const Node& node = walk.nodeOf(side, lane);
-    return lane.space == kAboveVoxels && node.isLeaf(lane.lane) &&
-           !rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane]));
+    if (lane.space != kAboveVoxels || !node.isLeaf(lane.lane)) return false;
+    const std::size_t points = side.storage.pointsToBuild(node.begin[lane.lane]);
+    return points != 0 && !rule_.leavesTimeToBuild(points);
   }
 
 private:
+  static constexpr std::uint64_t kNoTests = 0; ///< only time counts
+
   const StopRule& rule_;
-  std::uint64_t asked_ = 0;
+  StopCheck check_;
 };
 
 /// Stops where one of several threads is to pause.
@@ -125,28 +127,31 @@ constexpr double kWitnessShare = 15.0 / 16;
 
 AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyRequest& request, Progress& progress)
 {
-  const StopRule rule(request.accuracy);
+  ClosestGoal goal(request.accuracy);
+  goal.clearance = request.clearance;
   Work work;
-  if (rule.isTimed()) {
-    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, rule.part(kWitnessShare),
+  if (goal.rule.isTimed()) {
+    AnyResult decided = HWY_DYNAMIC_DISPATCH(anyCollisionInTimeOnTarget)(a, b, request, goal.rule.part(kWitnessShare),
                                                                          {&progress, kWitnessShare});
     if (decided.verdict != Verdict::undecided) return decided;
     work = decided.work;
   }
-  IntervalFinding found = searchInterval(a, b, rule, request.clearance, {&progress, 1.0});
-  const bool colliding = found.verdict == Verdict::colliding;
-  return {found.verdict, colliding ? found.pair : std::nullopt, found.interval, found.work += work};
+  AnyResult found = searchWithin(a, b, goal, {&progress, 1.0});
+  if (found.verdict != Verdict::colliding) found.pair.reset();
+  found.work += work;
+  return found;
 }
 
 /// Of points that may be elsewhere than they were measured.
 AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request, Progress& progress)
 {
   if (request.accuracy.stopsEarly()) {
-    IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
+    AnyResult found = searchWithin(a, b, ClosestGoal(request.accuracy), {&progress, 1.0});
     const bool certain = found.interval.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
     const bool possible = !(found.interval.lower > reachBetween(a, b, request.clearance, Places::possible).most);
-    const Verdict verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
-    return {verdict, certain ? found.pair : std::nullopt, found.interval, found.work};
+    found.verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
+    if (!certain) found.pair.reset();
+    return found;
   }
   return anyOfUncertain(
       progress, [&](Places places, const Watch& watch) { return anyCollisionAt(a, b, request, places, watch); });

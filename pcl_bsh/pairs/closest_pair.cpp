@@ -2,8 +2,8 @@
 // The closest pair, by one thread or by several.
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/pairs/check_request.h>
+#include <pcl_bsh/pairs/closest_goal.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/pairs/interval_search.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 
@@ -90,22 +90,28 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Accuracy& accuracy, unsigned threads,
+DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const ClosestGoal& goal, unsigned threads,
                                    Progress& progress)
 {
-  if (threads == 1) return ClosestSearch(a, b, accuracy, NoOthers(), {&progress, 1.0}).run();
+  if (threads == 1) return ClosestSearch(a, b, goal, NoOthers(), {&progress, 1.0}).run();
   SharedNearest nearest;
   std::optional<SharedStack<LanePair>> shared;
   Work work;
   {
-    ClosestSearch alone(a, b, accuracy, Sharing(nearest), {&progress, 1.0});
+    ClosestSearch alone(a, b, goal, Sharing(nearest), {&progress, 1.0});
     const DistanceResult result = alone.run();
     if (alone.left().empty()) return result;
     work = result.work;
     shared.emplace(alone.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return ClosestSearch(a, b, accuracy, Sharing(nearest), Watch{&progress}); });
-  return ClosestSearch(a, b, accuracy, Sharing(nearest)).result(work += shared->work());
+  shared->visit(threads, [&] { return ClosestSearch(a, b, goal, Sharing(nearest), Watch{&progress}); });
+  return ClosestSearch(a, b, goal, Sharing(nearest)).result(work += shared->work());
+}
+
+AnyResult searchWithinOnTarget(const Placed& a, const Placed& b, const ClosestGoal& goal, const Watch& watch)
+{
+  ClosestSearch search(a, b, goal, NoOthers(), watch);
+  return search.verdict(search.run());
 }
 
 } // namespace HWY_NAMESPACE
@@ -116,22 +122,23 @@ HWY_AFTER_NAMESPACE();
 namespace pcl_bsh {
 
 HWY_EXPORT(closestPairOnTarget);
+HWY_EXPORT(searchWithinOnTarget);
 
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request)
 {
   check(a, b, request);
+  const ClosestGoal goal(request.accuracy);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
-  if (request.accuracy.mode == Accuracy::Mode::level) {
-    const IntervalFinding found = searchInterval(a, b, StopRule(request.accuracy), std::nullopt, {&progress, 1.0});
-    progress.finish();
-    const double gap = found.pair ? PointPairs(a, b, 0.0).gap(*found.pair) : std::numeric_limits<double>::infinity();
-    return {gap, found.pair, found.interval, found.work};
-  }
   const unsigned threads = request.accuracy.isExact() ? threadCount(request.threads) : 1;
-  DistanceResult found = HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, request.accuracy, threads, progress);
+  DistanceResult found = HWY_DYNAMIC_DISPATCH(closestPairOnTarget)(a, b, goal, threads, progress);
   progress.finish();
   return found;
+}
+
+AnyResult searchWithin(const Placed& a, const Placed& b, const ClosestGoal& goal, const Watch& watch)
+{
+  return HWY_DYNAMIC_DISPATCH(searchWithinOnTarget)(a, b, goal, watch);
 }
 
 } // namespace pcl_bsh

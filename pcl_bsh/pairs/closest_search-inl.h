@@ -9,9 +9,9 @@
 #define PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
 #endif
 
-#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/pairs/closest_goal.h>
 #include <pcl_bsh/pairs/nearest.h>
-#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/pairs/opening-inl.h>
 #include <pcl_bsh/traversal/pair_queue-inl.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
@@ -52,14 +52,13 @@ class ClosestSearch : public PairVisitor {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 public:
-  ClosestSearch(const Placed& a, const Placed& b, const Accuracy& accuracy, Others others, const Watch& by = {})
+  ClosestSearch(const Placed& a, const Placed& b, const ClosestGoal& goal, Others others, const Watch& by = {})
   : PairVisitor(by),
+    goal_(goal),
     walk_(a, b),
     pairs_(a, b, 0.0),
-    rule_(accuracy),
-    stop_check_(rule_, walk_.work.node_pairs),
-    others_(std::move(others)),
-    tolerance_(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
+    stop_check_(goal_.rule, walk_.work.node_pairs),
+    others_(std::move(others))
   {
     walk_.makeWholes();
   }
@@ -72,12 +71,11 @@ public:
     walk_.seedWhole(kInfinity, [this](LanePair pair, const PairWalk::Step& step) {
       walk_.boundKeys(pair, step, keys_);
       pair.key = keys_[0];
-      at_least_ = pair.key;
-      if (rule_.mayStop()) consider(walk_.lowest(pair)); // so that there is a pair, however soon it stops
-      if (canImprove(pair)) queue_.push(pair);
+      if (goal_.rule.mayStop()) considerOneOf(pair); // so that there is a pair, however soon it stops
+      if (canImprove(pair)) queue_.push({pair, false, 1, {pair.key}});
     });
     searchBestFirst();
-    if (rule_.mayStop()) return result(walk_.work);
+    if (goal_.rule.mayStop()) return result(walk_.work);
     queue_.drainTo(stack_);
     if (!Others::kAreThere && !stack_.empty()) visitPairs(walk_, stack_, *this);
     return result(walk_.work);
@@ -109,6 +107,14 @@ public:
     return {best_.gap, best_.pair, interval(), work};
   }
 
+  /// Of the search that run() has made, whether the distance exceeds the goal's clearance; with the nearest pair.
+  AnyResult verdict(const DistanceResult& found) const
+  {
+    const bool is_free = static_cast<double>(left_over_) > goal_.clearance;
+    const Verdict verdict = settled_ ? Verdict::colliding : is_free ? Verdict::free : Verdict::undecided;
+    return {verdict, found.pair, found.interval, found.work};
+  }
+
   // As visitPairs() asks.
 
   static constexpr bool kBounds = true;
@@ -120,16 +126,11 @@ public:
   /// Whether there is time for what opening a pair takes.
   bool opens(const LanePair& pair, Opened opened)
   {
-    if (!rule_.isTimed()) return true;
-    const Spaces& side = opened == Opened::a ? walk_.a : walk_.b;
-    const Lane& lane = opened == Opened::a ? pair.a : pair.b;
-    const Node& node = walk_.nodeOf(side, lane);
-    if (lane.space != kAboveVoxels || !node.isLeaf(lane.lane) ||
-        rule_.leavesTimeToBuild(side.storage.pointsToBuild(node.begin[lane.lane])))
-      return true;
+    if (!goal_.rule.isTimed()) return true;
+    const std::size_t points = pointsToPrepare(walk_, pair, opened);
+    if (points == 0 || goal_.rule.leavesTimeToBuild(points)) return true;
     left_over_ = std::min(left_over_, pair.key);
-    at_least_ = pair.key;
-    consider(walk_.lowest(pair));
+    considerOneOf(pair);
     return false;
   }
 
@@ -144,15 +145,17 @@ public:
   {
     if (step.near == 0) return Next::go_on;
     walk_.boundKeys(PairWalk::childOf(pair, opened, step, 0), step, keys_);
-    for (float& key : keys_) key = std::max(key, pair.key);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      keys_[lane] = std::max(keys_[lane], pair.key);
+      if (keys_[lane] <= lowestKey() && !pairs_.mayOverlap()) keys_[lane] = overlapOf(step, lane);
+    }
     return Next::go_on;
   }
 
-  bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
+  bool keep(LanePair& pair, Opened, const PairWalk::Step&, std::uint32_t lane) const
   {
     pair.key = keys_[lane];
-    if (pair.key <= lowestKey() && !pairs_.mayOverlap()) pair.key = overlapOf(step, lane);
-    return canImprove(pair) || (diving_ && pair.key < best_.high);
+    return canImprove(pair);
   }
 
   Next compare(const LanePair& pair)
@@ -183,8 +186,8 @@ private:
     std::optional<LanePair> next;
     std::uint32_t next_dive = 0, wait = kStepsBetweenDives;
     double high_before = kInfinity;
-    const bool ends = !rule_.mayStop();
     for (std::uint32_t steps = 0;; ++steps) {
+      const bool dives_on = next && diving_;
       if (!next) {
         if (std::exchange(diving_, false)) {
           wait = best_.high < high_before ? kStepsBetweenDives : 2 * wait;
@@ -203,37 +206,89 @@ private:
         diving_ = steps >= next_dive;
         high_before = best_.high;
       }
-      if (ends ? steps >= kStepsAlone : stop_check_.isOver()) {
+      if (isOver(*next, steps, dives_on)) {
         left_over_ = std::min(left_over_, std::min(next->key, queue_.least()));
-        if (ends) queue_.push(*next);
+        if (!goal_.rule.mayStop()) queue_.push(alone(*next));
         diving_ = false;
         return;
       }
       pulse.step(queue_.size());
+      if (isSmall(*next)) {
+        considerOneOf(*next);
+        if (!canImprove(*next)) {
+          next.reset();
+          continue;
+        }
+      }
       next = openNearestNext(*next);
     }
+  }
+
+  /// Whether each pair of points below is within the tolerance of all that the pair bounds.
+  bool isSmall(const LanePair& pair) const
+  {
+    return goal_.tolerance > 0.0 && 2.0 * walk_.radiiOf(pair) <= goal_.tolerance;
+  }
+
+  /// Whether to search best first no more.
+  bool isOver(const LanePair& next, std::uint32_t steps, bool dives_on)
+  {
+    if (!goal_.rule.mayStop()) return steps >= kStepsAlone;
+    return settled_ || stop_check_.isOver() ||
+           (!dives_on && goal_.rule.deepest != StopRule::kNever && levelToOpen(walk_, next) > goal_.rule.deepest);
+  }
+
+  static WaitingChildren alone(const LanePair& pair)
+  {
+    WaitingChildren one{pair, true, static_cast<std::uint8_t>(1u << pair.a.lane), {}};
+    one.keys[pair.a.lane] = pair.key;
+    return one;
   }
 
   /// Opens a pair and queues its children, but for one that comes next.
   std::optional<LanePair> openNearestNext(const LanePair& pair)
   {
-    expand(walk_, pair, step_, *this, [this](const LanePair& child) { stack_.push_back(child); });
-    if (stack_.empty()) return std::nullopt;
-    nearestLast(stack_, 0);
-    const LanePair nearest = stack_.back();
-    stack_.pop_back();
-    for (const LanePair& child : stack_)
-      if (canImprove(child)) queue(child);
-    stack_.clear();
-    if (diving_ || (canImprove(nearest) && nearest.key <= queue_.least())) return nearest;
-    if (canImprove(nearest)) queue(nearest);
-    return std::nullopt;
+    const Opened which = walk_.choose(pair);
+    if (which == Opened::neither) {
+      compare(pair);
+      return std::nullopt;
+    }
+    if (!opens(pair, which)) return std::nullopt;
+    walk_.template step<true>(pair, which, reach(), step_);
+    if (step_.near == 0) return std::nullopt;
+    opened(pair, which, step_);
+    WaitingChildren children{PairWalk::childOf(pair, which, step_, 0), which == Opened::a, 0, {}};
+    std::copy_n(keys_, kLanes, children.keys);
+    for (std::uint32_t near = step_.near; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      LanePair child = PairWalk::childOf(pair, which, step_, lane);
+      if (keep(child, which, step_, lane)) children.left = static_cast<std::uint8_t>(children.left | (1u << lane));
+    }
+    const std::uint32_t improving = children.left;
+    if (diving_) children.left = static_cast<std::uint8_t>(step_.near);
+    if (children.left == 0) return std::nullopt;
+    const std::uint32_t lane = children.nearest();
+    const LanePair nearest = children.child(lane);
+    const bool improves = (improving >> lane & 1u) != 0;
+    const bool goes_on = diving_ ? improves || nearest.key < best_.high : nearest.key <= queue_.least();
+    children.left = static_cast<std::uint8_t>(goes_on ? improving & ~(1u << lane) : improving);
+    if (children.left != 0) queue_.push(children);
+    if (diving_ && goal_.rule.mayStop() && walk_.work.leaf_pairs == 0) considerIfMuchNearer(nearest, step_.gap[lane]);
+    return goes_on ? std::optional(nearest) : std::nullopt;
   }
 
-  void queue(LanePair pair)
+  /// On the first dive, which a budget may not let end.
+  void considerIfMuchNearer(const LanePair& pair, float between_centers)
   {
-    pair.key = std::max(pair.key, lowestKey());
-    queue_.push(pair);
+    const double between = static_cast<double>(between_centers) * walk_.b.frame(pair.b.space).unit;
+    if (between < 0.7 * best_.high) considerOneOf(pair);
+  }
+
+  /// A bound from above, of any pair below.
+  void considerOneOf(const LanePair& pair)
+  {
+    at_least_ = std::max(pair.key, lowestKey());
+    consider(walk_.lowest(pair));
   }
 
   /// Orders children that may be at a distance of 0, below that: by how far spheres overlap for their size.
@@ -248,10 +303,12 @@ private:
   Interval interval() const
   {
     if (!best_.pair) return {kInfinity, kInfinity};
-    const double lower = std::nextafter(best_.gap, -kInfinity) - tolerance_;
-    const double known = tolerance_ > 0.0  ? std::nextafter(lower, -kInfinity)
-                         : rule_.mayStop() ? std::min(std::max(lower, best_lower_), static_cast<double>(left_over_))
-                                           : lower;
+    const double lower = std::nextafter(best_.gap, -kInfinity) - goal_.tolerance;
+    const double known =
+        goal_.tolerance > 0.0 ? std::nextafter(lower, -kInfinity)
+        : goal_.rule.mayStop()
+            ? std::min({std::max(lower, best_lower_), static_cast<double>(left_over_), goal_.clearance})
+            : lower;
     return {std::max(known, static_cast<double>(lowestKey())), best_.high};
   }
 
@@ -260,7 +317,7 @@ private:
   {
     const double bound = std::max(pair.key, lowestKey());
     if (bound < best_.to_beat) return true;
-    if (bound > best_.to_beat || tolerance_ > 0.0) return false;
+    if (bound > best_.to_beat || goal_.tolerance > 0.0 || bound > best_.high) return false;
     return walk_.lowest(pair) < *best_.pair;
   }
 
@@ -287,26 +344,32 @@ private:
     best_.gap = pairs_.distance.gap(posed);
     const bool zero = best_.gap == 0.0 && pairs_.distance.compare(posed, 0.0) == 0;
     best_.high = zero ? 0.0 : std::nextafter(best_.gap, kInfinity);
-    best_.to_beat = tolerance_ > 0.0 ? std::nextafter(best_.high - tolerance_, -kInfinity) : best_.high;
+    if (best_.gap <= goal_.clearance && goal_.clearance < kInfinity &&
+        pairs_.distance.compare(posed, goal_.clearance) <= 0) {
+      settled_ = true;
+      best_.high = std::min(best_.high, goal_.clearance);
+    }
+    best_.to_beat = goal_.tolerance > 0.0 ? std::nextafter(best_.high - goal_.tolerance, -kInfinity)
+                                          : std::min(best_.high, std::nextafter(goal_.clearance, kInfinity));
     others_.tell(best_, pairs_);
   }
 
+  const ClosestGoal goal_;
   PairWalk walk_;
   PointPairs pairs_;
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of what is depth first; before that, of a step's children
   PairWalk::Step step_;
-  PairQueue queue_;
+  PairQueue queue_{lowestKey()};
   alignas(32) float keys_[kLanes] = {};                      ///< of the children that the last step tested
   float left_over_ = std::numeric_limits<float>::infinity(); ///< no pair that was left is nearer
   float at_least_ = -std::numeric_limits<float>::infinity(); ///< the gaps that are considered
   double best_lower_ = -kInfinity;                           ///< so much of the best one
   bool diving_ = false;
-  const StopRule rule_;
+  bool settled_ = false; ///< a pair is within the goal's clearance
   StopCheck stop_check_;
   Others others_;
   Nearest best_;
-  double tolerance_;
 };
 
 } // namespace HWY_NAMESPACE

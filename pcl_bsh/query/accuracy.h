@@ -29,8 +29,10 @@ struct Accuracy {
   /// to within `length`. @param length finite, >= 0
   static Accuracy tolerance(double length) noexcept { return {Mode::tolerance, length}; }
 
-  /// The descent opens the sphere trees below the voxels down to this level: 0 compares the voxels' spheres and builds
-  /// nothing, each level more opens nodes of eight children. What spheres cannot tell is left undecided.
+  /// The descent opens the sphere trees below the voxels down to this level: 0 compares the voxels' spheres, each level
+  /// more opens nodes of eight children. What spheres cannot tell is left undecided. At level 0 flags and distances of
+  /// points build nothing; anyCollision() and closestPair() end where a node below the level would tell most, but look
+  /// for a near pair below it.
   static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
 
   /// Stops after about so many sphere tests: the same answer on every machine. Where points of both clouds are flagged,

@@ -15,6 +15,8 @@ namespace pcl_bsh {
 
 class StopRule {
 public:
+  using Clock = std::chrono::steady_clock;
+
   explicit StopRule(const Accuracy& accuracy) : may_stop_(accuracy.stopsEarly())
   {
     const std::uint64_t count = accuracy.value < 0x1p63 ? static_cast<std::uint64_t>(accuracy.value) : kNever;
@@ -35,6 +37,7 @@ public:
   bool mayStop() const noexcept { return may_stop_; }
   bool isTimed() const noexcept { return deadline_ != Clock::time_point::max(); }
   bool isOver() const { return isTimed() && Clock::now() >= deadline_; }
+  Clock::duration timeLeft(Clock::time_point now) const { return deadline_ - now; } ///< @pre isTimed()
   bool isSpent(std::uint64_t tested) const { return tested >= node_pairs || isOver(); }
 
   /// Whether so many points can be built into trees before the time is over. What is not begun is not overrun.
@@ -66,30 +69,51 @@ public:
   }
 
 private:
-  using Clock = std::chrono::steady_clock;
-
   bool may_stop_;
   Clock::time_point deadline_ = Clock::time_point::max();
 };
 
-/// Tells a walk whether its budget is spent, so that it has to end now.
+/// Tells a walk whether its budget is spent, so that it has to end now. A clock costs a fifth of a step, so that it
+/// looks at it seldom while much time is left, and more and more often towards the end.
 class StopCheck {
 public:
   /// @param tested counts the walk's sphere tests
   StopCheck(const StopRule& rule, const std::uint64_t& tested) : rule_(rule), tested_(tested) {}
 
-  /// Once over, always over.
+  /// Before each step of the walk. Once over, always over.
   bool isOver()
   {
     if (over_ || !rule_.mayStop()) return over_;
-    over_ = tested_ >= rule_.node_pairs || (rule_.isTimed() && asked_++ % 16 == 0 && rule_.isOver());
-    return over_; // a clock costs as much as a step
+    over_ = tested_ >= rule_.node_pairs || (rule_.isTimed() && asked_++ == next_look_ && look());
+    return over_;
   }
 
 private:
+  using Clock = StopRule::Clock;
+
+  /// Whether the time is over; if not, decides when to look again: after half of the steps that the rest is good for,
+  /// were they as slow as the slowest of late.
+  bool look()
+  {
+    constexpr std::uint64_t most = 64; // a step may be slow: a page of memory, a leaf of many near pairs
+    const Clock::time_point now = Clock::now();
+    const Clock::duration left = rule_.timeLeft(now);
+    if (left <= Clock::duration::zero()) return true;
+    if (asked_ > 1) {
+      const Clock::duration mean = (now - looked_) / static_cast<Clock::rep>(wait_);
+      step_ = std::max({mean, step_ / 2, Clock::duration(1)});
+      wait_ = static_cast<std::uint64_t>(std::clamp<Clock::rep>(left / (2 * step_), 1, most));
+    }
+    looked_ = now;
+    next_look_ += wait_;
+    return false;
+  }
+
   const StopRule& rule_;
   const std::uint64_t& tested_;
-  std::uint64_t asked_ = 0;
+  std::uint64_t asked_ = 0, next_look_ = 0, wait_ = 1;
+  Clock::time_point looked_;
+  Clock::duration step_{0}; ///< how long one takes
   bool over_ = false;
 };
 

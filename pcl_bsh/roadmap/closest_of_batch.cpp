@@ -20,7 +20,7 @@ Work closestOfBatchOnTarget(const PoseBatch& batch, const std::uint32_t* order, 
   std::optional<PointPair> last;
   for (std::size_t i = 0; i < batch.poses.size(); ++i) {
     const Placed b{batch.b, batch.poses[i]};
-    ClosestSearch search(batch.a, b, Accuracy::exact(), NoOthers());
+    ClosestSearch search(batch.a, b, ClosestGoal(Accuracy::exact()), NoOthers());
     const DistanceResult found = last ? search.runFrom(*last) : search.run();
     last = found.pair;
     result.distances[order[i]] = found.distance;

@@ -11,6 +11,7 @@
 #include <pcl_bsh/traversal/pair_walk-inl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -21,85 +22,139 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Memory of one queue after another, to be had by a ScratchLease.
-struct QueueScratch {
-  std::vector<std::uint64_t> heap;
-  std::vector<LanePair> pairs;
-  std::size_t bytes() const noexcept
+/// Children of one node that wait, each with the same lane of the other cloud.
+struct WaitingChildren {
+  LanePair pair; ///< of one of them, whichever
+  bool of_a = false;
+  std::uint8_t left = 0; ///< bit i: child i waits
+  float keys[kLanes] = {};
+
+  /// The one with the smallest key; of equal ones the last. @pre one is left
+  std::uint32_t nearest() const
   {
-    return heap.capacity() * sizeof(std::uint64_t) + pairs.capacity() * sizeof(LanePair);
+    auto best = static_cast<std::uint32_t>(std::countr_zero(std::uint32_t{left}));
+    for (std::uint32_t bits = left & (left - 1u); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (keys[lane] <= keys[best]) best = lane;
+    }
+    return best;
+  }
+
+  LanePair child(std::uint32_t lane) const
+  {
+    LanePair one = pair;
+    (of_a ? one.a : one.b).lane = lane;
+    one.key = keys[lane];
+    return one;
   }
 };
 
-/// The pair with the smallest key comes first; of equal keys, the last that was put in. Pairs stay where they were put,
-/// and the heap is of numbers that order as the keys do: moving these is a fraction of moving pairs.
+/// Memory of one queue after another, to be had by a ScratchLease.
+struct QueueScratch {
+  std::vector<std::uint64_t> heap;
+  std::vector<WaitingChildren> waiting;
+  std::size_t bytes() const noexcept
+  {
+    return heap.capacity() * sizeof(std::uint64_t) + waiting.capacity() * sizeof(WaitingChildren);
+  }
+};
+
+/// The pair with the smallest key comes first; of equal keys, one of those that were put in last. What a step has found
+/// stays together, and the heap is of numbers that order as the smallest keys do: most children never come first.
 class PairQueue {
 public:
-  PairQueue() { clear(); }
+  /// @param floor keys below this are equal, but among those that were put in together
+  explicit PairQueue(float floor = -std::numeric_limits<float>::infinity()) : floor_(floor) { clear(); }
 
   bool isEmpty() const { return heap_.empty(); }
+
+  /// Of what was put in together, and has some left.
   std::size_t size() const { return heap_.size(); }
 
   /// The smallest key; infinity where there is none.
-  float least() const { return heap_.empty() ? std::numeric_limits<float>::infinity() : pairOf(heap_.front()).key; }
+  float least() const { return heap_.empty() ? std::numeric_limits<float>::infinity() : keyOf(heap_.front()); }
 
-  /// @param pair its key is not NaN
-  void push(const LanePair& pair)
+  /// @param children one at least; their keys are not NaN
+  void push(const WaitingChildren& children)
   {
-    std::uint32_t bits;
-    std::memcpy(&bits, &pair.key, sizeof bits);
-    bits ^= (bits >> 31) != 0 ? 0xffffffffu : 0x80000000u;
-    if (pairs_.size() > 2 * heap_.size() + kFew) forgetTaken();
-    heap_.push_back(std::uint64_t{bits} << 32 | ~static_cast<std::uint32_t>(pairs_.size()));
-    pairs_.push_back(pair);
+    if (waiting_.size() > 2 * heap_.size() + kFew) forgetTaken();
+    heap_.push_back(entryOf(children, waiting_.size()));
+    waiting_.push_back(children);
     std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
   }
 
   /// @pre not empty
   LanePair pop()
   {
+    WaitingChildren& first = waiting_[placeOf(heap_.front())];
+    const std::uint32_t lane = first.nearest();
+    const LanePair pair = first.child(lane);
+    first.left = static_cast<std::uint8_t>(first.left & ~(1u << lane));
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-    const LanePair pair = pairOf(heap_.back());
-    heap_.pop_back();
+    if (first.left == 0) {
+      heap_.pop_back();
+    }
+    else {
+      heap_.back() = entryOf(first, placeOf(heap_.back()));
+      std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+    }
     return pair;
   }
 
   /// Moves all to a stack, so that what comes first is the last there.
   void drainTo(std::vector<LanePair>& stack)
   {
-    std::sort(heap_.begin(), heap_.end(), std::greater<>());
-    for (const std::uint64_t entry : heap_) stack.push_back(pairOf(entry));
+    const std::size_t from = stack.size();
+    while (!isEmpty()) stack.push_back(pop());
+    std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(from), stack.end());
     clear();
   }
 
   void clear()
   {
     heap_.clear();
-    pairs_.clear();
+    waiting_.clear();
   }
 
 private:
-  static constexpr std::size_t kFew = 4096; ///< pairs that may be left behind
+  static constexpr std::size_t kFew = 2048; ///< that may be left behind without children
+
+  std::uint64_t entryOf(const WaitingChildren& children, std::size_t place) const
+  {
+    const float key = std::max(children.keys[children.nearest()], floor_);
+    std::uint32_t bits;
+    std::memcpy(&bits, &key, sizeof bits);
+    bits ^= (bits >> 31) != 0 ? 0xffffffffu : 0x80000000u;
+    return std::uint64_t{bits} << 32 | ~static_cast<std::uint32_t>(place);
+  }
+
+  static float keyOf(std::uint64_t entry)
+  {
+    auto bits = static_cast<std::uint32_t>(entry >> 32);
+    bits ^= (bits >> 31) != 0 ? 0x80000000u : 0xffffffffu;
+    float key;
+    std::memcpy(&key, &bits, sizeof key);
+    return key;
+  }
+
+  static std::uint32_t placeOf(std::uint64_t entry) { return ~static_cast<std::uint32_t>(entry); }
 
   /// Leaves those in the queue alone, in their order.
   void forgetTaken()
   {
-    const auto placeOf = [](std::uint64_t entry) { return ~static_cast<std::uint32_t>(entry); };
-    std::sort(heap_.begin(), heap_.end(),
-              [placeOf](std::uint64_t x, std::uint64_t y) { return placeOf(x) < placeOf(y); });
+    std::sort(heap_.begin(), heap_.end(), [](std::uint64_t x, std::uint64_t y) { return placeOf(x) < placeOf(y); });
     for (std::uint32_t i = 0; i < heap_.size(); ++i) {
-      pairs_[i] = pairOf(heap_[i]);
+      waiting_[i] = waiting_[placeOf(heap_[i])];
       heap_[i] = (heap_[i] >> 32 << 32) | ~i;
     }
-    pairs_.resize(heap_.size());
+    waiting_.resize(heap_.size());
     std::make_heap(heap_.begin(), heap_.end(), std::greater<>());
   }
 
-  const LanePair& pairOf(std::uint64_t entry) const { return pairs_[~static_cast<std::uint32_t>(entry)]; }
-
+  const float floor_;
   const ScratchLease<QueueScratch> scratch_;
   std::vector<std::uint64_t>& heap_ = (*scratch_).heap;
-  std::vector<LanePair>& pairs_ = (*scratch_).pairs; ///< those, and some that were taken
+  std::vector<WaitingChildren>& waiting_ = (*scratch_).waiting; ///< and some that have nothing left
 };
 
 } // namespace HWY_NAMESPACE

@@ -113,6 +113,13 @@ public:
     return ra > rb ? Opened::a : Opened::b;
   }
 
+  /// Both radii together, in the clouds' unit: gaps of points below differ by at most twice that.
+  double radiiOf(const LanePair& pair) const
+  {
+    return nodeOf(a, pair.a).r[pair.a.lane] * a.frame(pair.a.space).unit +
+           nodeOf(b, pair.b).r[pair.b.lane] * b.frame(pair.b.space).unit;
+  }
+
   /// The children that a step has found near, as bits, with the sphere test's figures; all in the frame of b's space.
   struct Step {
     Lane entered;           ///< the node whose children were tested

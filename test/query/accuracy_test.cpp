@@ -290,19 +290,29 @@ struct TwoSurfaces {
   Eigen::Isometry3d pose;
 };
 
-TEST(Accuracy, LevelZeroBuildsNothing)
+TEST(Accuracy, LevelZeroBuildsNothingForFlags)
 {
   const TwoSurfaces scene;
   test::Question request;
   request.clearance = 0.25;
   request.flagged = Side::both;
   request.accuracy = Accuracy::level(0);
-  EXPECT_EQ(anyCollision({scene.a}, {scene.b, scene.pose}, request).work.voxels_built, 0u);
-  EXPECT_EQ(closestPair({scene.a}, {scene.b, scene.pose}, request).work.voxels_built, 0u);
   const FlagsResult flags = collisionFlags({scene.a}, {scene.b, scene.pose}, request);
   EXPECT_EQ(flags.work.voxels_built, 0u);
   EXPECT_GT(flags.undecided_a, 0u);
   EXPECT_LT(flags.undecided_a, 10000u) << "most voxels are out of reach";
+}
+
+// Noise-free: a tolerance ends at nodes of its size, whose points are all near enough.
+TEST(Accuracy, ToleranceOpensNothingSmaller)
+{
+  const TwoSurfaces scene;
+  test::Question request;
+  request.accuracy = Accuracy::tolerance(0.4);
+  const DistanceResult found = closestPair({scene.a}, {scene.b, scene.pose}, request);
+  EXPECT_EQ(found.work.leaf_pairs, 0u);
+  request.accuracy = Accuracy::tolerance(20.0);
+  EXPECT_EQ(closestPair({scene.a}, {scene.b, scene.pose}, request).work.node_pairs, 1u);
 }
 
 // Noise-free: what a setting saves, in tests of spheres and comparisons of leaves.

@@ -41,6 +41,18 @@ TEST(StopRule, OfSphereTestsIsSpentAtTheirNumber)
   EXPECT_TRUE(check.isOver()) << "once over, always over";
 }
 
+TEST(StopRule, ChecksOfTimeEndAfterIt)
+{
+  const std::uint64_t tested = 0;
+  const StopRule endless(Accuracy::time(1e300)), over(Accuracy::time(0.0)), soon(Accuracy::time(0.002));
+  StopCheck goes_on(endless, tested), ends(over, tested), ends_soon(soon, tested);
+  for (int step = 0; step < 10000; ++step) ASSERT_FALSE(goes_on.isOver());
+  EXPECT_TRUE(ends.isOver());
+  while (!ends_soon.isOver()) continue;
+  EXPECT_TRUE(soon.isOver());
+  EXPECT_TRUE(ends_soon.isOver()) << "once over, always over";
+}
+
 TEST(StopRule, OfALevelOpensNodesDownToIt)
 {
   const StopRule rule(Accuracy::level(3));

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a search for the closest pair has to find, and when it may end before.
+#pragma once
+
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/stop_rule.h>
+
+#include <limits>
+
+namespace pcl_bsh {
+
+struct ClosestGoal {
+  explicit ClosestGoal(const Accuracy& accuracy)
+  : rule(accuracy),
+    tolerance(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
+  {
+  }
+
+  StopRule rule;
+  double tolerance; ///< the pair may be this much farther apart than the closest one
+  /// All that is asked is whether the distance exceeds this.
+  double clearance = std::numeric_limits<double>::infinity();
+};
+
+/// Whether any pair is within the goal's clearance, as much about the distance as was learnt on the way, and the
+/// nearest pair that was found. Best first: the interval narrows from both ends. @pre a rule that may stop
+AnyResult searchWithin(const Placed& a, const Placed& b, const ClosestGoal& goal, const Watch& watch);
+
+} // namespace pcl_bsh
