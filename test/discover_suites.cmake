@@ -5,6 +5,10 @@
 #         -D FILTER=<GoogleTest's filter> -D LIST=<file to write> -P discover_suites.cmake
 cmake_minimum_required(VERSION 3.25)
 set(most_tests 24) # of an entry: the last one shall not keep one processor busy alone
+set(seconds 600)
+if(EMULATOR) # some fifteen times as slow
+  set(seconds 9000)
+endif()
 execute_process(COMMAND ${EMULATOR} "${EXECUTABLE}" --gtest_list_tests "--gtest_filter=${FILTER}" OUTPUT_VARIABLE text
                 TIMEOUT 120 COMMAND_ERROR_IS_FATAL ANY)
 cmake_path(GET LIST PARENT_PATH folder)
@@ -26,7 +30,7 @@ macro(close_entry)
       string(APPEND entries " [=[${word}]=]")
     endforeach()
     string(APPEND entries ")\nset_tests_properties([=[${name}]=] PROPERTIES WORKING_DIRECTORY [=[${folder}]=] "
-                          "TIMEOUT 600 COST ${count} LABELS [=[${LABEL}]=])\n")
+                          "TIMEOUT ${seconds} COST ${count} LABELS [=[${LABEL}]=])\n")
     set(tests "")
   endif()
 endmacro()

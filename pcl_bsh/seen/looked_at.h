@@ -23,7 +23,6 @@ public:
 
   bool holds(const Point3& end) const;                       ///< whether a beam that ended there counts
   bool holdsSome(const Point3& center, double radius) const; ///< whether one may that ended in this ball
-  bool holdsAll() const noexcept { return all_; }            ///< whether each does
 
 private:
   class Walk;
