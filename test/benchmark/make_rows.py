@@ -68,6 +68,11 @@ def stamp(build):
             "commit": commit.stdout.strip() or "unknown"}
 
 
+def alone(build):
+    """The environment of programs that are measured: OpenMP of one thread is a call (peer/one_thread_openmp.cpp)."""
+    return {**os.environ, "LD_PRELOAD": str(build / "test" / "benchmark" / "libone_thread_openmp.so")}
+
+
 def store(build, name, rows):
     """Writes rows, of which all have the columns of the first; not yet to results/, lest commits be called dirty."""
     (build / "rows").mkdir(exist_ok=True)
@@ -83,7 +88,8 @@ def of_programs(build, name):
         program, *arguments = command.format(work=build / "sites_work").split()
         print(f"{name}: {command}", flush=True)
         with tempfile.NamedTemporaryFile(suffix=".csv") as file:
-            subprocess.run([str(build / "test" / "benchmark" / program), *arguments, "--csv", file.name], check=True)
+            subprocess.run([str(build / "test" / "benchmark" / program), *arguments, "--csv", file.name], check=True,
+                           env=alone(build))
             rows += csv.DictReader(open(file.name, newline=""))
     return rows
 
@@ -99,7 +105,7 @@ def studies(build):
                 command = [build / "bin" / "pcl_bsh_accuracy", *options.format(work=work).split(), *where, "--peers",
                            "--unit", "m", "--out", f"{work}/study"]
                 print(" ".join(map(str, command)), flush=True)
-                subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+                subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=alone(build))
                 front = {**stamp(build), "clock": "cpu", "clouds": clouds, "poses": poses}
                 with open(f"{work}/study/rivals.csv", newline="") as file:
                     rivals += [{**front, **row} for row in csv.DictReader(file)]
