@@ -13,8 +13,7 @@
 // suffices.
 //
 // So beams beside the cone count, and a share of each range does not. Of beams in the cone alone, and of their whole
-// ranges, balls would be seen into which an edge comes between two beams: one place of 700 in a hall of pillars, beams
-// 3 milliradians apart; with this none, and 1 % of what is truly visible is not recognised (BENCHMARK.md).
+// ranges, balls would be seen into which an edge comes between two beams.
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
 // grid over the sphere, each of which one beam must speak for as a whole, so that a cell is a hole for certain where
