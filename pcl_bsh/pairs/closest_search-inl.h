@@ -326,6 +326,7 @@ private:
 
   void consider(PointPair candidate)
   {
+    if (best_.high == 0.0 && !pairs_.mayOverlap() && *best_.pair < candidate) return; // nothing is nearer than at 0
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
     if (best_.pair && pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;

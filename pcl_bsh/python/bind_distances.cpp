@@ -101,9 +101,6 @@ SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<doub
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
   asked.set(options, QuestionKind::distances);
-  if (question.input_solid && !both_ways)
-    throw InvalidOption("input_solid", "is about distances of b, which this does not tell",
-                        "ask symmetric_distances()");
   question.progress = progressOf(progress);
   question.wanted.distances = question.wanted.intervals = true;
   question.wanted.both_ways = both_ways;

@@ -268,6 +268,9 @@ void checkOptions(const Question& question)
   for (const char* const option : {"solid", "input_solid"})
     if (question.vertices_only && (option[0] == 's' ? question.solid : question.input_solid))
       refuse(option, "is given, but `vertices_only`, too", "give one of them");
+  if (question.input_solid && wanted.oneWay())
+    refuse("input_solid", "is about distances of the obstacle, which are not asked for",
+           "ask for both ways, or leave it out");
   if (question.path && (wanted.obstacle_flags || wanted.both_ways || wanted.within))
     refuse("path", "has no distances but the smallest", "give one pose");
   if (question.path && (wanted.any || wanted.indices || wanted.obstacle_indices))

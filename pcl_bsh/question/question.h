@@ -46,6 +46,10 @@ struct Wanted {
     return flags || obstacle_flags || any || indices || obstacle_indices || contacts || poses || first_poses;
   }                                                     ///< whether a clearance counts
   bool measures() const { return distances || within; } ///< whether all distances do
+  bool oneWay() const
+  {
+    return measures() && !both_ways && !collisions() && !closest;
+  } ///< whether all that is asked is how far records of the input are from the obstacle
 };
 
 /// Both inclusive, and compared exactly.

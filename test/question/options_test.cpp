@@ -192,6 +192,10 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_THAT(refusal([](Question& q) { q.swept = 1; }), HasSubstr("swept: is given, but nothing moves"));
   EXPECT_THAT(refusal([](Question& q) { q.sigmas = 2; }), HasSubstr("sigmas: is given, but no uncertainty is a field"));
   EXPECT_THAT(refusal([](Question& q) { q.widest_gap = 2; }), HasSubstr("widest_gap: is given, but not `density`"));
+  const auto of_distances = [](Question& q) { q.wanted.flags = false, q.input_solid = q.wanted.distances = true; };
+  EXPECT_THAT(refusal(of_distances), HasSubstr("input_solid: is about distances of the obstacle"));
+  for (bool Wanted::*const beside : {&Wanted::both_ways, &Wanted::flags, &Wanted::closest})
+    EXPECT_EQ(refusal([&](Question& q) { of_distances(q), q.wanted.*beside = true; }), "");
   EXPECT_THAT(refusal([&](Question& q) { q.density = true, q.path = path; }), HasSubstr("density: is about which"));
   EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.contacts = true; }), HasSubstr("density: is about which"));
   for (bool Wanted::*const list : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_indices})

@@ -190,10 +190,8 @@ std::vector<Warning> warningsOfHollow(const Question& question, double nearest, 
       warnings.push_back(warningOfHollow(surface.name(), option, content.name(), *place));
   };
   look(obstacle, question.solid, "solid", input, true);
-  const Wanted& wanted = question.wanted;
-  const bool one_way =
-      wanted.measures() && !wanted.both_ways && !wanted.collisions(); // which it would change nothing of
-  if (!one_way) look(input, question.input_solid, "input_solid", obstacle, false);
+  if (!question.wanted.oneWay()) // which it would change nothing of
+    look(input, question.input_solid, "input_solid", obstacle, false);
   return warnings;
 }
 
