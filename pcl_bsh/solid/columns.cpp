@@ -2,6 +2,7 @@
 #include <pcl_bsh/solid/columns.h>
 
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/solid/cells_along.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,6 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A triangle is put into columns that it misses by this share of their width, which is far above what double
-/// arithmetic gets wrong.
-constexpr double kPad = 0x1p-12;
 
 /// Entries of the whole first grid, about; a finer one is made where a column has more than kCrowded.
 std::size_t mostEntries(std::size_t triangles)
@@ -40,9 +37,12 @@ constexpr std::uint32_t kCrowded = 128;
 constexpr std::uint32_t kTooCrowded = 4096;  ///< for a column without strips
 constexpr std::uint32_t kMostColumns = 4096; ///< along an axis
 
-double shareOf(double x, double of)
+/// Of so many cells along a length, how many there are for each unit; 0, which puts all into the first, where there is
+/// no such number.
+double perUnit(double cells, double length)
 {
-  return of > 0.0 ? x / of : 0.0;
+  const double per = length > 0.0 ? cells / length : 0.0;
+  return per < kInfinity ? per : 0.0;
 }
 
 /// The middle of most triangles, whatever lies far off: what is near it has the most precise boxes.
@@ -155,9 +155,8 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
       finer ? static_cast<double>(kFinerEntries) * count : static_cast<double>(mostEntries(triangles.size()));
   const double most_cells = finer ? static_cast<double>(kFinerCells) * count : count + 4096.0;
   const auto along = [](double length, double per) { return std::max(1.0, std::ceil(length * per)); };
-  double per = shareOf(1.0, longest);
-  if (!(per < kInfinity)) per = 0.0;
-  const auto refine = [&] {
+  double per = perUnit(1.0, longest);
+  const auto makeFiner = [&] {
     double cells = along(width, per) * along(height, per);
     for (int step = 0; per > 0.0 && step < 64; ++step) {
       const double next = per * 1.2, next_cells = along(width, next) * along(height, next);
@@ -166,9 +165,9 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
     }
     return cells;
   };
-  if (refine() < kFewColumns * count && !finer) {
+  if (makeFiner() < kFewColumns * count && !finer) {
     most_entries += static_cast<double>(moreEntries(triangles.size()));
-    const double cells = refine();
+    const double cells = makeFiner();
     if (makeStrips(triangles, 0.5 * shadows.entries(per) / cells)) return true;
   }
   Grid grid;
@@ -176,11 +175,9 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   for (;; per *= 0.8) { // needles meet more columns than their shadows fill
     const double columns = along(width, per), rows = along(height, per);
     if (finer && shadows.entries(per) > 0.6 * count * columns * rows) return false;
-    grid = {low[0], low[1], shareOf(columns, width), shareOf(rows, height), 0.0, 0, 0, 0};
-    if (!(grid.per_x < kInfinity)) grid.per_x = 0.0;
-    if (!(grid.per_y < kInfinity)) grid.per_y = 0.0;
+    grid = {low[0], low[1], perUnit(columns, width), perUnit(rows, height), 0.0, 0, 0, 0};
     grid.columns = static_cast<std::uint32_t>(columns), grid.rows = static_cast<std::uint32_t>(rows);
-    grid.pad = kPad * std::max(width / columns, height / rows);
+    grid.pad = kCellPad * std::max(width / columns, height / rows);
     ends.assign(std::size_t{grid.columns} * grid.rows + 1, 0);
     double entries = 0.0;
     for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { ++ends[cell], ++entries; });
@@ -225,10 +222,8 @@ bool Columns::makeStrips(const std::vector<std::uint32_t>& triangles, double mos
     return false;
   }
   const double width = high_[0] - low_[0], height = high_[1] - low_[1];
-  Grid grid{low_[0], low_[1], shareOf(1.0, width), shareOf(1.0, height), kPad * std::max(width, height), 1, 1, 0};
-  if (!(grid.per_x < kInfinity)) grid.per_x = 0.0;
-  if (!(grid.per_y < kInfinity)) grid.per_y = 0.0;
-  grids_.push_back(grid);
+  grids_.push_back(
+      {low_[0], low_[1], perUnit(1.0, width), perUnit(1.0, height), kCellPad * std::max(width, height), 1, 1, 0});
   cells_.push_back(cell);
   return true;
 }
@@ -239,8 +234,8 @@ template <class Visit>
 void Columns::forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const
 {
   const Box& box = boxes_[triangle];
-  const auto column = [&](double x) { return indexOf(x, grid.x, grid.per_x, grid.columns); };
-  const auto row = [&](double y) { return indexOf(y, grid.y, grid.per_y, grid.rows); };
+  const auto column = [&](double x) { return cellAlong(x, grid.x, grid.per_x, grid.columns); };
+  const auto row = [&](double y) { return cellAlong(y, grid.y, grid.per_y, grid.rows); };
   const double low_x = static_cast<double>(box.low[0]) - grid.pad, high_x = static_cast<double>(box.high[0]) + grid.pad;
   const std::uint32_t first = column(low_x), last = column(high_x);
   const std::uint32_t bottom = row(static_cast<double>(box.low[1]) - grid.pad),
@@ -296,7 +291,7 @@ void Columns::refine()
     if (grid.per_x > 0.0) low[0] = grid.x + column / grid.per_x, high[0] = grid.x + (column + 1.0) / grid.per_x;
     if (grid.per_y > 0.0) low[1] = grid.y + row / grid.per_y, high[1] = grid.y + (row + 1.0) / grid.per_y;
     // Finer than what double arithmetic tells apart at the largest coordinate is of no use.
-    const bool is_wide = std::max(high[0] - low[0], high[1] - low[1]) * kPad * kPad > error_;
+    const bool is_wide = std::max(high[0] - low[0], high[1] - low[1]) * kCellPad * kCellPad > error_;
     some.assign(entries_.begin() + cells_[cell].begin, entries_.begin() + cells_[cell].end);
     if (!has_room || !is_wide || !makeGrid(low, high, some, true)) {
       if (count > kTooCrowded) cells_[cell] = inStrips(cells_[cell].begin, count);
@@ -311,10 +306,10 @@ void Columns::refine()
 void Columns::collect(std::uint32_t index, const Point3& at, double error, std::vector<std::uint32_t>& found) const
 {
   const Grid& grid = grids_[index];
-  const std::uint32_t left = indexOf(at[0] - error, grid.x, grid.per_x, grid.columns),
-                      right = indexOf(at[0] + error, grid.x, grid.per_x, grid.columns);
-  const std::uint32_t bottom = indexOf(at[1] - error, grid.y, grid.per_y, grid.rows),
-                      top = indexOf(at[1] + error, grid.y, grid.per_y, grid.rows);
+  const std::uint32_t left = cellAlong(at[0] - error, grid.x, grid.per_x, grid.columns),
+                      right = cellAlong(at[0] + error, grid.x, grid.per_x, grid.columns);
+  const std::uint32_t bottom = cellAlong(at[1] - error, grid.y, grid.per_y, grid.rows),
+                      top = cellAlong(at[1] + error, grid.y, grid.per_y, grid.rows);
   for (std::uint32_t j = bottom; j <= top; ++j)
     for (std::uint32_t i = left; i <= right; ++i) {
       const Cell& cell = cells_[grid.first + std::size_t{j} * grid.columns + i];
@@ -332,8 +327,8 @@ Columns::Range Columns::above(const Point3& at, double error, std::vector<std::u
   for (std::uint32_t index = 0;;) {
     const Grid& grid = grids_[index];
     if (!(error <= grid.pad)) break;
-    const Cell& cell = cells_[grid.first + std::size_t{indexOf(at[1], grid.y, grid.per_y, grid.rows)} * grid.columns +
-                              indexOf(at[0], grid.x, grid.per_x, grid.columns)];
+    const Cell& cell = cells_[grid.first + std::size_t{cellAlong(at[1], grid.y, grid.per_y, grid.rows)} * grid.columns +
+                              cellAlong(at[0], grid.x, grid.per_x, grid.columns)];
     if (cell.begin == Cell::kStrips) {
       several.clear();
       stripped_[cell.end].strips.collect(entries_.data() + stripped_[cell.end].begin, at, error, several);

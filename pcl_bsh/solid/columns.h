@@ -95,12 +95,6 @@ private:
     Strips strips;
   };
 
-  static std::uint32_t indexOf(double x, double low, double per, std::uint32_t count) noexcept
-  {
-    const double i = (x - low) * per;
-    return i >= 0.0 ? (i < count ? static_cast<std::uint32_t>(i) : count - 1) : 0; // not a number: 0
-  }
-
   struct Shadows;
   bool makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles, bool finer);
   template <class Visit>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/solid/cubes.h>
 
+#include <pcl_bsh/solid/cells_along.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,20 +12,10 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// A triangle marks cubes that it misses by this share of their width, which is far above what double arithmetic gets
-/// wrong.
-constexpr double kCubePad = 0x1p-12;
-
 /// Parts of a cube's width, of which corners may be anywhere in one.
 constexpr std::uint32_t kParts = 8;
 constexpr std::size_t kManyLong = 1024;   ///< of these each is marked by itself
 constexpr std::uint32_t kLatelyBits = 12; ///< of the number of those that are remembered
-
-std::uint32_t indexOf(double x, double low, double per, std::uint32_t count) noexcept
-{
-  const double i = (x - low) * per;
-  return i >= 0.0 ? (i < count ? static_cast<std::uint32_t>(i) : count - 1) : 0; // not a number: 0
-}
 
 /// Calls visit(p) for the corners of that part of a convex polygon which lies between two planes across an axis; some
 /// twice.
@@ -54,7 +46,7 @@ Cubes::Cubes(const Point3& low, const Point3& high) : low_(low), high_(high), ma
 
 std::uint32_t Cubes::cubeOf(double x, std::size_t axis) const noexcept
 {
-  return indexOf(x, low_[axis], per_[axis], kCubes);
+  return cellAlong(x, low_[axis], per_[axis], kCubes);
 }
 
 Cubes::Rough Cubes::roughOf(const Triangle3& triangle) const noexcept
@@ -63,7 +55,7 @@ Cubes::Rough Cubes::roughOf(const Triangle3& triangle) const noexcept
   Rough rough = {0, 0, 0};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k)
-      rough[i] = rough[i] * kPlaces + indexOf(triangle[i][k], low_[k], kParts * per_[k], kPlaces);
+      rough[i] = rough[i] * kPlaces + cellAlong(triangle[i][k], low_[k], kParts * per_[k], kPlaces);
   return rough;
 }
 
@@ -88,9 +80,9 @@ void Cubes::mark(const Triangle3& triangle)
     const auto [least, most] = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
     is_long = is_long || cubeOf(most, k) - cubeOf(least, k) > 2;
   }
-  if (!is_long || ++long_ones_ <= kManyLong) return mark(triangle, kCubePad);
+  if (!is_long || ++long_ones_ <= kManyLong) return mark(triangle, kCellPad);
   // Each place of another such triangle is within a part of the one at the same shares of its corners.
-  if (!wasMarked(triangle)) mark(triangle, 1.0 / kParts + 2 * kCubePad);
+  if (!wasMarked(triangle)) mark(triangle, 1.0 / kParts + 2 * kCellPad);
 }
 
 /// Of each slab along the first axis and each row of it along the second, those that the part of the triangle there
