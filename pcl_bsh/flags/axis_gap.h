@@ -21,13 +21,7 @@ namespace pcl_bsh {
 template <class Leaf>
 class AxisGap {
 public:
-  AxisGap(const FlagQuery& query, const Leaf& leaf)
-  : query_(query),
-    leaf_(leaf),
-    is_unturned_(query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
-                 query.b.pose.linear() == Eigen::Matrix3d::Identity())
-  {
-  }
+  AxisGap(const FlagQuery& query, const Leaf& leaf) : query_(query), leaf_(leaf) {}
 
   /// Whether the leaves are surely farther apart than the reach of all pairs, along the axis that a triangle of b lies
   /// across; false where it lies otherwise, or a cloud is turned. Asked once for a leaf.
@@ -35,10 +29,9 @@ public:
   bool isBeyond(const float* normal, const Leaf& other, Work& work)
   {
     if (other.begin == asked_ && other.voxel == asked_in_) return is_beyond_;
-    if (!is_unturned_) return false;
     std::size_t axis = 0;
     while (axis < 3 && !(std::abs(normal[axis]) > 1.0f - 0x1p-20f)) ++axis;
-    if (axis == 3) return false;
+    if (axis == 3 || isTurned(query_.a) || isTurned(query_.b)) return false;
     asked_ = other.begin, asked_in_ = other.voxel;
     if (axis != axis_) own_ = rangeOf(query_.a, leaf_, axis);
     axis_ = axis;
@@ -49,6 +42,8 @@ public:
   }
 
 private:
+  static bool isTurned(const Placed& cloud) { return cloud.pose.linear() != Eigen::Matrix3d::Identity(); }
+
   struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   };
@@ -76,7 +71,6 @@ private:
 
   const FlagQuery& query_;
   const Leaf& leaf_;
-  const bool is_unturned_;
   std::size_t axis_ = 3; ///< that own_ is along
   Range own_;
   std::uint32_t asked_ = 0; ///< the leaf of b asked about last, and what was found

@@ -291,14 +291,14 @@ int TriangleDistance::settle(const Pair& pair, const ExactDistance::Sum& reach, 
   };
   bool by_integers = false, sure = true;
   const LongNumber length = sumOf(LongNumber(pair.radius));
-  if (const std::optional<LongNumber> gap = facing(pair)) {
-    const int side = (*gap - length).sign(sure);
-    if (sure) return ++stages.long_numbers, side;
-  }
   if constexpr (std::is_same_v<Pair, TrianglePair>) {
+    const LongCorners a = longCorners(a_, pair.a), b = longCorners(b_, pair.b);
+    if (const std::optional<LongNumber> gap = gapOfFacing(a, b)) {
+      const int side = (*gap - length).sign(sure);
+      if (sure) return ++stages.long_numbers, side;
+    }
     sure = true;
-    if (length.sign(sure) >= 0 && sure && areFacesBeyond(longCorners(a_, pair.a), longCorners(b_, pair.b), length))
-      return ++stages.long_numbers, 1;
+    if (length.sign(sure) >= 0 && sure && areFacesBeyond(a, b, length)) return ++stages.long_numbers, 1;
   }
   sure = true;
   const Features features = nearestFeatures(pair, by_integers);
