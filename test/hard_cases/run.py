@@ -20,16 +20,20 @@ IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
 FOLDER = pathlib.Path(__file__).resolve().parent
 
 
-def answer(command, case):
-    arguments = [FOLDER / case["a"], FOLDER / case["b"], repr(case["clearance"])]
-    arguments += [repr(float(x)) for x in case.get("pose", IDENTITY)]
+def output(command, arguments, error):
+    """What a program prints; `error` where it fails"""
     try:
         run = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:
         return "no answer in 60 s"
     if run.returncode < 0:
         return "crash"
-    return run.stdout.strip() if run.returncode == 0 else "error"
+    return run.stdout.strip() if run.returncode == 0 else error
+
+
+def answer(command, case):
+    arguments = [FOLDER / case["a"], FOLDER / case["b"], repr(case["clearance"])]
+    return output(command, arguments + [repr(float(x)) for x in case.get("pose", IDENTITY)], "error")
 
 
 def answers(programs):
@@ -58,16 +62,17 @@ def table(rows, names):
     yield f"| wrong, of {cases} | |" + "".join(f" {count} |" for count in wrong)
 
 
-def main(arguments):
+def main(arguments, usage, answers, table, is_right):
+    """Prints the table of the programs that the arguments name. @param is_right(row, name) @return the exit code"""
     if not arguments or any("=" not in argument for argument in arguments):
-        sys.stderr.write(__doc__)
+        sys.stderr.write(usage)
         return 2
     programs = [argument.split("=", 1) for argument in arguments]
     rows = []
     for line in table((rows.append(row) or row for row in answers(programs)), [name for name, _ in programs]):
         print(line, flush=True)
-    return 1 if any(row[programs[0][0]] != row["exact"] for row in rows) else 0
+    return 0 if all(is_right(row, programs[0][0]) for row in rows) else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(sys.argv[1:], __doc__, answers, table, lambda row, name: row[name] == row["exact"]))

@@ -13,22 +13,16 @@ which all are right are left out. The exit code is 1 where the first program is 
 import json
 import pathlib
 import shlex
-import subprocess
 import sys
+
+import run
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "surfaces"
 
 
 def answer(command, kind, case):
     arguments = [kind, FOLDER / case.get("points", case.get("other", "")), FOLDER / case["mesh"], repr(case["clearance"])]
-    arguments += [repr(float(x)) for x in case.get("pose", [])]
-    try:
-        run = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, timeout=60)
-    except subprocess.TimeoutExpired:
-        return "no answer in 60 s"
-    if run.returncode < 0:
-        return "crash"
-    return run.stdout.strip() if run.returncode == 0 else None
+    return run.output(command, arguments + [repr(float(x)) for x in case.get("pose", [])], None)
 
 
 def wrong_of(found, truth, surface_told):
@@ -76,16 +70,5 @@ def table(rows, names):
     yield f"| cases, of them wrong | {cases} |" + "".join(f" {count} |" for count in wrong)
 
 
-def main(arguments):
-    if not arguments or any("=" not in argument for argument in arguments):
-        sys.stderr.write(__doc__)
-        return 2
-    programs = [argument.split("=", 1) for argument in arguments]
-    rows = []
-    for line in table((rows.append(row) or row for row in answers(programs)), [name for name, _ in programs]):
-        print(line, flush=True)
-    return 1 if any(set(row[programs[0][0]].split("; ")) != {"0"} for row in rows) else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run.main(sys.argv[1:], __doc__, answers, table, lambda row, name: set(row[name].split("; ")) == {"0"}))
