@@ -91,15 +91,16 @@ TEST(Placed, IsCopiedAndAssigned)
 template <class Scalar>
 void expectEachCoordinateInChecksum()
 {
-  std::vector<Scalar> xyz = {1, 2, 3, 4, 5, 6};
+  const std::vector<Scalar> xyz = {1, 2, 3, 4, 5, 6};
   const PointsView view = viewOf(xyz.data(), 2);
   std::set<std::uint64_t> sums = {checksumOf(view)};
   for (std::size_t k = 0; k < xyz.size(); ++k) {
     std::vector<Scalar> other = xyz;
     other[k] += 1;
     EXPECT_TRUE(sums.insert(checksumOf(viewOf(other.data(), 2))).second) << "coordinate " << k;
-    std::swap(other = xyz, xyz), std::swap(other[k], other[(k + 1) % xyz.size()]);
-    EXPECT_TRUE(sums.insert(checksumOf(viewOf(other.data(), 2))).second) << "exchanged " << k;
+    std::vector<Scalar> exchanged = xyz;
+    std::swap(exchanged[k], exchanged[(k + 1) % xyz.size()]);
+    EXPECT_TRUE(sums.insert(checksumOf(viewOf(exchanged.data(), 2))).second) << "exchanged " << k;
   }
   EXPECT_TRUE(sums.insert(checksumOf(viewOf(xyz.data(), 1))).second) << "one point less";
   EXPECT_EQ(checksumOf(view), checksumOf(viewOf(std::vector<Scalar>(xyz).data(), 2)));
