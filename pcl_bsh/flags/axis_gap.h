@@ -66,7 +66,7 @@ private:
     const LongNumber above = (LongNumber(b) - LongNumber(a)) +
                              (LongNumber(query_.b.pose.translation()[k]) - LongNumber(query_.a.pose.translation()[k]));
     bool sure = true;
-    return ((up < 0.0 ? -above : above) - LongNumber(query_.pairs.reach.length())).sign(sure) > 0 && sure;
+    return ((up < 0.0 ? -above : above) - LongNumber(query_.pairs.reach.length())).sign(sure) > 0;
   }
 
   const FlagQuery& query_;

@@ -32,6 +32,9 @@ double turn(const Place& u, const Place& v, const Place& w)
 /// Of coordinates up to a scale that are off by a few roundings of it: what a turn errs by is far below this share of
 /// its square.
 constexpr double kTurnDoubt = 0x1p-40;
+/// Of coordinates that are off by more than that: a turn is the sum of two products of differences, each up to twice
+/// the scale, and each off by two errors.
+constexpr double kTurnErrors = 32.0;
 
 /// Whether a place is surely inside. @param doubt of turns
 bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
@@ -41,14 +44,16 @@ bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
          (turns[0] < -doubt && turns[1] < -doubt && turns[2] < -doubt);
 }
 
-/// Whether a place surely is inside both: the middle of what they have in common, as doubles find it.
-bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b)
+/// Whether some place of a surely is inside b: the middle of what they have in common, as doubles find it. It is in a
+/// but for its rounding, and inside b by more than that.
+/// @param error of any coordinate, but for its rounding to double
+bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, double error)
 {
   double scale = 0.0;
   for (const auto* t : {&a, &b})
     for (const Place& p : *t) scale = std::max({scale, std::abs(p.x), std::abs(p.y)});
-  if (!(scale > 0x1p-400 && scale < 0x1p400)) return false;
-  constexpr std::size_t kMost = 12; ///< corners: cut by a line, a convex polygon has one more
+  if (!(scale > 0x1p-400)) return false; // squares of lengths would vanish
+  constexpr std::size_t kMost = 12;      ///< corners: cut by a line, a convex polygon has one more
   Place part[kMost], cut[kMost];
   std::size_t count = 3;
   std::copy(a.begin(), a.end(), part);
@@ -71,8 +76,7 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b)
   Place middle;
   for (std::size_t i = 0; i < count; ++i) middle.x += part[i].x, middle.y += part[i].y;
   middle.x /= static_cast<double>(count), middle.y /= static_cast<double>(count);
-  const double doubt = kTurnDoubt * scale * scale;
-  return isInside(a, middle, doubt) && isInside(b, middle, doubt);
+  return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
 /// Whether one of the corners of t surely lies on a closed triangle, seen along an axis: where both touch along parts
@@ -107,17 +111,18 @@ std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b
     for (const auto& p : a)
       for (const auto& q : b) is_above = is_above || isAbove(p, q);
     if (!is_above) {
+      double error = 0.0;
       const auto placesOf = [&](const LongCorners& t) {
         std::array<Place, 3> places;
-        for (std::size_t i = 0; i < 3; ++i) places[i] = {(t[i][x] - a[0][x]).value(), (t[i][y] - a[0][y]).value()};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const LongNumber from_x = t[i][x] - a[0][x], from_y = t[i][y] - a[0][y];
+          places[i] = {from_x.value(), from_y.value()};
+          error += from_x.error() + from_y.error();
+        }
         return places;
       };
-      double most = 0.0;
-      for (const auto* t : {&a, &b})
-        for (const auto& p : *t) most = std::max({most, p[x].error(), p[y].error()});
-      if (most != 0.0) return std::nullopt;
-      if (!surelyMeet(placesOf(a), placesOf(b)) && !surelyTouch(a, b, x, y) && !surelyTouch(b, a, x, y))
-        return std::nullopt;
+      const std::array<Place, 3> of_a = placesOf(a), of_b = placesOf(b);
+      if (!surelyMeet(of_a, of_b, error) && !surelyTouch(a, b, x, y) && !surelyTouch(b, a, x, y)) return std::nullopt;
     }
     const LongNumber gap = a[0][axis] - b[0][axis];
     bool sure = true;
@@ -140,7 +145,7 @@ bool areFacesBeyond(const LongCorners& a, const LongCorners& b, const LongNumber
       const LongNumber height = dot(normal, corner - own[0]);
       bool sure = true;
       sides += height.sign(sure);
-      all_beyond = all_beyond && sure && (height * height - limit).sign(sure) > 0 && sure;
+      all_beyond = all_beyond && (height * height - limit).sign(sure) > 0;
     }
     if (all_beyond && (sides == 3 || sides == -3)) return true;
   }
