@@ -228,6 +228,16 @@ std::string textOf(const QuestionOption& option, const Question& question)
       option.member);
 }
 
+std::vector<std::pair<std::string, std::string>> givenOptions(const Question& question)
+{
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const QuestionOption& option : questionOptions()) {
+    if (option.name == std::string("threads")) continue; // the answer is the same
+    if (std::string text = textOf(option, question); !text.empty()) given.emplace_back(option.name, std::move(text));
+  }
+  return given;
+}
+
 void leaveOutWaiting(Question& question)
 {
   for (const QuestionOption& option : questionOptions())

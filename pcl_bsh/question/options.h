@@ -9,6 +9,7 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -77,11 +78,15 @@ std::string optionOf(const InvalidInput& error, const Question& question);
 
 /// Sets an option as text has it: numbers, true or false, or what the option's type parses. Faces whose users name
 /// options have them all by this, and no word of their own.
-/// @throws InvalidOption for a name that is none, and for a text that is no value of the option
+/// @throws InvalidInput for a name that is none, InvalidOption for a text that is no value of the option
 void setOption(Question& question, const std::string& name, const std::string& text);
 
 /// What setOption() reads, empty where it is the default: reports state by it what was asked.
 std::string textOf(const QuestionOption& option, const Question& question);
+
+/// The options that were given and change answers, in the table's order, as text: what reports state, and what kept
+/// answers are answers to.
+std::vector<std::pair<std::string, std::string>> givenOptions(const Question& question);
 
 /// Sets options whose switch is off to their defaults: for who keeps them until it is on.
 void leaveOutWaiting(Question& question);

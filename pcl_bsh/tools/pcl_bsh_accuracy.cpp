@@ -201,7 +201,7 @@ int study(const Options& options)
   for (accuracy::Measurement& m : peers) result.measurements.push_back(std::move(m));
 
   std::string heading = describe(given_a, options.a) + " against " + describe(given_b, options.b) + ".";
-  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b) + ".";
+  if (given_b.isSurface()) heading += " Here " + io::promiseOf(given_b, question.solid) + ".";
   accuracy::writeReports(options.out, heading, subject, result);
   std::cout << accuracy::advice(subject, result) << "\nWrote " << (options.out / "accuracy.md").string()
             << ", accuracy.csv and accuracy.png beside it.\n";

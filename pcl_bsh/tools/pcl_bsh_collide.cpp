@@ -138,7 +138,7 @@ void answer(Shape& input, Shape& obstacle, bool lists_clashes, cli::CollisionRep
 
 io::ClashQuestion clashQuestion(const Options& options)
 {
-  return io::clashQuestion(options.input.string(), options.obstacle.string(), options.question);
+  return {options.question, options.input.string(), options.obstacle.string()};
 }
 
 /// @return how many there are
@@ -149,7 +149,7 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, const 
   const io::ClashQuestion question = clashQuestion(options);
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
-                              : io::clusterDistanceFor(question.clearance, *report.answer.density.input);
+                              : io::clusterDistanceFor(*question.clearance, *report.answer.density.input);
   const std::vector<Eigen::Isometry3d> poses = report.question.poses();
   const TrajectoryResult& found = report.answer.collisions;
   io::ClashReport list{.question = question,
@@ -167,7 +167,7 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, const 
   io::listUnseen(list);
   if (earlier) {
     TrajectoryRequest motion;
-    motion.swept = question.swept;
+    motion.swept = question.sweptTolerance();
     motion.threads = report.question.threads;
     for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, [&](FormerPlaces& former) {
            former.visit(b, poses, motion);
@@ -199,7 +199,7 @@ std::optional<io::DistanceReport> reportDistances(const Options& options, const 
   const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
                                          options.unit,           request,
                                          std::nullopt,           found.surface ? &*found.surface : nullptr,
-                                         found.coordinate_system};
+                                         options.question.solid, found.coordinate_system};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.question.pose}, found.answer.distances);
   if (options.distance_page) io::writeDistances(*options.distance_page, report);
   return report;

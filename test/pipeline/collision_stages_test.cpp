@@ -449,7 +449,7 @@ TEST_F(ClashWriter, SaysWhatIsUncertainAndWhereItLooked)
   const std::string previous = R"(, "previous": )" + quoted(folder / "first.json");
   EXPECT_THAT(error("writers.clashes", R"("clearance": 0.03, "trajectory": )" + quoted(track) + R"(, "filename": )" +
                                            quoted(list) + near + previous),
-              HasSubstr("lists clashes of an uncertainty of the input of 0.02, not of 0 as asked now"));
+              HasSubstr("lists clashes with uncertainty 0.02, now it is not given"));
 
   // A path that leads elsewhere: what it does not come near to is not resolved.
   folder.write(track.filename().string(), "0 1000 1000 1000 0 0 0 1\n");

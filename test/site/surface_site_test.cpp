@@ -102,6 +102,7 @@ protected:
     EXPECT_EQ(done.exit_code, 0) << done.err;
     said = done.out + done.err;
     EXPECT_EQ(json("r.json")["surface"], json("m.json")["surface"]);
+    EXPECT_EQ(json("r.json")["options"], json("m.json")["options"]);
     const Json of_memory = json("m.json")["warnings"];
     for (const Json& warning : json("r.json")["warnings"])
       EXPECT_EQ(std::count(of_memory.begin(), of_memory.end(), warning), 1) << warning;
@@ -344,7 +345,17 @@ TEST_F(SurfaceSite, GoesOnWithTheSameSurfaceAlone)
     return std::pair(code, program.err());
   };
   killed();
-  EXPECT_THAT(resumed({"--vertices-only"}).second, HasSubstr("holds what another question has found"));
+  for (const std::vector<std::string>& other :
+       std::vector<std::vector<std::string>>{{"--vertices-only"},
+                                             {"--solid"},
+                                             {"--swept", "0.01"},
+                                             {"--accuracy", "tolerance=0.01"},
+                                             {"--uncertainty", "0.01"},
+                                             {"--obstacle-uncertainty", "0.01"},
+                                             {"--pose-uncertainty", "0.01,0"},
+                                             {"--input-pose-uncertainty", "0.01,0"},
+                                             {"--seen", "--origin", "0,0,9", "--seen-angle", "0.01"}})
+    EXPECT_THAT(resumed(other).second, HasSubstr("holds what another question has found")) << other.front();
   std::string open = crate_text;
   open.replace(open.find("8 6 0"), 5, "8 5 0").erase(open.find("4 0 3 2 1"), 10);
   folder.write("crate.off", open);

@@ -59,7 +59,7 @@ private:
     }
   }
 
-  io::ClashQuestion asked() const { return io::clashQuestion(input_name, obstacle.name, question); }
+  io::ClashQuestion asked() const { return {question, input_name, obstacle.name}; }
 
   void write(Asked&& found, const std::string& coordinate_system)
   {
@@ -83,7 +83,7 @@ private:
     io::listUnseen(report);
     if (previous) {
       TrajectoryRequest motion;
-      motion.swept = report.question.swept;
+      motion.swept = question.sweptTolerance();
       motion.threads = question.threads;
       for (const std::string& warning :
            io::compareWithList(report, previous->path, earlier_, [&](FormerPlaces& former) {
@@ -120,7 +120,7 @@ StageType clashWriter()
       .above(0)
       .option(
           &ClashWriter::previous, "previous",
-          "the .json of an earlier run with the same clearance, uncertainties and accuracy: tells clashes that are "
+          "the .json of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
           "new, persisting, resolved, or not visited by the path, unseen or not scanned any more; may be `filename`")
       .replaceable()
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")

@@ -34,13 +34,10 @@ struct DistanceWriter : Stage, QuestionStage {
     PointDistancesRequest request;
     request.max_distance = question.max_distance.value_or(request.max_distance);
     request.accuracy = question.accuracy;
-    const io::DistanceQuestion told = {input_name,
-                                       obstacle.name,
-                                       unit,
-                                       request,
-                                       places_beyond,
-                                       asked.compared.isSurface() ? &asked.compared : nullptr,
-                                       io::coordinateSystemOf(inputs[0]->las_header)};
+    const io::DistanceQuestion told = {input_name,     obstacle.name,
+                                       unit,           request,
+                                       places_beyond,  asked.compared.isSurface() ? &asked.compared : nullptr,
+                                       question.solid, io::coordinateSystemOf(inputs[0]->las_header)};
     const io::DistanceReport report = io::reportOf(told, input, other, asked.answer.distances);
     io::writeDistances(filename.path, report);
     if (also) io::writeDistances(also->path, report);

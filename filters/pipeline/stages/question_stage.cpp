@@ -186,7 +186,7 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
   found.compared = shapeOf(obstacle.cloud, question, "obstacle");
   found.obstacle = found.compared.shape("the obstacle");
   found.input = shapeOf(input, question, "input").shape("the input");
-  if (found.obstacle.isSurface()) stage.warn(io::promiseOf(found.compared));
+  if (found.obstacle.isSurface()) stage.warn(io::promiseOf(found.compared, question.solid));
   try {
     found.answer = pcl_bsh::ask(asked, found.input, found.obstacle);
   }

@@ -6,6 +6,7 @@
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/question/options.h>
 
 #include <cmath>
 #include <cstring>
@@ -82,32 +83,6 @@ Clash clashFrom(const JsonReader& entry)
   return clash;
 }
 
-Uncertainty uncertaintyFrom(const JsonReader& reader)
-{
-  if (!reader.json().is_object()) return reader.number(0, largest);
-  Uncertainty uncertainty;
-  if (reader.has("length"))
-    uncertainty = reader.at("length").number(0, largest);
-  else
-    uncertainty = {reader.at("field").text(), reader.at("sigmas").number(0, largest)};
-  if (reader.has("pose")) {
-    const JsonReader pose = reader.at("pose");
-    uncertainty.pose = {pose.at("length").number(0, largest), pose.at("angle").number(0, largest),
-                        pointFrom(pose.at("about"))};
-  }
-  return uncertainty;
-}
-
-Accuracy accuracyFrom(const JsonReader& reader)
-{
-  try {
-    return Accuracy::parse(reader.text());
-  }
-  catch (const std::invalid_argument&) {
-    reader.fail("is no accuracy", "give what --accuracy takes");
-  }
-}
-
 ClashQuestion questionFrom(const JsonReader& reader)
 {
   ClashQuestion question;
@@ -119,10 +94,14 @@ ClashQuestion questionFrom(const JsonReader& reader)
   question.obstacle = name_of("obstacle");
   question.clearance = reader.at("clearance").number(0, largest);
   if (!reader.at("swept").json().is_null()) question.swept = reader.at("swept").number(0, largest);
-  if (reader.has("accuracy")) question.accuracy = accuracyFrom(reader.at("accuracy"));
-  if (reader.has("uncertainty")) {
-    question.input_uncertainty = uncertaintyFrom(reader.at("uncertainty").at("input"));
-    question.obstacle_uncertainty = uncertaintyFrom(reader.at("uncertainty").at("obstacle"));
+  if (!reader.has("options")) return question;
+  for (const auto& [name, value] : reader.at("options").members()) {
+    try {
+      setOption(question, name, value.text());
+    }
+    catch (const InvalidInput& error) {
+      value.fail(error.wrong(), error.remedy());
+    }
   }
   return question;
 }
@@ -137,12 +116,6 @@ std::optional<Survey> surveyFrom(const JsonReader& reader)
   survey.path = boxOrNone(path.at("box"));
   survey.scan = boxOrNone(reader.at("scan").at("box"));
   return survey;
-}
-
-bool isSame(const Uncertainty& a, const Uncertainty& b)
-{
-  if (a.field != b.field) return false;
-  return a.pose == b.pose && (a.field.empty() ? a.length == b.length : a.sigmas == b.sigmas);
 }
 
 std::string boxText(const std::optional<Extent>& box)
@@ -184,13 +157,15 @@ std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
   return text;
 }
 
-} // namespace
-
-ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question)
+/// Whether another value of it has other points collide, and clashes appear or vanish by it. What is unseen is no
+/// clash.
+bool tellsWhatCollides(const QuestionOption& option)
 {
-  return {std::move(input),  std::move(obstacle),           question.clearance.value_or(0.0), question.sweptTolerance(),
-          question.accuracy, question.uncertaintyOfInput(), question.uncertaintyOfObstacle(), question.seen};
+  const std::set<std::string> others = {"swept", "seen", "origin", "seen_angle", "max_distance", "threads"};
+  return others.count(option.name) == 0;
 }
+
+} // namespace
 
 std::string uncertaintyText(const Uncertainty& uncertainty)
 {
@@ -234,7 +209,7 @@ ClashList parseClashes(std::string_view text, const std::string& name)
   const JsonReader reader(json, beginning);
   ClashList list;
   list.question = questionFrom(reader);
-  list.states_uncertainty = reader.has("uncertainty") && reader.has("accuracy");
+  list.states_options = reader.has("options");
   list.survey = surveyFrom(reader);
   std::set<std::string> ids;
   for (const JsonReader& entry : reader.at("clashes").elements()) {
@@ -249,19 +224,14 @@ std::vector<std::string> requireComparable(const std::filesystem::path& path, co
                                            const ClashQuestion& now)
 {
   const ClashQuestion& before = earlier.question;
-  const auto require = [&](bool same, const std::string& what, const std::string& was, const std::string& is) {
-    if (same) return;
-    throw files::FileError(path, "lists clashes of " + what + " of " + was + ", not of " + is + " as asked now",
-                           "ask for the same " + what.substr(what.find(' ') + 1) + ", or compare with another list");
-  };
-  require(before.clearance == now.clearance, "a clearance", numberText(before.clearance), numberText(now.clearance));
-  if (earlier.states_uncertainty) {
-    const auto require_same = [&](const char* what, const Uncertainty& was, const Uncertainty& is) {
-      require(isSame(was, is), what, uncertaintyText(was), uncertaintyText(is));
-    };
-    require_same("an uncertainty of the input", before.input_uncertainty, now.input_uncertainty);
-    require_same("an uncertainty of the obstacle", before.obstacle_uncertainty, now.obstacle_uncertainty);
-    require(before.accuracy.text() == now.accuracy.text(), "an accuracy", before.accuracy.text(), now.accuracy.text());
+  for (const QuestionOption& option : questionOptions()) {
+    const std::string was = textOf(option, before), is = textOf(option, now);
+    if (was == is || !tellsWhatCollides(option)) continue;
+    if (!earlier.states_options && option.name != std::string("clearance")) continue;
+    const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
+    throw files::FileError(
+        path, "lists clashes with " + std::string(option.name) + ' ' + shown(was) + ", now it is " + shown(is),
+        "ask with the same " + std::string(option.name) + ", or compare with another list");
   }
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& wrong) { warnings.push_back(path.string() + ": " + wrong); };
@@ -273,13 +243,14 @@ std::vector<std::string> requireComparable(const std::filesystem::path& path, co
   };
   compare("input", before.input, now.input);
   compare("obstacle", before.obstacle, now.obstacle);
-  if (before.swept.has_value() != now.swept.has_value()) {
+  if ((before.swept > 0.0) != (now.swept > 0.0)) {
     warn(std::string("lists clashes ") +
-         (before.swept ? "of swept motion, now poses alone are asked" : "at poses alone, now swept motion is asked") +
-         ": clashes between poses seem " + (before.swept ? "resolved" : "new"));
+         (before.swept > 0.0 ? "of swept motion, now poses alone are asked"
+                             : "at poses alone, now swept motion is asked") +
+         ": clashes between poses seem " + (before.swept > 0.0 ? "resolved" : "new"));
   }
-  if (!earlier.states_uncertainty || !earlier.survey)
-    warn("is of an earlier version, which did not tell uncertainties, path and extent of the scan: unless these are "
+  if (!earlier.states_options || !earlier.survey)
+    warn("is of an earlier version, which did not tell all options, path and extent of the scan: unless these are "
          "those of now, what is called new or resolved means nothing");
   return warnings;
 }

@@ -16,21 +16,10 @@
 
 namespace pcl_bsh::io {
 
-/// What is asked. Two lists can be compared where clearance, uncertainties and accuracy are the same.
-struct ClashQuestion {
+/// What is asked; of a list that was read its options alone. There is a clearance.
+struct ClashQuestion : Question {
   std::string input, obstacle; ///< file names
-  double clearance = 0;
-  std::optional<double> swept;
-  Accuracy accuracy;
-  Uncertainty input_uncertainty, obstacle_uncertainty; ///< the latter with that of its poses
-  bool seen = false;                                   ///< whether what is unseen is listed, too
-
-  /// Whether clashes may be uncertain.
-  bool isUncertain() const { return !input_uncertainty.isZero() || !obstacle_uncertainty.isZero(); }
 };
-
-/// What a user's question is to a list. @param input and @param obstacle file names
-ClashQuestion clashQuestion(std::string input, std::string obstacle, const Question& question);
 
 /// A length, or `K x field NAME`; with that of poses behind it.
 std::string uncertaintyText(const Uncertainty& uncertainty);
@@ -52,8 +41,8 @@ struct Survey {
 /// What a run asked, and the clashes that it listed, without points and pairs.
 struct ClashList {
   ClashQuestion question;
-  bool states_uncertainty = true; ///< false of lists of earlier versions: whether points were uncertain is not known
-  std::optional<Survey> survey;   ///< none of lists of earlier versions
+  bool states_options = true;   ///< false of lists of earlier versions: what was asked beside clearance is not known
+  std::optional<Survey> survey; ///< none of lists of earlier versions
   std::vector<Clash> clashes;
 };
 
@@ -68,8 +57,8 @@ ClashList parseClashes(std::string_view text, const std::string& name);
 /// Whether the earlier list, read from `path`, can tell what is new now.
 /// @return warnings, a line each: names of other clouds, motion between poses tested in one run only, a list of an
 ///   earlier version
-/// @throws files::FileError when clearances, uncertainties or accuracies differ, so that clashes between the two would
-///   seem new or resolved
+/// @throws files::FileError when options differ by which points collide, so that clashes would seem new or resolved
+///   that are not: all but swept motion, and what is unseen, which is listed apart
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
                                            const ClashQuestion& now);
 

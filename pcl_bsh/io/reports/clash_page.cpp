@@ -31,7 +31,7 @@ public:
   : report_(report),
     closest_(closestOf(report)),
     lowest_(std::isfinite(closest_) ? std::min(0.0, closest_) : 0.0),
-    range_(report.question.clearance - lowest_)
+    range_(*report.question.clearance - lowest_)
   {
   }
 
@@ -62,25 +62,25 @@ private:
   {
     const ClashQuestion& question = report_.question;
     if (!question.isUncertain()) return false;
-    return Object{{"input_uncertainty", plain(uncertaintyText(question.input_uncertainty))},
-                  {"obstacle_uncertainty", plain(uncertaintyText(question.obstacle_uncertainty))},
+    return Object{{"input_uncertainty", plain(uncertaintyText(question.uncertaintyOfInput()))},
+                  {"obstacle_uncertainty", plain(uncertaintyText(question.uncertaintyOfObstacle()))},
                   {"undecided", std::to_string(report_.found.undecided)}};
   }
 
   Data contents() const
   {
     const ClashQuestion& question = report_.question;
-    const std::string promise = report_.surface != nullptr ? promiseOf(*report_.surface) : "";
+    const std::string promise = report_.surface != nullptr ? promiseOf(*report_.surface, question.solid) : "";
     Object page = pageAbout(question, report_.coordinate_system, question.accuracy.text(), promise);
     page.insert({{"headline", headline()},
                  {"unit", textOrNone(report_.unit)},
                  {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
                  {"uncertainty", uncertainty()},
                  {"poses", counted(report_.poses.size(), "pose")},
-                 {"clearance", number(question.clearance)},
+                 {"clearance", number(*question.clearance)},
                  {"colliding", std::to_string(report_.found.colliding)},
                  {"closest", numberOrNone(closest_)},
-                 {"swept", question.swept ? Data(number(*question.swept)) : Data(false)},
+                 {"swept", question.swept > 0.0 ? Data(number(question.swept)) : Data(false)},
                  {"cluster_distance", number(report_.cluster_distance)},
                  {"compared", false},
                  {"previous", false},
@@ -111,7 +111,7 @@ private:
   /// From deep red where clouds touch to pale yellow at the clearance.
   std::string colorOf(double distance) const
   {
-    const double clearance = report_.question.clearance;
+    const double clearance = *report_.question.clearance;
     const double share = clearance > 0 ? std::clamp(distance / clearance, 0.0, 1.0) : 0.0;
     const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
     return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
@@ -157,7 +157,7 @@ private:
                             {"color", colorOf(nearest)}});
     }
     return Object{{"bars", bars},
-                  {"limit", number(report_.question.clearance, 3)},
+                  {"limit", number(*report_.question.clearance, 3)},
                   {"lowest", number(lowest_, 3)},
                   {"last", std::to_string(poses.size() - 1)}};
   }
@@ -299,11 +299,11 @@ private:
     };
     const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
     const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report_.found.distance[record]); };
-    const double limit_y = y(report_.question.clearance);
+    const double limit_y = y(*report_.question.clearance);
     return Object{{"dots", dotsOf(
                                clash, [&](std::uint32_t record) { return x(report_.found.closest_pose[record]); },
                                [&](std::uint32_t record) { return y(distanceOf(record)); })},
-                  {"limit", number(report_.question.clearance, 3)},
+                  {"limit", number(*report_.question.clearance, 3)},
                   {"limit_y", number(limit_y, 6)},
                   {"limit_text_y", number(limit_y + 4, 6)},
                   {"lowest", number(lowest_, 3)},

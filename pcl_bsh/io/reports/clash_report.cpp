@@ -75,10 +75,17 @@ Eigen::Vector3d ClashReport::modelPoint(const Clash& clash) const
   return pose * vectorOf(nearest);
 }
 
-Json surfaceJson(const Obstacle* surface)
+Json optionsJson(const Question& question)
+{
+  Json json = Json::object();
+  for (const auto& [name, text] : givenOptions(question)) json[name] = text;
+  return json;
+}
+
+Json surfaceJson(const Obstacle* surface, bool solid)
 {
   if (surface == nullptr) return nullptr;
-  return {{"triangles", surface->triangles()->size()}, {"promise", promiseOf(*surface)}};
+  return {{"triangles", surface->triangles()->size()}, {"promise", promiseOf(*surface, solid)}};
 }
 
 Json unseenJson(const Answer::Unseen& unseen)
@@ -100,16 +107,16 @@ std::string clashJson(const ClashReport& report)
                {"obstacle", question.obstacle},
                {"unit", textOrNull(report.unit)},
                {"coordinate_system", textOrNull(report.coordinate_system)},
-               {"surface", surfaceJson(report.surface)},
-               {"clearance", question.clearance},
+               {"surface", surfaceJson(report.surface, question.solid)},
+               {"clearance", *question.clearance},
+               {"options", optionsJson(question)},
                {"uncertainty",
-                {{"input", uncertaintyJson(question.input_uncertainty)},
-                 {"obstacle", uncertaintyJson(question.obstacle_uncertainty)}}},
+                {{"input", uncertaintyJson(question.uncertaintyOfInput())},
+                 {"obstacle", uncertaintyJson(question.uncertaintyOfObstacle())}}},
                {"accuracy", question.accuracy.text()},
-               {"seen", question.seen},
                {"cluster_distance", report.cluster_distance},
                {"poses", report.poses.size()},
-               {"swept", question.swept ? Json(*question.swept) : Json()},
+               {"swept", question.swept > 0.0 ? Json(question.swept) : Json()},
                {"path", {{"poses", survey.poses}, {"checksum", survey.path_checksum}, {"box", toJson(survey.path)}}},
                {"scan", {{"box", toJson(survey.scan)}}},
                {"previous", report.previous ? Json(*report.previous) : Json()},
@@ -156,17 +163,17 @@ std::string clashCsv(const ClashReport& report)
     }
     cell(certaintyOf(clash));
     cell(std::to_string(clash.certain_points));
-    cell(numberText(question.clearance));
+    cell(numberText(*question.clearance));
     std::string sigmas;
-    for (const Uncertainty* uncertainty : {&question.input_uncertainty, &question.obstacle_uncertainty}) {
-      cell(uncertainty->field.empty() ? numberText(uncertainty->length) : csvText(uncertainty->field));
-      if (!uncertainty->field.empty()) sigmas = numberText(uncertainty->sigmas);
+    for (const Uncertainty& uncertainty : {question.uncertaintyOfInput(), question.uncertaintyOfObstacle()}) {
+      cell(uncertainty.field.empty() ? numberText(uncertainty.length) : csvText(uncertainty.field));
+      if (!uncertainty.field.empty()) sigmas = numberText(uncertainty.sigmas);
     }
     cell(sigmas);
     cell(question.accuracy.text());
     cell(csvText(report.unit));
     cell(csvText(report.coordinate_system));
-    cell(csvText(question.obstacle_uncertainty.pose.text()));
+    cell(csvText(question.pose_uncertainty.text()));
     csv += '\n';
   }
   return csv;
@@ -200,13 +207,13 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
 {
   report.previous = file.string();
   compareWithEarlier(report.clashes, earlier.clashes, report.cluster_distance);
-  FormerPlaces former(report.clashes, report.question.clearance, report.cluster_distance);
+  FormerPlaces former(report.clashes, *report.question.clearance, report.cluster_distance);
   if (!former.empty()) {
     look(former);
     if (report.unseen) tellUnseen(former, {report.model, report.poses, report.unseen->where});
     former.judge();
   }
-  return surveyWarnings(file, earlier, report.survey, report.question.clearance + report.cluster_distance);
+  return surveyWarnings(file, earlier, report.survey, *report.question.clearance + report.cluster_distance);
 }
 
 double clusterDistanceFor(double clearance, const Spacing& scan)

@@ -84,8 +84,11 @@ private:
   }
 };
 
+/// givenOptions() as an object.
+Json optionsJson(const Question& question);
+
 /// What an obstacle is compared as: null where that is its points.
-Json surfaceJson(const Obstacle* surface);
+Json surfaceJson(const Obstacle* surface, bool solid);
 
 /// What of an obstacle is unseen, without `where`.
 Json unseenJson(const Answer::Unseen& unseen);

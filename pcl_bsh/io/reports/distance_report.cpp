@@ -72,7 +72,7 @@ Json toJson(const DistanceSide& side, bool is_input)
 
 Json DistanceQuestion::surfaceToTell() const
 {
-  Json json = surfaceJson(surface);
+  Json json = surfaceJson(surface, solid);
   if (surface != nullptr)
     json["promise"] = json["promise"].get<std::string>() + "; the distance of a triangle is that of its nearest point";
   return json;

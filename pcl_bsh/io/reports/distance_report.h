@@ -23,6 +23,7 @@ struct DistanceQuestion {
   PointDistancesRequest request;
   std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points
   const Obstacle* surface = nullptr;  ///< the obstacle, where it is one: its records are triangles
+  bool solid = false;                 ///< it counts with what it encloses
   std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
 
   /// What the numbers mean where the obstacle is a surface: null unless it is one.

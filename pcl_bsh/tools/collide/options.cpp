@@ -115,7 +115,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("L")
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
   app.add_option("--previous", options.previous,
-                 "earlier .json list, of the same clearance, uncertainties and accuracy: clashes\n"
+                 "earlier .json list, of the same options but --swept and --seen: clashes\n"
                  "are new, persisting, resolved, or not visited by the path or not scanned\n"
                  "any more")
       ->type_name("FILE");

@@ -59,7 +59,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["obstacle"] = toJson(report.obstacle);
   json["input_surface"] =
       report.input_is_surface ? nlohmann::ordered_json{{"triangles", report.input.points}} : nullptr;
-  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr);
+  json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, question.solid);
   json["clearance"] = clearance;
   json["colliding"] = colliding;
   json["undecided"] = undecided;
@@ -67,10 +67,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["free"] = report.input.finite - colliding - undecided - answer.sparse;
   json["unseen"] = nullptr;
   if (question.seen) json["unseen"] = io::unseenJson(answer.unseen);
-  json["options"] = nlohmann::ordered_json::object(); // that were given and change answers, as text
-  for (const QuestionOption& option : questionOptions())
-    if (std::string text = textOf(option, question); !text.empty() && option.name != std::string("threads"))
-      json["options"][option.name] = std::move(text);
+  json["options"] = io::optionsJson(question);
   json["uncertainty"] = {{"input", io::uncertaintyJson(question.uncertaintyOfInput())},
                          {"obstacle", io::uncertaintyJson(question.uncertaintyOfObstacle())}};
   json["distance"] = nullptr;

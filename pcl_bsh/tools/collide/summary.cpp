@@ -69,7 +69,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
     out << "; first contact at pose " << static_cast<double>(first->pose) + first->fraction;
   if (!clashes.empty()) out << "; " << clashes;
   if (distances) out << distanceSummary(*distances);
-  if (report.surface) out << "; " << io::promiseOf(*report.surface);
+  if (report.surface) out << "; " << io::promiseOf(*report.surface, report.question.solid);
   out << "; wrote " << options.output.string() << '\n';
 }
 

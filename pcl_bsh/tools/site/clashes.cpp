@@ -12,7 +12,7 @@ namespace {
 
 io::ClashQuestion questionOf(const SiteOptions& options)
 {
-  return io::clashQuestion(options.site.string(), options.obstacle.string(), options.question);
+  return {options.question, options.site.string(), options.obstacle.string()};
 }
 
 std::optional<Extent> extentOf(const std::optional<site::Bounds>& bounds)

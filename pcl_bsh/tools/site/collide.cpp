@@ -72,7 +72,7 @@ public:
     })),
     placed_(hierarchy_, asking.options.question.pose)
   {
-    asking.report["surface"] = io::surfaceJson(surface_);
+    asking.report["surface"] = io::surfaceJson(surface_, asking.options.question.solid);
     if (!asking.options.question.solid) return;
     solid_ = Shape(file.obstacle.shape(asking.options.obstacle.string()).name(),
                    std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &hierarchy_));

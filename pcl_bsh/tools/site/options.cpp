@@ -98,10 +98,9 @@ struct CollideTexts {
                    "of SITE's tiles, rounded up to a power of two)")
         ->type_name("L")
         ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-    app.add_option(
-           "--previous", options.previous,
-           "earlier .json list, of the same clearance, uncertainties and accuracy: clashes are new, persisting, "
-           "resolved, or not visited by the path, unseen or not scanned any more")
+    app.add_option("--previous", options.previous,
+                   "earlier .json list, of the same options but --swept and --seen: clashes are new, persisting, "
+                   "resolved, or not visited by the path, unseen or not scanned any more")
         ->type_name("FILE");
     app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
     app.add_flag("--any", any, "only whether any point collides");

@@ -82,20 +82,13 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                        const SiteOptions& options)
 {
   const Question& asked = options.question;
-  constexpr double unlimited = std::numeric_limits<double>::infinity();
   nlohmann::json question = {{"site", site::siteText(site)},
                              {"question", options.kind},
-                             {"clearance", asked.clearance.value_or(0.0)},
-                             {"accuracy", asked.accuracy.text()},
-                             {"max_distance", asked.max_distance.value_or(unlimited)},
-                             {"swept", asked.sweptTolerance().value_or(-1.0)},
-                             {"solid", asked.solid ? 1.0 : 0.0},
+                             {"options", givenOptions(asked)},
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
   question["numbers"] = 4; // what of a tile is kept
-  for (const Uncertainty& of : {asked.uncertaintyOfInput(), asked.uncertaintyOfObstacle()})
-    question["uncertainty"].push_back({of.field, of.length, of.sigmas});
   for (const Eigen::Isometry3d& pose : asked.poses())
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
   const auto bytes = nlohmann::json::to_cbor(question);

@@ -3,6 +3,7 @@
 #include "report.h"
 
 #include <pcl_bsh/geometry/coordinate_spacing.h>
+#include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/site/site_clashes.h>
 
 #include <cmath>
@@ -33,6 +34,7 @@ Json beginReport(const site::Site& site, const SiteOptions& options)
   Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
   if (options.question.clearance) report["clearance"] = *options.question.clearance;
   report["accuracy"] = options.question.accuracy.text();
+  report["options"] = io::optionsJson(options.question);
   return report;
 }
 

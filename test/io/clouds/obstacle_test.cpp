@@ -26,7 +26,8 @@ TEST(Obstacle, IsASurfaceWhereTheFileHasFaces)
   EXPECT_EQ(surface.points().width, 8u);
   EXPECT_STREQ(surface.partName(), "triangle");
   EXPECT_TRUE(surface.remarks().empty());
-  EXPECT_EQ(promiseOf(surface),
+  EXPECT_EQ(promiseOf(surface, true), "the obstacle is a solid of 12 triangles: what it encloses is part of it");
+  EXPECT_EQ(promiseOf(surface, false),
             "the obstacle is a surface of 12 triangles: what it encloses is no part of it without `solid`");
   const PointsView& view = surface.view();
   ASSERT_NE(view.triangles, nullptr);

@@ -805,7 +805,7 @@ TEST_F(CollideAlong, CertainClashesAreToldFromThosePerhaps)
   expectDone(job + options + "--clashes {b.json} --previous {a.json}");
   for (const Json& clash : clashes("b.json")) EXPECT_EQ(clash["status"], "persisting");
   expectFailure(job + "--trajectory {poses.txt} --clashes {c.json} --previous {a.json}", 1,
-                "a.json: lists clashes of an uncertainty of the input of 0.15, not of 0 as asked now: ");
+                "a.json: lists clashes with uncertainty 0.15, now it is not given: ");
 }
 
 TEST_F(CollideAlong, AMadeDateMakesTheSameReport)

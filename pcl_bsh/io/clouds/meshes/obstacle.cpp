@@ -30,10 +30,11 @@ Obstacle::Obstacle(CloudPtr vertices, const TrianglesPtr& triangles, const Surfa
   triangles_ = triangles;
 }
 
-std::string promiseOf(const Obstacle& surface)
+std::string promiseOf(const Obstacle& surface, bool solid)
 {
-  return "the obstacle is a surface of " + counted(surface.triangles()->size(), "triangle") +
-         ": what it encloses is no part of it without `solid`";
+  const std::string triangles = counted(surface.triangles()->size(), "triangle");
+  if (solid) return "the obstacle is a solid of " + triangles + ": what it encloses is part of it";
+  return "the obstacle is a surface of " + triangles + ": what it encloses is no part of it without `solid`";
 }
 
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,

@@ -4,7 +4,6 @@
 //   const io::Obstacle crate = io::readObstacle("crate.off", {});
 //   SphereHierarchy obstacle(crate.view());          // of a surface, of its triangles
 //
-// What a closed surface encloses is no part of it.
 #pragma once
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
@@ -67,8 +66,9 @@ private:
   std::vector<std::string> remarks_;
 };
 
-/// What users should know of an obstacle that is a surface, in one sentence.
-std::string promiseOf(const Obstacle& surface);
+/// What users should know of an obstacle that is a surface, in one sentence. @param solid it counts with what it
+/// encloses
+std::string promiseOf(const Obstacle& surface, bool solid);
 
 /// What readMesh() reads, without faces where the settings take a mesh for its vertices. Arguments and errors are its.
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
