@@ -11,8 +11,8 @@
 
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/distance_visit-inl.h>
-#include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
+#include <pcl_bsh/traversal/long_triangles-inl.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 #endif
 
 #include <pcl_bsh/distances/bound_margin.h>
-#include <pcl_bsh/distances/long_triangles-inl.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
+#include <pcl_bsh/traversal/long_triangles-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
 #include <algorithm>

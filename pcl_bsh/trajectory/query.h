@@ -67,6 +67,9 @@ struct TrajectoryQuery {
   /// Swept: how near a pair of points counts as a contact; below 0 where it does at no distance.
   double nearEnough(PointPair pair) const;
 
+  /// That the path's pose k is.
+  const Eigen::Isometry3d& poseAt(std::uint32_t k) const { return given[path.poses[k].given]; }
+
   bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
 
   /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose

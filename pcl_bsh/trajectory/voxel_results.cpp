@@ -108,8 +108,7 @@ void VoxelResults::mergePoses() const
 
 RecordDistance VoxelResults::exactAt(std::uint32_t k) const
 {
-  return {query_.scan.hierarchy().view(), query_.scan.pose, query_.model.view(),
-          query_.given[query_.path.poses[k].given]};
+  return {query_.scan.hierarchy().view(), query_.scan.pose, query_.model.view(), query_.poseAt(k)};
 }
 
 bool VoxelResults::collide(PointPair at, std::uint32_t k)
@@ -127,13 +126,11 @@ bool VoxelResults::meet(PointPair pair, std::uint32_t k)
 void VoxelResults::consider(NearestPoint& nearest, PointPair pair, std::uint32_t k)
 {
   ++work.exact_decisions;
-  if (nearest.record != kNothing) {
-    const auto best_pose = static_cast<std::uint32_t>(nearest.time);
-    const int sign = exactAt(k).compareGaps(pair, exactAt(best_pose), {pair.a, nearest.record});
-    if (sign > 0 || (sign == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;
-  }
-  nearest.time = k;
-  nearest.record = pair.b;
+  const int order =
+      nearest.record == kNothing
+          ? -1
+          : exactAt(k).compareGaps(pair, exactAt(static_cast<std::uint32_t>(nearest.time)), {pair.a, nearest.record});
+  take(nearest, pair, k, order);
 }
 
 void VoxelResults::considerPose(PointPair pair, std::uint32_t k)
@@ -158,9 +155,14 @@ std::int32_t VoxelResults::givenPose(double time) const
 
 float VoxelResults::distanceOf(std::uint32_t record, const NearestPoint& nearest) const
 {
-  return roundToFloat(query_.path.is_swept
-                          ? nearest.gap
-                          : exactAt(static_cast<std::uint32_t>(nearest.time)).gap(PointPair{record, nearest.record}));
+  if (query_.path.is_swept) return roundToFloat(nearest.gap);
+  const RecordDistance distance = exactAt(static_cast<std::uint32_t>(nearest.time));
+  const RecordDistance::Pair pair = distance.pair({record, nearest.record});
+  if (distance.ofTriangles() && pair.radius_p == 0.0 && pair.radius_q == 0.0) { // doubles mostly know the float
+    const RecordDistance::Enclosure at = distance.enclose(pair);
+    if (const float high = roundToFloat(at.high); high == roundToFloat(at.low)) return high;
+  }
+  return roundToFloat(distance.gap(pair));
 }
 
 } // namespace pcl_bsh

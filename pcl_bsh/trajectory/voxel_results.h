@@ -54,6 +54,15 @@ public:
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
   void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);
 
+  /// The same where it is known. @param order sign of the pair's gap less that of the nearest
+  static void take(NearestPoint& nearest, PointPair pair, std::uint32_t k, int order)
+  {
+    const auto best_pose = static_cast<std::uint32_t>(nearest.time);
+    if (order > 0 || (order == 0 && (k > best_pose || (k == best_pose && pair.b >= nearest.record)))) return;
+    nearest.time = k;
+    nearest.record = pair.b;
+  }
+
   /// Of a point that collides: what collides later than this changes no answer. Where swept motion is not asked for
   /// each point's first contact, the first of all is enough, and `first` of a point is any of its contacts.
   double firstOf(std::uint32_t point) const

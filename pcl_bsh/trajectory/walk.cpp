@@ -39,11 +39,17 @@ struct NodeVisit {
   alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 };
 
+/// Memory of one voxel's walk after another.
+struct WalkScratch {
+  std::deque<NodeVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  LongTriangles long_triangles;
+};
+
 /// Takes one voxel of the scan along the trajectory.
 class TrajectoryWalk {
 public:
   TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, Progress& progress,
-                 std::deque<NodeVisit>& visits)
+                 WalkScratch& scratch)
   : query_(query),
     rule_(rule),
     index_(voxel),
@@ -53,13 +59,14 @@ public:
     progress_(progress),
     stop_check_(rule, results_.work.node_pairs),
     model_(query.boxes, rule, results_.work),
-    leaves_(query, voxel_frame_, model_, stop_check_, results_),
+    leaves_(query, voxel_frame_, model_, stop_check_, results_, scratch.long_triangles),
     probing_(query, voxel_frame_, model_, results_.work),
     settled_reach_(settledReach()),
     settling_(!query.everything() && !query.first && query.of_points && voxel_frame_.frame.unit == 1.0 &&
               settled_reach_ > 0.0f),
-    visits_(visits)
+    visits_(scratch.visits)
   {
+    scratch.long_triangles.forget();
   }
 
   /// @param near at least one interval
@@ -362,7 +369,7 @@ private:
   const Voxel* voxel_ = nullptr;          // once it was entered
   const OwnUncertainties* own_ = nullptr; // of its points, likewise
   std::vector<std::uint8_t> open_lanes_;  // per node: children that are not settled
-  std::deque<NodeVisit>& visits_;         // by depth; a deque, for references to shallower visits stay in use
+  std::deque<NodeVisit>& visits_;         // by depth
 };
 
 } // namespace
@@ -370,8 +377,8 @@ private:
 VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near,
                               Progress& progress)
 {
-  thread_local std::deque<NodeVisit> visits; // kept from voxel to voxel for their storage only
-  return TrajectoryWalk(query, rule, near.front().voxel, progress, visits).run(near);
+  thread_local WalkScratch scratch; // kept from voxel to voxel for its storage only
+  return TrajectoryWalk(query, rule, near.front().voxel, progress, scratch).run(near);
 }
 
 } // namespace HWY_NAMESPACE

@@ -64,6 +64,17 @@ void longTriangleDistanceOnTarget(const Point3& p, const Eigen::Isometry3d& pose
   out = {static_cast<int>(part.kind), part.low, part.high, longDistance(triangle, part, place)};
 }
 
+void longTriangleOrderOnTarget(const Point3& p, const Eigen::Isometry3d& pose_a, const test::PosedTriangle& x,
+                               const test::PosedTriangle& y, std::optional<int>& order)
+{
+  LongTriangle of_x, of_y;
+  of_x.set(x.corners, x.pose);
+  of_y.set(y.corners, y.pose);
+  const LongVector place(placedLong(pose_a, p));
+  const NearPart part_x = nearPartOf(of_x, place), part_y = nearPartOf(of_y, place);
+  order = areSameParts(of_x, part_x, x.pose, of_y, part_y, y.pose) ? 0 : longOrder(of_x, part_x, of_y, part_y, place);
+}
+
 void lengthToSlabOnTarget(const float (&normal)[3], float h, const float (&center)[3], float radius,
                           const float (&place)[3], float& length)
 {
@@ -82,6 +93,7 @@ namespace {
 HWY_EXPORT(longLengthOnTarget);
 HWY_EXPORT(boundDistanceOnTarget);
 HWY_EXPORT(longTriangleDistanceOnTarget);
+HWY_EXPORT(longTriangleOrderOnTarget);
 HWY_EXPORT(lengthToSlabOnTarget);
 } // namespace
 
@@ -109,6 +121,14 @@ LongTriangleDistance longTriangleDistance(const Point3& p, const Eigen::Isometry
   LongTriangleDistance found;
   HWY_DYNAMIC_DISPATCH(longTriangleDistanceOnTarget)(p, pose_a, t, pose_b, found);
   return found;
+}
+
+std::optional<int> longTriangleOrder(const Point3& p, const Eigen::Isometry3d& pose_a, const PosedTriangle& x,
+                                     const PosedTriangle& y)
+{
+  std::optional<int> order;
+  HWY_DYNAMIC_DISPATCH(longTriangleOrderOnTarget)(p, pose_a, x, y, order);
+  return order;
 }
 
 float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3])

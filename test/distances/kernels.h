@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <optional>
 
 namespace pcl_bsh::test {
 
@@ -38,6 +39,15 @@ struct LongTriangleDistance {
 };
 LongTriangleDistance longTriangleDistance(const Point3& p, const Eigen::Isometry3d& pose_a, const Triangle3& t,
                                           const Eigen::Isometry3d& pose_b);
+
+/// Sign of a point's distance from one triangle less that from another, by areSameParts() and longOrder(); nothing
+/// where these do not know.
+struct PosedTriangle {
+  Triangle3 corners;
+  Eigen::Isometry3d pose;
+};
+std::optional<int> longTriangleOrder(const Point3& p, const Eigen::Isometry3d& pose_a, const PosedTriangle& x,
+                                     const PosedTriangle& y);
 
 /// From a place to what is both in a sphere and in a slab.
 float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3]);

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -70,6 +72,49 @@ TEST(LongTriangles, SayWhatExactArithmeticSays)
     EXPECT_GT(known, kCases / 2) << target;
     EXPECT_LT(kinds[0], kCases / 2) << target;
     for (int kind = 1; kind < 4; ++kind) EXPECT_GT(kinds[kind], kCases / 20) << target << ", part " << kind;
+  });
+}
+
+/// Of a triangle at two poses, or of two that share an edge: poses that turn alike or nearly so, ways along an axis, a
+/// face or an edge, as far apart as rounding makes them, or not at all.
+TEST(LongTriangles, KnowWhichOfTwoIsNearer)
+{
+  test::onEveryTarget([](const std::string& target) {
+    Random random(80);
+    int known = 0, ties = 0, near_ties = 0;
+    constexpr int kCases = 12000;
+    for (int i = 0; i < kCases; ++i) {
+      Case c = randomCase(random);
+      if (random.chance(0.5)) // of a box
+        for (Point3& corner : c.t) corner = random.point([&] { return random.pick({-1.5, -0.25, 0.75, 2.0}); });
+      if (random.chance(0.5)) // below it
+        for (std::size_t k = 0; k < 3; ++k)
+          c.p[k] = 0.4 * c.t[0][k] + random.uniform(0, 0.6) * c.t[1][k] + random.uniform(0, 0.6) * c.t[2][k];
+      test::PosedTriangle x{c.t, c.b}, y = x;
+      const int kind = random.integer(0, 5), axis = random.integer(0, 2);
+      if (kind == 0) y.pose.translation()[axis] += random.pick({1e-16, 1e-3, 0.25});
+      if (kind == 1)
+        y.pose.translation() += y.pose.linear() *
+                                Eigen::Vector3d(c.t[1][0] - c.t[0][0], c.t[1][1] - c.t[0][1], c.t[1][2] - c.t[0][2]) *
+                                random.uniform(-0.1, 0.1);
+      if (kind == 2) y.pose.linear()(axis, random.integer(0, 2)) += random.pick({1e-16, -1e-13, 1e-9});
+      if (kind == 3) y.corners[2] = random.point([&] { return random.uniform(-3, 3); });
+      if (kind == 4) std::swap(y.corners[0], y.corners[1]);
+      if (kind == 5) y.corners = {c.t[1], c.t[0], random.point([&] { return random.uniform(-3, 3); })};
+      if (random.chance(0.2)) y.pose.translation()[axis] += 0.5;
+      const TriangleDistance of_x(c.a, x.pose), of_y(c.a, y.pose);
+      const std::optional<int> found = test::longTriangleOrder(c.p, c.a, x, y);
+      if (!found) continue;
+      ++known;
+      const int exact = of_x.compareGaps(TriangleDistance::PointPair{c.p, x.corners}, of_y,
+                                         TriangleDistance::PointPair{c.p, y.corners});
+      ASSERT_EQ(*found, exact) << target << ", case " << i << " of kind " << kind;
+      ties += exact == 0;
+      near_ties += exact != 0 && std::abs(of_x.distance(c.p, x.corners) - of_y.distance(c.p, y.corners)) < 1e-13;
+    }
+    EXPECT_GT(known, kCases / 4) << target;
+    EXPECT_GT(ties, kCases / 20) << target;
+    EXPECT_GT(near_ties, kCases / 40) << target;
   });
 }
 

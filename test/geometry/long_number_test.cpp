@@ -56,6 +56,19 @@ TEST(LongNumber, KnowsItsError)
   }
 }
 
+/// So that what lies across an axis is known to, whatever the other axes have.
+TEST(LongNumber, OfNothingIsNothing)
+{
+  const LongNumber zero, far(1e300), rough(3.0, 1e-17, 1e-20), overflown = far * far;
+  ASSERT_FALSE(std::isfinite(overflown.value()));
+  for (const LongNumber& x : {zero, far, rough, overflown}) {
+    EXPECT_TRUE((zero * x).isZero());
+    EXPECT_TRUE((x * zero).isZero());
+  }
+  EXPECT_FALSE((LongNumber(0.0, 0.0, 1e-20) * rough).isZero()); // which may be nothing
+  EXPECT_FALSE((rough * LongNumber(0x1p-1000)).isZero());
+}
+
 TEST(LongNumber, IsExactWhereTwoDoublesAre)
 {
   bool sure = true;

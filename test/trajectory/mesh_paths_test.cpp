@@ -2,6 +2,7 @@
 // Triangles along a path: as the model, as the scan, as both.
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "geometry/soups.h"
 #include "support/journeys.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -65,6 +68,83 @@ TEST(TrianglesAlongPaths, AgreeWithBruteForceWherePlacesAreUncertain)
     const TrajectoryRequest all = everything(run.scene.clearance);
     expectSame(collideAlong(placed, model, run.poses, all), brute_force::collideAlong(placed, model, run.poses, all));
     if (HasFailure()) return;
+  }
+}
+
+/// A box that passes points on straight ways, where hundreds of poses are as near as doubles can tell, or quite so.
+struct BoxBesidePoints {
+  explicit BoxBesidePoints(std::uint64_t seed, std::size_t points, std::size_t poses) : points_(anywhere(seed, points))
+  {
+    Random random(seed);
+    const double heading = seed % 3 == 0 ? 0.0 : random.uniform(-3, 3), slope = seed % 3 == 2 ? 0.02 : 0.0;
+    const double far = seed % 2 == 0 ? 0.0 : 5402650.25;
+    world_ = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(slope, Eigen::Vector3d::UnitY());
+    world_.pretranslate(Eigen::Vector3d(far, 0.25 * far, 0));
+    for (std::size_t i = 0; i < poses; ++i) {
+      const double along = 12.0 * static_cast<double>(i) / static_cast<double>(poses) - 6.0;
+      Eigen::Isometry3d pose = world_ * Eigen::Translation3d(along, 0, 0);
+      if (seed % 5 == 4) pose.linear()(0, 1) += 1e-16 * random.integer(-1, 1);
+      path.push_back(pose);
+    }
+    Mesh mesh;
+    for (const Triangle3& t : test::boxOf({-4, -1.5, 0}, {4, 1.5, 3})) mesh.add(t[0], t[1], t[2]);
+    box.emplace(mesh.vertices, test::Layout{Scalar::float64, 0, 0});
+    box->setTriangles(std::move(mesh.corners));
+    for (Point3& p : points_) {
+      const Eigen::Vector3d at = world_ * Eigen::Vector3d(p[0], p[1], p[2]);
+      p = {at.x(), at.y(), at.z()};
+    }
+    scan.emplace(points_, test::Layout{Scalar::float64, 0, 0});
+  }
+
+  std::optional<test::Cloud> scan, box;
+  Poses path;
+
+private:
+  /// Beside the faces and edges along the way.
+  static std::vector<Point3> anywhere(std::uint64_t seed, std::size_t count)
+  {
+    Random random(seed + 1);
+    std::vector<Point3> points;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double out = random.uniform(0, 0.06), up = random.chance(0.4) ? 3.0 + 0.5 * out : random.uniform(0, 3);
+      points.push_back({random.uniform(-6, 6), (random.chance(0.5) ? 1.0 : -1.0) * (1.5 + out), up});
+    }
+    return points;
+  }
+
+  std::vector<Point3> points_;
+  Eigen::Isometry3d world_;
+};
+
+TEST(TrianglesAlongPaths, StraightWaysBesideABoxAgreeWithBruteForce)
+{
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const BoxBesidePoints way(seed, 30, 25);
+    SCOPED_TRACE(seed);
+    const SphereHierarchy scan(way.scan->view()), model(way.box->view());
+    TrajectoryRequest request = everything(0.05);
+    expectSame(collideAlong({scan}, model, way.path, request),
+               brute_force::collideAlong({scan}, model, way.path, request));
+    request.pose_summaries = false;
+    const TrajectoryResult found = collideAlong({scan}, model, way.path, request);
+    EXPECT_GT(found.colliding, 5u);
+    expectSame(found, brute_force::collideAlong({scan}, model, way.path, request));
+    if (HasFailure()) return;
+  }
+}
+
+/// Long numbers tell the poses apart, and what is quite the same by the axes; few pairs are left for longer ones.
+TEST(TrianglesAlongPaths, StraightWaysBesideABoxTakeFewExactDecisions)
+{
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const BoxBesidePoints way(seed, 300, 300);
+    const SphereHierarchy scan(way.scan->view()), model(way.box->view());
+    TrajectoryRequest request = flagsOnly(0.05);
+    request.distances = request.closest_poses = true;
+    const TrajectoryResult found = collideAlong({scan}, model, way.path, request);
+    ASSERT_GT(found.colliding, 100u);
+    EXPECT_LT(found.work.exact_decisions, 6 * found.colliding) << seed;
   }
 }
 

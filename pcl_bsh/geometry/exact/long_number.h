@@ -23,13 +23,14 @@ public:
   double value() const noexcept { return value_; }
   double tail() const noexcept { return tail_; }
   double error() const noexcept { return error_; }
+  bool isZero() const noexcept { return value_ == 0.0 && tail_ == 0.0 && error_ == 0.0; } ///< surely
 
   /// Negative, 0 or positive; `sure` becomes false where that is not known. @return 0 where it is not known
   int sign(bool& sure) const noexcept
   {
     if (std::abs(value_) > (error_ + std::abs(tail_)) * (1.0 + kDoubleMargin) && std::isfinite(value_))
       return value_ > 0.0 ? 1 : -1;
-    if (!(value_ == 0.0 && tail_ == 0.0 && error_ == 0.0)) sure = false;
+    if (!isZero()) sure = false;
     return 0;
   }
 
@@ -45,6 +46,7 @@ public:
   friend LongNumber operator-(const LongNumber& x, const LongNumber& y) noexcept { return x + -y; }
   friend LongNumber operator*(const LongNumber& x, const LongNumber& y) noexcept
   {
+    if (x.isZero() || y.isZero()) return {};
     const WithError product = twoProduct(x.value_, y.value_);
     double error = 0.0;
     WithError sum = product;

@@ -25,7 +25,7 @@ inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as al
 class LeafWalk {
 public:
   LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, StopCheck& stop_check,
-           VoxelResults& results)
+           VoxelResults& results, LongTriangles& long_triangles)
   : query_(query),
     path_(query.path),
     tree_(query.boxes),
@@ -36,7 +36,7 @@ public:
     swept_(query, voxel_frame, results, compared_),
     at_pose_(query, voxel_frame, results),
     on_arcs_(query, voxel_frame, results, at_pose_),
-    records_(query, voxel_frame, results, at_pose_, compared_)
+    records_(query, voxel_frame, results, at_pose_, compared_, long_triangles)
   {
   }
 

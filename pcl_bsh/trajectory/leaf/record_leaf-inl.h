@@ -13,6 +13,7 @@
 #include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
 #include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
+#include <pcl_bsh/traversal/long_triangles-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -24,15 +25,17 @@ namespace HWY_NAMESPACE {
 /// matters.
 class RecordLeaf {
 public:
+  /// @param long_triangles of the model, as this walk places it
   RecordLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
-             LeafAtPose& at_pose, ComparedPairs& compared)
+             LeafAtPose& at_pose, ComparedPairs& compared, LongTriangles& long_triangles)
   : query_(query),
     voxel_frame_(voxel_frame),
     placing_(query.error(voxel_frame.origin)),
     may_overlap_(areBalls(query.scan.hierarchy().view()) || areBalls(query.model.view())),
     results_(results),
     at_pose_(at_pose),
-    compared_(compared)
+    compared_(compared),
+    long_(long_triangles)
   {
   }
 
@@ -190,13 +193,34 @@ private:
   void considerForPoint(const Pair& pair, std::uint32_t k, double high)
   {
     NearestPoint& best = results_.best[pair.point()];
-    results_.consider(best, pair.records, k);
+    if (const std::optional<int> order = orderToBest(pair, k))
+      results_.take(best, pair.records, k, *order);
+    else
+      results_.consider(best, pair.records, k);
     best.gap = std::min(best.gap, high);
     best.reach = std::min(best.reach, roundUp(std::max(0.0, high)));
     const bool is_best = best.record == pair.records.b && best.time == k;
     best.meets = best.meets || (is_best && isLeast(pair, k, high));
     if (results_.bestBounds(pair.point(), pair.motion.interval->first))
       pair.leaf.lowerReach(voxel_frame_, pair.i, best.reach, pair.motion);
+  }
+
+  /// Sign of the pair's gap at a pose less the best one of its point so far, where long numbers know it: of one that
+  /// stays beside a face, a scan's point has hundreds of poses that doubles cannot tell apart.
+  std::optional<int> orderToBest(const Pair& pair, std::uint32_t k)
+  {
+    const NearestPoint& best = results_.best[pair.point()];
+    const PointsView &scan = query_.scan.hierarchy().view(), &model = query_.model.view();
+    if (best.record == kNothing || scan.triangles || !model.triangles) return std::nullopt;
+    const auto best_pose = static_cast<std::uint32_t>(best.time);
+    if (!LongTriangles::areApart(pair.records.b, k, best.record, best_pose)) return std::nullopt;
+    const LongVector place(placedLong(query_.scan.pose, scan.point(pair.records.a)));
+    const Eigen::Isometry3d &pose = query_.poseAt(k), &pose_of_best = query_.poseAt(best_pose);
+    LongTriangle& here = long_.of(*model.triangles, pose, pair.records.b, k);
+    LongTriangle& there = long_.of(*model.triangles, pose_of_best, best.record, best_pose);
+    const NearPart part = nearPartOf(here, place), part_of_best = nearPartOf(there, place);
+    if (areSameParts(here, part, pose, there, part_of_best, pose_of_best)) return 0;
+    return longOrder(here, part, there, part_of_best, place);
   }
 
   static bool areBalls(const PointsView& view) { return view.radii && !view.triangles; }
@@ -214,6 +238,7 @@ private:
   VoxelResults& results_;
   LeafAtPose& at_pose_;
   ComparedPairs& compared_;
+  LongTriangles& long_;
   RecordCourse courses_[kLeafPoints];
   std::uint32_t known_ = 0; ///< bits of those that are set
 };

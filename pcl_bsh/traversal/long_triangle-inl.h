@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points against triangles in numbers of twice a double's digits: which of two triangles is nearer, and the distance,
-// rounded to the nearest double; or no answer. What does not depend on the point is computed once for each triangle.
+// A placed triangle in numbers of twice a double's digits, with what does not depend on the points that are compared
+// with it, and the part of it that is nearest to a point.
 
-#if defined(PCL_BSH_DISTANCES_LONG_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PCL_BSH_DISTANCES_LONG_TRIANGLES_INL_H_
-#undef PCL_BSH_DISTANCES_LONG_TRIANGLES_INL_H_
+#if defined(PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_
+#undef PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_
 #else
-#define PCL_BSH_DISTANCES_LONG_TRIANGLES_INL_H_
+#define PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_
 #endif
 
 #include <pcl_bsh/geometry/exact/long_number.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
-#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/simd/sphere_lanes-inl.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -86,16 +83,21 @@ HWY_INLINE LongVector lessLong(const LongVector& x, const LongVector& y)
 struct LongDirection {
   enum State : std::uint8_t { not_asked, unknown, along_axis, known };
   State state = not_asked;
-  std::uint8_t axis = 0; ///< that it is along: its coordinate there is 1 or -1
+  std::uint8_t axis = 0;  ///< that it is along: its coordinate there is 1 or -1
+  std::uint8_t zeros = 0; ///< bits of the axes along which it surely has no part
   LongVector unit;
+
+  bool isAcross(std::size_t k) const { return (zeros >> k & 1u) != 0; }
 
   /// @param v of any length
   void set(const Vector3<LongNumber>& v)
   {
     state = unknown;
+    zeros = 0;
     int others = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const bool zero = v[k].value() == 0.0 && v[k].tail() == 0.0 && v[k].error() == 0.0;
+      const bool zero = v[k].isZero();
+      zeros |= static_cast<std::uint8_t>((zero ? 1u : 0u) << k);
       if (zero)
         ++others;
       else
@@ -271,97 +273,6 @@ struct SharedPart : NearPart {
     if (kind != other.kind || kind == not_sure || kind == face) return false;
     return (from == other.from && to == other.to) || (from == other.to && to == other.from);
   }
-};
-
-/// x[i] y[j] - x[j] y[i], but for what both vectors err by.
-HWY_INLINE LongCoordinate longMoment(const LongVector& x, const LongVector& y, std::size_t i, std::size_t j)
-{
-  const WithError p = twoProduct(x.value[i], y.value[j]), q = twoProduct(-x.value[j], y.value[i]);
-  const WithError sum = twoSum(p.value, q.value);
-  const double low = (sum.error + (p.error + q.error)) + ((x.value[i] * y.tail[j] + x.tail[i] * y.value[j]) -
-                                                          (x.value[j] * y.tail[i] + x.tail[j] * y.value[i]));
-  const WithError all = twoSum(sum.value, low);
-  return {all.value, all.error, kLongProductError * (std::abs(p.value) + std::abs(q.value))};
-}
-
-/// The double nearest to the length of one coordinate; NaN where that is in doubt.
-HWY_INLINE double roundedHeight(const LongCoordinate& height)
-{
-  const bool sure = height.error == 0.0 ||
-                    (height.value + (height.tail + height.error) == height.value &&
-                     height.value + (height.tail - height.error) == height.value && std::abs(height.value) > 0x1p-400);
-  return sure ? std::abs(height.value) : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// The distance of a point from the part of the triangle that is nearest, rounded to the nearest double; NaN where that
-/// is in doubt.
-HWY_INLINE double longDistance(LongTriangle& triangle, const NearPart& part, const LongVector& place)
-{
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (part.kind == NearPart::not_sure) return none;
-  const LongVector& from = triangle.stored[part.kind == NearPart::face ? 0 : part.j];
-  if (part.kind == NearPart::face && triangle.face().state == LongDirection::along_axis)
-    return roundedHeight(lessLong(place, from, triangle.face().axis));
-  const LongVector w = lessLong(place, from);
-  if (part.kind == NearPart::corner) return roundedLength({w[0], w[1], w[2]}, 0.0, 0.0);
-  const double size = std::abs(w.value[0]) + std::abs(w.value[1]) + std::abs(w.value[2]);
-  if (!(size > 0x1p-300 && size < 0x1p300)) return none;
-  if (part.kind == NearPart::edge) {
-    const LongDirection& edge = triangle.edge(part.j);
-    const LongVector& u = edge.unit;
-    if (edge.state == LongDirection::along_axis) {
-      const std::size_t y = (edge.axis + 1u) % 3, z = (edge.axis + 2u) % 3;
-      return roundedLength({w[y], w[z], LongCoordinate()}, 0.0, 0.0);
-    }
-    if (edge.state != LongDirection::known) return none;
-    std::array<LongCoordinate, 3> moment = {longMoment(w, u, 1, 2), longMoment(w, u, 2, 0), longMoment(w, u, 0, 1)};
-    const double error = (2.0 * w.error + u.error * size) * (1.0 + kDoubleMargin) + 0x1p-960;
-    for (LongCoordinate& c : moment) c.error += error;
-    return roundedLength(moment, 0.0, 0.0);
-  }
-  const LongDirection& face = triangle.face();
-  if (face.state != LongDirection::known) return none;
-  const LongVector& n = face.unit;
-  WithError sum = twoProduct(n.value[0], w.value[0]);
-  double low = sum.error + (n.value[0] * w.tail[0] + n.tail[0] * w.value[0]);
-  for (std::size_t k = 1; k < 3; ++k) {
-    const WithError p = twoProduct(n.value[k], w.value[k]), s = twoSum(sum.value, p.value);
-    sum.value = s.value;
-    low += (s.error + p.error) + (n.value[k] * w.tail[k] + n.tail[k] * w.value[k]);
-  }
-  const WithError all = twoSum(sum.value, low);
-  return roundedHeight({all.value, all.error,
-                        (2.0 * w.error + (n.error + kLongProductError) * size) * (1.0 + kDoubleMargin) + 0x1p-960});
-}
-
-/// Triangles of one cloud at one pose that were asked for of late.
-class LongTriangles {
-public:
-  /// Before a walk.
-  void forget() { records_.assign(kSlots, kNoRecord); }
-
-  /// Valid until the next call.
-  LongTriangle& of(const TrianglesView& view, const Eigen::Isometry3d& pose, std::uint32_t record)
-  {
-    const std::uint32_t slot = record * 0x9e3779b1u >> (32 - kSlotBits);
-    if (triangles_.empty()) triangles_.resize(kSlots);
-    if (records_[slot] != record) {
-      triangles_[slot].set(view.triangle(record), pose);
-      records_[slot] = record;
-    }
-    return triangles_[slot];
-  }
-
-  std::size_t bytes() const noexcept
-  {
-    return triangles_.capacity() * sizeof(LongTriangle) + records_.capacity() * sizeof(std::uint32_t);
-  }
-
-private:
-  static constexpr std::uint32_t kSlotBits = 9, kSlots = 1u << kSlotBits, kNoRecord = 0xffffffffu;
-
-  std::vector<LongTriangle> triangles_;
-  std::vector<std::uint32_t> records_;
 };
 
 } // namespace HWY_NAMESPACE
