@@ -257,11 +257,12 @@ void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, W
   summary.colliding = summary.colliding_points > 0;
 }
 
-PointDistances Solids::depths(const Pairing& pair, const Records& records) const
+PointDistances Solids::depths(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& records) const
 {
   PointDistancesRequest request;
   request.threads = question_.threads;
-  return pair.of_obstacle ? pointDistances(a_, records, b_, request) : pointDistances(b_, records, a_, request);
+  const Placed b(b_.hierarchy(), pose);
+  return pair.of_obstacle ? pointDistances(a_, records, b, request) : pointDistances(b, records, a_, request);
 }
 
 /// Of a ball: the distance is that of its near side, the depth that of its far side.
@@ -283,7 +284,7 @@ void Solids::turn(Pairing& pair, PointDistances& found)
   for (const std::uint32_t record : records)
     if (std::isnan(found.distance[record])) deep.push_back(record);
   if (!deep.empty()) {
-    const PointDistances measured = depths(pair, deep);
+    const PointDistances measured = depths(pair, b_.pose, deep);
     for (const std::uint32_t record : deep) {
       found.distance[record] = measured.distance[record];
       found.closest_point[record] = measured.closest_point[record];
@@ -308,18 +309,26 @@ void Solids::turn(Pairing& pair, PointDistances& found)
 
 void Solids::turn(DistanceResult& closest)
 {
-  for (Pairing& pair : pairings_) {
-    const Records& records = held(pair, closest.work);
-    if (records.empty()) continue;
-    const PointDistances measured = depths(pair, records);
-    for (const std::uint32_t record : records) {
-      const double depth = measured.distance[record] + widthOf(pair, record);
-      if (!(depth > 0.0) || closest.distance <= -depth) continue;
-      closest.distance = -depth;
-      const std::uint32_t nearest = measured.closest_point[record];
-      closest.pair = pair.of_obstacle ? PointPair{record, nearest} : PointPair{nearest, record};
-      closest.interval = outward(-depth, -depth);
-    }
+  for (Pairing& pair : pairings_) turn(pair, b_.pose, held(pair, closest.work), closest);
+}
+
+void Solids::turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const
+{
+  for (const Pairing& pair : pairings_) turn(pair, pose, heldAt(pair, pose, closest.work), closest);
+}
+
+void Solids::turn(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held,
+                  DistanceResult& closest) const
+{
+  if (held.empty()) return;
+  const PointDistances measured = depths(pair, pose, held);
+  for (const std::uint32_t record : held) {
+    const double depth = measured.distance[record] + widthOf(pair, record);
+    if (!(depth > 0.0) || closest.distance <= -depth) continue;
+    closest.distance = -depth;
+    const std::uint32_t nearest = measured.closest_point[record];
+    closest.pair = pair.of_obstacle ? PointPair{record, nearest} : PointPair{nearest, record};
+    closest.interval = outward(-depth, -depth);
   }
 }
 
@@ -360,17 +369,16 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
              std::vector<double>& distances, std::vector<PointPair>& pairs)
 {
   if (pairs.empty()) return; // one of them has nothing that could be held
-  Question at_pose = question;
-  at_pose.path.reset();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    at_pose.pose = poses[i];
-    DistanceResult closest;
-    closest.distance = distances[i];
-    closest.pair = pairs[i];
-    addHeld(at_pose, input, obstacle, closest);
-    distances[i] = closest.distance;
-    pairs[i] = *closest.pair;
-  }
+  withSolids(question, input, obstacle, [&](Solids& solids) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      DistanceResult closest;
+      closest.distance = distances[i];
+      closest.pair = pairs[i];
+      solids.turn(closest, poses[i]);
+      distances[i] = closest.distance;
+      pairs[i] = *closest.pair;
+    }
+  });
 }
 
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)

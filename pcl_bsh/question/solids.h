@@ -40,8 +40,11 @@ public:
   /// Distances of what is inside become negative, and are measured however deep.
   void turn(SymmetricDistances& found, bool both_ways);
 
-  /// The deepest, where anything is inpair.
+  /// The deepest, where anything is inside.
   void turn(DistanceResult& closest);
+
+  /// With the obstacle at some pose.
+  void turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const;
 
 private:
   using Records = std::vector<std::uint32_t>;
@@ -78,9 +81,10 @@ private:
   FirstPoses firstPoses(const Pairing& pair, Work& work) const;
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;
-  PointDistances depths(const Pairing& pair, const Records& records) const;
+  PointDistances depths(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& records) const;
   double widthOf(const Pairing& pair, std::uint32_t record) const;
   void turn(Pairing& pair, PointDistances& found);
+  void turn(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, DistanceResult& closest) const;
 
   const Question& question_;
   const Placed &a_, &b_;
