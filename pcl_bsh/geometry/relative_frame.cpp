@@ -7,6 +7,13 @@
 #include <algorithm>
 #include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/geometry/relative_frame.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef PCL_BSH_GEOMETRY_RELATIVE_FRAME_ONCE
+#define PCL_BSH_GEOMETRY_RELATIVE_FRAME_ONCE
 namespace pcl_bsh {
 namespace {
 
@@ -34,6 +41,14 @@ std::array<double, 9> gram(const Eigen::Matrix3d& m)
           product(1, 2), product(2, 0), product(2, 1), product(2, 2)};
 }
 
+/// What a frame's three axes are computed of, side by side; a fourth is of no use.
+struct FrameAxes {
+  alignas(32) double shift[4];      ///< g
+  alignas(32) double error[4];      ///< of floats
+  alignas(32) double moved[4];      ///< how far points of a reach from its carried origin
+  alignas(32) double entries[3][4]; ///< columns of M
+};
+
 /// How far a frame's box reaches. Its squares are in range.
 double cornerOf(const LocalFrame& frame)
 {
@@ -42,11 +57,134 @@ double cornerOf(const LocalFrame& frame)
 }
 
 } // namespace
+} // namespace pcl_bsh
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+namespace {
+
+using AxesTag = hn::CappedTag<double, 4>;
+using AxesVector = hn::Vec<AxesTag>;
+
+/// x y - product, exactly.
+AxesVector productError(AxesTag d, AxesVector x, AxesVector y, AxesVector product)
+{
+#if HWY_NATIVE_FMA
+  static_cast<void>(d);
+  return hn::MulSub(x, y, product);
+#else
+  alignas(32) double xs[4], ys[4], products[4];
+  hn::Store(x, d, xs);
+  hn::Store(y, d, ys);
+  hn::Store(product, d, products);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) products[i] = std::fma(xs[i], ys[i], -products[i]);
+  return hn::Load(d, products);
+#endif
+}
+
+/// A CompensatedSum of each axis.
+struct AxesSum {
+  HWY_INLINE AxesSum() : sum(hn::Zero(d)), errors(sum), absolute(sum) {}
+
+  HWY_INLINE void add(AxesVector term)
+  {
+    const AxesVector next = hn::Add(sum, term), part = hn::Sub(next, sum);
+    errors = hn::Add(errors, hn::Add(hn::Sub(sum, hn::Sub(next, part)), hn::Sub(term, part)));
+    sum = next;
+    absolute = hn::Add(absolute, hn::Abs(term));
+  }
+
+  HWY_INLINE void addProduct(AxesVector x, double y)
+  {
+    const AxesVector factor = hn::Set(d, y), product = hn::Mul(x, factor);
+    add(product);
+    errors = hn::Add(errors, productError(d, x, factor, product));
+  }
+
+  const AxesTag d;
+  AxesVector sum, errors, absolute;
+};
+
+} // namespace
+
+void axesOnTarget(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const LocalFrame& b,
+                  const Eigen::Isometry3d& pose_b, const RelativeRotation& rotation, FrameAxes& axes)
+{
+  const AxesTag d;
+  const double *const of_a = pose_a.matrix().data(), *const of_b = pose_b.matrix().data(); // columns of four
+  // The vector between the origins, whose terms may be millions of times larger than it.
+  alignas(32) double between[4], between_bound[4];
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    AxesSum sum;
+    for (std::size_t j = 0; j < 3; ++j) {
+      sum.addProduct(hn::LoadU(d, of_a + 4 * j + i), a.origin[j]);
+      sum.addProduct(hn::Neg(hn::LoadU(d, of_b + 4 * j + i)), b.origin[j]);
+    }
+    sum.add(hn::LoadU(d, of_a + 12 + i));
+    sum.add(hn::Neg(hn::LoadU(d, of_b + 12 + i)));
+    const AxesVector value = hn::Add(sum.sum, sum.errors), unit = hn::Set(d, b.unit);
+    const AxesVector bound = hn::Add(hn::Mul(hn::Set(d, kDoubleUnit), hn::Abs(value)),
+                                     hn::Mul(hn::Set(d, CompensatedSum::kError), sum.absolute));
+    hn::Store(hn::Div(value, unit), d, between + i);
+    hn::Store(hn::Div(bound, unit), d, between_bound + i);
+  }
+
+  const double scale = a.unit / b.unit;
+  double misturned = 0.0; // error of M x: twice, for what follows from it is of second order
+  for (std::size_t j = 0; j < 3; ++j) misturned += 2 * kRotationError * scale * a.reach[j];
+  const double skewed = rotation.skew * (b.reach[0] + b.reach[1] + b.reach[2]);
+  alignas(32) const double slack_of_b[4] = {b.slack(0), b.slack(1), b.slack(2), 0.0};
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    AxesVector value = hn::Zero(d), absolute = hn::Zero(d), inherited = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const AxesVector r = hn::LoadU(d, rotation.back_turns.data() + 4 * k + i);
+      const AxesVector term = hn::Mul(r, hn::Set(d, between[k]));
+      value = hn::Add(value, term);
+      absolute = hn::Add(absolute, hn::Abs(term));
+      inherited = hn::Add(inherited, hn::Mul(hn::Abs(r), hn::Set(d, between_bound[k])));
+    }
+    AxesVector moved = hn::Zero(d), slack = hn::Zero(d); // sums of |M_ij| reach_a_j, |M_ij| slack_a_j
+    for (std::size_t j = 0; j < 3; ++j) {
+      const AxesVector entry = hn::Mul(hn::LoadU(d, rotation.columns.data() + 4 * j + i), hn::Set(d, scale));
+      hn::Store(entry, d, axes.entries[j] + i);
+      moved = hn::Add(moved, hn::Mul(hn::Abs(entry), hn::Set(d, a.reach[j])));
+      slack = hn::Add(slack, hn::Mul(hn::Abs(entry), hn::Set(d, a.slack(static_cast<int>(j)))));
+    }
+    const AxesVector rounded = hn::Mul(hn::Set(d, kFewDoubleRoundings), hn::Add(absolute, moved));
+    const AxesVector evaluated =
+        hn::Add(hn::Add(hn::Add(rounded, inherited), hn::Set(d, misturned)), hn::Set(d, skewed));
+    const AxesVector carried = hn::Add(hn::Mul(hn::Set(d, kCarriedShiftError), hn::Abs(value)),
+                                       hn::Mul(hn::Set(d, kCarriedProductError), moved));
+    const AxesVector stored = hn::Add(slack, hn::Mul(hn::Set(d, 1.0 + rotation.skew), hn::Load(d, slack_of_b + i)));
+    hn::Store(value, d, axes.shift + i);
+    hn::Store(moved, d, axes.moved + i);
+    hn::Store(hn::Add(hn::Add(stored, carried), evaluated), d, axes.error + i);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(axesOnTarget);
 
 RelativeRotation::RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
 {
   const Eigen::Matrix3d ra = pose_a.linear(), rb = pose_b.linear();
   matrix = rb.transpose() * ra;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      columns[static_cast<std::size_t>(4 * j + i)] = matrix(i, j);
+      back_turns[static_cast<std::size_t>(4 * j + i)] = rb(j, i);
+    }
+  }
   if (rb != Eigen::Matrix3d::Identity()) {
     const Eigen::Matrix3d excess = rb.transpose() * rb - Eigen::Matrix3d::Identity();
     skew = excess.cwiseAbs().rowwise().sum().maxCoeff() + kGramError;
@@ -60,54 +198,23 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
 : unit_b_(b.unit),
   skew_(rotation.skew)
 {
-  const auto &ra = pose_a.linear(), &rb = pose_b.linear();
   const double scale = a.unit / b.unit;
-
-  // The vector between the origins, whose terms may be millions of times larger than it.
-  std::array<double, 3> between, between_bound;
-  for (int i = 0; i < 3; ++i) {
-    CompensatedSum sum;
-    for (int j = 0; j < 3; ++j) {
-      // Upright poses are half zeros.
-      if (ra(i, j) != 0.0) sum.addProduct(ra(i, j), a.origin[static_cast<unsigned>(j)]);
-      if (rb(i, j) != 0.0) sum.addProduct(-rb(i, j), b.origin[static_cast<unsigned>(j)]);
-    }
-    sum.add(pose_a.translation()(i));
-    sum.add(-pose_b.translation()(i));
-    between[static_cast<unsigned>(i)] = sum.value() / b.unit;
-    between_bound[static_cast<unsigned>(i)] = sum.bound() / b.unit;
-  }
-
+  FrameAxes axes;
+  HWY_DYNAMIC_DISPATCH(axesOnTarget)(a, pose_a, b, pose_b, rotation, axes);
   double squared = 0.0;
   bool overflows = false;
   bool in_range = b.unit >= 0x1p-900 && a.unit >= 0x1p-900 && b.unit <= 0x1p900 && a.unit <= 0x1p900;
   for (unsigned i = 0; i < 3; ++i) {
-    double value = 0.0, absolute = 0.0, inherited = 0.0;
-    for (unsigned k = 0; k < 3; ++k) {
-      const double r = rb(k, i);
-      value += r * between[k];
-      absolute += std::abs(r * between[k]);
-      inherited += std::abs(r) * between_bound[k];
-    }
-    g_exact[i] = value;
-    g[i] = roundToFloat(value);
-
-    double moved = 0.0, slack = 0.0, misturned = 0.0; // sums of |M_ij| reach_a_j, |M_ij| slack_a_j; error of M x
+    g_exact[i] = axes.shift[i];
+    g[i] = roundToFloat(axes.shift[i]);
     for (unsigned j = 0; j < 3; ++j) {
-      const double entry = rotation.matrix(i, j) * scale;
+      const double entry = axes.entries[j][i];
       m[3 * i + j] = roundToFloat(entry);
       overflows = overflows || !(std::abs(entry) < kLargestCarried); // however short what it is multiplied with
-      moved += std::abs(entry) * a.reach[j];
-      slack += std::abs(entry) * a.slack(static_cast<int>(j));
-      misturned += 2 * kRotationError * scale * a.reach[j]; // twice: what follows from it is of second order
     }
-    const double skewed = skew_ * (b.reach[0] + b.reach[1] + b.reach[2]);
-    const double evaluated = kFewDoubleRoundings * (absolute + moved) + inherited + misturned + skewed;
-    const double carried = kCarriedShiftError * std::abs(value) + kCarriedProductError * moved;
-    const double float_error = slack + (1.0 + skew_) * b.slack(static_cast<int>(i)) + carried + evaluated;
-    squared += float_error * float_error;
-    in_range = in_range && inFloatRange(value) && inFloatRange(moved) && inFloatRange(b.reach[i]);
-    overflows = overflows || !(std::abs(value) + moved < kLargestCarried);
+    squared += axes.error[i] * axes.error[i];
+    in_range = in_range && inFloatRange(axes.shift[i]) && inFloatRange(axes.moved[i]) && inFloatRange(b.reach[i]);
+    overflows = overflows || !(std::abs(axes.shift[i]) + axes.moved[i] < kLargestCarried);
   }
   float_error_ = std::sqrt(squared) * (1.0 + 2 * kFewDoubleRoundings) + kSmallestLength;
   if (!(float_error_ < kInfinity)) { // NaN where a zero met an overflown bound: then nothing is known, and all is near
@@ -160,3 +267,4 @@ float RelativeFrame::acceptReach(double clearance) const noexcept
 }
 
 } // namespace pcl_bsh
+#endif

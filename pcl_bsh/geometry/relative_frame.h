@@ -15,9 +15,11 @@ namespace pcl_bsh {
 struct RelativeRotation {
   RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
-  Eigen::Matrix3d matrix; ///< R_b' R_a
-  double stretch = 1.0;   ///< at least its spectral norm
-  double skew = 0.0;      ///< at least ||R_b'R_b - I||
+  Eigen::Matrix3d matrix;                 ///< R_b' R_a
+  std::array<double, 12> columns = {};    ///< the same, a column after another, each with a zero behind it
+  std::array<double, 12> back_turns = {}; ///< of R_b', likewise
+  double stretch = 1.0;                   ///< at least its spectral norm
+  double skew = 0.0;                      ///< at least ||R_b'R_b - I||
 };
 
 /// Carries points of frame a into frame b: y = M x + g, so that |y - x_b| times b's unit is the distance of the points.

@@ -55,6 +55,7 @@ bool isRigid(const Eigen::Isometry3d& pose)
 
 void checkPose(const std::string& name, const Eigen::Isometry3d& pose, const std::optional<std::size_t>& index)
 {
+  if (isRigid(pose)) return;
   const Eigen::Matrix4d& matrix = pose.matrix();
   const Eigen::IOFormat one_line(6, Eigen::DontAlignCols, " ", "; ");
   if (!matrix.allFinite())
@@ -65,13 +66,11 @@ void checkPose(const std::string& name, const Eigen::Isometry3d& pose, const std
   }
   const Eigen::Matrix3d rotation = pose.linear();
   const double deviation = deviationFromRigid(rotation);
-  if (!(deviation <= rigidity_tolerance)) {
+  if (!(deviation <= rigidity_tolerance))
     throw poseError(name, index, plainText("not rigid, |R'R - I| is ", deviation, " (", rotation.format(one_line), ")"),
                     plainText("give a rotation without scale or shear, within ", rigidity_tolerance))
         .withValue(deviation);
-  }
-  if (rotation.determinant() < 0.0)
-    throw poseError(name, index, plainText("a mirror (", rotation.format(one_line), ")"), "give a rotation");
+  throw poseError(name, index, plainText("a mirror (", rotation.format(one_line), ")"), "give a rotation");
 }
 
 } // namespace pcl_bsh
