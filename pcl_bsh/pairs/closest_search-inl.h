@@ -61,6 +61,7 @@ public:
     others_(std::move(others))
   {
     walk_.makeWholes();
+    sharp_ = 0x1p-36 * smallerRadius();
   }
 
   /// Searches until the end, until the accuracy's budget is spent or, where there are other threads, for some steps:
@@ -104,7 +105,9 @@ public:
   DistanceResult result(const Work& work)
   {
     others_.hear(best_);
-    return {best_.gap, best_.pair, interval(), work};
+    if (!best_.pair) return {kInfinity, std::nullopt, {kInfinity, kInfinity}, work};
+    const double gap = pairs_.gap(*best_.pair);
+    return {gap, best_.pair, intervalOf(gap), work};
   }
 
   /// Of the search that run() has made, whether the distance exceeds the goal's clearance; with the nearest pair.
@@ -145,9 +148,12 @@ public:
   {
     if (step.near == 0) return Next::go_on;
     walk_.boundKeys(PairWalk::childOf(pair, opened, step, 0), step, keys_);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      keys_[lane] = std::max(keys_[lane], pair.key);
-      if (keys_[lane] <= lowestKey() && !pairs_.mayOverlap()) keys_[lane] = overlapOf(step, lane);
+    std::uint32_t low = raiseLanes(keys_, pair.key, lowest_key_) & step.near;
+    if (HWY_UNLIKELY(low != 0) && !pairs_.mayOverlap()) {
+      for (; low != 0; low &= low - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(low));
+        keys_[lane] = overlapOf(step, lane);
+      }
     }
     return Next::go_on;
   }
@@ -161,7 +167,7 @@ public:
   Next compare(const LanePair& pair)
   {
     const ComparedLeaves leaves = walk_.compare(pair);
-    at_least_ = std::max(pair.key, lowestKey());
+    at_least_ = std::max(pair.key, lowest_key_);
     if (walk_.areTriangles()) {
       eachTrianglePairNear(
           leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
@@ -259,13 +265,8 @@ private:
     opened(pair, which, step_);
     WaitingChildren children{PairWalk::childOf(pair, which, step_, 0), which == Opened::a, 0, {}};
     std::copy_n(keys_, kLanes, children.keys);
-    for (std::uint32_t near = step_.near; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      LanePair child = PairWalk::childOf(pair, which, step_, lane);
-      if (keep(child, which, step_, lane)) children.left = static_cast<std::uint8_t>(children.left | (1u << lane));
-    }
-    const std::uint32_t improving = children.left;
-    if (diving_) children.left = static_cast<std::uint8_t>(step_.near);
+    const std::uint32_t improving = improvingOf(children);
+    children.left = static_cast<std::uint8_t>(diving_ ? step_.near : improving);
     if (children.left == 0) return std::nullopt;
     const std::uint32_t lane = children.nearest();
     const LanePair nearest = children.child(lane);
@@ -287,7 +288,7 @@ private:
   /// A bound from above, of any pair below.
   void considerOneOf(const LanePair& pair)
   {
-    at_least_ = std::max(pair.key, lowestKey());
+    at_least_ = std::max(pair.key, lowest_key_);
     consider(walk_.lowest(pair));
   }
 
@@ -300,29 +301,41 @@ private:
   }
 
   /// Nothing was passed over but what is no nearer than the best less the tolerance.
-  Interval interval() const
+  Interval intervalOf(double gap) const
   {
-    if (!best_.pair) return {kInfinity, kInfinity};
-    const double lower = std::nextafter(best_.gap, -kInfinity) - goal_.tolerance;
+    const double lower = std::nextafter(gap, -kInfinity) - goal_.tolerance;
     const double known =
         goal_.tolerance > 0.0 ? std::nextafter(lower, -kInfinity)
         : goal_.rule.mayStop()
             ? std::min({std::max(lower, best_lower_), static_cast<double>(left_over_), goal_.clearance})
             : lower;
-    return {std::max(known, static_cast<double>(lowestKey())), best_.high};
+    return {std::max(known, static_cast<double>(lowest_key_)), std::min(best_.high, std::nextafter(gap, kInfinity))};
   }
 
   /// A pair is worth a visit if it may be nearer, or as near with smaller record numbers.
   bool canImprove(const LanePair& pair) const
   {
-    const double bound = std::max(pair.key, lowestKey());
+    const double bound = std::max(pair.key, lowest_key_);
     if (bound < best_.to_beat) return true;
     if (bound > best_.to_beat || goal_.tolerance > 0.0 || bound > best_.high) return false;
     return walk_.lowest(pair) < *best_.pair;
   }
 
-  /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
-  float lowestKey() const { return pairs_.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f; }
+  /// Of the children that the last step found near, those that can.
+  std::uint32_t improvingOf(const WaitingChildren& children) const
+  {
+    std::uint32_t improving = 0, unsure = step_.near;
+    if (HWY_LIKELY(static_cast<double>(lowest_key_) < best_.to_beat)) {
+      const float limit = roundUp(best_.to_beat);
+      improving = lanesBelow(children.keys, limit) & step_.near;
+      unsure = static_cast<double>(limit) == best_.to_beat ? step_.near & ~improving : 0;
+    }
+    for (; HWY_UNLIKELY(unsure != 0); unsure &= unsure - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(unsure));
+      if (canImprove(children.child(lane))) improving |= 1u << lane;
+    }
+    return improving;
+  }
 
   void consider(PointPair candidate)
   {
@@ -342,11 +355,9 @@ private:
     }
     best_.pair = candidate;
     best_lower_ = static_cast<double>(at_least_);
-    best_.gap = pairs_.distance.gap(posed);
-    const bool zero = best_.gap == 0.0 && pairs_.distance.compare(posed, 0.0) == 0;
-    best_.high = zero ? 0.0 : std::nextafter(best_.gap, kInfinity);
-    if (best_.gap <= goal_.clearance && goal_.clearance < kInfinity &&
-        pairs_.distance.compare(posed, goal_.clearance) <= 0) {
+    const auto [low, high] = boundGap(posed);
+    best_.high = low <= 0.0 && pairs_.distance.compare(posed, 0.0) == 0 ? 0.0 : high;
+    if (low <= goal_.clearance && goal_.clearance < kInfinity && pairs_.distance.compare(posed, goal_.clearance) <= 0) {
       settled_ = true;
       best_.high = std::min(best_.high, goal_.clearance);
     }
@@ -355,17 +366,42 @@ private:
     others_.tell(best_, pairs_);
   }
 
+  /// Of a pair's gap: what double arithmetic tells at once, if that is as good as nothing beside the clouds' size, so
+  /// that no more pairs are looked at. Rounding it takes ten times as long.
+  RecordDistance::Enclosure boundGap(const RecordDistance::Pair& posed) const
+  {
+    if (!pairs_.ofTriangles()) {
+      const auto [low, high] = pairs_.distance.enclose(posed);
+      const double radii = posed.radius_p + posed.radius_q, rounding = kFewDoubleRoundings * (high + radii);
+      if (high - low + rounding < sharp_) return {low - radii - rounding, high - radii + rounding};
+    }
+    const double gap = pairs_.distance.gap(posed);
+    return {std::nextafter(gap, -kInfinity), std::nextafter(gap, kInfinity)};
+  }
+
+  /// Of both clouds as wholes, that of the smaller one. @pre makeWholes()
+  double smallerRadius() const
+  {
+    const auto radiusOf = [](const Spaces& side) {
+      return side.storage.size == 0 ? 0.0 : side.node(kAboveVoxels, side.whole()).r[0] * side.storage.frame.unit;
+    };
+    return std::min(radiusOf(walk_.a), radiusOf(walk_.b));
+  }
+
   const ClosestGoal goal_;
   PairWalk walk_;
   PointPairs pairs_;
+  /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
+  const float lowest_key_ = pairs_.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of what is depth first; before that, of a step's children
   PairWalk::Step step_;
-  PairQueue queue_{lowestKey()};
+  PairQueue queue_{lowest_key_};
   alignas(32) float keys_[kLanes] = {};                      ///< of the children that the last step tested
   float left_over_ = std::numeric_limits<float>::infinity(); ///< no pair that was left is nearer
   float at_least_ = -std::numeric_limits<float>::infinity(); ///< the gaps that are considered
   double best_lower_ = -kInfinity;                           ///< so much of the best one
+  double sharp_ = 0.0; ///< intervals of gaps that are narrower are taken for the gap
   bool diving_ = false;
   bool settled_ = false; ///< a pair is within the goal's clearance
   StopCheck stop_check_;

@@ -11,7 +11,6 @@ namespace pcl_bsh {
 /// The nearest pair found so far.
 struct Nearest {
   std::optional<PointPair> pair;
-  double gap = std::numeric_limits<double>::infinity();     ///< of the pair, rounded
   double high = std::numeric_limits<double>::infinity();    ///< at least the gap of the pair
   double to_beat = std::numeric_limits<double>::infinity(); ///< what is not nearer than this is passed over
 };

@@ -452,8 +452,31 @@ HWY_INLINE std::uint32_t spheresNear(const float* squared, const float* radii, f
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// The lane of the smallest value among those with their bit set, of which there is at least one.
-HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
+/// Raises all values to `least`. Bit i: it is `floor` or less even so.
+HWY_INLINE std::uint32_t raiseLanes(float* values, float least, float floor)
+{
+  const LaneTag d;
+  std::uint32_t low = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector raised = hn::Max(hn::Load(d, values + i), hn::Set(d, least));
+    hn::Store(raised, d, values + i);
+    low |= bitsOf(d, hn::Le(raised, hn::Set(d, floor))) << i;
+  }
+  return low;
+}
+
+/// Bit i: the value is below the limit.
+HWY_INLINE std::uint32_t lanesBelow(const float* values, float limit)
+{
+  const LaneTag d;
+  std::uint32_t below = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    below |= bitsOf(d, hn::Lt(hn::Load(d, values + i), hn::Set(d, limit))) << i;
+  return below;
+}
+
+/// The lanes of the smallest value among those with their bit set, of which there is at least one.
+HWY_INLINE std::uint32_t smallestLanes(const float* values, std::uint32_t among)
 {
   const LaneTag d;
   LaneVector best = hn::Set(d, std::numeric_limits<float>::infinity());
@@ -470,7 +493,13 @@ HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
     lanes |= bitsOf(d, hn::Eq(hn::Load(d, candidate + i), best)) << i;
   lanes &= among;
-  return static_cast<std::uint32_t>(std::countr_zero(lanes != 0 ? lanes : among)); // NaN and infinity: any
+  return lanes != 0 ? lanes : among; // NaN and infinity: any
+}
+
+/// The first of them.
+HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
+{
+  return static_cast<std::uint32_t>(std::countr_zero(smallestLanes(values, among)));
 }
 
 } // namespace HWY_NAMESPACE

@@ -27,18 +27,10 @@ struct WaitingChildren {
   LanePair pair; ///< of one of them, whichever
   bool of_a = false;
   std::uint8_t left = 0; ///< bit i: child i waits
-  float keys[kLanes] = {};
+  alignas(32) float keys[kLanes] = {};
 
   /// The one with the smallest key; of equal ones the last. @pre one is left
-  std::uint32_t nearest() const
-  {
-    auto best = static_cast<std::uint32_t>(std::countr_zero(std::uint32_t{left}));
-    for (std::uint32_t bits = left & (left - 1u); bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (keys[lane] <= keys[best]) best = lane;
-    }
-    return best;
-  }
+  std::uint32_t nearest() const { return static_cast<std::uint32_t>(std::bit_width(smallestLanes(keys, left))) - 1; }
 
   LanePair child(std::uint32_t lane) const
   {
@@ -90,14 +82,13 @@ public:
     const std::uint32_t lane = first.nearest();
     const LanePair pair = first.child(lane);
     first.left = static_cast<std::uint8_t>(first.left & ~(1u << lane));
-    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-    if (first.left == 0) {
-      heap_.pop_back();
+    if (first.left != 0) {
+      replaceFirst(entryOf(first, placeOf(heap_.front())));
+      return pair;
     }
-    else {
-      heap_.back() = entryOf(first, placeOf(heap_.back()));
-      std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
-    }
+    const std::uint64_t last = heap_.back();
+    heap_.pop_back();
+    if (!heap_.empty()) replaceFirst(last);
     return pair;
   }
 
@@ -138,6 +129,19 @@ private:
   }
 
   static std::uint32_t placeOf(std::uint64_t entry) { return ~static_cast<std::uint32_t>(entry); }
+
+  /// By an entry that may come later: those before it rise.
+  void replaceFirst(std::uint64_t entry)
+  {
+    std::size_t at = 0;
+    for (std::size_t next = 1; next < heap_.size(); next = 2 * at + 1) {
+      if (next + 1 < heap_.size()) next += heap_[next + 1] < heap_[next] ? 1 : 0;
+      if (entry < heap_[next]) break;
+      heap_[at] = heap_[next];
+      at = next;
+    }
+    heap_[at] = entry;
+  }
 
   /// Leaves those in the queue alone, in their order.
   void forgetTaken()

@@ -41,6 +41,19 @@ std::string wrongSmallestLanes(Random& random)
   for (std::uint32_t i = 0; i < kLanes; ++i)
     if ((among >> i & 1) != 0 && (expected == kLanes || values[i] < values[expected])) expected = i;
   if (smallestLane(values, among) != expected) return "smallest lane";
+  std::uint32_t all = 0, below = 0, low = 0;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    if ((among >> i & 1) != 0 && values[i] == values[expected]) all |= 1u << i;
+    if (values[i] < 5) below |= 1u << i;
+    if (values[i] <= 6) low |= 1u << i;
+  }
+  if (smallestLanes(values, among) != all) return "lanes of the smallest";
+  if (lanesBelow(values, 5) != below) return "lanes below a limit";
+  alignas(32) float raised[kLanes];
+  std::copy_n(values, kLanes, raised);
+  if (raiseLanes(raised, 4, 6) != low) return "raised lanes that are low";
+  for (std::uint32_t i = 0; i < kLanes; ++i)
+    if (raised[i] != std::max(values[i], 4.0f)) return "raised lanes";
   for (std::uint32_t i = 0; i < kLanes; ++i)
     values[i] = random.chance(0.5) ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
   const std::uint32_t any = smallestLane(values, among);
