@@ -285,11 +285,18 @@ private:
     if (between < 0.7 * best_.high) considerOneOf(pair);
   }
 
-  /// A bound from above, of any pair below.
+  /// A bound from above, of any pair below. One that doubles do not tell from the best is none: ties, of which a cloud
+  /// and its copy have thousands, are for leaves to decide.
   void considerOneOf(const LanePair& pair)
   {
+    const PointPair one = walk_.lowest(pair);
+    if (best_.pair && !pairs_.ofTriangles()) {
+      const RecordDistance::Pair posed = pairs_.posed(one);
+      const double high = pairs_.distance.enclose(posed).high, radii = posed.radius_p + posed.radius_q;
+      if (!(high - radii + kDoubleMargin * (high + radii) < best_.low)) return;
+    }
     at_least_ = std::max(pair.key, lowest_key_);
-    consider(walk_.lowest(pair));
+    consider(one);
   }
 
   /// Orders children that may be at a distance of 0, below that: by how far spheres overlap for their size.
@@ -356,6 +363,7 @@ private:
     best_.pair = candidate;
     best_lower_ = static_cast<double>(at_least_);
     const auto [low, high] = boundGap(posed);
+    best_.low = low;
     best_.high = low <= 0.0 && pairs_.distance.compare(posed, 0.0) == 0 ? 0.0 : high;
     if (low <= goal_.clearance && goal_.clearance < kInfinity && pairs_.distance.compare(posed, goal_.clearance) <= 0) {
       settled_ = true;

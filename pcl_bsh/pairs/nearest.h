@@ -11,6 +11,7 @@ namespace pcl_bsh {
 /// The nearest pair found so far.
 struct Nearest {
   std::optional<PointPair> pair;
+  double low = std::numeric_limits<double>::infinity();     ///< at most the gap of the pair
   double high = std::numeric_limits<double>::infinity();    ///< at least the gap of the pair
   double to_beat = std::numeric_limits<double>::infinity(); ///< what is not nearer than this is passed over
 };
