@@ -2,41 +2,21 @@
 // What the paper's table has: tests of bounding volumes (N_v), updates of them (N_u) and milliseconds, of our spheres,
 // of those in the paper's octants, and of axis-aligned boxes, on two files of points.
 #include "peer/box_tree.h"
-#include "program.h"
+#include "posed_files.h"
 
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/tools/cli/obstacle.h>
-#include <pcl_bsh/tools/cli/path.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <random>
 
 namespace {
 
 using namespace pcl_bsh;
 using namespace pcl_bsh::bench;
 
-struct Options : ProgramOptions {
-  std::string name, a, b, pose = "0,0,0,0,0,0";
+struct Options : PosedFilesOptions {
   double clearance = 0.0;
-  unsigned poses = 10;
 };
-
-Points load(const std::string& file)
-{
-  double seconds = 0.0;
-  const io::Obstacle loaded = cli::loadObstacle(file, {true}, seconds, {}, nullptr, 1);
-  Points points;
-  for (std::size_t i = 0; i < loaded.view().size(); ++i) {
-    const Point3 p = loaded.view().point(loaded.view().record(i));
-    const Point q = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
-    if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) points.push_back(q);
-  }
-  if (points.empty()) throw std::runtime_error(file + ": has no finite point: give another cloud");
-  return points;
-}
 
 RigidPose plain(const Eigen::Isometry3d& pose)
 {
@@ -46,26 +26,6 @@ RigidPose plain(const Eigen::Isometry3d& pose)
     result.translation[static_cast<std::size_t>(i)] = pose.translation()[i];
   }
   return result;
-}
-
-/// The pose, then others about it: turned about the middle of b by up to 10 degrees, moved by up to 5 % of a's size.
-std::vector<Eigen::Isometry3d> posesAbout(const Eigen::Isometry3d& pose, unsigned count, const BoxTree& a,
-                                          const BoxTree& b)
-{
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const auto vector = [&] { return Eigen::Vector3d(unit(random), unit(random), unit(random)); };
-  const BoxTree::Node &box_a = a.nodes()[0], &box_b = b.nodes()[0];
-  const double size = 2.0 * Eigen::Vector3d(box_a.half[0], box_a.half[1], box_a.half[2]).norm();
-  const Eigen::Vector3d middle(box_b.centre[0], box_b.centre[1], box_b.centre[2]);
-  std::vector<Eigen::Isometry3d> poses = {pose};
-  while (poses.size() < count) {
-    const Eigen::Vector3d axis = vector().normalized(), shift = 0.05 * size * vector();
-    const double angle = unit(random) * 0.17453292519943295;
-    poses.push_back(Eigen::Translation3d(shift) * pose * Eigen::Translation3d(middle) * Eigen::AngleAxisd(angle, axis) *
-                    Eigen::Translation3d(-middle));
-  }
-  return poses;
 }
 
 /// What one kind of volumes took for one question, at all poses.
@@ -97,14 +57,12 @@ Cost measure(std::size_t poses, unsigned repeat, const Ask& ask)
 
 bool run(const Options& options, Table& table)
 {
-  const Points a = load(options.a), b = load(options.b);
-  std::vector<std::string> warnings;
-  const Eigen::Isometry3d pose = cli::parsePose("--pose", options.pose, warnings);
+  const Points a = loadPoints(options.a), b = loadPoints(options.b);
   const auto clearance = static_cast<float>(options.clearance);
   const Stopwatch boxes_watch;
   const BoxTree boxes_a(a), boxes_b(b);
   const double boxes_ms = 1e3 * boxes_watch.seconds();
-  const std::vector<Eigen::Isometry3d> poses = posesAbout(pose, options.poses, boxes_a, boxes_b);
+  const std::vector<Eigen::Isometry3d> poses = posesAbout(options, a, b);
   std::vector<RigidPose> plain_poses;
   for (const Eigen::Isometry3d& p : poses) plain_poses.push_back(plain(p));
 
@@ -189,14 +147,8 @@ int main(int argc, char** argv)
   Options options;
   options.repeat = 5;
   CLI::App app("Counts tests and updates of bounding volumes, as the paper does, and times them.", "bench_volumes");
-  app.add_option("A", options.a, "cloud whose points are asked about")->required();
-  app.add_option("B", options.b, "cloud to collide with; of a mesh, its corners")->required();
-  app.add_option("--name", options.name, "of the clouds, for the rows");
+  options.addTo(app);
   app.add_option("--clearance", options.clearance, "in the clouds' unit")->required();
-  app.add_option("--pose", options.pose, "of B in A's frame, as for pcl_bsh_collide");
-  app.add_option("--poses", options.poses, "that pose, and others about it")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
   return runProgram(app, argc, argv, options,
                     Table({"clouds", "points", "points of b", "clearance", "poses", "volumes", "question", "N_v", "N_u",
                            "leaf pairs", "time [ms]", "build both [ms]", "found", "differ"}),

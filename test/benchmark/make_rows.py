@@ -21,8 +21,16 @@ MAN = f"{SCANS}/building.ply {SCANS}/man.off"
 ROOMS = f"{DATA}/indoor_room_scan1.pcd {DATA}/indoor_room_scan2.pcd"
 LION = f"{DATA}/statue_lion_takanawa.pcd {DATA}/statue_lion_takanawa.pcd"
 
+NEAR_MAN, FAR_MAN = "-7,0,-2.6,0,0,0", "-30,10,3,0,0,0.3"
+NEAR_ROOM, FAR_ROOM = "1.79387,0.720047,0,0,0,0.6931", "30,10,3,0,0,0.3"
+NEAR_LION = "0.05,0,0,0,0,0"
+
 # File of rows: the benchmark programs that make it, and their options.
 PROGRAMS = {
+    "budgets.csv": [f"bench_budget {clouds} --name {name.replace(' ', '_')} --pose={pose} --repeat 400"
+                    for name, clouds, pose in (("building near", MAN, NEAR_MAN), ("building far", MAN, FAR_MAN),
+                                               ("rooms near", ROOMS, NEAR_ROOM), ("rooms far", ROOMS, FAR_ROOM),
+                                               ("lion", LION, NEAR_LION))],
     "cold.csv": ["bench_cold --size 300000 --distances 1,5,20 --racers pcl_bsh,fitted_grid,nanoflann --repeat 5"],
     "distances.csv": ["bench_distances --scene terrain,lion --clock cpu --repeat 3"],
     "flags_terrain.csv": ["bench_flags --scene terrain --sizes 1000000 --distances 1,5,20 --orders scan,shuffled --clock cpu --repeat 5"],
@@ -43,15 +51,14 @@ PROGRAMS = {
     "uncertain_poses.csv": ["bench_uncertainty --scene terrain,lion --query flags,path,swept,poses,scene --clearances 5 --clock cpu --repeat 7"],
     "uncertainty.csv": ["bench_uncertainty --scene terrain,lion --query flags,lists,any,path --clock cpu --repeat 2"],
     "volumes.csv": [f"bench_volumes {clouds} --name {name} --clearance {clearance} --pose={pose} --clock cpu"
-                    for name, clouds, clearance, pose in (("building", MAN, 0.5, "-7,0,-2.6,0,0,0"),
-                                                          ("rooms", ROOMS, 0.05, "1.79387,0.720047,0,0,0,0.6931"),
-                                                          ("lion", LION, 0.02, "0.05,0,0,0,0,0"))],
+                    for name, clouds, clearance, pose in (("building", MAN, 0.5, NEAR_MAN), ("rooms", ROOMS, 0.05, NEAR_ROOM),
+                                                          ("lion", LION, 0.02, NEAR_LION))],
 }
 
 # What the study of accuracy is run on: clouds, options, how many poses, and about which, near and far ones; none: along the path.
 STUDIES = {
-    "building": (f"{MAN} --vertices-only --clearance 0.5 --repeat 5", 10, "-7,0,-2.6,0,0,0", "-30,10,3,0,0,0.3"),
-    "rooms": (f"{ROOMS} --clearance 0.05 --repeat 1", 3, "1.79387,0.720047,0,0,0,0.6931", "30,10,3,0,0,0.3"),
+    "building": (f"{MAN} --vertices-only --clearance 0.5 --repeat 5", 10, NEAR_MAN, FAR_MAN),
+    "rooms": (f"{ROOMS} --clearance 0.05 --repeat 1", 3, NEAR_ROOM, FAR_ROOM),
     "tunnel": ("{work}/tunnel/scan.ply {work}/tunnel/wagon.ply --clearance 0.05 --repeat 1", 5, "", "0,60,10,0,0,0.3"),
 }
 
