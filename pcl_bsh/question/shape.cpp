@@ -83,7 +83,6 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
                        "give a length, or `vertices_only`");
   }
   const bool same = hierarchy_ && uncertainty == uncertainty_;
-  if (same && !watched_) return *hierarchy_;
   const PointsView view = view_();
   const std::vector<RecordField> fields =
       uncertainty.field.empty() || !fields_ ? std::vector<RecordField>() : fields_();

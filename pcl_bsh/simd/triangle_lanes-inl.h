@@ -13,7 +13,6 @@
 
 #include <pcl_bsh/simd/flat_triangle.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -145,19 +144,6 @@ HWY_INLINE void squaredToTriangle(const FlatTriangle<float>& triangle, const flo
   for (std::size_t i = 0; i < count; i += hn::Lanes(d))
     hn::StoreU(squaredToTriangle(triangle, spread, hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)), d,
                squared + i);
-}
-
-/// Lowers nearest[i] to the squared distance of point i to the triangle; as squaredToTriangle() otherwise.
-HWY_INLINE void lowerToTriangle(const FlatTriangle<float>& triangle, const float* x, const float* y, const float* z,
-                                std::size_t count, float* nearest)
-{
-  const LaneTag d;
-  const auto spread = [d](float value) HWY_ATTR { return hn::Set(d, value); };
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const LaneVector squared =
-        squaredToTriangle(triangle, spread, hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i));
-    hn::StoreU(hn::Min(hn::LoadU(d, nearest + i), squared), d, nearest + i);
-  }
 }
 
 } // namespace HWY_NAMESPACE

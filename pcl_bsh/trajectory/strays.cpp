@@ -30,7 +30,7 @@ public:
     for (; used < by_distance.size(); ++used) {
       const auto [distance, v] = by_distance[used];
       const double size = sizeOf(v);
-      if (2 * points > storage.size && distance - size > kGap * (radius + size)) break;
+      if (2 * points > storage.size && distance > kGap * (radius + size)) break;
       radius = std::max(radius, distance + size);
       points += storage.voxels[v].count;
     }

@@ -102,8 +102,6 @@ void toTriangleOnTarget(const FlatTriangle<float>& triangle, const float* x, con
                         test::ToTriangle& out)
 {
   squaredToTriangle(triangle, x, y, z, 8, out.squared);
-  std::fill(out.lowered, out.lowered + 8, std::numeric_limits<float>::infinity());
-  lowerToTriangle(triangle, x, y, z, 8, out.lowered);
 }
 
 test::PairVerdict comparePairOnTarget(const FlatTriangle<float>& triangle, const float* corners, float reach,

@@ -49,9 +49,9 @@ struct Stay {
 Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&bow)[3], float smallest, float reach,
                   const float (&low)[3], const float (&high)[3]);
 
-/// squaredToTriangle() of eight points; and lowerToTriangle() of them, where nothing is nearer.
+/// squaredToTriangle() of eight points.
 struct ToTriangle {
-  alignas(32) float squared[8], lowered[8];
+  alignas(32) float squared[8];
 };
 ToTriangle squaredToTriangleEight(const FlatTriangle<float>& triangle, const float (&x)[8], const float (&y)[8],
                                   const float (&z)[8]);

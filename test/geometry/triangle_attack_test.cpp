@@ -42,8 +42,7 @@ float squaredBy(const FlatTriangle<float>& flat, const Point3& p)
 {
   float at[3][8] = {};
   for (std::size_t k = 0; k < 3; ++k) at[k][0] = floatOf(p[k]);
-  const test::ToTriangle found = test::squaredToTriangleEight(flat, at[0], at[1], at[2]);
-  return found.squared[0] == found.lowered[0] ? found.squared[0] : -1.0f;
+  return test::squaredToTriangleEight(flat, at[0], at[1], at[2]).squared[0];
 }
 
 /// Of a triangle and a point (12 numbers): how far the kernel's distance is from the true one, as a part of its bound.

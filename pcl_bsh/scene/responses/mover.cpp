@@ -158,12 +158,12 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
     if (!slide) return Walked::met;
     if (bounce > 0) continue;
     // Only what is beside the straight path has been collected. From here on it may lead anywhere within what is
-    // left of it. Pairs collected hold for that already; those of other objects are added.
+    // left of it. Pairs collected hold for that already; those of other objects are added. It collides with none of
+    // them: what is near it here is beside the straight path as well.
     const std::size_t known = encounters_.size();
     Box3 swept = body_.world_box;
     swept.grow(std::max(most_travel, 0.0));
     if (!collectMore(swept, std::max(most_travel, 0.0), most)) return Walked::crowded;
-    if (outcome.stuck) return Walked::blocked;
     for (std::size_t i = known; i < encounters_.size(); ++i) encounters_[i].apart -= gone;
   }
   return Walked::met;
