@@ -3,6 +3,7 @@
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"
+#include "support/allocations.h"
 #include "support/verdicts.h"
 
 #include <gtest/gtest.h>
@@ -68,6 +69,22 @@ TEST(BroadPhase, ALargeObjectIsAsFarAsItsPointsMayBe)
             scene.setPose(1, pose * at(8.25, -8.25, height)); // over other voxels
           }
         }
+}
+
+/// Two points far apart, in one box of two layers of voxels: they are not listed to find that they are too many.
+TEST(BroadPhase, AnObjectOfTooManyVoxelsTakesNoMemoryForThem)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.any = true;
+  options.clearance = 0.05;
+  options.voxel_edge = 0.5;
+  Scene scene(options);
+  scene.add(object("wide", shelf.add({{0, 0, 0}, {1000, 1000, 0}})));
+  scene.add(object("small", shelf.add({{0, 0, 0}}), at(1000, 1000, 0.04)));
+  test::takeLargestAllocation();
+  EXPECT_EQ(scene.query().any.size(), 1u);
+  EXPECT_LT(test::takeLargestAllocation(), std::size_t{1} << 20); // of 4000 x 4000 x 2 of 8 bytes: 122 MB
 }
 
 } // namespace

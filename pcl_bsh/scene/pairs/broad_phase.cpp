@@ -33,22 +33,23 @@ BroadPhase::Key BroadPhase::keyOf(std::int64_t x, std::int64_t y, std::int64_t z
   return bits(x) << 42 | bits(y) << 21 | bits(z);
 }
 
-double BroadPhase::voxelsOf(const Box3& box) const
+double BroadPhase::countOf(const Range& range)
 {
-  if (box.empty() || !std::isfinite(edge_)) return 0.0;
-  const Range range = rangeOf(box);
   double count = 1.0;
   for (std::size_t k = 0; k < 3; ++k) count *= static_cast<double>(range.high[k] - range.low[k] + 1);
   return count;
+}
+
+double BroadPhase::voxelsOf(const Box3& box) const
+{
+  return box.empty() || !std::isfinite(edge_) ? 0.0 : countOf(rangeOf(box));
 }
 
 void BroadPhase::voxelsOf(const std::vector<Range>& ranges, std::vector<Key>& voxels) const
 {
   voxels.clear();
   for (const Range& range : ranges) {
-    double count = 1.0;
-    for (std::size_t k = 0; k < 3; ++k) count *= static_cast<double>(range.high[k] - range.low[k] + 1);
-    if (count + static_cast<double>(voxels.size()) > 8 * kMostVoxels) {
+    if (countOf(range) + static_cast<double>(voxels.size()) > 8 * kMostVoxels) {
       voxels.assign(1, kEverywhere);
       return;
     }

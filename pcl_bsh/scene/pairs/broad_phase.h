@@ -107,6 +107,7 @@ private:
   };
 
   Range rangeOf(const Box3& box) const;
+  static double countOf(const Range& range);
   static Key keyOf(std::int64_t x, std::int64_t y, std::int64_t z);
   void voxelsOf(const std::vector<Range>& ranges, std::vector<Key>& voxels) const;
   void enter(ObjectId object, Key voxel);
