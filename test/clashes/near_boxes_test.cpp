@@ -71,5 +71,22 @@ TEST(NearBoxes, ThatAreDoneAreNotVisitedAgain)
   EXPECT_GT(done.size(), 250U);
 }
 
+/// A row of boxes, every other one long: they are divided by their middles.
+TEST(NearBoxes, CompareFew)
+{
+  std::vector<Extent> boxes(64);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const auto x = static_cast<double>(i);
+    boxes[i] = {{x, 0, 0}, {x + (i % 2 == 0 ? 0.5 : 24.5), 1, 1}};
+  }
+  NearBoxes tree(boxes);
+  for (const Extent& box : boxes) tree.visitNear({box.low, box.low}, 0.0, [](std::size_t) { return false; });
+  EXPECT_EQ(tree.compared, 2486U);
+  tree.visitNear({{0, 0, 0}, {100, 1, 1}}, 0.0, [](std::size_t) { return true; });
+  const std::uint64_t before = tree.compared;
+  tree.visitNear({{0, 0, 0}, {100, 1, 1}}, 0.0, [](std::size_t) { return true; });
+  EXPECT_EQ(tree.compared, before) << "nothing is left";
+}
+
 } // namespace
 } // namespace pcl_bsh
