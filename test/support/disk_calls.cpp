@@ -7,12 +7,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <mutex>
 #include <stdexcept>
 
 namespace pcl_bsh::test {
 namespace {
 
 DiskCalls* recording = nullptr;
+std::mutex one_at_a_time; ///< of what it notes
 
 std::string nameOf(int descriptor)
 {
@@ -24,8 +26,10 @@ std::string nameOf(int descriptor)
 bool passes(const std::string& call)
 {
   if (!recording) return true;
+  const std::lock_guard lock(one_at_a_time);
   DiskCalls& now = *recording;
-  if (now.calls.empty() || now.calls.back() != call) now.calls.push_back(call); // of many writes one
+  ++now.made;
+  if (now.calls.empty() || now.calls.back() != call) now.calls.push_back(call);
   const auto failing = now.failing.find(call);
   if (failing == now.failing.end()) return true;
   errno = failing->second;
@@ -61,6 +65,20 @@ ssize_t write(int descriptor, const void* bytes, size_t count)
   using namespace pcl_bsh::test;
   static const auto next = original<ssize_t(int, const void*, size_t)>("write");
   return !recording || passes("write " + nameOf(descriptor)) ? next(descriptor, bytes, count) : -1;
+}
+
+ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t at)
+{
+  using namespace pcl_bsh::test;
+  static const auto next = original<ssize_t(int, const void*, size_t, off_t)>("pwrite");
+  return !recording || passes("write " + nameOf(descriptor)) ? next(descriptor, bytes, count, at) : -1;
+}
+
+int syncfs(int descriptor) noexcept
+{
+  using namespace pcl_bsh::test;
+  static const auto next = original<int(int)>("syncfs");
+  return !recording || passes("syncfs " + nameOf(descriptor)) ? next(descriptor) : -1;
 }
 
 int fsync(int descriptor)

@@ -3,14 +3,15 @@
 // disk_calls.cpp has these calls pass through there.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace pcl_bsh::test {
 
-/// While it lives, write(), fsync() and rename() of this process are noted, by the names of files without folders:
-/// "write out.part0", "fsync out.part0", "rename out.part0 out". One at a time.
+/// While it lives, write(), pwrite(), fsync(), syncfs() and rename() of this process are noted, by the names of files
+/// without folders: "write out.part0", "fsync out.part0", "rename out.part0 out". One at a time.
 class DiskCalls {
 public:
   DiskCalls();
@@ -18,7 +19,8 @@ public:
   DiskCalls(const DiskCalls&) = delete;
   DiskCalls& operator=(const DiskCalls&) = delete;
 
-  std::vector<std::string> calls;
+  std::vector<std::string> calls;     ///< of the same ones in a row, the first
+  std::size_t made = 0;               ///< all of them
   std::map<std::string, int> failing; ///< calls that are not made, and the errno that they fail with
 };
 

@@ -8,6 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
 namespace pcl_bsh::files {
 
 namespace fs = std::filesystem;
@@ -87,6 +93,32 @@ TEST(NewFile, IsRemovedWhenTheProgramIsToldToStop)
   NewFile file(folder / "file");
   static_cast<void>(discardUnfinished());
   EXPECT_EQ(folder.files(), 0U);
+}
+
+/// What is no interruption is not tried again.
+TEST(NewFile, TellsThatTheDiskIsFull)
+{
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(10);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit = {6, 6};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    NewFile file(folder / "file");
+    file.append("room");
+    try {
+      file.append(", and none");
+    }
+    catch (const FileError& error) {
+      _exit(std::string(error.what()).find("file: cannot be written (File too large): ") != std::string::npos ? 3 : 4);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 TEST(OneLine, HasNoCharacterThatSteersATerminal)

@@ -53,6 +53,14 @@ TEST_F(ReplacedOnDisk, ContentThenNameThenFolder)
   EXPECT_THAT(disk.calls, ElementsAre("write out.part0", "fsync out.part0", "rename out.part0 out", fsync_folder));
 }
 
+/// What is larger than the buffer is written at once, after what is in it.
+TEST_F(ReplacedOnDisk, LargeContentInOneCall)
+{
+  test::DiskCalls disk;
+  replaceFile(file, [](std::ostream& out) { out << "head" << std::string(1 << 20, 'x') << "tail"; });
+  EXPECT_EQ(disk.made, 3U + 3U) << "of which fsync, rename and fsync";
+}
+
 TEST_F(ReplacedOnDisk, KeepsTheOldFileWhereTheNewOneCannotBeBroughtToTheDisk)
 {
   expectKept("write out.part0");
