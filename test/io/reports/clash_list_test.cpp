@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -197,6 +198,58 @@ TEST(ClashLists, WarnOfAnotherPathAndAnotherExtent)
       ElementsAre(HasSubstr("old.json: lists clashes of a scan from (0, 0, 0) to (100, 5, 5), now it is from (0, "
                             "0, 0) to (60, 5, 5): ")));
   EXPECT_EQ(surveyWarnings("old.json", earlier, Survey(posesAt({0, 50, 100}), std::nullopt), 0.5).size(), 1U);
+}
+
+/// Lists of earlier runs have it: FNV-1a of the twelve numbers of each pose.
+TEST(ClashLists, ThePathsChecksumStaysWhatItWas)
+{
+  EXPECT_EQ(Survey(posesAt({0, 50, 100}), std::nullopt).path_checksum, "c6f5c3991432a018");
+  EXPECT_EQ(Survey({}, std::nullopt).path_checksum, "cbf29ce484222325");
+}
+
+TEST(ClashLists, WarnOfAnExtentThatDiffersOnAnySide)
+{
+  const Extent box{{0, 0, 0}, {100, 50, 5}};
+  ClashList earlier;
+  earlier.survey = Survey(posesAt({0}), box);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const double change : {-0.51, -0.49, 0.49, 0.51}) {
+      Extent low = box, high = box;
+      low.low[k] += change, high.high[k] += change;
+      for (const Extent& now : {low, high})
+        EXPECT_EQ(surveyWarnings("old.json", earlier, Survey(posesAt({0}), now), 0.5).size(),
+                  std::abs(change) > 0.5 ? 1U : 0U)
+            << k << ' ' << change;
+    }
+  ClashList nowhere;
+  nowhere.survey = Survey({}, std::nullopt);
+  EXPECT_TRUE(surveyWarnings("old.json", nowhere, Survey({}, std::nullopt), 0.5).empty());
+  EXPECT_THAT(surveyWarnings("old.json", nowhere, Survey(posesAt({0}), box), 0.5),
+              ElementsAre(HasSubstr("(0 poses nowhere, now 1 from (0, 0, 0) to (0, 0, 0))"),
+                          HasSubstr("of a scan nowhere, now it is from (0, 0, 0) to (100, 50, 5)")));
+}
+
+TEST(ClashLists, ReadWhatOnlyLaterVersionsWrite)
+{
+  const std::string survey = R"("path": {"poses": 2, "checksum": "ab", "box": {"min": [0, 1, 2], "max": [3, 4, 5]}},
+    "scan": {"box": {"min": [-1, -2, -3], "max": [0, 0, 0]}}, "accuracy": "level=3")";
+  const ClashList list = parseClashes(oldListWith(survey), "old.json");
+  ASSERT_TRUE(list.survey);
+  EXPECT_EQ(list.survey->poses, 2U);
+  EXPECT_EQ(list.survey->path->high, (Point3{3, 4, 5}));
+  EXPECT_EQ(list.survey->scan->low, (Point3{-1, -2, -3}));
+  EXPECT_EQ(list.question.accuracy.text(), "level=3");
+  EXPECT_FALSE(parseClashes(oldListWith(R"("scan": {"box": null})"), "old.json").survey) << "without a path";
+  const std::string unseen = R"(", "status": "unseen", "points": 1, "box": {"min": [0, 0, 0], "max": [1, 1, 1]},
+    "distance": null, "first_pose": 2147483647, "closest_pose": 1, "place": [7, 8, 9], "certain_points": 0}]})";
+  std::string with_unseen = old_list;
+  with_unseen.replace(with_unseen.rfind("]}"), 2, R"(, {"id": "C)" + unseen);
+  const ClashList read = parseClashes(with_unseen, "old.json");
+  ASSERT_EQ(read.clashes.size(), 3U);
+  EXPECT_TRUE(std::isnan(read.clashes[2].distance));
+  EXPECT_EQ(read.clashes[2].place, (Point3{7, 8, 9}));
+  EXPECT_EQ(read.clashes[2].certain_points, 0U);
+  EXPECT_EQ(read.clashes[2].first_pose, 2147483647);
 }
 
 } // namespace pcl_bsh::io

@@ -382,6 +382,41 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
   }
 }
 
+/// Where the input is several files, and the obstacle, too: each row has the cells of its header.
+TEST_F(ClashReports, CsvTellsTheFilesOfPoints)
+{
+  ClashReport list = twoClashes();
+  list.clashes[1].status = ClashStatus::resolved;
+  const auto source = [](const char* file, std::uint32_t less) {
+    return [=](std::uint32_t number) { return SourcePoint{file, number + 10 - less}; };
+  };
+  for (const bool of_input : {false, true})
+    for (const bool of_obstacle : {false, true}) {
+      list.source_of = nullptr, list.model_source_of = nullptr;
+      if (of_input) list.source_of = source("a.ply", 2);
+      if (of_obstacle) list.model_source_of = source("b.ply", 3);
+      const auto rows = cellsOf(clashCsv(list));
+      ASSERT_EQ(rows.size(), 3U);
+      const std::size_t width = 30U + (of_input ? 1U : 0U) + (of_obstacle ? 1U : 0U);
+      for (const auto& row : rows) EXPECT_EQ(row.size(), width);
+      const auto cell = [&](const std::string& name) {
+        const auto at = std::find(rows[0].begin(), rows[0].end(), name);
+        return at == rows[0].end() ? "none" : rows[1][static_cast<std::size_t>(at - rows[0].begin())];
+      };
+      EXPECT_EQ(cell("input_source"), of_input ? "a.ply" : "none");
+      EXPECT_EQ(cell("input_record"), of_input ? "40" : "none");
+      EXPECT_EQ(cell("input_point"), of_input ? "none" : "32");
+      EXPECT_EQ(cell("input_x"), "8");
+      EXPECT_EQ(cell("obstacle_source"), of_obstacle ? "b.ply" : "none");
+      EXPECT_EQ(cell("obstacle_record"), of_obstacle ? "7" : "none");
+      EXPECT_EQ(cell("obstacle_point"), of_obstacle ? "none" : "0");
+      EXPECT_EQ(cell("certainty"), "certain");
+      const std::string page = clashPage(list);
+      EXPECT_EQ(has(page, "between point 40 of a.ply of the input"), of_input);
+      EXPECT_EQ(has(page, "and point 7 of b.ply of the obstacle"), of_obstacle);
+    }
+}
+
 TEST_F(ClashReports, TheHostsLanguageDoesNotMatter)
 {
   std::vector<std::array<double, 2>> stops;
