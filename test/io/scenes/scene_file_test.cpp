@@ -2,7 +2,6 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/json/json_reader.h>
-#include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -442,28 +441,6 @@ TEST(SceneFile, PrintedMatricesStandForTheirRotations)
       (file.objects[1].pose.linear().transpose() * file.objects[1].pose.linear() - Eigen::Matrix3d::Identity()).norm(),
       1e-14);
   EXPECT_THAT(parseScene(whole, "scene.json").warnings, testing::IsEmpty());
-}
-
-TEST(ShapePoints, LieOnTheirSurfaces)
-{
-  const auto each = [](const std::vector<float>& xyz, const auto& check) {
-    ASSERT_GT(xyz.size(), 30u);
-    for (std::size_t i = 0; i < xyz.size(); i += 3) check(Eigen::Vector3d(xyz[i], xyz[i + 1], xyz[i + 2]));
-  };
-  each(shapePoints("sphere", {2, 2, 2}, 0.3), [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 2, 1e-5); });
-  each(shapePoints("box", {1, 2, 3}, 0.3), [](const Eigen::Vector3d& p) {
-    const Eigen::Array3d inside = Eigen::Array3d(0.5, 1, 1.5) - p.array().abs();
-    EXPECT_NEAR(inside.minCoeff(), 0, 1e-5);
-  });
-  each(shapePoints("cylinder", {1, 2, 0}, 0.3),
-       [](const Eigen::Vector3d& p) { EXPECT_NEAR(std::min(1 - p.head<2>().norm(), 1 - std::abs(p.z())), 0, 1e-5); });
-  each(shapePoints("sphere", {1e30, 0, 0}, 5e29), [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e30, 1e24); });
-  each(shapePoints("sphere", {1e-30, 0, 0}, 5e-31),
-       [](const Eigen::Vector3d& p) { EXPECT_NEAR(p.norm(), 1e-30, 1e-36); });
-  for (const char* shape : {"sphere", "box", "cylinder"}) {
-    const auto count = static_cast<double>(shapePoints(shape, {1, 2, 3}, 0.1).size() / 3);
-    EXPECT_LE(count, 2 * shapePointCount(shape, {1, 2, 3}, 0.1));
-  }
 }
 
 } // namespace
