@@ -227,7 +227,9 @@ TEST_F(CollisionStages, DensityIsTheFilters)
   const pcl::PCLPointCloud2& flagged = result.clouds.begin()->second->cloud;
   for (std::size_t i = 0; i < flags.size(); ++i)
     ASSERT_EQ(flagged.data[i * flagged.point_step + flagged.fields.back().offset], bytesOf(flags)[i]);
-  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("where the obstacle is not scanned densely enough")));
+  const std::string sparse = std::to_string(direct.getSparseCount());
+  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr(sparse + " points stay undecided, of which " + sparse +
+                                                           " where the obstacle is not scanned densely enough")));
   EXPECT_THAT(error("filters.bsh_flag", R"("density": true, "trajectory": )" + quoted(track)),
               HasSubstr("/density: is about which points collide at one pose: leave out the path"));
   EXPECT_THAT(error("filters.bsh_flag", R"("widest_gap": 1)"),

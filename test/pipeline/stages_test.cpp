@@ -170,6 +170,29 @@ TEST(Stages, CropBoxAndPassThroughCutFloat64Exactly)
               ElementsAre(points[0], points[1]));
 }
 
+TEST(Stages, PassThroughKeepsNothingWithoutAValue)
+{
+  const float nothing = std::numeric_limits<float>::quiet_NaN();
+  pcl::PointCloud<pcl::PointXYZI> points;
+  for (const auto& [x, intensity] : {std::pair(0.0f, 1.0f), {1.0f, nothing}, {2.0f, 3.0f}, {nothing, 3.0f}}) {
+    pcl::PointXYZI point;
+    point.x = x, point.y = point.z = 0.0f;
+    point.intensity = intensity;
+    points.push_back(point);
+  }
+  const auto kept = [&](const std::string& options) {
+    std::vector<double> places;
+    for (const Eigen::Vector3d& p :
+         pointsOf(outputOf(stageCloud(points), R"({"type": "filters.pass_through")" + options + "}")))
+      places.push_back(p.x());
+    return places;
+  };
+  const std::string from_two = R"(, "filter_field_name": "intensity", "filter_limits": [2, null])";
+  EXPECT_THAT(kept(from_two), ElementsAre(2));
+  EXPECT_THAT(kept(from_two + R"(, "negative": true)"), ElementsAre(0));
+  EXPECT_THAT(kept(""), ElementsAre(0, 1, 2)) << "all with a place";
+}
+
 TEST(Stages, VoxelGridKeepsTheDigitsOfFloat64)
 {
   const Points points = {{500000.0001, 5400000.0001, 100}, {500000.0003, 5400000.0005, 100.5}};

@@ -304,7 +304,6 @@ void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2
 {
   requireWritableCloud(path);
   header.width = 0;
-  header.data.clear();
   std::ostringstream nowhere;
   naming(path, [&] { print(writtenExtension(path), nowhere, header, no_viewpoint, nullptr); });
 }

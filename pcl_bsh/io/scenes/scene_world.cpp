@@ -121,7 +121,6 @@ PointsView uncertainView(const PointsView& view, const std::vector<pcl::PCLPoint
     return withUncertainty(view, fields, "cloud '" + source.name + "'", source.uncertainty);
   }
   catch (const InvalidInput& error) {
-    if (error.input() != Input::uncertainty) throw;
     throw JsonError(file, source.place + ".uncertainty", error.wrong(), error.remedy());
   }
 }

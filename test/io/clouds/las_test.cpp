@@ -217,6 +217,34 @@ TEST(Las, FieldsOfOldFormats)
   EXPECT_EQ(colourOf(cloud, 0), 0xff8001U);
 }
 
+/// Channels of bytes are told by none that is larger, be it the last of many.
+TEST(Las, ColoursOfBytesAreTakenAsTheyAre)
+{
+  for (const bool wide : {false, true}) {
+    LasSample sample(3, 2);
+    sample.addPoints(5000);
+    for (std::size_t i = 0; i < sample.points.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) put(sample.points[i], 20 + 2 * k, static_cast<std::uint16_t>((i + k) % 256));
+    if (wide) put(sample.points.back(), 24, std::uint16_t{0x2000});
+    const std::string file = sample.text();
+    const pcl::PCLPointCloud2 cloud = readText(file).cloud;
+    LasReader reader(std::make_unique<HeldBytes>(file)); // which looks at all before it reads the first
+    std::vector<std::uint8_t> data;
+    for (pcl::PCLPointCloud2 batch; reader.read(batch, 1000) > 0;)
+      data.insert(data.end(), batch.data.begin(), batch.data.end());
+    EXPECT_TRUE(data == cloud.data);
+    const auto rgb =
+        std::find_if(cloud.fields.begin(), cloud.fields.end(), [](const Field& f) { return f.name == "rgb"; });
+    ASSERT_NE(rgb, cloud.fields.end());
+    for (std::size_t i = 0; i < 5000; i += 777)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const unsigned channel = cloud.data[i * cloud.point_step + rgb->offset + 2 - k];
+        EXPECT_EQ(channel, wide ? 0U : (i + k) % 256) << i;
+      }
+    EXPECT_EQ(cloud.data[4999 * cloud.point_step + rgb->offset], wide ? 0x20 : (4999 + 2) % 256);
+  }
+}
+
 TEST(Las, FieldsOfNewFormats)
 {
   LasSample sample(4, 8);

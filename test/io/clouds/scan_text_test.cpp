@@ -177,6 +177,8 @@ TEST(Pts, RefusesWhatReadersWouldTakeForSomethingElse)
     const pcl::PCLPointCloud2 cloud = parseColumns(header + "\n1,2,3,4" + (header.size() > 15 ? ",5,6\n" : "\n"));
     EXPECT_THAT(defectOf([&] { printedPts(cloud); }), testing::HasSubstr("has no place in a .pts")) << header;
   }
+  const pcl::PCLPointCloud2 coloured = parseColumns("x,y,z,red,green,blue,alpha\n1,2,3,4,5,6,7\n");
+  EXPECT_THAT(defectOf([&] { printedPts(coloured); }), testing::HasSubstr("field 'alpha' has no place in a .pts"));
 }
 
 TEST(Ptx, WrittenAsItWasRead)

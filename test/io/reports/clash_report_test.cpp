@@ -178,8 +178,11 @@ std::string listWith(const std::string& what, const std::string& instead)
 
 TEST_F(ClashReports, AListIsReadAsItWasWritten)
 {
-  const ClashReport written = twoClashes();
+  ClashReport written = twoClashes();
   ASSERT_EQ(written.clashes.size(), 2U);
+  written.question.swept = 0.125;
+  EXPECT_EQ(parseClashes(clashJson(written), "list.json").question.swept, 0.125);
+  written.question.swept = std::nullopt;
   const ClashList list = parseClashes("\xef\xbb\xbf" + clashJson(written), "list.json");
   EXPECT_EQ(list.question.input, "hall.ply");
   EXPECT_EQ(list.question.obstacle, "wagon.ply");
@@ -287,6 +290,8 @@ TEST_F(ClashReports, AClashThatIsNotFoundAgainMayBeUnseen)
   EXPECT_EQ(now.clashes[0].status, ClashStatus::resolved);
   EXPECT_EQ(now.clashes[1].status, ClashStatus::unseen);
   EXPECT_EQ(clashCounts(now), "0 clashes, 1 unseen, 1 resolved");
+  now.clashes[0].status = ClashStatus::not_visited;
+  EXPECT_EQ(clashCounts(now), "0 clashes, 1 unseen, 0 resolved, 1 not visited");
   EXPECT_EQ(parseClashes(clashJson(now), "list.json").clashes[1].distance, before.clashes[1].distance);
 }
 
@@ -411,6 +416,9 @@ TEST_F(ClashReports, CsvTellsTheFilesOfPoints)
       EXPECT_EQ(cell("obstacle_record"), of_obstacle ? "7" : "none");
       EXPECT_EQ(cell("obstacle_point"), of_obstacle ? "none" : "0");
       EXPECT_EQ(cell("certainty"), "certain");
+      const Json pair = Json::parse(clashJson(list))["clashes"][0]["closest_pair"];
+      for (const auto& [side, named] : {std::pair("input", of_input), {"obstacle", of_obstacle}})
+        EXPECT_EQ(has(pair[side].dump(), ".ply"), named) << side;
       const std::string page = clashPage(list);
       EXPECT_EQ(has(page, "between point 40 of a.ply of the input"), of_input);
       EXPECT_EQ(has(page, "and point 7 of b.ply of the obstacle"), of_obstacle);

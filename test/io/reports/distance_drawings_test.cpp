@@ -149,6 +149,8 @@ TEST_F(DistanceDrawings, WhatHasNoDistanceIsDrawnAsTheFarthest)
   expectShade(paths[0].of("fill"), 1);
   EXPECT_THAT(page(), HasSubstr("greatest distance asked for"));
   EXPECT_THAT(page(), HasSubstr("40 points have no distance</text>"));
+  EXPECT_THAT(page(), HasSubstr("<tr><td>points with a distance</td><td></td><td>60</td><td>60</td></tr>"));
+  EXPECT_THAT(page(), Not(HasSubstr("more there are")));
 }
 
 TEST_F(DistanceDrawings, OnePointLiesInTheMiddle)
@@ -156,6 +158,7 @@ TEST_F(DistanceDrawings, OnePointLiesInTheMiddle)
   add(7, 8, 0.25);
   const std::string whole = page();
   EXPECT_THAT(drawingOf(whole, "the cloud from above, by distance"), HasSubstr("M540.0 235.0h2"));
+  EXPECT_EQ(tagsOf(drawingOf(whole, "the cloud from above, by distance"), "text").at(0).text, "0.2") << "of 1 by 1";
   EXPECT_THAT(whole, Not(HasSubstr("nan")));
   EXPECT_THAT(whole, Not(HasSubstr("inf")));
 }

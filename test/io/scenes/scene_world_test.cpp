@@ -62,6 +62,23 @@ TEST(SceneWorld, WideCoordinatesKeepTheRest)
   EXPECT_EQ(world.points(), 23u) << "finite ones";
 }
 
+/// What floats hold stays in floats.
+TEST(SceneWorld, NarrowCoordinatesAreScaledEach)
+{
+  const TemporaryFolder folder;
+  pcl::PCLPointCloud2 cloud = randomCloud<float>(20, 1, {});
+  writeCloud(folder / "a.pcd", cloud);
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": {"file": "a.pcd", "scale": 0.5}},
+      "objects": [{"name": "a", "cloud": "a"}]})");
+  const SceneWorld world(readSceneFile(scene));
+  const PointsView was = viewOf(cloud), is = viewOf(world.cloud("a"));
+  EXPECT_EQ(is.scalar, Scalar::float32);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const Point3 p = was.point(i);
+    EXPECT_EQ(is.point(i), (Point3{0.5 * p[0], 0.5 * p[1], 0.5 * p[2]}));
+  }
+}
+
 /// Whether objects one apart collide by a rule.
 std::string rules(const std::string& given)
 {
