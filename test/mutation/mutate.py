@@ -61,10 +61,10 @@ ROOMS = {
     "pcl_bsh/io/scenes": ["scenes"],
     "pcl_bsh/io/reports": ["reports", "pipeline"],
     "pcl_bsh/site": ["site"],
-    "pcl_bsh/search": ["search"],
-    "filters": ["filters", "pipeline"],
+    "pcl_bsh/search": ["search", "templates"],
+    "pcl_bsh/vtk": ["vtk"],
+    "filters": ["filters", "templates", "pipeline"],
 }
-PARTS = ["filters/pipeline"]  # folders that are no part of the room above them
 ROOMS["filters/pipeline"] = ["pipeline"]
 
 # Tests that take more than some seconds: the last that are run.

@@ -15,6 +15,12 @@ class Reached : public testing::EmptyTestEventListener {
 public:
   explicit Reached(const char* file) : out_(file, std::ios::app) {}
 
+  /// What is reached before the first test counts for each: without it none is as it was.
+  void OnTestProgramStart(const testing::UnitTest&) override
+  {
+    std::memcpy(always_, pcl_bsh_reached_mutants, sizeof always_);
+  }
+
   void OnTestStart(const testing::TestInfo&) override
   {
     std::memset(pcl_bsh_reached_mutants, 0, sizeof pcl_bsh_reached_mutants);
@@ -27,12 +33,13 @@ public:
     out_ << test.test_suite_name() << '.' << test.name() << ' ' << static_cast<long>(1000 * seconds) << ' '
          << (test.result()->Failed() ? "failed" : "passed");
     for (int number = 1; number < kMostMutants; ++number)
-      if (pcl_bsh_reached_mutants[number]) out_ << ' ' << number;
+      if (pcl_bsh_reached_mutants[number] || always_[number]) out_ << ' ' << number;
     out_ << std::endl;
   }
 
 private:
   std::ofstream out_;
+  unsigned char always_[kMostMutants] = {};
   std::clock_t begin_ = 0;
 };
 
