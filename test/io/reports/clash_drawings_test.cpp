@@ -34,7 +34,9 @@ protected:
     request.clearance = kClearance;
     request.distances = request.first_poses = request.closest_poses = request.pose_summaries = true;
     found = collideAlong({SphereHierarchy(scan)}, SphereHierarchy(model), poses, request);
-    ClashReport report{.question = {"hall.ply", "wagon.ply", kClearance, {}, {}, {}, {}},
+    ClashQuestion question;
+    question.clearance = kClearance;
+    ClashReport report{.question = question,
                        .cluster_distance = 0.5,
                        .clashes = findClashes(scan, found, 0.5),
                        .scan = scan,

@@ -182,7 +182,7 @@ TEST_F(ClashReports, AListIsReadAsItWasWritten)
   ASSERT_EQ(written.clashes.size(), 2U);
   written.question.swept = 0.125;
   EXPECT_EQ(parseClashes(clashJson(written), "list.json").question.swept, 0.125);
-  written.question.swept = std::nullopt;
+  written.question.swept = 0.0;
   const ClashList list = parseClashes("\xef\xbb\xbf" + clashJson(written), "list.json");
   EXPECT_EQ(list.question.input, "hall.ply");
   EXPECT_EQ(list.question.obstacle, "wagon.ply");
