@@ -49,7 +49,10 @@ array([ 1, -1], dtype=int32)
 constexpr auto kSymmetricDistances =
     R"(Distances in both directions, and the Hausdorff distance.
 
-Parameters are those of `point_distances`.
+Parameters
+----------
+input_solid : bool, optional
+All others are those of `point_distances`.
 
 Returns
 -------
@@ -100,7 +103,7 @@ SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<doub
   question.max_distance = max_distance;
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
-  asked.set(options, QuestionKind::distances);
+  asked.set(options, both_ways ? QuestionKind::both_ways : QuestionKind::distances);
   question.progress = progressOf(progress);
   question.wanted.distances = question.wanted.intervals = true;
   question.wanted.both_ways = both_ways;

@@ -74,7 +74,7 @@ std::vector<QuestionOption> table()
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
        "alone, hollow as a tunnel that a wagon passes"},
-      {"input_solid", &Q::input_solid, Kind::any, "", "", std::nullopt,
+      {"input_solid", &Q::input_solid, Kind::not_one_way, "", "", std::nullopt,
        "the same of an input with faces: what of the obstacle is inside collides, and so do the triangles of each body "
        "that holds it"},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,

@@ -16,8 +16,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Which questions have an option.
-enum class QuestionKind : std::uint8_t { collisions = 1, distances = 2, any = 3 };
+/// Which questions have an option. Distances in both directions have those of distances, and `not_one_way`: what is
+/// about the obstacle's own.
+enum class QuestionKind : std::uint8_t { collisions = 1, distances = 2, any = 3, not_one_way = 5, both_ways = 6 };
 
 /// Whether an option is one of a question.
 constexpr bool isOf(QuestionKind option, QuestionKind question) noexcept

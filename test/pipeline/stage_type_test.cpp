@@ -45,7 +45,7 @@ TEST(StageType, QuestionsHaveTheOptionsOfTheTable)
                                    {"filters.bsh_collision", QuestionKind::collisions},
                                    {"writers.clashes", QuestionKind::collisions},
                                    {"filters.bsh_distance", QuestionKind::distances},
-                                   {"writers.distances", QuestionKind::distances}}) {
+                                   {"writers.distances", QuestionKind::both_ways}}) {
     const StageType* const type = findStageType(name);
     ASSERT_NE(type, nullptr) << name;
     for (const QuestionOption& row : questionOptions()) {

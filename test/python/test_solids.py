@@ -156,7 +156,7 @@ def test_what_does_not_close_is_refused(points):
 
 def test_options_that_would_change_nothing_are_refused(points):
     scan = pcl_bsh.SphereHierarchy(points)
-    with pytest.raises(ValueError, match="input_solid: is about distances of the obstacle"):
+    with pytest.raises(TypeError, match="there is no argument 'input_solid'"):
         pcl_bsh.point_distances(box(), scan, input_solid=True)
     for ask in (pcl_bsh.nearest_contacts, pcl_bsh.pairs_within, pcl_bsh.hausdorff_distance):
         with pytest.raises(TypeError):

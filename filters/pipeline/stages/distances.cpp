@@ -71,7 +71,7 @@ StageType distanceWriter()
                                          "the .json or .html file to write; it appears complete or not at all")
                                  .required()
                                  .option(&DistanceWriter::also, "also", "another such file, of the same distances"),
-                             QuestionKind::distances)
+                             QuestionKind::both_ways)
       .option(&DistanceWriter::places_beyond, "places_beyond",
               "places are groups of points farther than this; null: than 95 of 100 points")
       .unit("m")
