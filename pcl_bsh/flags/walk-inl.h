@@ -288,7 +288,7 @@ private:
     if (!may_be_far || (near & ~apart) == 0) return apart;
     alignas(32) float gap[kLanes];
     spheresNear(children, {center.x, center.y, center.z, 0.0f, 0.0f}, gap);
-    return apart | separation_.byExtent(facing, gap, near & ~apart);
+    return apart | separation_.byExtent(facing, gap, near & ~apart, true);
   }
 
   /// Of the children in `near`, those that triangles of a leaf may be near to, where a ball of these tells little. It

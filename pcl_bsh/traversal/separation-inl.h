@@ -104,8 +104,8 @@ public:
 
   /// Of nodes far from each other for their size: by how far their points reach towards each other, and point by point
   /// where one is a leaf of points much larger than the other. @param gap as spheresNear() gave it. @pre both are in
-  /// voxels, no balls
-  HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near) const
+  /// voxels, no balls. @param by_points whether to go so far
+  HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near, bool by_points) const
   {
     std::uint32_t far = near & spheresFar(gap, facing.spheres.r, facing.spheres.stretch, facing.radius, kFarNodes);
     if (far == 0) return 0;
@@ -118,8 +118,8 @@ public:
       const float radius = facing.radiusOf(lane);
       const NodeSupport own = nodeSupport(*facing.voxel, owners(facing).storage.view, facing.node, lane, work_);
       bool is_apart = areFarApart(facing, facing.of_a ? own : other, facing.of_a ? other : own);
-      const bool own_points = !owners(facing).storage.view.triangles,
-                 other_points = !others(facing).storage.view.triangles;
+      const bool own_points = by_points && !owners(facing).storage.view.triangles,
+                 other_points = by_points && !others(facing).storage.view.triangles;
       if (!is_apart && own_points && !other_is_leaf && facing.isLeaf(lane) && radius > kLargeFarLeaf * facing.radius)
         is_apart = isLeafFarApart(facing, facing.leaf(lane), facing.of_a, other);
       else if (!is_apart && other_points && other_is_leaf && !facing.isLeaf(lane) &&
