@@ -120,8 +120,8 @@ public:
       if (surely || pairs_.collide(candidate, walk_.work)) witness_ = candidate;
       return witness_.has_value();
     };
-    if (walk_.areTriangles()) {
-      eachTrianglePairNear(
+    if (walk_.haveTriangles()) {
+      eachPairNearTriangles(
           leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return std::max(reach(), 0.0); },
           [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
     }

@@ -168,8 +168,8 @@ public:
   {
     const ComparedLeaves leaves = walk_.compare(pair);
     at_least_ = std::max(pair.key, lowest_key_);
-    if (walk_.areTriangles()) {
-      eachTrianglePairNear(
+    if (walk_.haveTriangles()) {
+      eachPairNearTriangles(
           leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
           [&](std::uint32_t i, std::uint32_t j) {
             consider({leaves.a.record(i), leaves.b.record(j)});

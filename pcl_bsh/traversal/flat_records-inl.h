@@ -35,6 +35,17 @@ struct FlatRecord {
 
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
+  static FlatRecord of(const LocalFrame& frame, std::uint32_t record, const Triangle3& corners)
+  {
+    FlatRecord flat{record, 0.0, flatten(frame, corners)};
+    for (const Point3& corner : corners) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) sum += std::abs(corner[k] - frame.origin[k]) / frame.unit;
+      flat.reach = std::max(flat.reach, sum);
+    }
+    return flat;
+  }
+
   /// By how much more than stored points it may be off, in the voxel's unit: what a frame says of its own reach does
   /// not hold where poses turn what is beyond.
   double error(const RelativeFrame& frame) const { return double{flat.error} + 2 * frame.skew() * reach; }
@@ -62,16 +73,7 @@ public:
   {
     FlatRecord& slot = slots_[record * 0x9e3779b1u >> (32 - kSlotBits)];
     if (slot.record == record) return slot;
-    const Triangle3 corners = view.triangles->triangle(record);
-    slot.record = record;
-    slot.flat = flatten(frame, corners);
-    slot.reach = 0.0;
-    for (const Point3& corner : corners) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < 3; ++k) sum += std::abs(corner[k] - frame.origin[k]) / frame.unit;
-      slot.reach = std::max(slot.reach, sum);
-    }
-    return slot;
+    return slot = FlatRecord::of(frame, record, view.triangles->triangle(record));
   }
 
   std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(FlatRecord); }
@@ -114,28 +116,45 @@ struct CarriedTriangles {
   }
 };
 
-/// Calls found(i, j) for the pairs of triangles of two leaves that floats do not prove to be farther apart than
-/// reach(); stops when found() returns true. @param reach in the clouds' unit, >= 0; asked before each triangle of b
+/// Calls found(i, j) for the pairs of two leaves, of which one at least is of triangles, that floats do not prove to be
+/// farther apart than reach(), with the radii of points that have some; stops when found() returns true. A point beside
+/// a's triangles is a triangle without sides. @param reach in the clouds' unit; asked before each record of b
 template <class Reach, class Found>
-bool eachTrianglePairNear(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
-                          FlatRecords& flat, const Reach& reach, const Found& found)
+bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
+                           FlatRecords& flat, const Reach& reach, const Found& found)
 {
   const RelativeFrame& frame = leaves.frame;
   const LocalFrame& frame_b = leaves.b.voxel->frame;
   const double largest = leaves.a.largestRadius();
   CarriedTriangles own;
+  FlatRecord point_of_b;
   bool is_carried = false;
   for (std::uint32_t j = 0; j < leaves.b.count; ++j) {
-    const float by_balls = frame.pruneReach(reach() + largest + leaves.b.radius(j));
+    const float by_balls = frame.pruneReach(std::max(reach() + largest + leaves.b.radius(j), 0.0));
     std::uint32_t near =
         leaves.near & pointsNear(leaves.points.x, leaves.points.y, leaves.points.z, leaves.a.count, leaves.b.x()[j],
                                  leaves.b.y()[j], leaves.b.z()[j], by_balls, kSphereMargin);
     if (near == 0) continue;
-    const FlatRecord& triangle = flat.of(view_b, frame_b, leaves.b.record(j));
-    if (!is_carried) own.carry(view_a, leaves.a, frame);
-    is_carried = true;
-    const float error = roundUp(own.error + triangle.error(frame));
-    near &= ~compareWithTriangle(triangle.flat, own.leaf, near, frame.pruneReach(reach()) + error, -1.0f).apart;
+    const std::uint32_t record = leaves.b.record(j);
+    if (!view_b.triangles) {
+      const Point3 at = view_b.point(record);
+      point_of_b = FlatRecord::of(frame_b, record, {at, at, at});
+    }
+    const FlatRecord& triangle = view_b.triangles ? flat.of(view_b, frame_b, record) : point_of_b;
+    const double of_points =
+        (view_a.triangles ? 0.0 : largest) + (view_b.triangles ? 0.0 : leaves.b.radius(j)); // beside what is measured
+    const double within = std::max(reach() + of_points, 0.0);
+    if (view_a.triangles) {
+      if (!is_carried) own.carry(view_a, leaves.a, frame);
+      is_carried = true;
+      const float error = roundUp(own.error + triangle.error(frame));
+      near &= ~compareWithTriangle(triangle.flat, own.leaf, near, frame.pruneReach(within) + error, -1.0f).apart;
+    }
+    else {
+      alignas(64) float squared[kLeafPoints];
+      squaredToTriangle(triangle.flat, leaves.points.x, leaves.points.y, leaves.points.z, kLeafPoints, squared);
+      near &= ~above(squared, triangle.band(frame, within).miss);
+    }
     for (; near != 0; near &= near - 1)
       if (found(static_cast<std::uint32_t>(std::countr_zero(near)), j)) return true;
   }

@@ -75,10 +75,10 @@ public:
   RecordDistance distance;
   Work work;
 
-  /// Whether both clouds are of triangles, so that leaves are compared by eachTrianglePairNear().
-  bool areTriangles() const { return a.storage.view.triangles && b.storage.view.triangles; }
+  /// Whether a cloud is of triangles, so that leaves are compared by eachPairNearTriangles().
+  bool haveTriangles() const { return a.storage.view.triangles || b.storage.view.triangles; }
 
-  /// b's triangles laid flat. @pre areTriangles()
+  /// b's triangles laid flat. @pre b is of triangles
   FlatRecords& flat()
   {
     if (!flat_) {

@@ -5,6 +5,7 @@
 #include <pcl_bsh/pairs/contacts.h>
 
 #include "support/adversarial_clouds.h"
+#include "support/made_meshes.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 
@@ -234,6 +235,28 @@ TEST(PairWork, GrowsAsTheClouds)
     expectLinear((std::string(hard.name) + ": one contact").c_str(), hard.make, 4000, kOneContact);
     expectLinear((std::string(hard.name) + ": pairs within").c_str(), hard.make, 4000, kWithin);
     expectLinear((std::string(hard.name) + ": flags").c_str(), hard.make, 4000, kFlags);
+  }
+}
+
+/// Balls about needles hold most of the scan: floats tell which needles are farther than the nearest pair, whichever
+/// side they are on.
+TEST(PairWork, PointsAmongNeedlesOfAFanAreSeldomDecidedExactly)
+{
+  test::Random random(3);
+  const test::TestMesh fan = test::fanMesh(2000, 1.0, 0.3, true);
+  std::vector<Point3> scan(2000);
+  for (Point3& p : scan) p = {random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2), random.uniform(-0.5, 0.5)};
+  const TrianglesView triangles = fan.trianglesView();
+  const SphereHierarchy of_scan(viewOf(scan[0].data(), scan.size())), of_fan(viewOf(triangles));
+  const Placed points(of_scan), needles(of_fan);
+  for (const auto& [a, b] : {std::pair{points, needles}, {needles, points}}) {
+    const DistanceResult closest = closestPair(a, b, {});
+    ASSERT_GT(closest.distance, 0.0);
+    EXPECT_LT(closest.work.exact_decisions, 1000u);
+    const AnyResult free = anyCollision(a, b, {0.999 * closest.distance});
+    EXPECT_EQ(free.verdict, Verdict::free);
+    EXPECT_LT(free.work.exact_decisions, 50u);
+    EXPECT_EQ(anyCollision(a, b, {closest.distance}).verdict, Verdict::colliding);
   }
 }
 
