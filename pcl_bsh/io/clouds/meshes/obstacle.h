@@ -3,7 +3,6 @@
 //
 //   const io::Obstacle crate = io::readObstacle("crate.off", {});
 //   SphereHierarchy obstacle(crate.view());          // of a surface, of its triangles
-//
 #pragma once
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
