@@ -44,6 +44,9 @@ struct NoOthers {
 /// finds near pairs late; each dive that finds none doubles the steps to the next one.
 inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
+/// What a search with a time compares of leaves before it may take long steps: most searches come to no more.
+inline constexpr std::uint64_t kPairsBeforePoints = 48;
+
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
 ///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
 ///   is nearer; `allow(pause)`: until when not to stop
@@ -62,6 +65,7 @@ public:
   {
     walk_.makeWholes();
     sharp_ = 0x1p-36 * smallerRadius();
+    if (goal_.rule.isTimed()) walk_.pairs_before_points = kPairsBeforePoints;
   }
 
   /// Searches until the end, until the accuracy's budget is spent or, where there are other threads, for some steps:

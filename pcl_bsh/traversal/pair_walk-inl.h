@@ -55,10 +55,6 @@ void nearestLast(std::vector<Pair>& stack, std::size_t from)
   }
 }
 
-/// What a search for the closest pair compares before it tells leaves from far nodes point by point, which takes longer
-/// than the few pairs of leaves that most searches come to.
-inline constexpr std::uint64_t kFewLeafPairs = 48;
-
 class PairWalk {
 public:
   PairWalk(const Placed& placed_a, const Placed& placed_b)
@@ -74,6 +70,9 @@ public:
   FrameTable frames;
   RecordDistance distance;
   Work work;
+  /// So many pairs of leaves are compared before leaves are told from far nodes point by point: a step that takes
+  /// microseconds, too long for who looks at a clock between two.
+  std::uint64_t pairs_before_points = 0;
 
   /// Whether a cloud is of triangles, so that leaves are compared by eachPairNearTriangles().
   bool haveTriangles() const { return a.storage.view.triangles || b.storage.view.triangles; }
@@ -483,8 +482,8 @@ private:
     if (out.near != 0 && out.radius > kLargeLeaf * facing.radiusOf(0) && isLeafApart(pair, opened, reach)) out.near = 0;
     if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b)) {
       if (kBounds) boundBySupports(child, out);
-      const bool by_points = !kBounds || work.leaf_pairs >= kFewLeafPairs;
-      if (out.near != 0) out.near &= ~separation_.byExtent(facing, out.gap, out.near, by_points);
+      if (out.near != 0)
+        out.near &= ~separation_.byExtent(facing, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
     }
     if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
       out.near &= ~separation_.byTriangles(facing, out.near);
