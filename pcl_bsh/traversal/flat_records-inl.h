@@ -118,7 +118,8 @@ struct CarriedTriangles {
 
 /// Calls found(i, j) for the pairs of two leaves, of which one at least is of triangles, that floats do not prove to be
 /// farther apart than reach(), with the radii of points that have some; stops when found() returns true. A point beside
-/// a's triangles is a triangle without sides. @param reach in the clouds' unit; asked before each record of b
+/// a's triangles is a triangle without sides. @param reach in the clouds' unit, >= 0; asked before each
+/// record of b
 template <class Reach, class Found>
 bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
                            FlatRecords& flat, const Reach& reach, const Found& found)
@@ -130,7 +131,7 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
   FlatRecord point_of_b;
   bool is_carried = false;
   for (std::uint32_t j = 0; j < leaves.b.count; ++j) {
-    const float by_balls = frame.pruneReach(std::max(reach() + largest + leaves.b.radius(j), 0.0));
+    const float by_balls = frame.pruneReach(reach() + largest + leaves.b.radius(j));
     std::uint32_t near =
         leaves.near & pointsNear(leaves.points.x, leaves.points.y, leaves.points.z, leaves.a.count, leaves.b.x()[j],
                                  leaves.b.y()[j], leaves.b.z()[j], by_balls, kSphereMargin);
@@ -143,7 +144,7 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
     const FlatRecord& triangle = view_b.triangles ? flat.of(view_b, frame_b, record) : point_of_b;
     const double of_points =
         (view_a.triangles ? 0.0 : largest) + (view_b.triangles ? 0.0 : leaves.b.radius(j)); // beside what is measured
-    const double within = std::max(reach() + of_points, 0.0);
+    const double within = reach() + of_points;
     if (view_a.triangles) {
       if (!is_carried) own.carry(view_a, leaves.a, frame);
       is_carried = true;
