@@ -52,7 +52,7 @@ struct UncertainReach {
     const double room = kDoubleMargin * size + kSmallestLength;                          // for all roundings here
     scale_up = roundUp((1.0 + skew) / unit * (1.0 + kDoubleMargin));
     scale_down = roundDown((1.0 - skew) / unit * (1.0 - kDoubleMargin));
-    const double blur = b_most * (static_cast<double>(scale_up - scale_down) * unit) * (1.0 + kDoubleMargin);
+    const double blur = b_most * (static_cast<double>(scale_up - scale_down) * unit);
     const auto low = [&](double d) { return d / unit * (d < 0.0 ? 1.0 + skew : 1.0 - skew) - error - room; };
     const auto high = [&](double d) { return d / unit * (d < 0.0 ? 1.0 - skew : 1.0 + skew) + error + room; };
     most_of_b = roundUp(b_most);

@@ -67,7 +67,6 @@ inline double roundedLength(const std::array<LongCoordinate, 3>& vector, double 
     error += 2.0 * length * c.error + c.error * c.error + 4 * kDoubleUnit * length * std::abs(c.tail) * 2.0;
   }
   if (zero) return 0.0 - (radius_p + radius_q);
-  if (!(size_of_low < kMostLowOrder * high)) return std::numeric_limits<double>::quiet_NaN();
   return roundedRoot(high, low, 2.0 * (error + 8 * kDoubleUnit * size_of_low), radius_p, radius_q);
 }
 

@@ -54,8 +54,7 @@ void onFace(const Point3& p, const Triangle3& t, const Offer& offer)
 {
   const Point3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
   const Point3 normal = cross(u, v);
-  const double square = dot(normal, normal);
-  if (!(square > 0.0)) return;
+  const double square = dot(normal, normal); // where it is 0, no place below compares as inside
   const double on_v = dot(normal, cross(u, w)) / square, on_u = dot(normal, cross(w, v)) / square;
   if (!(on_u > 0.0 && on_v > 0.0 && on_u + on_v < 1.0)) return;
   offer(t[0] + on_u * u + on_v * v);
