@@ -40,10 +40,10 @@ void expectSame(const CollidingIndices& found, const FlagsResult& expected)
   EXPECT_EQ(found.undecided_b, recordsOf(expected.b, Verdict::undecided));
 }
 
-void expectSameAsFlags(const Scene& scene, const Accuracy& accuracy)
+void expectSameAsFlags(const Scene& scene, const Accuracy& accuracy, const HierarchyOptions& options = {})
 {
   SCOPED_TRACE(scene.name + " at " + accuracy.text());
-  const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+  const SphereHierarchy a(scene.a.view(), options), b(scene.b.view(), options);
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
   CollidingIndices found;
   for (const Side side : {Side::a, Side::b, Side::both})
@@ -85,6 +85,22 @@ TEST(CollidingIndices, SameAsFlagsForAnyAccuracy)
           Accuracy::nodePairs(30), Accuracy::nodePairs(300), Accuracy::nodePairs(3000), Accuracy::nodePairs(1u << 30),
           Accuracy::time(0), Accuracy::time(1000)})
       expectSameAsFlags(test::anyScene(seed, seed % 2 == 0 ? 100 : 700), accuracy);
+}
+
+/// What one pass takes for possible, and a later one finds to collide, is on one list alone.
+TEST(CollidingIndices, OfUncertainPointsAreTheirFlagsForAnyAccuracy)
+{
+  for (std::uint64_t seed = 400; seed < 440; ++seed) {
+    Scene scene = test::anyScene(seed, seed % 2 == 0 ? 100 : 700);
+    Random random(seed);
+    test::makeUncertain(scene.a, scene.clearance, random);
+    test::makeUncertain(scene.b, scene.clearance, random);
+    HierarchyOptions options;
+    if (seed % 4 < 2) options.voxel_edge = 1e7; // deep trees: passes end within them
+    for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::level(2), Accuracy::nodePairs(300),
+                                     Accuracy::nodePairs(3000), Accuracy::nodePairs(1u << 30)})
+      expectSameAsFlags(scene, accuracy, options);
+  }
 }
 
 TEST(CollidingIndices, OfCoincidentPointsAreAllOfThem)

@@ -171,6 +171,29 @@ TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
   EXPECT_LT(hits, all - all / 5);
 }
 
+/// The middle of some triangle is near each point: no triangle is compared.
+TEST(CollisionFlags, MiddlesOfTrianglesSettleThePointsOfLeaves)
+{
+  Random random(52);
+  constexpr std::uint32_t side = 100;
+  constexpr double edge = 4.0 / side;
+  test::Mesh mesh;
+  for (std::uint32_t i = 0; i < side; ++i)
+    for (std::uint32_t j = 0; j < side; ++j) {
+      const double x = edge * i, y = edge * j;
+      mesh.add({x, y, 0}, {x + edge, y, 0}, {x, y + edge, 0});
+    }
+  std::vector<Point3> points(300);
+  for (Point3& p : points) p = {random.uniform(0.1, 3.9), random.uniform(0.1, 3.9), 0.05};
+  Cloud floor(mesh.vertices);
+  floor.setTriangles(mesh.corners);
+  const Cloud cloud(points);
+  const SphereHierarchy a(cloud.view()), b(floor.view());
+  const FlagsResult found = collisionFlags({a}, {b}, within(0.1));
+  EXPECT_EQ(found.colliding_a, points.size());
+  EXPECT_EQ(found.work.leaf_pairs, 0u);
+}
+
 TEST(CollisionFlags, SameAsBruteForceOnGridsWithTies) // H5, H5b, H5c
 {
   struct Grid {
@@ -548,6 +571,68 @@ TEST(CollisionFlags, SlabsOfEarlierQueriesSpareHalfTheCostOfFacingSheets)
       EXPECT_EQ(test::countsOf(found.work), test::countsOf(one_thread));
     }
   }
+}
+
+/// Half a floor and a wall: planes lie across other axes in each half, so that no node's slab holds what is in another.
+std::vector<Point3> floorAndWall(std::size_t count, Random& random)
+{
+  std::vector<Point3> points(count);
+  for (Point3& p : points) {
+    const double along = random.uniform(2, 4);
+    p = random.chance(0.5) ? Point3{random.uniform(2, 3), along, 2.1} : Point3{3.9, along, random.uniform(2, 4)};
+  }
+  return points;
+}
+
+TEST(CollisionFlags, BySlabsOfWhatLiesAcrossOtherAxes)
+{
+  Random random(45);
+  HierarchyOptions options;
+  options.voxel_edge = 8.0; // deep trees: nodes below the root have slabs of their own
+  for (int round = 0; round < 2; ++round) {
+    const Cloud one(floorAndWall(1500, random)), other(floorAndWall(1500, random));
+    const SphereHierarchy a(one.view(), options), b(other.view(), options);
+    ASSERT_EQ(a.statistics().voxels, 1u);
+    const Placed placed_a{a}, placed_b{b, Eigen::Isometry3d(Eigen::Translation3d(0.11, 0.02, 0.13))};
+    closestPair(placed_a, placed_b); // fits slabs
+    for (const double clearance : {0.112, 0.135, 0.16}) {
+      const FlagsRequest request = within(clearance, Side::both);
+      const FlagsResult found = collisionFlags(placed_a, placed_b, request);
+      const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, request);
+      EXPECT_EQ(found.a, expected.a) << clearance;
+      EXPECT_EQ(found.b, expected.b) << clearance;
+      EXPECT_GT(found.colliding_a, 10u);
+    }
+  }
+}
+
+/// Of each voxel its own are asked about: here the next one is far from all that was asked.
+TEST(CollisionFlags, SlabsOfOneVoxelNeedNoneOfTheNext)
+{
+  Random random(46);
+  const auto sheet = [&](double height) {
+    std::vector<Point3> points(20000);
+    for (Point3& p : points) {
+      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+      p = {300 + x, 300 + y, 300 + 0.2 * x * x - 0.1 * x * y + height};
+    }
+    return points;
+  };
+  std::vector<Point3> with_next = sheet(0.0);
+  for (int i = 0; i < 500; ++i) with_next.push_back({900 + random.uniform(-1, 1), 900, 900});
+  const Cloud one(with_next), other(sheet(0.05));
+  HierarchyOptions options;
+  options.voxel_edge = 600.0;
+  const SphereHierarchy a(one.view(), options), b(other.view(), options), unasked_a(one.view(), options),
+      unasked_b(other.view(), options);
+  ASSERT_EQ(a.statistics().voxels, 2u);
+  const double gap = closestPair({a}, {b}).distance;
+  for (const SphereHierarchy* const built : {&a, &b, &unasked_a, &unasked_b}) built->buildAll();
+  const auto cost = [](const FlagsResult& result) { return result.work.node_pairs + 16 * result.work.leaf_pairs; };
+  const FlagsResult found = collisionFlags({a}, {b}, within(0.9 * gap));
+  const FlagsResult by_spheres = collisionFlags({unasked_a}, {unasked_b}, within(0.9 * gap));
+  EXPECT_EQ(found.a, by_spheres.a);
+  EXPECT_LT(2 * cost(found), cost(by_spheres));
 }
 
 /// Slabs answer what exact arithmetic would. A coarser answer has to be the one that spheres alone give.

@@ -296,6 +296,23 @@ TEST(FlagRuns, OfBothCloudsAtOnce)
   }
 }
 
+/// What one leaf settles is looked at once.
+TEST(FlagRuns, GroupsThatOneLeafSettlesLookAtNothingElse)
+{
+  std::vector<Point3> row, place;
+  for (int i = 0; i < 16; ++i) {
+    row.push_back({0.5 * i, 0, 0});
+    place.push_back({0.5 * i, 0, 1});
+  }
+  const Cloud a(row), b(place);
+  const SphereHierarchy ha(a.view(), withEdge(16)), hb(b.view(), withEdge(16));
+  const FlagsResult found = collisionFlags({ha}, {hb}, within(4));
+  EXPECT_EQ(found.colliding_a, 16u);
+  EXPECT_EQ(ha.statistics().voxels_built, 0u);
+  EXPECT_EQ(found.work.leaf_pairs, 1u);
+  EXPECT_EQ(found.work.volumes_carried, 3u); // the voxel's sphere from above and its own, and the box around the group
+}
+
 /// Where spheres tell little, the tree takes over before much is lost.
 TEST(FlagRuns, GiveUpWhatTakesTooMany)
 {
