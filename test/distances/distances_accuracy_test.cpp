@@ -121,6 +121,34 @@ TEST_F(DistancesAccuracy, BudgetsGiveCertainIntervalsAndInTheEndAllDistances)
   });
 }
 
+/// Passes that go farther down keep what the ones before told: of a budget that ends in the last one, each interval
+/// lies in the one of the level that all passes before came to.
+TEST_F(DistancesAccuracy, BudgetsKeepWhatEarlierPassesKnow)
+{
+  std::size_t undecided = 0, narrowed = 0;
+  test::Random random(10);
+  for (int round = 0; round < 10; ++round) {
+    const Cloud one(test::makePoints(test::Shape::sphere, 800, 1, random)),
+        other(test::makePoints(test::Shape::uniform, 800, 1, random));
+    const SphereHierarchy a(one.view()), b(other.view());
+    const auto at = [&](const Accuracy& accuracy) {
+      PointDistancesRequest request;
+      request.accuracy = accuracy;
+      return pointDistances(a, b, request);
+    };
+    const PointDistances first = at(Accuracy::level(0)), second = at(Accuracy::level(2));
+    const PointDistances found = at(Accuracy::nodePairs(first.work.node_pairs + second.work.node_pairs + 500));
+    for (std::size_t i = 0; i < found.interval.size(); ++i) {
+      EXPECT_GE(found.interval[i].lower, second.interval[i].lower) << i;
+      EXPECT_LE(found.interval[i].upper, second.interval[i].upper) << i;
+      undecided += found.closest_point[i] == kNothing;
+      narrowed += found.closest_point[i] == kNothing && second.interval[i].lower > first.interval[i].lower;
+    }
+  }
+  EXPECT_GT(undecided, 1000u);
+  EXPECT_GT(narrowed, 500u) << "else nothing is tested";
+}
+
 /// What finds out how near the voxels are may spend all that was left before the first node is opened: the points are
 /// then left with what the walk begins with. Budgets that do so are about what the coarse pass takes, and a little
 /// more.

@@ -98,6 +98,53 @@ TEST(PointDistances, OfTriangles)
   }
 }
 
+/// Of leaves with points within the limit and beyond it, where floats know of each but one triangle.
+TEST(PointDistances, OfOneTriangleWithinALimit)
+{
+  Random random(8);
+  Cloud floor({{0, 0, 0}, {100, 0, 0}, {0, 100, 0}});
+  floor.setTriangles({0, 1, 2});
+  const SphereHierarchy b(floor.view());
+  HierarchyOptions options;
+  options.voxel_edge = 100; // many leaves in each, one after another
+  std::size_t measured = 0;
+  for (int round = 0; round < 12; ++round) {
+    std::vector<Point3> points(100);
+    for (Point3& p : points) {
+      const double z = random.chance(0.5) ? random.uniform(0, 0.9) : random.uniform(1.1, 2);
+      p = {random.uniform(1, 40), random.uniform(1, 40), z};
+    }
+    const Cloud cloud(points);
+    const SphereHierarchy a(cloud.view(), options);
+    const PointDistances found = pointDistances({a}, {b}, within(1.0));
+    test::expectSame(found, brute_force::pointDistances({a}, {b}, within(1.0)));
+    measured += found.measured;
+  }
+  EXPECT_GT(measured, 400u);
+  EXPECT_LT(measured, 800u);
+}
+
+/// Points that a translation brings so near to each other that what it rounds off is about as long as what it leaves.
+TEST(PointDistances, OfTranslationsThatRound)
+{
+  const double third = 1.0 / 3.0, far = 1e9;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<Point3> points(40, Point3{});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i][axis] = far + static_cast<double>(i) * 0x1p-21;
+      points[i][(axis + 1) % 3] = static_cast<double>(i % 3) * 0x1p-23;
+    }
+    const Cloud one({{0, 0, 0}}, {Scalar::float64}), other(points, {Scalar::float64});
+    Eigen::Isometry3d pose_a = Eigen::Isometry3d::Identity(), pose_b = pose_a;
+    pose_a.translation()[static_cast<Eigen::Index>(axis)] = far + third;
+    pose_b.translation()[static_cast<Eigen::Index>(axis)] = third;
+    const SphereHierarchy a(one.view()), b(other.view());
+    for (const auto& [from, to] :
+         {std::pair(Placed(a, pose_a), Placed(b, pose_b)), {Placed(b, pose_b), Placed(a, pose_a)}})
+      test::expectSame(pointDistances(from, to), brute_force::pointDistances(from, to));
+  }
+}
+
 TEST(PointDistances, OfBallsWithinALimit)
 {
   Random random(7);
