@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/geometry/rounding.h>
 
 #include "support/random.h"
@@ -47,6 +48,17 @@ TEST(Rounding, OutwardAndNoFarther)
   EXPECT_EQ(roundUp(1e39), INFINITY);
   EXPECT_EQ(roundDown(1e39), std::numeric_limits<float>::max());
   EXPECT_EQ(roundUp(1e-60), std::numeric_limits<float>::denorm_min());
+}
+
+/// Of a number between two, as sums of doubles are, it is that at the smaller one.
+TEST(Rounding, SpacingOfFloat32Numbers)
+{
+  EXPECT_EQ(float32Spacing(1000.0), 0x1p-14);
+  EXPECT_EQ(float32Spacing(1024.0), 0x1p-14);
+  EXPECT_EQ(float32Spacing(std::nextafter(1024.0, 2000.0)), 0x1p-14);
+  EXPECT_EQ(float32Spacing(1025.0), 0x1p-13);
+  EXPECT_EQ(float32Spacing(1e300), 0x1p104);
+  EXPECT_EQ(float32Spacing(0.0), 0.0);
 }
 
 TEST(Rounding, SumsAndProductsWithTheirErrors)

@@ -305,8 +305,8 @@ TEST(SphereHierarchy, SpheresAreTight)
   const auto [box_center, ritter, minimal] = radius_of_fit;
   EXPECT_LT(minimal, box_center);
   EXPECT_LT(minimal, ritter);
-  EXPECT_LT(box_center, 1.15 * minimal);
-  EXPECT_LT(ritter, 1.15 * minimal);
+  EXPECT_LT(box_center, 1.1 * minimal);
+  EXPECT_LT(ritter, 1.1 * minimal);
 }
 
 // Building --------------------------------------------------------------------------------------------------------

@@ -94,6 +94,43 @@ TEST(Budget, BothSidesShareIt)
   EXPECT_EQ(timed.colliding_b, exact.colliding_b);
 }
 
+/// One point takes next to nothing of what both sides have.
+TEST(Budget, WhatASmallCloudLeavesIsTheOthers)
+{
+  Random random(78);
+  const Cloud few({{0.9, 0.1, 0.0}}), many(test::makePoints(Shape::sphere, 20000, 1, random));
+  const SphereHierarchy a(few.view()), b(many.view());
+  const auto flagsAt = [&](std::uint64_t budget, Side flagged) {
+    return collisionFlags({a}, {b}, asking(Accuracy::nodePairs(budget), 0.5, flagged));
+  };
+  std::uint64_t need = 100;
+  while (flagsAt(need, Side::b).undecided_b != 0) need += need / 8;
+  const std::uint64_t needs_a = flagsAt(1u << 30, Side::a).work.node_pairs;
+  ASSERT_LT(8 * needs_a, need);
+  EXPECT_EQ(flagsAt(need + needs_a, Side::both).undecided_b, 0u);
+  EXPECT_GT(flagsAt(need / 2, Side::b).undecided_b, 0u) << "else half would be enough";
+}
+
+/// A cloud that is built has nothing to take time for, whichever side it is.
+TEST(Budget, TimeIsLeftToBuildOneSideAlone)
+{
+  Random random(79);
+  const Cloud one(test::makePoints(Shape::uniform, 3000, 1, random)),
+      other(test::makePoints(Shape::uniform, 3000, 1, random));
+  const SphereHierarchy built(one.view());
+  closestPair({built}, {SphereHierarchy(one.view()), Eigen::Isometry3d(Eigen::Translation3d(2.5, 0, 0))});
+  const Eigen::Isometry3d pose(Eigen::Translation3d(2.5, 0, 0));
+  const double truth = closestPair({built}, {SphereHierarchy(other.view()), pose}).distance;
+  for (const bool is_a : {true, false}) {
+    const SphereHierarchy fresh(other.view());
+    const Placed at_pose(fresh, pose);
+    const DistanceResult found = is_a ? closestPair({built}, at_pose, {Accuracy::time(3600)})
+                                      : closestPair(at_pose, {built}, {Accuracy::time(3600)});
+    EXPECT_EQ(found.distance, truth) << is_a;
+    EXPECT_GT(found.interval.lower, 0.999 * truth) << is_a;
+  }
+}
+
 TEST(Budget, LargerOnesKeepWhatSmallerOnesDecide)
 {
   for (std::uint64_t seed = 4200; seed < 4230; ++seed) {

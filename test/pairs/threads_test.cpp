@@ -10,8 +10,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
 
 namespace pcl_bsh {
 namespace {
@@ -165,6 +168,38 @@ TEST(ThreadsOfASharedStack, FindTheFirstInDepthFirstOrder)
     ASSERT_EQ(several.work().node_pairs, one.work().node_pairs) << trial;
     ASSERT_TRUE(!wanted.empty() || one.work().node_pairs == 2000u);
   }
+}
+
+/// The first piece finds while another thread has the second one, which is then given back for nothing: what it built
+/// counts all the same.
+TEST(ThreadsOfASharedStack, CountWhatDroppedPiecesBuilt)
+{
+  using namespace std::chrono_literals;
+  std::vector<std::uint32_t> nodes(64);
+  for (std::uint32_t i = 0; i < 64; ++i) nodes[i] = 63 - i;
+  Stack stack(nodes);
+  std::atomic<unsigned> begun{0};
+  std::atomic<std::uint64_t> built{0};
+  const auto waitFor = [](const auto& isSo) { // where there is no second thread, in vain
+    const auto end = std::chrono::steady_clock::now() + 500ms;
+    while (!isSo() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  };
+  stack.visit(threadCount(2), [&] {
+    return [&](Stack::Piece& piece) {
+      ++begun;
+      piece.work.voxels_built = 1;
+      ++built;
+      if (piece.pairs.back() == 0) {
+        waitFor([&] { return begun == 2; });
+        piece.found = PointPair{0, 0};
+        return;
+      }
+      waitFor([&] { return piece.dropped.load(); });
+      if (!piece.dropped) piece.pairs.clear();
+    };
+  });
+  EXPECT_EQ(stack.found(), (PointPair{0, 0}));
+  EXPECT_EQ(stack.work().voxels_built, built);
 }
 
 TEST(ThreadsOfASharedStack, EndWhenOneFails)
