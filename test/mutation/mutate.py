@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the tests by what they notice of small changes of the sources.
 
-    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--again FILE] [--release build/release]
+    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--unseen FILE] [--again FILE]
+                        [--release build/release]
     mutate.py run WORK [--rooms flags,pairs] [--only ID] [--seconds 10]
     mutate.py report WORK [--csv FILE]
 
 WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room, spread
-over its files; --again: first those of a stored report that are still there), writes all of them into the copy behind a
-switch, and builds copy and tests once. `run` runs the tests of each room once to see which mutants each reaches, then, for
-each mutant, the tests that reach it until one fails: a second of quick ones of its own room, then those of all its rooms,
-quick ones first, for so many --seconds. Survivors are tried again with more. Stopped, it goes on where it was. Tests of the
-core are taken from the release build as they are. Reasons why survivors cannot be seen are rows of survivors.csv beside
-this file.
+over its files, none of them in the stored report --unseen; beside them those of the report --again that are still
+there), writes all of them into the copy behind a switch, and builds copy and tests once. `run` runs the tests of each
+room once to see which mutants each reaches, then, for each mutant, the tests that reach it until one fails: a second of
+quick ones of its own room, then those of all its rooms, quick ones first, for so many --seconds. Survivors are tried
+again with more. Stopped, it goes on where it was. Tests of the core are taken from the release build as they are.
+Reasons why survivors cannot be seen are rows of survivors.csv beside this file.
 """
 import argparse
 import collections
@@ -63,6 +64,7 @@ ROOMS = {
     "pcl_bsh/site": ["site"],
     "pcl_bsh/search": ["search", "templates"],
     "pcl_bsh/vtk": ["vtk"],
+    "pcl_bsh/vtk_filters": ["vtk"],
     "filters": ["filters", "templates", "pipeline"],
 }
 ROOMS["filters/pipeline"] = ["pipeline"]
@@ -92,12 +94,13 @@ def write_changed(file, data):
 
 # Making ---------------------------------------------------------------------------------------------------------------
 
-def choose(room, names, count, rng, again):
-    """Mutants of a room: those to be tried again, then a file after the other, of each one of an operator not yet taken
-    there as long as there are."""
+def choose(room, names, count, rng, again, seen):
+    """Mutants of a room: those to be tried again, and so many that were not seen, a file after the other, of each one of
+    an operator not yet taken there as long as there are."""
     left, chosen, sites = {}, [], set()
     for name in names:
-        found = mutants.mutants_of(name, (SOURCE / name).read_text())
+        found = [mutant for mutant in mutants.mutants_of(name, (SOURCE / name).read_text())
+                 if mutant.id in again or mutant.id not in seen]
         for mutant in found:
             if mutant.id in again:
                 chosen.append(mutant)
@@ -115,6 +118,7 @@ def choose(room, names, count, rng, again):
     # A file with many mutants has more turns than one with few.
     turns = [name for name in names for _ in range((len(left[name]) + 19) // 20)]
     rng.shuffle(turns)
+    count += len(chosen)
     while len(chosen) < count and any(left.values()):
         for name in turns:
             while left[name]:
@@ -182,15 +186,14 @@ def make(options):
     work = options.work.resolve()
     rooms = options.rooms
     names = sources()
-    again = set()
-    if options.again:
-        with options.again.open(newline="") as file:
-            again = {row["id"] for row in csv.DictReader(file)}
+    def stored(file):
+        return {row["id"] for row in csv.DictReader(file.read_text().splitlines())} if file else set()
+    again, seen = stored(options.again), stored(options.unseen)
     chosen, number = {}, 0
     for room in rooms:
         rng = random.Random(f"{options.seed} {room}")
         ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room]
-        for mutant in choose(room, ours, options.count, rng, again):
+        for mutant in choose(room, ours, options.count, rng, again, seen):
             number += 1
             chosen[number] = mutant
     write_copy(work, chosen)
@@ -379,6 +382,7 @@ def main():
     parser.add_argument("--only")
     parser.add_argument("--seconds", type=float, default=3600)
     parser.add_argument("--again", type=pathlib.Path)
+    parser.add_argument("--unseen", type=pathlib.Path)
     parser.add_argument("--csv", type=pathlib.Path)
     options = parser.parse_args()
     options.rooms = options.rooms.split(",")
