@@ -144,7 +144,6 @@ public:
 private:
   std::optional<PointPair> search()
   {
-    stopped_ = false;
     witness_.reset();
     visitPairs(walk_, stack_, *this);
     return witness_;

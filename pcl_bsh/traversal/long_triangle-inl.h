@@ -105,11 +105,11 @@ struct LongDirection {
     }
     const LongNumber square = dot(v, v);
     if (!(square.value() > 0x1p-400 && square.value() < 0x1p400)) return;
-    // Newton's step from the root in double, which it takes to within 0.4 t^2 of itself.
+    // Newton's step from the root in double, which it takes to within 0.4 t^2 of itself; t's tail is 2^-101 at most.
     const double root = 1.0 / std::sqrt(square.value());
     const LongNumber t = LongNumber(1.0) - square * (LongNumber(root) * LongNumber(root));
     if (!(std::abs(t.value()) < 0x1p-48)) return;
-    const WithError inverse = twoSum(root, 0.5 * root * (t.value() + t.tail()));
+    const WithError inverse = twoSum(root, 0.5 * root * t.value());
     const LongNumber factor(inverse.value, inverse.error, root * (0x1p-95 + t.error()));
     unit = LongVector(Vector3<LongNumber>{v[0] * factor, v[1] * factor, v[2] * factor});
     if (!(unit.error < kMostError)) return;

@@ -56,6 +56,20 @@ TEST(LongNumber, KnowsItsError)
   }
 }
 
+/// What numbers are off by is added where they are, and multiplied: all of it, and hardly more.
+TEST(LongNumber, HasTheErrorsOfItsParts)
+{
+  const LongNumber x(1.0, 0.0, 0x1p-60), y(-3.0, 0.0, 0x1p-62);
+  const auto expectError = [](const LongNumber& number, double error) {
+    EXPECT_GE(number.error(), error);
+    EXPECT_LE(number.error(), error * (1.0 + 1e-6));
+  };
+  expectError(x + y, 0x1p-60 + 0x1p-62);
+  expectError(x - y, 0x1p-60 + 0x1p-62);
+  expectError(-x, 0x1p-60);
+  expectError(x * y, 3 * 0x1p-60 + 0x1p-62);
+}
+
 /// So that what lies across an axis is known to, whatever the other axes have.
 TEST(LongNumber, OfNothingIsNothing)
 {

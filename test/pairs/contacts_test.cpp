@@ -100,6 +100,16 @@ TEST(Contacts, CrowdedPlacesCountEveryPoint)
   expectSameAsOracle({crowd, other, identity, identity, 0.5, "two crowded places"});
 }
 
+/// Of pairs at one distance those of larger records are not asked for, once there are enough.
+TEST(Contacts, CrowdedPlacesAreComparedAsFarAsTheyAreAskedFor)
+{
+  const Cloud crowd(std::vector<Point3>(400, Point3{1, 2, 3})), other(std::vector<Point3>(300, Point3{1, 2, 3.5}));
+  const SphereHierarchy a(crowd.view()), b(other.view());
+  const ContactsResult found = nearestContacts({a}, {b}, within(0.5, 20));
+  EXPECT_EQ(found.contacts.size(), 20u);
+  EXPECT_LT(found.work.exact_decisions, 40u);
+}
+
 TEST(Contacts, NormalsPointFromTheOtherToTheFirst)
 {
   const Cloud low({{0, 0, 0}}), high({{0, 0, 0.5}});
