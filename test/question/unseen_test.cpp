@@ -106,6 +106,14 @@ TEST_F(Unseen, OneScannerThatSeesItSuffices)
   EXPECT_EQ(found.unseen.angles.size(), 2u);
 }
 
+/// It saw nothing: above all not what the other one did.
+TEST_F(Unseen, AScannerWithoutPointsSeesNothing)
+{
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  const Answer found = asked(first_);
+  EXPECT_EQ(found.obstacle_flags, test::verdictsOf({0, 4, 1}));
+}
+
 TEST_F(Unseen, IsToldOfEachPoseOfAPath)
 {
   question.path.emplace();
