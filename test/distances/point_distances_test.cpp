@@ -124,6 +124,18 @@ TEST(PointDistances, OfOneTriangleWithinALimit)
   EXPECT_LT(measured, 800u);
 }
 
+TEST(PointDistances, OfOnePointNeedNoExactDecision)
+{
+  Random random(9);
+  const Cloud one({{0.1, 0.2, 0.3}}), cloud(test::makePoints(test::Shape::uniform, 300, 1, random));
+  const SphereHierarchy a(cloud.view()), b(one.view());
+  for (const double max : {1.0, kInfinity}) {
+    const PointDistances found = pointDistances({a}, {b}, within(max));
+    EXPECT_GT(found.measured, 100u);
+    EXPECT_EQ(found.work.exact_decisions, 0u);
+  }
+}
+
 /// Points that a translation brings so near to each other that what it rounds off is about as long as what it leaves.
 TEST(PointDistances, OfTranslationsThatRound)
 {

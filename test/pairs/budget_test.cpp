@@ -4,6 +4,7 @@
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/roadmap/brute_force.h>
 
+#include "support/facing_sheets.h"
 #include "support/journeys.h"
 #include "support/question.h"
 #include "support/verdicts.h"
@@ -62,6 +63,20 @@ TEST(Budget, TimedAnySearchesAsExactDoes)
       EXPECT_GE(hurried.interval.upper, truth);
     }
   }
+}
+
+/// What is built already takes time as well.
+TEST(Budget, NoTimeEndsASearchAtOnce)
+{
+  const test::FacingSheets sheets(6, 5000);
+  const SphereHierarchy a(sheets.a->view()), b(sheets.b->view());
+  const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
+  const double clearance = 0.9 * closestPair(placed_a, placed_b).distance;
+  const AnyResult exact = anyCollision(placed_a, placed_b, asking(Accuracy::exact(), clearance));
+  const AnyResult hurried = anyCollision(placed_a, placed_b, asking(Accuracy::time(0), clearance));
+  EXPECT_EQ(exact.verdict, Verdict::free);
+  EXPECT_EQ(hurried.verdict, Verdict::undecided);
+  EXPECT_LT(10 * hurried.work.node_pairs, exact.work.node_pairs);
 }
 
 struct TwoSurfaces {

@@ -52,6 +52,21 @@ TEST(UncertainReach, BoundsOnTheSafeSideAndTightly)
   }
 }
 
+/// What a sum in double drops is on the safe side as well: lengths that are floats, and an error below their last bits.
+TEST(UncertainReach, HasRoomForWhatSumsDrop)
+{
+  constexpr double error = 0x1p-60;
+  for (const float length : {1.0f, 1.25f, 3.0f}) {
+    const UncertainReach reach(error, 0.0, 1.0, length, length, 0.0, 1e9f);
+    EXPECT_LT(reach.sure, length);
+    EXPECT_LT(reach.maybe, length);
+    EXPECT_GT(reach.sure_near, length);
+    EXPECT_GT(reach.near, length);
+    EXPECT_GT(reach.sure_miss, length);
+    EXPECT_GT(reach.miss, length);
+  }
+}
+
 /// Then pairs are decided one by one, and spheres by what is given for them.
 TEST(UncertainReach, KnowsNothingBeyondTheRangeOfFloat)
 {
