@@ -596,6 +596,30 @@ TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
   }
 }
 
+/// Boxes of hierarchies are in units of their own where lengths are beyond what a float holds; and a pair at just the
+/// greatest distance is one.
+TEST(Scene, KnowsWhatIsNearAtAnyMagnitude)
+{
+  for (const double scale : {0x1p-300, 1.0, 0x1p300}) {
+    Shelf shelf;
+    SceneOptions options;
+    options.clearance = 0.5 * scale;
+    options.effects.any = options.effects.flags = true;
+    options.effects.distance = 0.5 * scale;
+    Scene scene(options);
+    for (const double from : {0.0, 7.5}) {
+      std::vector<Point3> row;
+      for (int i = 0; i < 8; ++i) row.push_back({(from + i) * scale, 0.25 * scale, 0.25 * scale});
+      scene.add(object(from == 0.0 ? "one" : "next", shelf.add(row)));
+    }
+    const SceneResult found = scene.query();
+    EXPECT_EQ(found.any.size(), 1u) << scale;
+    EXPECT_EQ(found.flags.size(), 2u) << scale;
+    ASSERT_EQ(found.distance.size(), 1u) << scale;
+    EXPECT_EQ(found.distance[0].distance, 0.5 * scale);
+  }
+}
+
 TEST(Scene, RefusesWhatMakesNoSense)
 {
   Shelf shelf;
@@ -627,6 +651,7 @@ TEST(Scene, RefusesWhatMakesNoSense)
   EXPECT_THROW(scene.add(object("scaled", point, scaled)), std::invalid_argument);
   EXPECT_THROW(scene.setPose(0, scaled), std::invalid_argument);
   EXPECT_THROW(scene.setPose(7, identity), std::invalid_argument);
+  EXPECT_THROW(scene.pointsChanged(7), std::invalid_argument);
   EXPECT_THROW(scene.setMotion(0, CircularMotion{{0, 0, 0}, {0, 0, 0}, 1, true}), std::invalid_argument);
   EXPECT_THROW(scene.setMotion(0, WaypointMotion{{1, 1}, {identity, identity}}), std::invalid_argument);
   EXPECT_THROW(scene.step(-1), std::invalid_argument);
