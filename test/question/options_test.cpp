@@ -35,6 +35,15 @@ std::string refusalOf(const Question& question)
   return {};
 }
 
+TEST(GivenOptions, AreThoseThatSayOtherThanTheirDefaultAndNotHowManyThreads)
+{
+  Question question;
+  question.threads = 4;
+  EXPECT_TRUE(givenOptions(question).empty());
+  question.clearance = 0.5;
+  EXPECT_THAT(givenOptions(question), testing::ElementsAre(std::pair<std::string, std::string>("clearance", "0.5")));
+}
+
 /// Sets the number of an option; false where it has none.
 bool setNumber(const QuestionOption& row, Question& question, double number)
 {

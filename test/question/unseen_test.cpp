@@ -224,6 +224,15 @@ TEST_F(Unseen, RefusesWhatDoesNotGoTogether)
   EXPECT_THAT(refusalOf(first_), HasSubstr("seen_angle: is given, but not `seen`"));
 }
 
+TEST(ScanOrigins, AreEqualWhereFieldsAndAllOriginsAre)
+{
+  const ScanOrigins one = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  EXPECT_EQ(one, ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5"));
+  for (const char* const other :
+       {"scans:5=1,3,1.5;6=7,3,1.5", "scan:5=1,3,1.5;7=7,3,1.5", "scan:5=1,3,1.5;6=7,3,2", "scan:5=1,3,1.5"})
+    EXPECT_FALSE(one == ScanOrigins::parse(other)) << other;
+}
+
 TEST(ScanOrigins, ReadTheirText)
 {
   for (const char* text : {"", "1,2.5,-3", "scan:0=1,2,3;7=4,5,6"}) EXPECT_EQ(ScanOrigins::parse(text).text(), text);
