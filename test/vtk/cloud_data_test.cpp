@@ -48,6 +48,15 @@ TEST(CloudData, ArraysAndSubsetsFollowTheNumbers)
       testing::ThrowsMessage<std::invalid_argument>(testing::StartsWith("array short: 1 value, and none for point ")));
 }
 
+TEST(CloudData, SubsetsKeepDoubles)
+{
+  const double xyz[] = {0, 0, 0, 500000.125, 5400000.0625, 2};
+  const auto some = subset(*cloudData(viewOf(xyz, 2)), {0, 1});
+  ASSERT_EQ(some->GetNumberOfPoints(), 1);
+  EXPECT_EQ(some->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(some->GetPoint(0)[1], 5400000.0625);
+}
+
 TEST(CloudData, ThinsEvenly)
 {
   std::vector<float> xyz(3000, 0.0f);
