@@ -187,6 +187,18 @@ TEST_F(CollisionFilterTest, IndicesAreTheOnlyPoints)
   }
 }
 
+TEST_F(CollisionFilterTest, RowsAndColumnsAreTheOnlyPoints)
+{
+  input_->width = 70;
+  input_->height = 10;
+  filter_.setIndices(2, 10, 4, 30);
+  pcl::Indices expected;
+  for (const pcl::index_t i : where(flags_, false, points_))
+    if (i / 70 >= 2 && i / 70 < 6 && i % 70 >= 10 && i % 70 < 40) expected.push_back(i);
+  ASSERT_GT(expected.size(), 10u);
+  EXPECT_EQ(filtered(), expected);
+}
+
 TEST_F(CollisionFilterTest, KeepOrganizedLeavesPointsOutsideTheIndicesAlone)
 {
   const auto indices = std::make_shared<pcl::Indices>();

@@ -96,6 +96,19 @@ protected:
   Filter filter_{true};
 };
 
+TEST_F(DistanceFilterTest, RowsAndColumnsAreTheOnlyPoints)
+{
+  cloud_->width = 50;
+  cloud_->height = 10;
+  filter_.setFilterLimits(0, 0.15);
+  filter_.setIndices(1, 5, 3, 20);
+  pcl::Indices wanted;
+  for (const pcl::index_t i : expected(truth_, 0, 0.15, false))
+    if (i / 50 >= 1 && i / 50 < 4 && i % 50 >= 5 && i % 50 < 25) wanted.push_back(i);
+  ASSERT_FALSE(wanted.empty());
+  EXPECT_EQ(indicesOf(filter_), wanted);
+}
+
 TEST_F(DistanceFilterTest, KeepsWhatBruteForceFindsWithinTheLimits)
 {
   for (const Eigen::Isometry3d& pose : {Eigen::Isometry3d::Identity(), somePose()}) {

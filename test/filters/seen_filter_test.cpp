@@ -59,6 +59,31 @@ TEST_F(SeenFilter, TellsWhatOfTheObstacleIsUnseen)
   EXPECT_TRUE(filter_.getObstacleFlags().empty());
 }
 
+TEST_F(SeenFilter, TakesOriginsByAFieldOfThePoints)
+{
+  const auto numbered = std::make_shared<pcl::PointCloud<pcl::PointXYZI>>();
+  for (const pcl::PointXYZ& p : *scan_) {
+    numbered->emplace_back(p.x, p.y, p.z);
+    numbered->back().intensity = 1.0f;
+  }
+  CollisionFilter<pcl::PointXYZI> filter;
+  filter.setInputCloud(numbered);
+  filter.setObstacleCloud(machine_);
+  filter.setClearance(0.1);
+  filter.setSeenOnly(true);
+  filter.setScanOrigins(ScanOrigins::parse("intensity:1=0,0,1"));
+  filter.computeFlags(flags_);
+  EXPECT_EQ(filter.getObstacleFlags(), test::verdictsOf({0, 4}));
+}
+
+TEST_F(SeenFilter, AsksWithTheAngleThatIsGiven)
+{
+  filter_.setSeenAngle(0.02);
+  EXPECT_EQ(filter_.getQuestion().seen_angle, 0.02);
+  filter_.setSeenAngle(0.0); // measured
+  EXPECT_FALSE(filter_.getQuestion().seen_angle);
+}
+
 TEST_F(SeenFilter, TakesPosesAsUncertainAsTheyAre)
 {
   const Eigen::Isometry3d pose(Eigen::Translation3d(0.8, 0, 0)); // 0.2 before the pillar

@@ -274,6 +274,31 @@ TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
   EXPECT_NO_THROW(filter.computeFlags(flags)) << "as it was";
 }
 
+TEST(MeshFilter, HoldsWhatItsInputEncloses)
+{
+  auto mesh = std::make_shared<pcl::PolygonMesh>(); // a tetrahedron, and a point within
+  for (const auto& corners : {pcl::Indices{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    mesh->polygons.emplace_back();
+    mesh->polygons.back().vertices = corners;
+  }
+  Points corners;
+  for (const auto& [x, y, z] : {std::tuple(0.f, 0.f, 0.f), {9.f, 0.f, 0.f}, {0.f, 9.f, 0.f}, {0.f, 0.f, 9.f}})
+    corners.emplace_back(x, y, z);
+  pcl::toPCLPointCloud2(corners, mesh->cloud);
+  auto inside = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  inside->emplace_back(1.f, 1.f, 1.f);
+  MeshCollisionFilter filter;
+  filter.setInputMesh(mesh);
+  filter.setObstacleCloud(inside);
+  filter.setClearance(0.1);
+  std::vector<Verdict> flags;
+  for (const bool solid : {false, true}) {
+    filter.setInputSolid(solid);
+    filter.computeFlags(flags);
+    EXPECT_EQ(flags, std::vector<Verdict>(4, solid ? Verdict::colliding : Verdict::free));
+  }
+}
+
 TEST(MeshFilter, RefusesWhatIsNoInput)
 {
   MeshCollisionFilter filter;
