@@ -35,6 +35,8 @@ public:
     leaves_(scratch.leaves),
     flat_(scratch.flat),
     maybe_(scratch.maybe_nearest),
+    gathered_(scratch.gathered),
+    near_leaves_(scratch.near_leaves),
     long_(scratch.long_triangles),
     of_triangles_(query.pairs.ofTriangles()),
     laid_flat_(query.b.hierarchy().view().triangles &&
@@ -46,6 +48,7 @@ public:
     unit_(query.b.hierarchy().storage().frame.unit),
     largest_radius_(query.b.hierarchy().storage().largest_radius),
     own_radii_(roundUp(query.a.hierarchy().storage().largest_radius / unit_)),
+    balls_(roundUp(2.0 * largest_radius_ / unit_)),
     max_(query.pairs.reach.most),
     lengths_only_(!query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
                   query.b.pose.linear() == Eigen::Matrix3d::Identity()),
@@ -57,32 +60,45 @@ public:
       shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
 
-  /// Measures all points of a leaf.
+  /// Whether measureBelow() may be called for what is plain.
+  bool mayMeasureBelow() const
+  {
+    return !of_triangles_ && hasBallsInRange() && query_.b.hierarchy().size() < kMostNamed;
+  }
+
+  /// Takes the spheres that measureBelow() goes through.
+  void gather(const std::vector<NearSphere>& list) { gathered_.gather(list); }
+
+  /// Measures all points of a leaf by what is below the gathered spheres: these can hold a nearest point.
   /// @param visit of the node it is a child of @param lane the child
-  /// @param near the leaves of b that can hold a nearest point; left in another order
+  /// @param cut no point of the leaf is farther from its nearest, unless that exceeds the greatest distance
+  void measureBelow(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut)
+  {
+    begin(voxel, visit, lane);
+    boundGathered();
+    measureGathered(visit, lane, cut);
+  }
+
+  /// The same by leaves of b.
+  /// @param near those that can hold a nearest point; left in another order
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
-    leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
-    ++stamp_;
-    std::uint32_t undecided = firstBits(leaf_.count);
+    begin(voxel, visit, lane);
+    if (floatsTell(near)) {
+      gather(near);
+      return measureGathered(visit, lane, visit.cut[lane]);
+    }
+    std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
     if (laid_flat_) {
       if (!findNearestTriangles(visit, lane, near)) return;
     }
     else {
-      const bool by_float = of_triangles_           ? false
-                            : largest_radius_ > 0.0 ? findNearest<true>(visit, lane, near, undecided)
-                                                    : findNearest<false>(visit, lane, near, undecided);
-      if (by_float && query_.exceeds(limit_, unit_)) return;
-      if (of_triangles_)
-        std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
-      for (std::uint32_t i = 0; i < leaf_.count; ++i) {
-        Found& found = found_[i];
-        found = (undecided >> i & 1) != 0 ? decide(i, near, visit.cut[lane], by_float) : named(i, near);
-      }
+      near_leaves_.clear();
+      for (const auto& [sphere, lower] : near)
+        near_leaves_.push_back({sphere.obstacle, sphere.leaf(*obstacles_[sphere.obstacle].voxel), lower});
+      for (std::uint32_t i = 0; i < leaf_.count; ++i) found_[i] = decide(i, Found(), visit.cut[lane]);
     }
-    if (lengths_only_) measureLengths();
-    for (std::uint32_t i = 0; i < leaf_.count; ++i)
-      write(i, found_[i], visit.node->begin[lane], visit.node->begin[lane + 1]);
+    writeAll(visit, lane);
   }
 
 private:
@@ -93,65 +109,185 @@ private:
     double least = -kInfinity, most = kInfinity; ///< of the distance, less the radius of b's point alone
   };
 
-  /// Finds the nearest two of b's points to each point of the leaf by their float distances.
-  /// @param undecided receives the points whose nearest is not proven @return false when floats decide nothing
-  template <bool kBalls>
-  bool findNearest(const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near,
-                   std::uint32_t& undecided)
+  void begin(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane)
   {
-    if (kBalls && !(unit_ >= 0x1p-60 && unit_ <= 0x1p60)) return false; // radii would leave the range of float
-    two_.clear();
-    for (std::uint32_t i = leaf_.count; i < kLeafPoints; ++i) two_.first[i] = -std::numeric_limits<float>::infinity();
-    error_ = kSmallestLength;
-    limit_ = std::numeric_limits<float>::infinity();
-    float limit = visit.cut[lane], farthest = std::numeric_limits<float>::infinity();
-    for (std::size_t n = 0; n < near.size(); ++n) {
-      if (n < kNearestFirst) bringNearest(near, n);
-      const NearSphere& candidate = near[n];
-      if (candidate.lower > limit) {
-        if (n < kNearestFirst) break;
-        continue;
-      }
-      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
-      if (!obstacle.is_plain || n >= kMostNamed) return false;
-      ++work_.leaf_pairs;
-      const CarriedLeaf& own = carried(candidate.sphere.obstacle);
-      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      std::uint32_t facing = firstBits(other.count);
-      if constexpr (!kBalls) {
-        const float reach = (limit + own_radii_) * obstacle.at_most_inside + obstacle.slack;
-        facing &= pointsNearBox(other.x(), other.y(), other.z(), own.low, own.high, reach,
-                                2 * kSphereMargin); // twice: the limit is rounded, too
-        if (facing == 0) continue;
-      }
-      const float* const radii = kBalls ? other.voxel->radii + other.begin : nullptr;
-      takeNearestTwo<kBalls>(own.points, leaf_.count, other.x(), other.y(), other.z(), radii,
-                             static_cast<float>(1.0 / unit_), facing, static_cast<std::int32_t>(n * kLeafPoints), two_);
-      error_ = std::max(error_, static_cast<double>(obstacle.error));
-      skew_ = obstacle.frame.skew();
-      const float now = largestOf(two_.first, kLeafPoints);
-      if (now < farthest) {
-        farthest = now;
-        limit_ = limit = std::min(limit, beyond(mostOf<kBalls>(farthest)));
-        if (query_.exceeds(limit, unit_)) return true;
-      }
-    }
-    undecided = ambiguous<kBalls>();
-    return true;
+    leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
+    lanes_ = (leaf_.count + hn::Lanes(LaneTag()) - 1) / hn::Lanes(LaneTag()) * hn::Lanes(LaneTag());
+    ++stamp_;
   }
 
-  static constexpr std::size_t kNearestFirst = 1; ///< of the candidates: these leave little to the others
-
-  /// Swaps the nearest of the candidates from n on to that place.
-  static void bringNearest(std::vector<NearSphere>& near, std::size_t n)
+  void measureGathered(const DistanceVisit& visit, std::uint32_t lane, float cut)
   {
-    std::size_t least = n;
-    for (std::size_t i = n + 1; i < near.size(); ++i)
-      if (near[i].lower < near[least].lower) least = i;
-    std::swap(near[n], near[least]);
+    const bool balls = largest_radius_ > 0.0;
+    balls ? findNearest<true>(cut) : findNearest<false>(cut);
+    if (query_.exceeds(limit_, unit_)) return;
+    const std::uint32_t undecided = balls ? ambiguous<true>() : ambiguous<false>();
+    for (std::uint32_t i = 0; i < leaf_.count; ++i)
+      found_[i] = (undecided >> i & 1) != 0 ? decide(i, named(i), cut) : named(i);
+    writeAll(visit, lane);
+  }
+
+  void writeAll(const DistanceVisit& visit, std::uint32_t lane)
+  {
+    if (lengths_only_) measureLengths();
+    for (std::uint32_t i = 0; i < leaf_.count; ++i)
+      write(i, found_[i], visit.node->begin[lane], visit.node->begin[lane + 1]);
   }
 
   static constexpr std::size_t kMostNamed = std::size_t{1} << 27; ///< leaves whose points have names
+
+  /// Otherwise radii would leave the range of float.
+  bool hasBallsInRange() const { return largest_radius_ == 0.0 || (unit_ >= 0x1p-60 && unit_ <= 0x1p60); }
+
+  /// Whether float distances to these leaves can be compared with each other.
+  bool floatsTell(const std::vector<NearSphere>& near) const
+  {
+    return !of_triangles_ && hasBallsInRange() && near.size() < kMostNamed &&
+           std::all_of(near.begin(), near.end(),
+                       [&](const NearSphere& candidate) { return obstacles_[candidate.sphere.obstacle].is_plain; });
+  }
+
+  /// Finds the nearest two of b's points to each point of the leaf by their float distances. Ends early where all
+  /// points are known to be nearer than what was measured.
+  template <bool kBalls>
+  void findNearest(float cut)
+  {
+    two_.clear();
+    near_leaves_.clear();
+    error_ = kSmallestLength;
+    limit_ = cut;
+    std::fill(std::begin(most_), std::end(most_), limit_ + own_radii_);
+    if (gathered_.runs().empty()) return;
+    // The nearest leaves little to the others.
+    const std::uint32_t nearest = gathered_.nearest();
+    float* const lower = gathered_.lower();
+    const auto take = [&](std::uint32_t place) {
+      if (lower[place] > farthest() || query_.exceeds(limit_, unit_)) return;
+      takeSphere<kBalls>(gathered_.sphere(place), lower[place]);
+    };
+    if (lower[nearest] < GatheredSpheres::kDone) take(nearest);
+    lower[nearest] = GatheredSpheres::kDone;
+    const LaneTag d;
+    for (std::uint32_t i = 0; i < gathered_.end(); i += static_cast<std::uint32_t>(hn::Lanes(d))) {
+      const LaneVector reach = hn::Set(d, std::min(farthest(), std::numeric_limits<float>::max()));
+      for (std::uint32_t near = bitsOf(d, hn::Le(hn::LoadU(d, lower + i), reach)); near != 0; near &= near - 1)
+        take(i + static_cast<std::uint32_t>(std::countr_zero(near)));
+    }
+  }
+
+  void boundGathered()
+  {
+    for (const GatheredSpheres::Run& run : gathered_.runs()) {
+      const CarriedLeaf& own = carried(run.obstacle);
+      const DistanceObstacle& obstacle = obstacles_[run.obstacle];
+      float* const lower = gathered_.lower();
+      for (std::uint32_t i = run.begin; i < run.end; i += kLanes)
+        boundFromBox(gathered_.lanes(i, obstacle.frame.stretch_b), obstacle, own.low, own.high, lower + i);
+      std::fill(lower + run.end, lower + run.wholeVectors(), GatheredSpheres::kDone);
+      work_.node_pairs += run.end - run.begin;
+    }
+  }
+
+  /// Spheres with a greater lower bound hold no nearest point of any.
+  float farthest() const
+  {
+    const float sum = limit_ + own_radii_; // below 0 within balls
+    return sum + std::abs(sum) * kReachMargin;
+  }
+
+  template <bool kBalls>
+  void takeSphere(const ObstacleSphere& sphere, float lower)
+  {
+    const CarriedLeaf& own = carried(sphere.obstacle);
+    if (sphere.isLeaf())
+      takeLeaf<kBalls>(own, sphere.obstacle, *sphere.node, sphere.lane, lower);
+    else
+      takeBelow<kBalls>(own, sphere.obstacle,
+                        obstacles_[sphere.obstacle].voxel->nodes[sphere.node->child[sphere.lane]]);
+  }
+
+  template <bool kBalls>
+  void takeBelow(const CarriedLeaf& own, std::uint32_t of, const Node& node)
+  {
+    const DistanceObstacle& obstacle = obstacles_[of];
+    alignas(32) float lower[kLanes];
+    boundFromBox({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b}, obstacle, own.low, own.high, lower);
+    work_.node_pairs += node.count;
+    for (std::uint32_t lanes = firstBits(node.count); lanes != 0;) {
+      const std::uint32_t lane = smallestLane(lower, lanes);
+      lanes &= ~(1u << lane);
+      if (lower[lane] > farthest()) break;
+      if (node.isLeaf(lane))
+        takeLeaf<kBalls>(own, of, node, lane, lower[lane]);
+      else
+        takeBelow<kBalls>(own, of, obstacle.voxel->nodes[node.child[lane]]);
+    }
+  }
+
+  template <bool kBalls>
+  void takeLeaf(const CarriedLeaf& own, std::uint32_t of, const Node& node, std::uint32_t lane, float lower)
+  {
+    const DistanceObstacle& obstacle = obstacles_[of];
+    const std::uint32_t near = pointsNearSphere(own.points, obstacle, node, lane);
+    if (near == 0) return;
+    ++work_.leaf_pairs;
+    const LeafRange other{obstacle.voxel, node.begin[lane], node.comparedPoints(lane)};
+    std::uint32_t facing = firstBits(other.count);
+    if constexpr (!kBalls) {
+      const float reach = (limit_ + own_radii_) * obstacle.at_most_inside + obstacle.slack;
+      facing &= pointsNearBox(other.x(), other.y(), other.z(), own.low, own.high, reach,
+                              2 * kSphereMargin); // twice: the limit is rounded, too
+      if (facing == 0) return;
+    }
+    const float* const radii = kBalls ? other.voxel->radii + other.begin : nullptr;
+    takeNearestTwo<kBalls>(own.points, near, other.x(), other.y(), other.z(), radii, static_cast<float>(1.0 / unit_),
+                           facing, static_cast<std::int32_t>(near_leaves_.size() * kLeafPoints), two_);
+    near_leaves_.push_back({of, other, lower});
+    error_ = std::max(error_, static_cast<double>(obstacle.error));
+    skew_ = obstacle.frame.skew();
+    lowerMost<kBalls>();
+  }
+
+  static constexpr std::uint32_t kHalf = (1u << kLanes) - 1;
+
+  /// In which halves points of the leaf may be as near as `most_` to what is in a sphere of b: where b is far, its
+  /// points are all near the box around the leaf, and yet near none of its points. Halves, for vectors of any size.
+  std::uint32_t pointsNearSphere(const LeafPoints& points, const DistanceObstacle& obstacle, const Node& node,
+                                 std::uint32_t lane) const
+  {
+    const LaneTag d;
+    const LaneVector x = hn::Set(d, node.x[lane]), y = hn::Set(d, node.y[lane]), z = hn::Set(d, node.z[lane]);
+    const LaneVector more = hn::Set(d, node.r[lane] * obstacle.frame.stretch_b + obstacle.slack);
+    std::uint32_t far = 0;
+    for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
+      const LaneVector squared =
+          squaredNorm(hn::Sub(hn::Load(d, points.x + i), x), hn::Sub(hn::Load(d, points.y + i), y),
+                      hn::Sub(hn::Load(d, points.z + i), z));
+      const LaneVector reach = hn::Add(hn::Mul(hn::Load(d, most_ + i), hn::Set(d, obstacle.at_most_inside)), more);
+      const LaneVector limit = hn::Mul(hn::Mul(reach, reach), hn::Set(d, 1.0f + 2 * kSphereMargin));
+      far |= bitsOf(d, hn::Gt(squared, limit)) << i; // not so for NaN
+    }
+    const std::uint32_t near = ~far & firstBits(leaf_.count);
+    return ((near & kHalf) != 0 ? kHalf : 0) | (near > kHalf ? kHalf << kLanes : 0);
+  }
+
+  /// Lowers `most_` and the limit to what the nearest points so far tell.
+  template <bool kBalls>
+  void lowerMost()
+  {
+    const LaneTag d;
+    const float error = roundUp(error_), share = roundUp(2 * kMargin + 2 * skew_);
+    LaneVector largest = hn::Set(d, -std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
+      const LaneVector first = hn::Load(d, two_.first + i), before = hn::Load(d, most_ + i);
+      const LaneVector most = hn::Add(lengthOf<kBalls>(first), doubtOf<kBalls>(first, error, share));
+      const LaneVector now = hn::IfThenElse(hn::Lt(most, before), most, before);
+      hn::Store(now, d, most_ + i);
+      largest = hn::Max(largest, hn::IfThenElse(hn::FirstN(d, leaf_.count - i), now, largest));
+    }
+    const float now = hn::GetLane(hn::MaxOfLanes(d, largest));
+    limit_ = std::min(limit_, query_.tolerance > 0.0 ? beyond(now) : now);
+  }
 
   // In the walk's unit.
 
@@ -181,12 +317,34 @@ private:
   template <bool kBalls>
   std::uint32_t ambiguous() const
   {
+    const LaneTag d;
+    const float error = roundUp(error_), share = roundUp(2 * kMargin + 2 * skew_);
     std::uint32_t bits = 0;
-    for (std::uint32_t i = 0; i < leaf_.count; ++i) {
-      const bool two = two_.second[i] < std::numeric_limits<float>::infinity();
-      if (two && !(leastOf<kBalls>(two_.second[i]) > mostOf<kBalls>(two_.first[i]))) bits |= 1u << i;
+    for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
+      const LaneVector first = hn::Load(d, two_.first + i), second = hn::Load(d, two_.second + i);
+      const LaneVector most = hn::Add(lengthOf<kBalls>(first), doubtOf<kBalls>(first, error, share));
+      const LaneVector least = hn::Sub(lengthOf<kBalls>(second), doubtOf<kBalls>(second, error, share));
+      const auto two = hn::Lt(second, hn::Set(d, std::numeric_limits<float>::infinity()));
+      bits |= bitsOf(d, hn::AndNot(hn::Gt(least, most), two)) << i;
     }
-    return bits;
+    return bits & firstBits(leaf_.count);
+  }
+
+  /// What float arithmetic found, as a length, less the other point's radius.
+  template <bool kBalls>
+  static HWY_INLINE LaneVector lengthOf(LaneVector value)
+  {
+    return kBalls ? value : hn::Sqrt(value);
+  }
+
+  /// What it errs by, at most: mostOf() and leastOf() in float, with twice the margin. That pays for float arithmetic,
+  /// and for what lengths below 0 lose where they are multiplied by what is above 1.
+  template <bool kBalls>
+  HWY_INLINE LaneVector doubtOf(LaneVector value, float error, float share) const
+  {
+    const LaneTag d;
+    const LaneVector length = kBalls ? hn::Add(hn::Abs(value), hn::Set(d, balls_)) : hn::Sqrt(value);
+    return hn::Add(hn::Set(d, error), hn::Mul(hn::Add(length, hn::Set(d, error)), hn::Set(d, share)));
   }
 
   const CarriedLeaf& carried(std::uint32_t obstacle)
@@ -214,7 +372,6 @@ private:
     alignas(64) float nearest[kLeafPoints]; ///< of the squared distances in one obstacle
     for (std::uint32_t i = 0; i < kLeafPoints; ++i)
       most_[i] = i < leaf_.count ? visit.cut[lane] : -std::numeric_limits<float>::infinity();
-    lanes_ = (leaf_.count + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
     maybe_.clear();
     for (const NearSphere& candidate : near) {
       if (candidate.lower > largestOf(most_, kLeafPoints)) break;
@@ -431,13 +588,12 @@ private:
     return place;
   }
 
-  Found named(std::uint32_t i, const std::vector<NearSphere>& near) const
+  Found named(std::uint32_t i) const
   {
     if (two_.name[i] < 0) return {};
     const auto name = static_cast<std::size_t>(two_.name[i]);
-    const ObstacleSphere& sphere = near[name / kLeafPoints].sphere;
-    Found found{obstacles_[sphere.obstacle].voxel,
-                sphere.node->begin[sphere.lane] + static_cast<std::uint32_t>(name % kLeafPoints)};
+    const LeafRange& leaf = near_leaves_[name / kLeafPoints].range;
+    Found found{leaf.voxel, leaf.begin + static_cast<std::uint32_t>(name % kLeafPoints)};
     if (max_ == kInfinity) return found;
     const bool balls = largest_radius_ > 0.0;
     const float value = two_.first[i];
@@ -456,11 +612,10 @@ private:
             {}};
   }
 
-  /// The nearest to one point in exact arithmetic, of several the smallest record.
-  /// @param cut upper bound of its distance, unless that exceeds the greatest one
-  Found decide(std::uint32_t i, const std::vector<NearSphere>& near, float cut, bool by_float)
+  /// The nearest to one point, of the near leaves, in exact arithmetic; of several the smallest record.
+  /// @param best one that may be it, or none @param cut upper bound of its distance, unless that exceeds the greatest
+  Found decide(std::uint32_t i, Found best, float cut)
   {
-    Found best = by_float ? named(i, near) : Found();
     const double own_radius = leaf_.radius(i);
     RecordDistance::Pair best_pair;
     double most = double{cut} * unit_; // of the distance
@@ -474,16 +629,17 @@ private:
     std::uint32_t band_of = kNoVoxel; // the obstacle that `miss` is of
     float miss = 0.0f;
     double within = 0.0;
-    for (const NearSphere& candidate : near) {
-      if (double{candidate.lower} * unit_ > most) continue;
-      const DistanceObstacle& obstacle = obstacles_[candidate.sphere.obstacle];
-      const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
-      const LeafPoints& points = carried(candidate.sphere.obstacle).points;
+    for (const NearLeaf& candidate : near_leaves_) {
+      const double farthest = most + own_radius; // lower bounds may be those of the point, not of its ball
+      if (double{candidate.lower} * unit_ > farthest + std::abs(farthest) * kDoubleMargin) continue;
+      const DistanceObstacle& obstacle = obstacles_[candidate.obstacle];
+      const LeafRange& other = candidate.range;
+      const LeafPoints& points = carried(candidate.obstacle).points;
       alignas(64) float squared[kLeafPoints];
       leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared);
       const double reach = (most + own_radius + largest_radius_) * (1.0 + kDoubleMargin);
-      if (band_of != candidate.sphere.obstacle || !(within == reach)) {
-        band_of = candidate.sphere.obstacle;
+      if (band_of != candidate.obstacle || !(within == reach)) {
+        band_of = candidate.obstacle;
         within = reach;
         miss = obstacle.frame.band(std::isnan(reach) ? kInfinity : std::max(reach, 0.0)).miss;
       }
@@ -563,6 +719,8 @@ private:
   std::vector<CarriedLeaf>& leaves_;
   FlatRecords& flat_;
   std::vector<MaybeNearest>& maybe_;
+  GatheredSpheres& gathered_;
+  std::vector<NearLeaf>& near_leaves_;
   LongTriangles& long_;
   const bool of_triangles_; ///< whether a cloud is
   const bool laid_flat_;    ///< whether b is, and points of a have no radii
@@ -573,6 +731,7 @@ private:
   const double unit_;           ///< of bounds and floats, in the clouds' unit
   const double largest_radius_; ///< of b's points, in the clouds' unit
   const float own_radii_;       ///< the largest of a's points, in the walk's unit
+  const float balls_;           ///< two of the largest of b's, likewise
   const double max_;
   const bool lengths_only_; ///< whether distances are lengths of differences between given points, and a shift
   const bool moved_only_;   ///< whether a's pose turns nothing
@@ -586,7 +745,7 @@ private:
   LongVector places_[kLeafPoints];          ///< of the points that have their bit in placed_
   std::uint32_t placed_ = 0;
   std::size_t lanes_ = kLeafPoints;           ///< of the leaf's points, whole vectors
-  alignas(64) float most_[kLeafPoints];       ///< that points are away from their nearest triangles, in the walk's unit
+  alignas(64) float most_[kLeafPoints];       ///< that points are away from what is nearest, in the walk's unit
   alignas(64) float radii_[kLeafPoints] = {}; ///< of a's balls, in the obstacle's unit, at least
   Nearest nearest_[kLeafPoints];              ///< of points that several triangles may be the nearest to
   NearestTwo two_;

@@ -10,6 +10,7 @@
 #endif
 
 #include <pcl_bsh/distances/bound_margin.h>
+#include <pcl_bsh/distances/gathered_spheres-inl.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
@@ -75,12 +76,6 @@ struct DistanceRow {
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
   std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
-};
-
-/// The same for one child.
-struct NearSphere {
-  ObstacleSphere sphere;
-  float lower;
 };
 
 /// One node of a, its children measured all at once.
@@ -187,6 +182,31 @@ HWY_INLINE void raiseBySlab(const CarriedNode& spheres, const DistanceObstacle& 
         hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
     const LaneVector before = hn::LoadU(d, lower + i);
     hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower + i);
+  }
+}
+
+/// Lower bounds of the distances from a box to eight spheres in its frame, as boundDistances() has them; minus infinity
+/// where there is none.
+HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle& obstacle, const float* low,
+                             const float* high, float* lower)
+{
+  const LaneTag d;
+  const auto outside = [d](const float* at, float least, float most) HWY_ATTR {
+    const LaneVector value = hn::LoadU(d, at);
+    return hn::Max(hn::Max(hn::Sub(hn::Set(d, least), value), hn::Sub(value, hn::Set(d, most))), hn::Zero(d));
+  };
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector between =
+        hn::Sqrt(squaredNorm(outside(spheres.x + i, low[0], high[0]), outside(spheres.y + i, low[1], high[1]),
+                             outside(spheres.z + i, low[2], high[2])));
+    const LaneVector radii =
+        hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch)), hn::Set(d, obstacle.slack));
+    const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
+    const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
+    const LaneVector bound =
+        hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+    hn::StoreU(hn::IfThenElse(hn::Eq(bound, bound), bound, hn::Set(d, -std::numeric_limits<float>::infinity())), d,
+               lower + i);
   }
 }
 
@@ -307,14 +327,17 @@ struct DistanceScratch {
   std::vector<std::uint32_t> entered;      ///< the voxels that have one
   FlatRecords flat;                        ///< where b is of triangles
   std::vector<MaybeNearest> maybe_nearest; ///< likewise
-  LongTriangles long_triangles;            ///< likewise
+  GatheredSpheres gathered;
+  std::vector<NearLeaf> near_leaves; ///< of one leaf of a: what it is compared with
+  LongTriangles long_triangles;      ///< likewise
 
   std::size_t bytes() const noexcept
   {
     std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
                       roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
                       (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t) + flat.bytes() +
-                      maybe_nearest.capacity() * sizeof(MaybeNearest) + long_triangles.bytes();
+                      maybe_nearest.capacity() * sizeof(MaybeNearest) + near_leaves.capacity() * sizeof(NearLeaf) +
+                      long_triangles.bytes() + gathered.bytes();
     for (const DistanceVisit& visit : visits) {
       sum += (visit.rows.capacity() + visit.kept.capacity()) * sizeof(DistanceRow) +
              visit.carried.capacity() * sizeof(CarriedNode);

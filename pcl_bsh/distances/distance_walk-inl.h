@@ -24,6 +24,7 @@ namespace HWY_NAMESPACE {
 
 class DistanceWalk {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr float kWide = 3.0f;       ///< wider than children by this, spheres are opened for them
   static constexpr std::uint32_t kAbove = 0; ///< the obstacle above the voxels of b
 
 public:
@@ -70,6 +71,7 @@ public:
     if (const float least = bounds().least(a_voxel_->radius); least > 0.0f)
       outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
+    leaves_alone_ = !rule_.mayStop() && !outdoing_.isPossible() && leaf_.mayMeasureBelow();
     scratch_.roots.clear();
     const float least = query_.pairs.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
     for (std::uint16_t lane = 0; lane < root.count; ++lane) scratch_.roots.push_back({{&root, lane, 0, kAbove}, least});
@@ -116,7 +118,9 @@ private:
     visit.begin(node, around, cut, ++scratch_.stamp);
     for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
       visit.turn[lane] = outdoing_.turnOf(node.r[lane] * radius_unit_);
-    for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, firstBits(node.count)));
+    const std::uint32_t others = firstBits(node.count) & ~measureAlone(visit, list, cut);
+    if (others == 0) return;
+    for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, others));
     if (query_.reached) leaveNearer(visit);
     for (const DistanceRow& row : visit.rows) take(visit, row);
     for (const DistanceRow& row : visit.kept)
@@ -125,7 +129,7 @@ private:
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
     for (const std::uint8_t lane : visit.order) {
-      if (lane >= node.count || query_.exceeds(visit.cut[lane], unit_)) continue;
+      if ((others >> lane & 1) == 0 || query_.exceeds(visit.cut[lane], unit_)) continue;
       std::vector<NearSphere>& near = visit.near[lane];
       const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
       if (near.empty())
@@ -138,6 +142,37 @@ private:
         descend(a_voxel_->nodes[node.child[lane]], {{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]}, near,
                 visit.cut[lane], depth + 1);
     }
+  }
+
+  /// Measures the leaves of a visit that go through its list by themselves: eight spheres at once, and the points of
+  /// the nearest bound what is left better than spheres do.
+  /// @return them
+  std::uint32_t measureAlone(const DistanceVisit& visit, const std::vector<NearSphere>& list, float cut)
+  {
+    const std::uint32_t alone = leavesAlone(visit, list);
+    if (alone != 0) leaf_.gather(list);
+    for (std::uint32_t bits = alone; bits != 0; bits &= bits - 1)
+      leaf_.measureBelow(*a_voxel_, visit, static_cast<std::uint32_t>(std::countr_zero(bits)), cut);
+    return alone;
+  }
+
+  /// Those to which none of the list's spheres is above a voxel, in another unit, or to be told apart by the points as
+  /// given.
+  std::uint32_t leavesAlone(const DistanceVisit& visit, const std::vector<NearSphere>& list) const
+  {
+    if (!leaves_alone_ || visit.leaves == 0) return 0;
+    float least = 0.0f;
+    for (const NearSphere& near : list) {
+      const ObstacleSphere& sphere = near.sphere;
+      const DistanceObstacle& obstacle = obstacles_[sphere.obstacle];
+      if (sphere.level == 0 || !obstacle.is_plain) return 0;
+      least = std::max(least, obstacle.blunt_radius);
+      if (sphere.isLeaf()) least = std::max(least, sphere.node->r[sphere.lane] * (1.0f / kLargeLeaf));
+    }
+    std::uint32_t alone = 0;
+    for (std::uint32_t lane = 0; lane < visit.node->count; ++lane)
+      alone |= (visit.node->r[lane] > least ? 1u : 0u) << lane;
+    return alone & visit.leaves;
   }
 
   /// Leaves out the children that a greater distance is known for. The farthest are measured first.
@@ -281,8 +316,9 @@ private:
     if (among == 0) return 0;
     const CarriedNode& own = carried(visit, sphere.obstacle);
     const float radius = sphere.node->r[sphere.lane];
+    const float times = leaves_alone_ && sphere.level > 0 ? kWide : 1.0f;
     std::uint32_t smaller = 0;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) smaller |= (own.r[lane] < radius ? 1u : 0u) << lane;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) smaller |= (own.r[lane] * times < radius ? 1u : 0u) << lane;
     return smaller & among;
   }
 
@@ -387,6 +423,7 @@ private:
   const double unit_; ///< of bounds, in the clouds' unit
   const double max_;
   DistanceLeaf leaf_;
+  bool leaves_alone_ = false;      ///< whether leaves of a go through lists by themselves: see measureAlone()
   Outdoing outdoing_;              ///< of the voxel of a
   double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit
   std::uint32_t voxel_ = kNoVoxel; ///< of a

@@ -135,33 +135,71 @@ struct NearestTwo {
   }
 };
 
-/// Takes those points (x, y, z) that have their bit set into the nearest two of each of the first `count` points, and
-/// of those that fill the last vector; point j is called name + j. Compares squared distances; with radii, distances
-/// less the other point's radius times `scale`. None may be NaN where the result is used.
+/// Takes those points (x, y, z) that have their bit set into the nearest two of each of sixteen points, of those
+/// vectors that have a bit in `points_near`; point j is called name + j. Compares squared distances; with radii,
+/// distances less the other point's radius times `scale`. None may be NaN where the result is used.
 /// @tparam kBalls whether there are radii
 template <bool kBalls>
-HWY_INLINE void takeNearestTwo(const LeafPoints& points, std::size_t count, const float* x, const float* y,
+HWY_INLINE void takeNearestTwo(const LeafPoints& points, std::uint32_t points_near, const float* x, const float* y,
                                const float* z, const float* radii, float scale, std::uint32_t others, std::int32_t name,
                                NearestTwo& nearest)
 {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const LaneVector px = hn::Load(d, points.x + i), py = hn::Load(d, points.y + i), pz = hn::Load(d, points.z + i);
-    LaneVector first = hn::Load(d, nearest.first + i), second = hn::Load(d, nearest.second + i);
-    auto names = hn::Load(di, nearest.name + i);
-    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
-      const int j = std::countr_zero(bits);
-      LaneVector value =
-          squaredNorm(hn::Sub(px, hn::Set(d, x[j])), hn::Sub(py, hn::Set(d, y[j])), hn::Sub(pz, hn::Set(d, z[j])));
-      if constexpr (kBalls) value = hn::Sub(hn::Sqrt(value), hn::Set(d, radii[j] * scale));
-      names = hn::IfThenElse(hn::RebindMask(di, hn::Lt(value, first)), hn::Set(di, name + j), names);
+  struct Some {
+    LaneVector px, py, pz, first, second;
+    hn::Vec<decltype(di)> names;
+
+    HWY_INLINE Some(const LeafPoints& points, const NearestTwo& nearest, std::size_t i)
+    : px(hn::Load(LaneTag(), points.x + i)),
+      py(hn::Load(LaneTag(), points.y + i)),
+      pz(hn::Load(LaneTag(), points.z + i)),
+      first(hn::Load(LaneTag(), nearest.first + i)),
+      second(hn::Load(LaneTag(), nearest.second + i)),
+      names(hn::Load(hn::RebindToSigned<LaneTag>(), nearest.name + i))
+    {
+    }
+    HWY_INLINE void take(LaneVector qx, LaneVector qy, LaneVector qz, LaneVector less, hn::Vec<decltype(di)> named)
+    {
+      LaneVector value = squaredNorm(hn::Sub(px, qx), hn::Sub(py, qy), hn::Sub(pz, qz));
+      if constexpr (kBalls) value = hn::Sub(hn::Sqrt(value), less);
+      (void)less;
+      names = hn::IfThenElse(hn::RebindMask(hn::RebindToSigned<LaneTag>(), hn::Lt(value, first)), named, names);
       second = hn::Min(second, hn::Max(first, value));
       first = hn::Min(first, value);
     }
-    hn::Store(first, d, nearest.first + i);
-    hn::Store(second, d, nearest.second + i);
-    hn::Store(names, di, nearest.name + i);
+    HWY_INLINE void store(NearestTwo& nearest, std::size_t i) const
+    {
+      hn::Store(first, LaneTag(), nearest.first + i);
+      hn::Store(second, LaneTag(), nearest.second + i);
+      hn::Store(names, hn::RebindToSigned<LaneTag>(), nearest.name + i);
+    }
+  };
+  const auto each = [&](const auto& take) HWY_ATTR {
+    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
+      const int j = std::countr_zero(bits);
+      take(hn::Set(d, x[j]), hn::Set(d, y[j]), hn::Set(d, z[j]), kBalls ? hn::Set(d, radii[j] * scale) : hn::Zero(d),
+           hn::Set(di, name + j));
+    }
+  };
+  constexpr std::size_t step = hn::MaxLanes(LaneTag());
+  for (std::size_t i = 0; i < kLeafPoints; i += 2 * step) {
+    const std::uint32_t here = points_near >> i, next = here >> step;
+    if ((here & firstBits(step)) != 0 && (next & firstBits(step)) != 0) {
+      Some one(points, nearest, i), two(points, nearest, i + step);
+      each([&](auto... values) HWY_ATTR {
+        one.take(values...);
+        two.take(values...);
+      });
+      one.store(nearest, i);
+      two.store(nearest, i + step);
+    }
+    else if ((here & firstBits(2 * step)) != 0) {
+      const std::size_t k = (here & firstBits(step)) != 0 ? i : i + step;
+      Some one(points, nearest, k);
+      each([&](auto... values) HWY_ATTR { one.take(values...); });
+      one.store(nearest, k);
+    }
   }
 }
 

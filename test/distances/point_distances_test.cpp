@@ -157,6 +157,53 @@ TEST(PointDistances, OfTranslationsThatRound)
   }
 }
 
+/// Leaves of nodes below nodes go through the other cloud's nodes by themselves. Places of a lattice are as far from
+/// several others; balls of a shift all distances of their point, those of b let nearer points be farther. One cloud is
+/// near the other, one is among it, one is far for its size.
+TEST(PointDistances, OfTreesThatAreDeep)
+{
+  Random random(41);
+  const auto cloud = [&](std::size_t count, double apart, double raised) {
+    std::vector<Point3> points(count);
+    for (Point3& p : points) {
+      for (double& x : p) x = apart > 0.0 ? apart * random.integer(0, 9) : random.uniform(0, 9);
+      p[2] += raised;
+    }
+    return points;
+  };
+  const auto radii = [&](std::size_t count) {
+    std::vector<float> values(count);
+    for (float& radius : values) radius = 0.5f * static_cast<float>(random.integer(0, 6));
+    return values;
+  };
+  HierarchyOptions one_voxel;
+  one_voxel.voxel_edge = 64.0;
+  for (int kind = 0; kind < 24; ++kind) {
+    SCOPED_TRACE(kind);
+    const double apart = kind % 2 == 0 ? 1.0 : 0.0, heights[] = {0.0, 8.0, 40.0};
+    Cloud one(cloud(300, apart, heights[kind / 8])), other(cloud(1200, apart, 0.0));
+    if ((kind & 2) != 0) one.setRadii(radii(300));
+    if ((kind & 4) != 0) other.setRadii(radii(1200));
+    const SphereHierarchy ha(one.view(), one_voxel), hb(other.view(), one_voxel);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = Eigen::Vector3d(0.5, 0, 0);
+    const Placed a(ha, pose), b(hb);
+    for (const double max : {kInfinity, 0.5 + heights[kind / 8]}) {
+      const PointDistances truth = brute_force::pointDistances(a, b, within(max));
+      test::expectSame(pointDistances(a, b, within(max)), truth);
+      PointDistancesRequest request = within(max);
+      request.accuracy = Accuracy::tolerance(0.25);
+      const PointDistances near = pointDistances(a, b, request);
+      EXPECT_EQ(near.measured, truth.measured);
+      for (std::size_t i = 0; i < truth.distance.size(); ++i) {
+        if (std::isnan(truth.distance[i])) continue;
+        EXPECT_GE(near.distance[i], truth.distance[i]);
+        EXPECT_LE(near.distance[i], truth.distance[i] + 0.25 * (1 + 1e-9));
+      }
+    }
+  }
+}
+
 TEST(PointDistances, OfBallsWithinALimit)
 {
   Random random(7);

@@ -195,10 +195,12 @@ std::string wrongNearestTwo(Random& random)
   std::fill(name, name + kLeafPoints, -1);
   for (std::int32_t leaf = 0; leaf < 2; ++leaf) { // the second one beside what the first has left
     const auto others = static_cast<std::uint32_t>(random.integer(0, 0xffff));
-    takeNearestTwo<kBalls>(points, kLeafPoints, x, y, z, radii, scale, others, 100 * leaf, nearest);
+    constexpr std::uint32_t halves[] = {0xffff, 0x00ff, 0xff00}; // of whole vectors
+    const std::uint32_t near = halves[random.integer(0, 2)];
+    takeNearestTwo<kBalls>(points, near, x, y, z, radii, scale, others, 100 * leaf, nearest);
     for (std::size_t i = 0; i < kLeafPoints; ++i)
       for (std::size_t j = 0; j < kLeafPoints; ++j) {
-        if ((others >> j & 1) == 0) continue;
+        if ((others >> j & near >> i & 1) == 0) continue;
         const double dx = double{points.x[i]} - x[j], dy = double{points.y[i]} - y[j], dz = double{points.z[i]} - z[j];
         const double squared = dx * dx + dy * dy + dz * dz;
         const auto value = static_cast<float>(kBalls ? std::sqrt(squared) - double{radii[j]} * scale : squared);

@@ -15,7 +15,7 @@
     * ((1 + x) + (1 + m) * (1 + n) * @kBoundMargin@) * (1 + y) * (1 + w) >= 1 /\
   # the reach within which children are looked for: a product, two sums and the margin's product
   (1 + a) * (1 + b) * (1 + c) * (1 + m) * (1 + @kReachMargin@) >= 1 /\
-  # points near the box of a leaf: a reach of three roundings, twice in its square, two products; against a squared distance
+  # points near the box of a leaf, or near a sphere of b: a reach of three roundings, twice in its square, two products; against a squared distance
   (1 + a) * (1 + b) * (1 + c) * (1 + a) * (1 + b) * (1 + c) * (1 + m) * (1 + n) * (1 + 2 * @kSphereMargin@)
     / ((1 + d) * (1 + d) * (1 + p) * (1 + s0) * (1 + s1)) >= 1 /\
   # what a float distance says of the true one at a leaf: at most, and at least
