@@ -380,7 +380,7 @@ private:
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
       const float stretched = stretchOf(obstacle);
       setReach(obstacle, reach);
-      if (pointsNearSlab(own.points, candidate.sphere, obstacle, reach) == 0) continue;
+      if (nearerPoints(own.points, obstacle.heldBy(candidate.sphere), reach) == 0) continue;
       ++work_.leaf_pairs;
       std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
       float largest_error = 0.0f;
@@ -453,19 +453,14 @@ private:
                   hn::Lt(limit, hn::Zero(d)));
   }
 
-  /// Which points of the leaf may be nearer than their `reach` to what lies in a sphere of b and in its slab.
-  std::uint32_t pointsNearSlab(const LeafPoints& points, const ObstacleSphere& sphere, const DistanceObstacle& obstacle,
-                               const float* reach) const
+  /// Which points of the leaf may be nearer than their `reach` to what lies in a sphere of b and in its slabs.
+  std::uint32_t nearerPoints(const LeafPoints& points, const CrossedSlabs& held, const float* reach) const
   {
     const LaneTag d;
-    const std::uint32_t k = sphere.lane;
-    const Node& node = *sphere.node;
-    const Slab slab = slabOf(obstacle.slabs[sphere.node - obstacle.voxel->nodes.data()], k,
-                             {node.x[k], node.y[k], node.z[k]}, node.r[k] * obstacle.frame.stretch_b);
     std::uint32_t far = 0;
     for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
       const LaneVector length =
-          lengthToSlab(slab, hn::Load(d, points.x + i), hn::Load(d, points.y + i), hn::Load(d, points.z + i));
+          lengthToSlabs(held, hn::Load(d, points.x + i), hn::Load(d, points.y + i), hn::Load(d, points.z + i));
       far |= bitsOf(d, hn::Gt(length, hn::Load(d, reach + i))) << i; // not so for NaN
     }
     return ~far & firstBits(leaf_.count);

@@ -11,6 +11,7 @@
 
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/distances/gathered_spheres-inl.h>
+#include <pcl_bsh/simd/crossed_lanes-inl.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
 #include <pcl_bsh/traversal/obstacle_sphere-inl.h>
@@ -30,13 +31,14 @@ namespace HWY_NAMESPACE {
 struct DistanceObstacle {
   const Voxel* voxel; ///< null: the tree above the voxels
   RelativeFrame frame;
-  float slack;                  ///< pruneReach(0): what floats may err by
-  float blunt_radius;           ///< as the frame has it
-  float error;                  ///< of carried points, at least
-  float least, most;            ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
-  float at_most_inside;         ///< at least what a length of 1 in the walk's unit is in the frame
-  bool is_plain;                ///< whether float distances in the frame can be compared with those in others
-  const Slabs* slabs = nullptr; ///< of the voxel's nodes, where it has triangles
+  float slack;                        ///< pruneReach(0): what floats may err by
+  float blunt_radius;                 ///< as the frame has it
+  float error;                        ///< of carried points, at least
+  float least, most;                  ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
+  float at_most_inside;               ///< at least what a length of 1 in the walk's unit is in the frame
+  bool is_plain;                      ///< whether float distances in the frame can be compared with those in others
+  const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where it has triangles
+  const Slabs* cross_slabs = nullptr; ///< likewise, where they are long
 
   /// @param unit of the walk, in the clouds' unit
   DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit)
@@ -52,6 +54,16 @@ struct DistanceObstacle {
     most = roundUp(std::max(ratio, smallest) * (1.0 + margin));
     at_most_inside = roundUp(std::max(1.0 / ratio, smallest) * (1.0 + margin));
     is_plain = ratio == 1.0 && frame.error < std::numeric_limits<double>::infinity();
+  }
+
+  /// What a sphere of the voxel holds, between its slabs. @pre it has slabs
+  CrossedSlabs heldBy(const ObstacleSphere& sphere) const
+  {
+    const Node& node = *sphere.node;
+    const std::uint32_t k = sphere.lane;
+    const auto index = &node - voxel->nodes.data();
+    return crossedOf(slabs[index], cross_slabs ? cross_slabs + index : nullptr, k, {node.x[k], node.y[k], node.z[k]},
+                     node.r[k] * frame.stretch_b);
   }
 };
 
@@ -147,9 +159,9 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
   }
 }
 
-/// From places in a frame to what lies both in a sphere and in its slab, at least. As slabsApart() has it: kSlabMargin
-/// of all lengths pays for the normal and for float arithmetic. 0 where squares may leave the range of float.
-HWY_INLINE LaneVector lengthToSlab(const Slab& slab, LaneVector x, LaneVector y, LaneVector z)
+/// From places in a frame to what lies both in a sphere and in its slabs, at least. As slabsApart() has it: kSlabMargin
+/// of all lengths pays for the normals and for float arithmetic. 0 where squares may leave the range of float.
+HWY_INLINE LaneVector lengthToSlabs(const CrossedSlabs& slab, LaneVector x, LaneVector y, LaneVector z)
 {
   const LaneTag d;
   const LaneVector dx = hn::Sub(x, hn::Set(d, slab.center.x)), dy = hn::Sub(y, hn::Set(d, slab.center.y)),
@@ -163,19 +175,20 @@ HWY_INLINE LaneVector lengthToSlab(const Slab& slab, LaneVector x, LaneVector y,
   const LaneVector along = hn::Max(hn::Sub(hn::Abs(on), hn::Add(hn::Set(d, slab.h), margin)), hn::Zero(d));
   const LaneVector across =
       hn::Max(hn::Sub(hn::Sqrt(squaredNorm(tx, ty, tz)), hn::Add(hn::Set(d, slab.radius), margin)), hn::Zero(d));
-  const LaneVector squared = hn::Add(hn::Mul(along, along), hn::Mul(across, across));
+  const LaneVector squared =
+      hn::Max(hn::Add(hn::Mul(along, along), hn::Mul(across, across)), squaredToSlabs(slab, dx, dy, dz, margin));
   return hn::IfThenElseZero(hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)),
                             hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0f - kBoundMargin)));
 }
 
-/// Raises lower bounds as boundDistances() has them by what the slab of the other sphere says.
-HWY_INLINE void raiseBySlab(const CarriedNode& spheres, const DistanceObstacle& obstacle, const Slab& slab,
-                            float* lower)
+/// Raises lower bounds as boundDistances() has them by what the slabs of the other sphere say.
+HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle& obstacle, const CrossedSlabs& slabs,
+                             float* lower)
 {
   const LaneTag d;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
     const LaneVector length =
-        lengthToSlab(slab, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i));
+        lengthToSlabs(slabs, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i));
     const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack));
     const LaneVector near = hn::Sub(hn::Sub(length, radii), hn::Mul(hn::Add(length, radii), hn::Set(d, kBoundMargin)));
     const LaneVector scaled =
@@ -280,7 +293,8 @@ HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, f
   high = hn::Mul(hn::Add(length, more), hn::Set(d, obstacle.most));
 }
 
-/// The same as boundByPoints() of a leaf of triangles. @param triangle(j) laid flat
+/// The same as boundByPoints() of a leaf of triangles. @param lower null: of some of them, which tell `cut` alone
+/// @param triangle(j) laid flat
 template <class Triangles>
 HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
                                    std::uint32_t count, bool outdoing, float* lower, const Triangles& triangle)
@@ -303,7 +317,7 @@ HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own,
     }
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) least[lane] = std::min(least[lane], orNone(of_triangle[lane]));
   }
-  for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
+  for (std::uint32_t lane = 0; lower && lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
   if (outdoing) return lowerCuts(visit, upper);
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.cut[lane] = std::min(visit.cut[lane], upper[lane]);
 }

@@ -212,19 +212,15 @@ private:
       boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
-    if (obstacle.slabs) {
-      const Slabs& slabs = obstacle.slabs[&node - obstacle.voxel->nodes.data()];
-      raiseBySlab(own, obstacle,
-                  slabOf(slabs, sphere.lane, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius),
-                  row.lower);
-    }
+    if (obstacle.slabs) raiseBySlabs(own, obstacle, obstacle.heldBy(sphere), row.lower);
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
-      boundByTriangles(visit, own, obstacle, leaf.count, outdoing_.isPossible(), row.lower,
+      const std::uint32_t asked = isThin(visit, obstacle, sphere) ? 1 : leaf.count;
+      boundByTriangles(visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
                        [&](std::uint32_t j) -> const FlatRecord& {
                          return scratch_.flat.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
                        });
-      found.work.node_pairs += leaf.count;
+      found.work.node_pairs += asked;
     }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
@@ -236,6 +232,16 @@ private:
     const Voxel& voxel = *obstacles_[sphere.obstacle].voxel;
     const double smallest = double{*std::min_element(visit.node->r, visit.node->r + visit.node->count)};
     return sphere.leaf(voxel).largestRadius() > kLargeBall * smallest * a_voxel_->frame.unit;
+  }
+
+  /// Whether both slabs of a leaf are thinner than what its distance from a child may be: then one of its triangles
+  /// tells how far it is at most, and the others tell little more than slabs.
+  bool isThin(const DistanceVisit& visit, const DistanceObstacle& obstacle, const ObstacleSphere& sphere) const
+  {
+    if (!obstacle.cross_slabs) return false;
+    const CrossedSlabs held = obstacle.heldBy(sphere);
+    return std::max(held.h, held.cross_h) <
+           *std::min_element(visit.cut, visit.cut + visit.node->count) * obstacle.at_most_inside;
   }
 
   /// Sharpens the bounds of children which float arithmetic cannot tell from the row's sphere by the points as given.
@@ -343,8 +349,12 @@ private:
   {
     const RelativeFrame frame(a_.frame(voxel_), a_.pose, b_.frame(space), b_.pose, query_.rotation);
     obstacles_.emplace_back(voxel, b_.frame(space), frame, unit_);
-    if (voxel && b_.storage.view.triangles)
-      obstacles_.back().slabs = b_.storage.voxels[space].slabs.of(*voxel, b_.storage.view, found.work);
+    if (voxel && b_.storage.view.triangles) {
+      Voxel& entered = b_.storage.voxels[space];
+      obstacles_.back().slabs = entered.slabs.of(*voxel, b_.storage.view, found.work);
+      if (b_.storage.hasLongTriangles(space))
+        obstacles_.back().cross_slabs = entered.cross_slabs.of(*voxel, b_.storage.view, found.work);
+    }
     if (scratch_.leaves.size() < obstacles_.size()) scratch_.leaves.resize(2 * obstacles_.size());
   }
 

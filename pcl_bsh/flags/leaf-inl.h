@@ -161,15 +161,18 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, const FlagVisit& 
 /// points of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those;
 /// until it returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's
 /// frame, at least; or zeros
-template <class Compare>
+template <class FacingOf, class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                       const std::uint32_t& hit, const LeafPoints& points, const float* radii, const PointsView& view,
-                      FlatRecords& flat, Work& work, const Compare& compare)
+                      FlatRecords& flat, Work& work, const FacingOf& facingOf, const Compare& compare)
 {
   const LaneTag d;
   const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
   alignas(64) float squared[kLeafPoints], beyond[kLeafPoints];
   for (const ObstacleSphere& candidate : visit.near[lane]) {
+    std::uint32_t open = visit.open_points[lane] & ~hit;
+    if (open != 0) open &= facingOf(candidate);
+    if (open == 0) continue;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
     for (std::uint32_t j = 0; j < other.count; ++j) {
@@ -181,7 +184,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
             d, beyond + i);
       }
       squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
-      const std::uint32_t near = visit.open_points[lane] & ~hit & ~aboveEach(squared, beyond);
+      const std::uint32_t near = open & ~hit & ~aboveEach(squared, beyond);
       if (near == 0) continue;
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
@@ -193,16 +196,17 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
 
 /// Where b is of triangles, and a's points have no radii: by the middles of balls, then by the float band of those
 /// whose balls come near enough, and exactly within the band.
-inline std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                                  const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
-                                  FlatRecords& flat, Work& work)
+template <class FacingOf>
+std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
+                           const LeafPoints& points, const FlagQuery& query, FlatRecords& flat, Work& work,
+                           const FacingOf& facingOf)
 {
   alignas(64) static constexpr float kNone[kLeafPoints] = {};
   const std::uint32_t open = visit.open_points[lane];
   std::uint32_t hit = hitMiddles(obstacle, visit, lane, points);
   if (hit == open) return hit;
   eachTriangleNear(
-      obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work,
+      obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work, facingOf,
       [&](const LeafRange&, std::uint32_t record, const FlatRecord& triangle, const float* squared,
           std::uint32_t near) {
         const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
@@ -258,7 +262,8 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
       }
     count = 0;
   };
-  eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work,
+  const auto any = [](const ObstacleSphere&) { return ~0u; };
+  eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work, any,
                    [&](const LeafRange& other, std::uint32_t record, const FlatRecord& triangle, const float* squared,
                        std::uint32_t near) {
                      if (surely > 0.0) hit |= near & atMost(squared, triangle.band(obstacle.frame, surely).hit);

@@ -36,16 +36,7 @@ public:
   {
     own_ = &a_.storage.voxels[voxel];
     a_voxel_ = &built;
-    has_long_triangles_ = hasLongTriangles(a_, voxel);
-  }
-
-  /// Whether triangles of a voxel are about as long as all of it: then spheres of nodes are as large as the voxel's
-  /// own, and two slabs tell where their triangles are.
-  static bool hasLongTriangles(const Spaces& side, std::uint32_t voxel)
-  {
-    const Voxel& of = side.storage.voxels[voxel];
-    return side.storage.view.triangles &&
-           static_cast<double>(of.largest_radius) > kLongTriangle * static_cast<double>(of.radius) * of.frame.unit;
+    has_long_triangles_ = a_.storage.hasLongTriangles(voxel);
   }
 
   /// Fits those of a voxel of b, where no query has yet.
@@ -97,6 +88,17 @@ public:
     return nearAcross(visit, candidate, slab, near);
   }
 
+  /// Whether both slabs of what a candidate holds, which the visit's children were compared with, are thinner than the
+  /// reach about the smallest of these: then its triangles tell little more.
+  bool isThin(const FlagVisit& visit, const ObstacleSphere& candidate) const
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    if (!visit.has_slabs || !obstacle.cross_slabs) return false;
+    const auto index = candidate.node - obstacle.voxel->nodes.data();
+    return std::max(obstacle.slabs[index].h[candidate.lane], obstacle.cross_slabs[index].h[candidate.lane]) <
+           visit.smallest + obstacle.reach;
+  }
+
   /// Whether a is of long triangles, and this is a leaf of points.
   bool isLeafOfPoints(const ObstacleSphere& candidate) const
   {
@@ -140,19 +142,34 @@ public:
     return {a_voxel_, visit.node->begin[lane], visit.node->comparedPoints(lane)};
   }
 
+  /// Which of a's points, carried, may be near to a candidate of triangles. @pre visit.has_slabs
+  std::uint32_t facingPoints(const FlagVisit& visit, const LeafPoints& points, const ObstacleSphere& candidate) const
+  {
+    const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const Node& node = *candidate.node;
+    const std::uint32_t k = candidate.lane;
+    const CrossedSlabs held =
+        heldBy(obstacle, candidate, {node.x[k], node.y[k], node.z[k]}, node.r[k] * obstacle.frame.stretch_b);
+    return pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, held, obstacle.reach);
+  }
+
 private:
+  /// What a candidate holds, between both of its slabs where its triangles are long.
+  static CrossedSlabs heldBy(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const Point& center,
+                             float radius)
+  {
+    const auto index = candidate.node - obstacle.voxel->nodes.data();
+    return crossedOf(obstacle.slabs[index], obstacle.cross_slabs ? obstacle.cross_slabs + index : nullptr,
+                     candidate.lane, center, radius);
+  }
+
   /// The same across the slabs of long triangles, and of leaves of points by each point.
   HWY_NOINLINE std::uint32_t nearAcross(FlagVisit& visit, const ObstacleSphere& candidate, const Slab& slab,
                                         std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    CrossedSlabs held{slab.normal, {0.0f, 0.0f, 0.0f}, slab.h, 0.0f, slab.center, slab.radius};
-    if (obstacle.has_long_triangles) {
-      const Slabs& cross = obstacle.cross_slabs[candidate.node - obstacle.voxel->nodes.data()];
-      held.cross = {cross.x[candidate.lane], cross.y[candidate.lane], cross.z[candidate.lane]};
-      held.cross_h = cross.h[candidate.lane];
-    }
+    const CrossedSlabs held = heldBy(obstacle, candidate, slab.center, slab.radius);
     static constexpr float kNone[kLanes] = {};
     near &= ~crossedSlabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h},
                                has_long_triangles_ ? SlabLanes{visit.cx, visit.cy, visit.cz, visit.cross_slabs->h}
@@ -185,8 +202,7 @@ private:
   Work& work_;
   Voxel* own_ = nullptr; ///< of a
   const Voxel* a_voxel_ = nullptr;
-  bool has_long_triangles_ = false;             ///< a's voxel
-  static constexpr double kLongTriangle = 0.25; ///< its ball's radius, in radii of its voxel
+  bool has_long_triangles_ = false; ///< a's voxel
 };
 
 } // namespace HWY_NAMESPACE

@@ -66,10 +66,11 @@ public:
           {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
            frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), nullptr, nullptr, FlagSlabs::hasLongTriangles(b_, other)});
+           query_.acceptance.band(frame), nullptr, nullptr, b_.storage.hasLongTriangles(other)});
     }
-    allowed_ = steps() + kStepsOfVoxel + kMostStepsPerPoint * a_.storage.voxels[voxel].count;
+    allowed_ = steps() + kStepsOfVoxel;
     if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
+    allowed_ += kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
         flagRuns(a_.storage, voxel, obstacles_, query_, sink_, found.work))
@@ -299,6 +300,7 @@ private:
     const LocalFrame& frame = obstacle.voxel->frame;
     const LeafRange leaf = candidate.leaf(*obstacle.voxel);
     if (!(leaf.largestRadius() > kLargeBall * static_cast<double>(visit.smallest) * frame.unit)) return near;
+    if (slabs_.isThin(visit, candidate)) return near; // slabs told what triangles can
     found.work.node_pairs += leaf.count;
     const LanesNear lanes = nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
     for (std::uint32_t bits = lanes.inside; bits != 0; bits &= bits - 1)
@@ -404,8 +406,12 @@ private:
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     if (b_.storage.view.triangles)
-      return a_.storage.view.radii ? hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work)
-                                   : hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work);
+      return a_.storage.view.radii
+                 ? hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work)
+                 : hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work,
+                                [&](const ObstacleSphere& candidate) {
+                                  return visit.has_slabs ? slabs_.facingPoints(visit, points, candidate) : ~0u;
+                                });
     if (pairs_.haveRadii())
       return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work, [&](const ObstacleSphere& candidate) {
         const LeafRange other = candidate.leaf(*obstacle.voxel);

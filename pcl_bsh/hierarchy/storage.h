@@ -149,6 +149,15 @@ public:
     return voxels[voxel].state.load(std::memory_order_relaxed) == Voxel::built ? 0 : voxels[voxel].count;
   }
 
+  /// Whether triangles of a voxel are about as long as all of it: then spheres of nodes are as large as the voxel's
+  /// own, and two slabs tell where their triangles are.
+  bool hasLongTriangles(std::size_t voxel) const
+  {
+    constexpr double kLong = 0.25; // its ball's radius, in radii of its voxel
+    const Voxel& of = voxels[voxel];
+    return view.triangles && double{of.largest_radius} > kLong * double{of.radius} * of.frame.unit;
+  }
+
   /// Where a place lies in the voxel grid.
   struct GridPlace {
     std::uint32_t voxel; ///< whose cell the place is in, or kNoVoxel

@@ -11,6 +11,8 @@
 
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,27 +21,43 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// At least the squares of the lengths of ways to what lies in two slabs. @param dx, dy, dz from their centre
+/// @param margin kSlabMargin of all lengths, as FacingSlabs has it
+///
+/// A way v from there has parts of at least g and k along the normals n and c. Along these two alone
+/// |v|^2 >= (g^2 + k^2 - 2 |n . c| g k) / (1 - (n . c)^2), and that is >= (1 - |n . c|) (g^2 + k^2): also where the
+/// normals are not square to each other. Of the cosine and of the squares float arithmetic takes less than 2^-16.
+HWY_INLINE LaneVector squaredToSlabs(const CrossedSlabs& held, LaneVector dx, LaneVector dy, LaneVector dz,
+                                     LaneVector margin)
+{
+  const LaneTag d;
+  const auto gap = [&](const Point& normal, float h) HWY_ATTR {
+    const LaneVector on =
+        FacingSlabs::dot(hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z), dx, dy, dz);
+    const LaneVector beyond = hn::Sub(hn::Sub(hn::Abs(on), margin), hn::Set(d, h * (1.0f + kSphereMargin)));
+    return hn::Max(beyond, hn::Zero(d));
+  };
+  const Point &n = held.normal, &c = held.cross;
+  const float share = std::max(1.0f - 0x1p-16f - std::abs(n.x * c.x + n.y * c.y + n.z * c.z), 0.0f);
+  const LaneVector g = gap(n, held.h), k = gap(c, held.cross_h), more = hn::Max(g, k);
+  return hn::Max(hn::Mul(hn::Add(hn::Mul(g, g), hn::Mul(k, k)), hn::Set(d, share)), hn::Mul(more, more));
+}
+
 /// Which of a leaf's `count` points are not proven to be farther than reach from what lies both in a sphere and in two
-/// slabs, along either normal; sixteen are read. Margins as FacingSlabs has them.
+/// slabs; sixteen are read.
 HWY_INLINE std::uint32_t pointsNearSlabs(const float* x, const float* y, const float* z, std::size_t count,
                                          const CrossedSlabs& held, float reach)
 {
   const LaneTag d;
-  const LaneVector more = hn::Set(d, kSlabMargin), radius = hn::Set(d, held.radius);
+  const LaneVector radius = hn::Set(d, held.radius),
+                   limit = hn::Set(d, reach * reach * (1.0f + 4 * kSphereMargin) + kVanishingSquare);
   std::uint32_t far = 0;
   for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
     const LaneVector dx = hn::Sub(hn::LoadU(d, x + i), hn::Set(d, held.center.x));
     const LaneVector dy = hn::Sub(hn::LoadU(d, y + i), hn::Set(d, held.center.y));
     const LaneVector dz = hn::Sub(hn::LoadU(d, z + i), hn::Set(d, held.center.z));
     const LaneVector lengths = hn::Add(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), radius);
-    const LaneVector margin = hn::Mul(lengths, more);
-    const auto beyond = [&](const Point& normal, float h) HWY_ATTR {
-      const LaneVector on =
-          FacingSlabs::dot(hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z), dx, dy, dz);
-      const LaneVector limit = hn::Set(d, (h + reach) * (1.0f + kSphereMargin));
-      return hn::Gt(hn::Sub(hn::Abs(on), margin), limit);
-    };
-    const auto apart = hn::Or(beyond(held.normal, held.h), beyond(held.cross, held.cross_h));
+    const auto apart = hn::Gt(squaredToSlabs(held, dx, dy, dz, hn::Mul(lengths, hn::Set(d, kSlabMargin))), limit);
     far |= bitsOf(d, hn::And(apart, hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)))) << i;
   }
   return ~far & firstBits(count);

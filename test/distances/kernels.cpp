@@ -75,12 +75,13 @@ void longTriangleOrderOnTarget(const Point3& p, const Eigen::Isometry3d& pose_a,
   order = areSameParts(of_x, part_x, x.pose, of_y, part_y, y.pose) ? 0 : longOrder(of_x, part_x, of_y, part_y, place);
 }
 
-void lengthToSlabOnTarget(const float (&normal)[3], float h, const float (&center)[3], float radius,
-                          const float (&place)[3], float& length)
+void lengthToSlabsOnTarget(const test::Held& held, const std::array<float, 3>& place, float& length)
 {
   const LaneTag d;
-  const Slab slab{{normal[0], normal[1], normal[2]}, h, {center[0], center[1], center[2]}, radius};
-  length = hn::GetLane(lengthToSlab(slab, hn::Set(d, place[0]), hn::Set(d, place[1]), hn::Set(d, place[2])));
+  const auto point = [](const std::array<float, 3>& p) { return Point{p[0], p[1], p[2]}; };
+  const CrossedSlabs slabs{point(held.normal), point(held.cross),  held.h,
+                           held.cross_h,       point(held.center), held.radius};
+  length = hn::GetLane(lengthToSlabs(slabs, hn::Set(d, place[0]), hn::Set(d, place[1]), hn::Set(d, place[2])));
 }
 
 } // namespace HWY_NAMESPACE
@@ -94,7 +95,7 @@ HWY_EXPORT(longLengthOnTarget);
 HWY_EXPORT(boundDistanceOnTarget);
 HWY_EXPORT(longTriangleDistanceOnTarget);
 HWY_EXPORT(longTriangleOrderOnTarget);
-HWY_EXPORT(lengthToSlabOnTarget);
+HWY_EXPORT(lengthToSlabsOnTarget);
 } // namespace
 
 namespace test {
@@ -131,10 +132,10 @@ std::optional<int> longTriangleOrder(const Point3& p, const Eigen::Isometry3d& p
   return order;
 }
 
-float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3])
+float lengthToSlabs(const Held& held, const std::array<float, 3>& place)
 {
   float length = 0.0f;
-  HWY_DYNAMIC_DISPATCH(lengthToSlabOnTarget)(normal, h, center, radius, place, length);
+  HWY_DYNAMIC_DISPATCH(lengthToSlabsOnTarget)(held, place, length);
   return length;
 }
 

@@ -49,7 +49,13 @@ struct PosedTriangle {
 std::optional<int> longTriangleOrder(const Point3& p, const Eigen::Isometry3d& pose_a, const PosedTriangle& x,
                                      const PosedTriangle& y);
 
-/// From a place to what is both in a sphere and in a slab.
-float lengthToSlab(const float (&normal)[3], float h, const float (&center)[3], float radius, const float (&place)[3]);
+/// From a place to what is both in a sphere and in one or two slabs.
+struct Held {
+  std::array<float, 3> normal, cross;
+  float h, cross_h;
+  std::array<float, 3> center;
+  float radius;
+};
+float lengthToSlabs(const Held& held, const std::array<float, 3>& place);
 
 } // namespace pcl_bsh::test

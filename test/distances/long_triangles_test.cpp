@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What long numbers say of a point and a triangle, against exact arithmetic; and bounds by slabs.
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include "kernels.h"
 #include "support/attack.h"
+#include "support/made_meshes.h"
 #include "support/random.h"
 
 #include <gtest/gtest.h>
@@ -118,6 +121,20 @@ TEST(LongTriangles, KnowWhichOfTwoIsNearer)
   });
 }
 
+/// Needles all of which have a ball about every point.
+TEST(LongTriangles, AreMeasuredWhereSlabsLeaveThem)
+{
+  const test::TestMesh mesh = test::fanMesh(8000, 1.0, 0.3, true);
+  test::TestMesh scan;
+  Random random(5);
+  for (int i = 0; i < 1000; ++i)
+    scan.vertices.push_back({random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2), random.uniform(-0.5, 0.5)});
+  const SphereHierarchy triangles(viewOf(mesh.trianglesView())), points(scan.view());
+  const Work work = pointDistances({points}, {triangles}).work;
+  EXPECT_LT(work.leaf_pairs, 12000u);
+  EXPECT_LT(work.node_pairs, 300000u);
+}
+
 TEST(LongTriangles, KnowMostDistances)
 {
   Random random(78);
@@ -132,36 +149,79 @@ TEST(LongTriangles, KnowMostDistances)
   EXPECT_GT(known, 9900);
 }
 
-TEST(LengthToSlab, IsNoMoreThanTheDistanceOfAnyPlaceInIt)
+using Floats = std::array<float, 3>;
+
+Floats rounded(const Eigen::Vector3d& v)
+{
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+Eigen::Vector3d direction(const Floats& v)
+{
+  return Eigen::Vector3d(v[0], v[1], v[2]).normalized();
+}
+
+TEST(LengthToSlabs, IsNoMoreThanTheDistanceOfAnyPlaceInOne)
 {
   test::onEveryTarget([](const std::string& target) {
     Random random(79);
     for (int i = 0; i < 20000; ++i) {
-      const auto number = [&](double most) { return static_cast<float>(random.uniform(-most, most)); };
-      Eigen::Vector3d n = random.rotation() * Eigen::Vector3d::UnitZ();
-      const float normal[3] = {static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())};
-      n = {normal[0], normal[1], normal[2]};
-      n.normalize();
-      const float center[3] = {number(10), number(10), number(10)}, place[3] = {number(10), number(10), number(10)};
+      const auto place = [&] {
+        return rounded({random.uniform(-10, 10), random.uniform(-10, 10), random.uniform(-10, 10)});
+      };
       const float radius = static_cast<float>(random.uniform(0, 3));
       const float h = random.chance(0.2) ? 0.0f : radius * static_cast<float>(random.uniform(0, 1));
+      const test::Held held{rounded(random.rotation() * Eigen::Vector3d::UnitZ()), {}, h, 0.0f, place(), radius};
+      const Floats from = place();
       // The nearest place: towards the plane, and across it.
-      const Eigen::Vector3d c(center[0], center[1], center[2]), p(place[0], place[1], place[2]), d = p - c;
+      const Eigen::Vector3d n = direction(held.normal), c(held.center[0], held.center[1], held.center[2]),
+                            p(from[0], from[1], from[2]), d = p - c;
       const double on = std::clamp(n.dot(d), -double{h}, double{h}), across = (d - n.dot(d) * n).norm();
       Eigen::Vector3d q = c + on * n;
       if (across > 0) q += std::min(across, std::sqrt(double{radius} * radius - on * on)) / across * (d - n.dot(d) * n);
-      EXPECT_LE(test::lengthToSlab(normal, h, center, radius, place), (p - q).norm()) << target << ", case " << i;
+      EXPECT_LE(test::lengthToSlabs(held, from), (p - q).norm()) << target << ", case " << i;
     }
   });
 }
 
-TEST(LengthToSlab, SaysNothingWhereSquaresOverflow)
+/// Of two slabs, square to each other or at any angle, and a place beyond the edge between them: the nearest place is
+/// on the edge where the way to it lies between both normals.
+TEST(LengthToSlabs, IsNoMoreThanTheDistanceOfAnyPlaceInBoth)
 {
   test::onEveryTarget([](const std::string& target) {
-    const float up[3] = {0, 0, 1}, nowhere[3] = {0, 0, 0};
+    Random random(81);
+    for (int i = 0; i < 20000; ++i) {
+      const Eigen::Matrix3d turn = random.rotation().toRotationMatrix();
+      const bool square = random.chance(0.5);
+      test::Held held{};
+      held.normal = rounded(turn.col(0));
+      held.cross = rounded(square ? turn.col(1) : (turn.col(1) + random.uniform(-3, 3) * turn.col(0)).normalized());
+      held.h = random.chance(0.3) ? 0.0f : static_cast<float>(random.uniform(0, 1));
+      held.cross_h = random.chance(0.3) ? 0.0f : static_cast<float>(random.uniform(0, 1));
+      const Eigen::Vector3d n = direction(held.normal) * random.pick({-1.0, 1.0}),
+                            c = direction(held.cross) * random.pick({-1.0, 1.0}), along = n.cross(c).normalized();
+      // n . q = h and c . q = k, somewhere along the edge; p beyond it.
+      const double cosine = n.dot(c), sine = 1.0 - cosine * cosine;
+      const Eigen::Vector3d q = (held.h - cosine * held.cross_h) / sine * n +
+                                (held.cross_h - cosine * held.h) / sine * c + random.uniform(-2, 2) * along,
+                            p = q + random.uniform(0, 3) * n + random.uniform(0, 3) * c;
+      held.radius = static_cast<float>(q.norm() * random.uniform(1.001, 1.5));
+      const Floats from = rounded(p);
+      const double length = (Eigen::Vector3d(from[0], from[1], from[2]) - q).norm();
+      const double found = double{test::lengthToSlabs(held, from)};
+      ASSERT_LE(found, length * (1 + 1e-12)) << target << ", case " << i << ", cosine " << cosine;
+      if (square) {
+        ASSERT_GE(found, (1 - 1e-4) * length - 1e-4 * (p.norm() + held.radius)) << target << ", case " << i;
+      }
+    }
+  });
+}
+
+TEST(LengthToSlabs, SaysNothingWhereSquaresOverflow)
+{
+  test::onEveryTarget([](const std::string& target) {
     for (const float far : {0x1p59f, 0x1p62f, 0x1p66f, 0x1p100f}) {
-      const float place[3] = {far, far, 0}; // the slab holds it
-      EXPECT_LE(test::lengthToSlab(up, 0.0f, nowhere, 2 * far, place), 0.0f) << target << ", " << far;
+      const test::Held held{{0, 0, 1}, {0, 1, 0}, 0.0f, 0.0f, {}, 2 * far};
+      EXPECT_LE(test::lengthToSlabs(held, {far, 0, 0}), 0.0f) << target << ", " << far; // both hold it
     }
   });
 }

@@ -164,6 +164,23 @@ TEST(LongTriangles, TakeWorkThatGrowsWithThem)
     }
 }
 
+/// Points about a flat fan of needles, a third of them within the clearance of hundreds of these.
+TEST(LongTriangles, AFewOfManyNeedlesSettleAPoint)
+{
+  const TestMesh mesh = test::fanMesh(64000, 1.0, 0.0, false);
+  TestMesh scan;
+  Random random(5);
+  for (int i = 0; i < 4000; ++i) {
+    const double turn = random.uniform(0.0, 6.28), length = std::sqrt(random.uniform(0.0, 1.0));
+    scan.vertices.push_back({length * std::cos(turn), length * std::sin(turn), random.uniform(-0.03, 0.03)});
+  }
+  const SphereHierarchy triangles(viewOf(mesh.trianglesView())), points(scan.view());
+  const FlagsResult found = collisionFlags({points}, {triangles}, {0.01, Side::a});
+  EXPECT_GT(found.colliding_a, 1200u);
+  EXPECT_LT(found.work.leaf_pairs, 7000u);
+  EXPECT_LT(found.work.node_pairs, 1300000u);
+}
+
 /// Of flat sheets that face each other at about the clearance, floats decide no pair.
 TEST(LongTriangles, FacingGridsTakeFewExactDecisions)
 {
