@@ -12,6 +12,7 @@
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/distance_visit-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
+#include <pcl_bsh/query/prefetch.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
 
 #include <algorithm>
@@ -114,6 +115,12 @@ private:
     leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
     lanes_ = (leaf_.count + hn::Lanes(LaneTag()) - 1) / hn::Lanes(LaneTag()) * hn::Lanes(LaneTag());
     ++stamp_;
+    for (std::uint32_t i = 0; i < leaf_.count && !query_.reached;
+         ++i) { // few points are written where one is looked for
+      const std::uint32_t record = leaf_.record(i);
+      if (!view_a_.triangles) prefetch(view_a_, record);
+      sheet_.prefetch(record);
+    }
   }
 
   void measureGathered(const DistanceVisit& visit, std::uint32_t lane, float cut)

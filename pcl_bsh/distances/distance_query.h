@@ -6,6 +6,8 @@
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
+#include <hwy/cache_control.h>
+
 #include <cstdint>
 
 namespace pcl_bsh {
@@ -37,6 +39,13 @@ struct DistanceSheet {
     distance[record] = to_nearest;
     nearest[record] = other;
     if (interval) interval[record] = certain;
+  }
+
+  /// Before set().
+  void prefetch(std::uint32_t record) const
+  {
+    hwy::Prefetch(distance + record);
+    hwy::Prefetch(nearest + record);
   }
 };
 

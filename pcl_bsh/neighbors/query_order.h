@@ -5,10 +5,9 @@
 
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/query/prefetch.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/request_check.h>
-
-#include <hwy/cache_control.h>
 
 namespace pcl_bsh {
 
@@ -17,13 +16,6 @@ namespace pcl_bsh {
 /// @pre checkView() has nothing against the queries
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads);
-
-/// What a query reads of its record: in another order than the records', each would be waited for.
-inline void prefetch(const PointsView& queries, std::uint32_t record)
-{
-  hwy::Prefetch(static_cast<const unsigned char*>(queries.data) + queries.stride * record + queries.offset[0]);
-  if (queries.radii) hwy::Prefetch(queries.radii + record);
-}
 
 /// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment; and
 /// expect(i, soon) twice before that, for what the answer needs to be fetched: early, and again soon before.

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <hwy/cache_control.h>
+
+#include <cstdint>
+
+namespace pcl_bsh {
+
+/// Asks for what will be read soon of a record. Points in the order of a tree are anywhere in the caller's arrays,
+/// where each would be waited for.
+inline void prefetch(const PointsView& view, std::uint32_t record)
+{
+  const auto* const base = static_cast<const unsigned char*>(view.data) + view.stride * record;
+  hwy::Prefetch(base + view.offset[0]);
+  hwy::Prefetch(base + view.offset[2]);
+  if (view.radii) hwy::Prefetch(view.radii + record);
+}
+
+} // namespace pcl_bsh
