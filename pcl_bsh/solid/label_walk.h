@@ -14,8 +14,8 @@
 
 namespace pcl_bsh {
 
-/// What is told of the points in a sphere before they are looked at.
-enum class Whole : std::uint8_t { outside, one_label, unknown };
+/// What is told of the points in a sphere before they are looked at: all have one label, or some may have another.
+enum class Whole : std::uint8_t { outside, inside, unknown };
 
 /// A cloud's spheres at one pose of cloud and solid, from the tree above the voxels down to points.
 class LabelWalk {
@@ -33,14 +33,9 @@ public:
   /// Of a child of a node above the voxels.
   Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
 
-  Label labelOf(const PointLabels::Frame& frame, std::uint32_t record)
-  {
-    return labels_.label(frame, cloud_.view.point(record), work_.exact_decisions);
-  }
-  Label labelOf(std::uint32_t record) { return labelOf(top_, record); }
-
   /// Tells the sink of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
-  /// label). Asks it before: wants(smallest record) tells whether it cares about any such points.
+  /// label). Asks it before: wants(smallest record) tells whether it cares about any such points; expect(first, last)
+  /// names records that it may be told of soon.
   template <class Sink>
   void labelVoxel(std::uint32_t index, Sink& sink)
   {
@@ -52,6 +47,11 @@ public:
   }
 
 private:
+  Label labelOf(const PointLabels::Frame& frame, std::uint32_t record)
+  {
+    return labels_.label(frame, cloud_.view.point(record), work_.exact_decisions);
+  }
+
   PointLabels::Frame frameOf(const LocalFrame& local) const
   {
     // Centres of spheres lie between points; twice their reach is more than enough.
@@ -69,7 +69,10 @@ private:
     const double reach = static_cast<double>(node.r[child]) * unit * (1.0 + 4e-6) + frame.error;
     if (!(reach < std::numeric_limits<double>::infinity())) return Whole::unknown;
     if (labels_.columns().isBeyond(at, reach)) return Whole::outside;
-    return labels_.columns().isClear(at, reach) ? Whole::one_label : Whole::unknown;
+    if (!labels_.columns().isClear(at, reach)) return Whole::unknown;
+    const std::optional<Label> of_center = labels_.labelAround(at, frame.error); // points are anywhere in memory
+    const Label label = of_center ? *of_center : labelOf(frame, node.lowest[child]);
+    return label == Label::outside ? Whole::outside : Whole::inside;
   }
 
   template <class Sink>
@@ -107,19 +110,19 @@ private:
       const Whole whole = of(frame, voxel.frame.unit, node, i);
       if (whole == Whole::outside) continue;
       const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
-      if (whole == Whole::one_label || (node.isLeaf(i) && node.isCoincident(i))) {
+      if (whole == Whole::inside) {
+        sink.inside(records + begin, records + end);
+      }
+      else if (node.isLeaf(i) && node.isCoincident(i)) {
         const Label label = labelOf(frame, records[begin]);
-        if (label == Label::outside) continue;
-        if (label == Label::inside)
-          sink.inside(records + begin, records + end);
-        else
-          for (std::uint32_t j = begin; j < end; ++j) sink.one(records[j], label);
+        for (std::uint32_t j = begin; j < end && label != Label::outside; ++j) sink.one(records[j], label);
       }
       else if (!node.isLeaf(i)) {
         labelNode(voxel, frame, node.child[i], sink);
       }
       else {
         ++work_.leaf_pairs;
+        sink.expect(records + begin, records + end);
         for (std::uint32_t j = begin; j < end; ++j) labelStored(voxel, frame, j, sink);
       }
     }

@@ -5,6 +5,8 @@
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/label_walk.h>
 
+#include <hwy/cache_control.h>
+
 #include <utility>
 
 namespace pcl_bsh {
@@ -18,6 +20,10 @@ struct LabelArray {
   std::size_t inside_count = 0, on_surface = 0;
 
   static bool wants(std::uint32_t) { return true; }
+  void expect(const std::uint32_t* first, const std::uint32_t* last) const
+  {
+    for (; first != last; ++first) hwy::Prefetch(labels + *first); // they are anywhere in the array
+  }
   void inside(const std::uint32_t* first, const std::uint32_t* last)
   {
     for (; first != last; ++first) one(*first, Label::inside);
@@ -41,9 +47,8 @@ void sortOut(LabelWalk& walk, std::uint32_t index, Voxels& voxels)
   for (std::uint32_t i = 0; i < node.count; ++i) {
     const Whole whole = walk.ofTop(node, i);
     if (whole == Whole::outside) continue;
-    if (whole == Whole::one_label) {
-      if (walk.labelOf(node.lowest[i]) == Label::inside)
-        for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v) voxels.inside.push_back(v);
+    if (whole == Whole::inside) {
+      for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v) voxels.inside.push_back(v);
     }
     else if (node.isLeaf(i)) {
       voxels.open.push_back(node.begin[i]);
@@ -61,6 +66,7 @@ struct Smallest {
   bool any_will_do = false;
   bool surface_counts = true;
 
+  static void expect(const std::uint32_t*, const std::uint32_t*) {}
   bool wants(std::uint32_t smallest) const { return any_will_do ? record == kNone : smallest < record; }
   void inside(const std::uint32_t* first, const std::uint32_t* last)
   {
@@ -79,8 +85,8 @@ void search(LabelWalk& walk, std::uint32_t index, Smallest& found)
     if (!found.wants(node.lowest[i])) continue;
     const Whole whole = walk.ofTop(node, i);
     if (whole == Whole::outside) continue;
-    if (whole == Whole::one_label) {
-      if (walk.labelOf(node.lowest[i]) == Label::inside) found.one(node.lowest[i], Label::inside);
+    if (whole == Whole::inside) {
+      found.one(node.lowest[i], Label::inside);
     }
     else if (node.isLeaf(i)) {
       walk.labelVoxel(node.begin[i], found);

@@ -7,6 +7,8 @@
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/label_walk.h>
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -46,7 +48,7 @@ public:
         if (whole == Whole::unknown) {
           open.push_back(pose);
         }
-        else if (walk.labelOf(node.lowest[i]) == Label::inside) {
+        else {
           for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
             storage.forEachRecord(v, [&](std::uint32_t record) { note(record, pose); });
           break; // later poses tell nothing new
@@ -81,6 +83,10 @@ private:
     std::size_t& left;
 
     static bool wants(std::uint32_t) { return true; }
+    void expect(const std::uint32_t* first, const std::uint32_t* last) const
+    {
+      for (; first != last; ++first) hwy::Prefetch(&search.found_.first[*first]); // they are anywhere in the array
+    }
     void inside(const std::uint32_t* first, const std::uint32_t* last)
     {
       for (; first != last; ++first) one(*first, Label::inside);
