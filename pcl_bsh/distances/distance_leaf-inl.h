@@ -278,22 +278,24 @@ private:
     return ((near & kHalf) != 0 ? kHalf : 0) | (near > kHalf ? kHalf << kLanes : 0);
   }
 
-  /// Lowers `most_` and the limit to what the nearest points so far tell.
+  /// Lowers `most_` and the limit to what the nearest points so far tell. The tolerance is taken off what was found of
+  /// all points, not off their cut: a point that has none yet would be left without.
   template <bool kBalls>
   void lowerMost()
   {
     const LaneTag d;
     const float error = roundUp(error_), share = roundUp(2 * kMargin + 2 * skew_);
+    const bool tolerant = query_.tolerance > 0.0;
     LaneVector largest = hn::Set(d, -std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < lanes_; i += hn::Lanes(d)) {
       const LaneVector first = hn::Load(d, two_.first + i), before = hn::Load(d, most_ + i);
       const LaneVector most = hn::Add(lengthOf<kBalls>(first), doubtOf<kBalls>(first, error, share));
       const LaneVector now = hn::IfThenElse(hn::Lt(most, before), most, before);
       hn::Store(now, d, most_ + i);
-      largest = hn::Max(largest, hn::IfThenElse(hn::FirstN(d, leaf_.count - i), now, largest));
+      largest = hn::Max(largest, hn::IfThenElse(hn::FirstN(d, leaf_.count - i), tolerant ? most : now, largest));
     }
     const float now = hn::GetLane(hn::MaxOfLanes(d, largest));
-    limit_ = std::min(limit_, query_.tolerance > 0.0 ? beyond(now) : now);
+    limit_ = std::min(limit_, tolerant ? beyond(now) : now);
   }
 
   // In the walk's unit.

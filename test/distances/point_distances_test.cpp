@@ -157,6 +157,53 @@ TEST(PointDistances, OfTranslationsThatRound)
   }
 }
 
+/// Leaves with points of two crowds, where what is between these is near to both: no point is farther from it than the
+/// cut, which is less than the tolerance. A point far from the leaf that was compared first has found nothing yet.
+TEST(PointDistances, WithinToleranceOfCrowdsThatAreApart)
+{
+  HierarchyOptions one_voxel;
+  one_voxel.voxel_edge = 64.0;
+  for (std::uint64_t seed = 0; seed < 800; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    std::vector<Point3> crowds(static_cast<std::size_t>(random.integer(2, 12))), of_a, of_b;
+    const int axes = random.integer(1, 3);
+    for (Point3& p : crowds)
+      for (int k = 0; k < 3; ++k) p[static_cast<std::size_t>(k)] = k < axes ? random.integer(0, 8) : 0;
+    const auto crowd = [&](std::vector<Point3>& points, const Point3& center, int most) {
+      const double spread = std::exp2(-random.integer(1, 20));
+      for (int count = random.integer(1, most); count > 0; --count) {
+        const Point3 off = random.point([&] { return spread * random.uniform(-1, 1); });
+        points.push_back({center[0] + off[0], center[1] + off[1], center[2] + off[2]});
+      }
+    };
+    const auto any = [&] {
+      return crowds[static_cast<std::size_t>(random.integer(1, static_cast<int>(crowds.size()))) - 1];
+    };
+    for (const Point3& center : crowds) {
+      crowd(of_a, center, 60);
+      if (random.chance(0.6)) crowd(of_b, center, 40);
+    }
+    for (int count = random.integer(1, 40); count > 0; --count) {
+      const Point3 p = any(), q = any();
+      crowd(of_b, {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2}, 30);
+    }
+    const Cloud one(of_a), other(of_b);
+    const SphereHierarchy a(one.view(), one_voxel), b(other.view(), one_voxel);
+    const PointDistances truth = pointDistances({a}, {b});
+    for (const double tolerance : {0.5, 2.0, 10.0}) {
+      PointDistancesRequest request;
+      request.accuracy = Accuracy::tolerance(tolerance);
+      const PointDistances near = pointDistances({a}, {b}, request);
+      ASSERT_EQ(near.measured, of_a.size());
+      for (std::size_t i = 0; i < of_a.size(); ++i) {
+        ASSERT_GE(near.distance[i], truth.distance[i]);
+        ASSERT_LE(near.distance[i], truth.distance[i] + tolerance * (1 + 1e-9));
+      }
+    }
+  }
+}
+
 /// Leaves of nodes below nodes go through the other cloud's nodes by themselves. Places of a lattice are as far from
 /// several others; balls of a shift all distances of their point, those of b let nearer points be farther. One cloud is
 /// near the other, one is among it, one is far for its size.
