@@ -75,7 +75,7 @@ public:
   /// @param cut no point of the leaf is farther from its nearest, unless that exceeds the greatest distance
   void measureBelow(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut)
   {
-    begin(voxel, visit, lane);
+    begin(voxel, visit, lane, cut);
     boundGathered();
     measureGathered(visit, lane, cut);
   }
@@ -84,7 +84,7 @@ public:
   /// @param near those that can hold a nearest point; left in another order
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
-    begin(voxel, visit, lane);
+    begin(voxel, visit, lane, visit.cut[lane]);
     if (floatsTell(near)) {
       gather(near);
       return measureGathered(visit, lane, visit.cut[lane]);
@@ -110,8 +110,9 @@ private:
     double least = -kInfinity, most = kInfinity; ///< of the distance, less the radius of b's point alone
   };
 
-  void begin(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane)
+  void begin(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut)
   {
+    limit_ = cut;
     leaf_ = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
     lanes_ = (leaf_.count + hn::Lanes(LaneTag()) - 1) / hn::Lanes(LaneTag()) * hn::Lanes(LaneTag());
     ++stamp_;
@@ -126,7 +127,7 @@ private:
   void measureGathered(const DistanceVisit& visit, std::uint32_t lane, float cut)
   {
     const bool balls = largest_radius_ > 0.0;
-    balls ? findNearest<true>(cut) : findNearest<false>(cut);
+    balls ? findNearest<true>() : findNearest<false>();
     if (query_.exceeds(limit_, unit_)) return;
     const std::uint32_t undecided = balls ? ambiguous<true>() : ambiguous<false>();
     for (std::uint32_t i = 0; i < leaf_.count; ++i)
@@ -157,12 +158,11 @@ private:
   /// Finds the nearest two of b's points to each point of the leaf by their float distances. Ends early where all
   /// points are known to be nearer than what was measured.
   template <bool kBalls>
-  void findNearest(float cut)
+  void findNearest()
   {
     two_.clear();
     near_leaves_.clear();
     error_ = kSmallestLength;
-    limit_ = cut;
     std::fill(std::begin(most_), std::end(most_), limit_ + own_radii_);
     if (gathered_.runs().empty()) return;
     // The nearest leaves little to the others.
@@ -182,6 +182,15 @@ private:
     }
   }
 
+  /// Bounds the distances from the leaf to some of eight spheres, of which each holds a point. Where only the greatest
+  /// distance is asked for, what is nearer for certain need not be compared with points.
+  void boundSpheres(const SphereLanes& spheres, const DistanceObstacle& obstacle, const CarriedLeaf& own,
+                    std::uint32_t count, float* lower)
+  {
+    boundFromBox(spheres, obstacle, own.low, own.high, lower);
+    if (query_.reached) limit_ = std::min(limit_, farthestFromBox(spheres, obstacle, own.low, own.high, count));
+  }
+
   void boundGathered()
   {
     for (const GatheredSpheres::Run& run : gathered_.runs()) {
@@ -189,7 +198,7 @@ private:
       const DistanceObstacle& obstacle = obstacles_[run.obstacle];
       float* const lower = gathered_.lower();
       for (std::uint32_t i = run.begin; i < run.end; i += kLanes)
-        boundFromBox(gathered_.lanes(i, obstacle.frame.stretch_b), obstacle, own.low, own.high, lower + i);
+        boundSpheres(gathered_.lanes(i, obstacle.frame.stretch_b), obstacle, own, run.end - i, lower + i);
       std::fill(lower + run.end, lower + run.wholeVectors(), GatheredSpheres::kDone);
       work_.node_pairs += run.end - run.begin;
     }
@@ -218,12 +227,12 @@ private:
   {
     const DistanceObstacle& obstacle = obstacles_[of];
     alignas(32) float lower[kLanes];
-    boundFromBox({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b}, obstacle, own.low, own.high, lower);
+    boundSpheres({node.x, node.y, node.z, node.r, obstacle.frame.stretch_b}, obstacle, own, node.count, lower);
     work_.node_pairs += node.count;
     for (std::uint32_t lanes = firstBits(node.count); lanes != 0;) {
       const std::uint32_t lane = smallestLane(lower, lanes);
       lanes &= ~(1u << lane);
-      if (lower[lane] > farthest()) break;
+      if (lower[lane] > farthest() || query_.exceeds(limit_, unit_)) break;
       if (node.isLeaf(lane))
         takeLeaf<kBalls>(own, of, node, lane, lower[lane]);
       else

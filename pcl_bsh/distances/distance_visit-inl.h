@@ -223,6 +223,30 @@ HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle&
   }
 }
 
+/// The least of upper bounds of the distances from any point of a box to all of each of some spheres, eight at most:
+/// as boundDistances() has them. Infinite where there is none.
+HWY_INLINE float farthestFromBox(const SphereLanes& spheres, const DistanceObstacle& obstacle, const float* low,
+                                 const float* high, std::uint32_t count)
+{
+  const LaneTag d;
+  const auto corner = [d](const float* at, float least, float most) HWY_ATTR {
+    const LaneVector value = hn::LoadU(d, at);
+    return hn::Max(hn::Sub(value, hn::Set(d, least)), hn::Sub(hn::Set(d, most), value));
+  };
+  LaneVector nearest = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const LaneVector between =
+        hn::Sqrt(squaredNorm(corner(spheres.x + i, low[0], high[0]), corner(spheres.y + i, low[1], high[1]),
+                             corner(spheres.z + i, low[2], high[2])));
+    const LaneVector radii =
+        hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch)), hn::Set(d, obstacle.slack));
+    const LaneVector sum = hn::Add(between, radii);
+    const LaneVector far = hn::Mul(hn::Add(sum, hn::Mul(sum, hn::Set(d, kBoundMargin))), hn::Set(d, obstacle.most));
+    nearest = hn::IfThenElse(hn::And(hn::FirstN(d, count - i), hn::Lt(far, nearest)), far, nearest);
+  }
+  return hn::GetLane(hn::MinOfLanes(d, nearest));
+}
+
 /// A lower bound that is NaN bounds nothing.
 HWY_INLINE float orNone(float lower)
 {

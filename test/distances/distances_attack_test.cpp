@@ -152,6 +152,55 @@ double boundFraction(const Numbers& n)
   return static_cast<double>(1.0L - std::min(below, above)); // 0: rounding took nothing; 1: all of the margin
 }
 
+/// The same of a box and a sphere.
+double boxFraction(const Numbers& n)
+{
+  float low[3], high[3], center[3];
+  long double near_squared = 0, far_squared = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float x = test::floatOf(n[k]), y = test::floatOf(n[k + 3]);
+    low[k] = std::min(x, y), high[k] = std::max(x, y), center[k] = test::floatOf(n[k + 6]);
+    const auto below = static_cast<long double>(low[k]) - static_cast<long double>(center[k]);
+    const auto above = static_cast<long double>(center[k]) - static_cast<long double>(high[k]);
+    const long double near = std::max({below, above, 0.0L}), far = std::max(-below, -above);
+    near_squared += near * near;
+    far_squared += far * far;
+  }
+  const float radius = std::abs(test::floatOf(n[9])), stretch = 1.0f + std::min(std::abs(test::floatOf(n[10])), 0.5f),
+              reach = std::max(std::abs(test::floatOf(n[11])), static_cast<float>(kSmallestLength)),
+              unit = 1.0f + std::min(std::abs(test::floatOf(n[12])), 0.5f);
+  const test::DistanceBounds found = test::boundOfBox(low, high, center, radius, stretch, {reach, unit, unit});
+  const long double scale = static_cast<long double>(unit);
+  const long double radii =
+      static_cast<long double>(radius) * static_cast<long double>(stretch) + static_cast<long double>(reach);
+  const auto fraction = [&](long double between, long double spare) {
+    const long double margin = static_cast<long double>(kBoundMargin) * (between + radii) * scale;
+    return margin > 0x1p-40L ? static_cast<double>(1.0L - spare / margin) : 0.0;
+  };
+  const long double near = std::sqrt(near_squared), far = std::sqrt(far_squared);
+  return std::max(fraction(near, (near - radii) * scale - static_cast<long double>(found.lower)),
+                  fraction(far, static_cast<long double>(found.upper) - (far + radii) * scale));
+}
+
+TEST(DistancesAttack, BoundsOfBoxes)
+{
+  test::onEveryTarget([](const std::string& target) {
+    Random random(404);
+    const auto start = [&] {
+      Numbers n;
+      for (int k = 0; k < 9; ++k) n.push_back(test::suspect(random, 12));
+      if (random.chance(0.5))
+        for (std::size_t k = 0; k < 9; ++k)
+          if (k % 3 != 0) n[k] *= 0x1p-13 * random.integer(0, 4);
+      for (int k = 0; k < 4; ++k) n.push_back(std::ldexp(random.uniform(0, 1), -random.integer(0, 26)));
+      return n;
+    };
+    const double reached = test::climbFromMany(start, boxFraction, 30, 600, random);
+    test::report("bounds of boxes, " + target, reached);
+    EXPECT_GE(reached, 0.5);
+  });
+}
+
 TEST(DistancesAttack, BoundsOfSpheres)
 {
   test::onEveryTarget([](const std::string& target) {

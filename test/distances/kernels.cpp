@@ -35,6 +35,29 @@ void longLengthOnTarget(const std::array<double, 3>& p, const std::array<double,
   out.rounded = lengths[0];
 }
 
+DistanceObstacle obstacleOf(const test::FrameBounds& frame)
+{
+  DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0);
+  obstacle.slack = frame.prune_reach;
+  obstacle.least = frame.least;
+  obstacle.most = frame.most;
+  return obstacle;
+}
+
+void boundOfBoxOnTarget(const float* low, const float* high, const float* center, float radius, float stretch,
+                        const test::FrameBounds& frame, test::DistanceBounds& out)
+{
+  float x[kLanes], y[kLanes], z[kLanes], r[kLanes], lower[kLanes];
+  std::fill(std::begin(x), std::end(x), center[0]);
+  std::fill(std::begin(y), std::end(y), center[1]);
+  std::fill(std::begin(z), std::end(z), center[2]);
+  std::fill(std::begin(r), std::end(r), radius);
+  const SphereLanes spheres{x, y, z, r, stretch};
+  const DistanceObstacle obstacle = obstacleOf(frame);
+  boundFromBox(spheres, obstacle, low, high, lower);
+  out = {lower[0], farthestFromBox(spheres, obstacle, low, high, 1)};
+}
+
 void boundDistanceOnTarget(const float* center, float radius, const float* other, float other_radius,
                            const test::FrameBounds& frame, test::DistanceBounds& out)
 {
@@ -43,13 +66,9 @@ void boundDistanceOnTarget(const float* center, float radius, const float* other
   std::fill(std::begin(spheres.y), std::end(spheres.y), center[1]);
   std::fill(std::begin(spheres.z), std::end(spheres.z), center[2]);
   std::fill(std::begin(spheres.r), std::end(spheres.r), radius);
-  DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0);
-  obstacle.slack = frame.prune_reach;
-  obstacle.least = frame.least;
-  obstacle.most = frame.most;
   float lower[kLanes], cut[kLanes];
   std::fill(std::begin(cut), std::end(cut), std::numeric_limits<float>::infinity());
-  boundDistances(spheres, obstacle, {other[0], other[1], other[2]}, other_radius, lower, cut);
+  boundDistances(spheres, obstacleOf(frame), {other[0], other[1], other[2]}, other_radius, lower, cut);
   out = {lower[0], cut[0]};
 }
 
@@ -92,6 +111,7 @@ HWY_AFTER_NAMESPACE();
 namespace pcl_bsh {
 namespace {
 HWY_EXPORT(longLengthOnTarget);
+HWY_EXPORT(boundOfBoxOnTarget);
 HWY_EXPORT(boundDistanceOnTarget);
 HWY_EXPORT(longTriangleDistanceOnTarget);
 HWY_EXPORT(longTriangleOrderOnTarget);
@@ -113,6 +133,14 @@ DistanceBounds boundDistance(const float (&center)[3], float radius, const float
 {
   DistanceBounds found;
   HWY_DYNAMIC_DISPATCH(boundDistanceOnTarget)(center, radius, other, other_radius, frame, found);
+  return found;
+}
+
+DistanceBounds boundOfBox(const float (&low)[3], const float (&high)[3], const float (&center)[3], float radius,
+                          float stretch, const FrameBounds& frame)
+{
+  DistanceBounds found;
+  HWY_DYNAMIC_DISPATCH(boundOfBoxOnTarget)(low, high, center, radius, stretch, frame, found);
   return found;
 }
 

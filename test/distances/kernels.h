@@ -31,6 +31,10 @@ struct DistanceBounds {
 DistanceBounds boundDistance(const float (&center)[3], float radius, const float (&other)[3], float other_radius,
                              const FrameBounds& frame);
 
+/// boundFromBox() and farthestFromBox() of a box to a sphere.
+DistanceBounds boundOfBox(const float (&low)[3], const float (&high)[3], const float (&center)[3], float radius,
+                          float stretch, const FrameBounds& frame);
+
 /// nearPartOf() and longDistance() of a point and a triangle under their poses.
 struct LongTriangleDistance {
   int kind; ///< NearPart::Kind: 0 where doubles are not sure

@@ -1,5 +1,6 @@
-# boundDistances(): the distance of two centres is the root of a squared distance; radii and reach have three roundings. A
-# bound is their difference or sum, less or plus the margin of their sum, times a factor.
+# boundDistances(), and of boxes boundFromBox() and farthestFromBox(): the distance of two centres is the root of a squared
+# distance; radii and reach have three roundings at most. A bound is their difference or sum, less or plus the margin of
+# their sum, times a factor.
 {
   d in [-1b-24, 1b-24] /\ p in [-1b-24, 1b-24] /\ s0 in [-1b-24, 1b-24] /\ s1 in [-1b-24, 1b-24] /\ root in [-1b-24, 1b-24] /\
   a in [-1b-24, 1b-24] /\ b in [-1b-24, 1b-24] /\ c in [-1b-24, 1b-24] /\
