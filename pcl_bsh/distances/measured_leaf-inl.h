@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One leaf of a while its points are measured: where it is as seen from b, and what was found for them.
+
+#if defined(PCL_BSH_DISTANCES_MEASURED_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_DISTANCES_MEASURED_LEAF_INL_H_
+#undef PCL_BSH_DISTANCES_MEASURED_LEAF_INL_H_
+#else
+#define PCL_BSH_DISTANCES_MEASURED_LEAF_INL_H_
+#endif
+
+#include <pcl_bsh/distances/distance_query.h>
+#include <pcl_bsh/distances/distance_visit-inl.h>
+
+#include <algorithm>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// The record of b that is the nearest to a point of a.
+struct NearestFound {
+  const Voxel* voxel = nullptr;                            ///< null: none
+  std::uint32_t point = 0;                                 ///< in the voxel
+  double least = -std::numeric_limits<double>::infinity(); ///< of the distance, less the radius of b's point alone
+  double most = std::numeric_limits<double>::infinity();   ///< likewise
+};
+
+inline std::uint32_t recordOf(const NearestFound& found)
+{
+  return found.voxel->records()[found.point];
+}
+
+struct MeasuredLeaf {
+  MeasuredLeaf(const DistancesQuery& asked, DistanceScratch& scratch, Work& counted)
+  : query(asked),
+    obstacles(scratch.obstacles),
+    leaves(scratch.leaves),
+    stamp(scratch.stamp),
+    work(counted),
+    view_a(asked.a.hierarchy().view()),
+    view_b(asked.b.hierarchy().view()),
+    of_triangles(asked.pairs.ofTriangles()),
+    unit(asked.b.hierarchy().storage().frame.unit),
+    largest_radius(asked.b.hierarchy().storage().largest_radius),
+    max(asked.pairs.reach.most)
+  {
+  }
+
+  void begin(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane)
+  {
+    range = {&voxel, visit.node->begin[lane], visit.node->comparedPoints(lane)};
+    lanes = (range.count + hn::Lanes(LaneTag()) - 1) / hn::Lanes(LaneTag()) * hn::Lanes(LaneTag());
+    ++stamp;
+  }
+
+  const CarriedLeaf& carried(std::uint32_t obstacle)
+  {
+    CarriedLeaf& own = leaves[obstacle];
+    if (own.stamp == stamp) return own;
+    own.stamp = stamp;
+    carryLeaf(obstacles[obstacle].frame, range, own.points);
+    float* const axes[] = {own.points.x, own.points.y, own.points.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::fill(axes[k] + range.count, axes[k] + kLeafPoints, axes[k][0]);
+      own.low[k] = smallestOf(axes[k], kLeafPoints);
+      own.high[k] = largestOf(axes[k], kLeafPoints);
+    }
+    return own;
+  }
+
+  Point3 given(std::uint32_t i) const { return range.voxel->point(view_a, range.begin + i); }
+
+  RecordDistance::Pair posed(std::uint32_t i, const NearestFound& other) const
+  {
+    if (of_triangles) return query.pairs.posed({range.record(i), recordOf(other)});
+    return {ExactDistance::Pair{given(i), other.voxel->point(view_b, other.point), range.radius(i),
+                                other.voxel->radii ? double{other.voxel->radii[other.point]} : 0.0},
+            {}};
+  }
+
+  const DistancesQuery& query;
+  const std::vector<DistanceObstacle>& obstacles;
+  std::vector<CarriedLeaf>& leaves; ///< by obstacle
+  std::uint64_t& stamp;
+  Work& work;
+  const PointsView& view_a;
+  const PointsView& view_b;
+  const bool of_triangles;     ///< whether a cloud is
+  const double unit;           ///< of bounds and floats, in the clouds' unit
+  const double largest_radius; ///< of b's points, in the clouds' unit
+  const double max;            ///< the greatest distance that is asked for
+
+  LeafRange range;
+  std::size_t lanes = kLeafPoints; ///< of the leaf's points, whole vectors
+  NearestFound found[kLeafPoints];
+  alignas(64) double length[kLeafPoints]; ///< to what was found; NaN where it is not known
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
