@@ -55,7 +55,8 @@ public:
   {
     voxel_ = voxel;
     addObstacle(kAboveVoxels, nullptr);
-    const float cut = roundUp(max_ / unit_ * (1.0 + kDoubleMargin));
+    // A quotient that vanished would bound what is beyond a limit above 0.
+    const float cut = roundUp(std::max(max_ / unit_, std::min(max_, 0x1p-1000)) * (1.0 + kDoubleMargin));
     if (max_ < kInfinity || rule_.mayStop()) {
       const VoxelBounds::Range whole = boundVoxel(cut);
       if (double{whole.lower} * unit_ > max_) return forAll([this](std::uint32_t record) { setBeyond(record); });

@@ -121,6 +121,22 @@ TEST_F(DistancesAccuracy, BudgetsGiveCertainIntervalsAndInTheEndAllDistances)
   });
 }
 
+/// In the unit of large coordinates a limit as small as that is 0, which bounds nothing.
+TEST_F(DistancesAccuracy, ASmallestLimitBoundsNoPointThatWasLeft)
+{
+  std::vector<Point3> points;
+  for (int i = 0; i < 64; ++i) points.push_back({0x1p90 * i, 0, 0});
+  const Cloud one(points), other({{0, 0x1p80, 0}, {0x1p96, 0x1p80, 0}});
+  const SphereHierarchy a(one.view()), b(other.view());
+  PointDistancesRequest request;
+  request.max_distance = std::numeric_limits<double>::denorm_min();
+  for (const Accuracy& accuracy : {Accuracy::nodePairs(1), Accuracy::nodePairs(20), Accuracy::level(1)}) {
+    request.accuracy = accuracy;
+    const PointDistances found = pointDistances({a}, {b}, request), truth = pointDistances({a}, {b});
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_GE(found.interval[i].upper, truth.distance[i]) << i;
+  }
+}
+
 /// Passes that go farther down keep what the ones before told: of a budget that ends in the last one, each interval
 /// lies in the one of the level that all passes before came to.
 TEST_F(DistancesAccuracy, BudgetsKeepWhatEarlierPassesKnow)
