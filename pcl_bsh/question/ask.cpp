@@ -190,8 +190,9 @@ private:
     static_cast<Effort&>(request) = nextEffort();
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
     const bool flags = wanted_.flags || wanted_.contacts || wanted_.poses;
-    request.flags = flags || !solids_->none(); // which what is held is counted by
-    request.distances = request.closest_poses = wanted_.contacts || wanted_.distances;
+    request.flags = flags || !solids_->none();                                // which what is held is counted by
+    const bool closest = wanted_.closest && !question_.accuracy.stopsEarly(); // which knows no distances
+    request.distances = request.closest_poses = wanted_.contacts || wanted_.distances || closest;
     request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;
     request.swept = question_.sweptTolerance();

@@ -214,6 +214,21 @@ TEST_F(Ask, TheClosestPairHoweverFar)
   EXPECT_EQ(found.closest.interval.lower, expected.interval.lower);
 }
 
+TEST_F(Ask, BallsThatOverlapOnAPathAreNotApart)
+{
+  const Point3 here = {0, 0, 0}, there = {0.5, 0, 0};
+  const float radius = 1.0f;
+  PointsView ball = viewOf(here.data(), 1);
+  ball.radii = &radius;
+  input = Shape("a ball", ball);
+  obstacle = Shape("a point", viewOf(there.data(), 1));
+  question.path = {Eigen::Isometry3d::Identity()};
+  question.wanted.closest = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.closest.distance, 0.0);
+  EXPECT_TRUE(found.closest.pair);
+}
+
 TEST_F(Ask, DistancesAndLimits)
 {
   question.wanted.distances = question.wanted.both_ways = true;
@@ -381,6 +396,9 @@ TEST_F(AskOfSurfaces, RefuseWhatIsAboutPoints)
   question.density = true;
   EXPECT_THAT(refusal(), HasSubstr("density|density: is about points, and crate.off is a surface"));
   question.density = false;
+  question.seen = true;
+  EXPECT_THAT(refusal(), HasSubstr("seen|seen: is about points, and crate.off is a surface"));
+  question.seen = false;
   question.uncertainty = Uncertainty("sigma", 1.0);
   EXPECT_THAT(refusal(), HasSubstr("crate.off: is a surface, which has no field 'sigma': give a length"));
   question.uncertainty = 0.0;
