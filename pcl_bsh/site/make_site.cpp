@@ -263,9 +263,8 @@ private:
 
   void beginOverview()
   {
-    const std::uint64_t most = std::min(options_.overview_points, site_.points);
-    if (most == 0) return;
-    overview_every_ = (site_.points + most - 1) / most;
+    if (options_.overview_points == 0 || site_.points == 0) return;
+    overview_every_ = overviewStep(site_.points, options_.overview_points);
     if (state_.dealt > 0) {
       const std::uint64_t bytes = TileFile::bytesOf(site_.fields, state_.overview);
       overview_.emplace(unfinished_->goOn(overview_file_name, bytes), site_.fields, batch_bytes, state_.overview);

@@ -90,7 +90,7 @@ public:
       begins_.push_back(points);
       points += source.points;
     }
-    every_ = std::max<std::uint64_t>((points + overview_points - 1) / overview_points, 1);
+    every_ = overviewStep(points, overview_points);
     // The first rank makes the folder; the others go on when it is there.
     using Use = UnfinishedSite::Use;
     const bool is_kept = !continuation.question.empty();

@@ -16,6 +16,7 @@
 #include <pcl_bsh/site/export_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/making/density_tree.h>
+#include <pcl_bsh/site/tiles/tile_file.h>
 
 #include <gmock/gmock.h>
 
@@ -309,6 +310,13 @@ TEST(CloudStream, GivesWhatReadCloudGives)
   }
 }
 
+TEST(Overview, HasAsManyPointsAsItMay)
+{
+  for (const auto& [points, step] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
+           {0, 1}, {1, 1}, {999, 1}, {1000, 1}, {1001, 2}, {2000, 2}, {2001, 3}})
+    EXPECT_EQ(overviewStep(points, 1000), step) << points;
+}
+
 /// Counts the points of each tile that a tree of them plans.
 std::vector<std::uint64_t> tilesFor(const std::vector<Point3>& points, std::uint64_t most)
 {
@@ -340,6 +348,25 @@ TEST(DensityTree, LimitsTilesWhateverTheDensity)
         EXPECT_LE(counts.size(), 2.5 * static_cast<double>(points.size()) / static_cast<double>(most));
       }
     }
+  }
+}
+
+/// The cell of the point that was asked about before is looked at first.
+TEST(DensityTree, FindsTheSameTileAfterAnyOtherPoint)
+{
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Point3> points;
+  for (int i = 0; i < 400; ++i) points.push_back({unit(random), unit(random), unit(random)});
+  DensityTree tree(10);
+  for (const Point3& point : points) tree.add(point);
+  EXPECT_GT(tree.plan(), 20U);
+  const DensityTree planned = tree;
+  std::vector<std::pair<Point3, std::uint32_t>> expected;
+  for (const Point3& point : points) expected.emplace_back(point, DensityTree(planned).tileOf(point));
+  for (int order = 0; order < 20; ++order) {
+    std::shuffle(expected.begin(), expected.end(), random);
+    for (const auto& [point, tile] : expected) ASSERT_EQ(tree.tileOf(point), tile);
   }
 }
 

@@ -51,6 +51,12 @@ private:
 /// overview.
 std::uint64_t diskSpaceOf(const Fields& fields, std::uint64_t points, std::uint64_t tiles, std::uint64_t overview);
 
+/// Points of a site for one of its overview, which has `most` at most. @pre most > 0
+inline std::uint64_t overviewStep(std::uint64_t points, std::uint64_t most)
+{
+  return points <= most ? 1 : (points - 1) / most + 1;
+}
+
 /// The name of a tile's file in the site's folder.
 std::string tileFileName(std::size_t tile);
 
