@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -73,6 +74,21 @@ TEST_F(HollowTest, NotWhereFacesDoNotClose)
 {
   machine.corners.resize(machine.corners.size() - 3);
   EXPECT_TRUE(hollow().empty());
+}
+
+TEST_F(HollowTest, TrianglesThatAreNotFiniteEncloseNothing)
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double x : {infinity, std::nan("")}) {
+    for (const double side : {-9.0, 9.0}) {
+      const test::ClosedMesh sound = machine;
+      const auto at = [&](double u, double v, double w) { return machine.vertex(u, v, w); };
+      machine.triangle(at(x, side, -9), at(x, -side, -9), at(x, 0, 9));
+      machine.triangle(at(9, side, -9), at(x, -side, -9), at(9, 0, 9));
+      EXPECT_EQ(hollow().size(), 1u);
+      machine = sound;
+    }
+  }
 }
 
 TEST_F(HollowTest, TheSecondQuestionFindsOutWhetherFacesClose)

@@ -85,6 +85,25 @@ TEST_F(SolidsTest, UncertainPointsNearTheSurfaceStayUndecided)
   question.clearance = 0.0;
   question.uncertainty.length = 0.25;
   EXPECT_EQ(answer().collisions.flags, test::verdictsOf({1, 1, 2, 2, 2, 0}));
+  question.wanted = {};
+  question.wanted.indices = question.wanted.obstacle_indices = question.wanted.obstacle_flags = true;
+  const Answer lists = answer();
+  EXPECT_THAT(lists.indices.a, ElementsAre(0, 1));
+  EXPECT_THAT(lists.indices.undecided_a, ElementsAre(2, 3, 4));
+  std::vector<std::int32_t> colliding, undecided;
+  for (std::int32_t i = 0; i < 12; ++i) {
+    const Verdict verdict = lists.obstacle_flags[static_cast<std::size_t>(i)];
+    if (verdict == Verdict::colliding) colliding.push_back(i);
+    if (verdict == Verdict::undecided) undecided.push_back(i);
+  }
+  EXPECT_EQ(lists.indices.b, colliding);
+  EXPECT_EQ(lists.indices.undecided_b, undecided);
+  question.uncertainty.length = 3.0;
+  question.solid = false;
+  const std::vector<std::int32_t> of_surface = answer().indices.undecided_b;
+  EXPECT_EQ(of_surface.size(), 12u);
+  question.solid = true;
+  EXPECT_EQ(answer().indices.undecided_b, of_surface);
 }
 
 TEST_F(SolidsTest, DistancesAreSigned)
@@ -105,10 +124,17 @@ TEST_F(SolidsTest, DistancesAreSigned)
   question.max_distance = 0.2; // depths are told however great
   found = answer();
   EXPECT_EQ(found.distances.a.distance[0], -1.0);
+  EXPECT_EQ(found.distances.a.measured, 4u);
   EXPECT_TRUE(std::isnan(found.distances.a.distance[4]));
+  question.max_distance = 0.125; // no more than the limits ask for
+  question.limits = {-2.0, 1.0};
+  EXPECT_EQ(answer().distances.a.distance[3], 0.125);
+  question.max_distance = 0.2;
   question.limits = {-2.0, -1.0};
   EXPECT_THAT(answer().within, ElementsAre(1, 0, 0, 0, 0, 0));
   question.limits = {std::nextafter(-1.0, 0.0), -0.5};
+  EXPECT_THAT(answer().within, ElementsAre(0, 1, 0, 0, 0, 0));
+  question.wanted.distances = false;
   EXPECT_THAT(answer().within, ElementsAre(0, 1, 0, 0, 0, 0));
 }
 
@@ -121,13 +147,18 @@ TEST_F(SolidsTest, ABallIsAsDeepAsItsFarSide)
   question.wanted.distances = question.wanted.closest = true;
   question.accuracy = Accuracy::tolerance(0.01); // tells intervals
   Shape input("the scan", balls), obstacle("the tank", viewOf(view()));
-  const Answer found = ask(question, input, obstacle);
   const std::vector<double> depths{-0.5, -0.75, -0.5, -0.25, 0.5};
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    EXPECT_LE(found.distances.a.interval[i].lower, depths[i]) << i;
-    EXPECT_GE(found.distances.a.interval[i].upper, depths[i]) << i;
+  for (const std::optional<double> told : {std::optional<double>(), std::optional(0.2)}) {
+    question.max_distance = told;
+    const std::vector<Interval> intervals = ask(question, input, obstacle).distances.a.interval;
+    for (std::size_t i = 0; i < (told ? 4 : depths.size()); ++i) {
+      EXPECT_LE(intervals[i].lower, depths[i]) << i;
+      EXPECT_GE(intervals[i].upper, depths[i]) << i;
+      EXPECT_LT(intervals[i].upper - intervals[i].lower, 0.05) << i;
+    }
   }
   question.accuracy = {};
+  question.max_distance.reset();
   EXPECT_EQ(ask(question, input, obstacle).distances.a.distance, depths);
   EXPECT_EQ(ask(question, input, obstacle).closest.distance, -0.75);
   EXPECT_EQ(ask(question, input, obstacle).closest.pair->a, 1u);
@@ -150,13 +181,21 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(found.collisions.poses[1].colliding_points, 1u);
   EXPECT_EQ(found.collisions.poses[2].colliding_points, 0u);
   EXPECT_FALSE(found.collisions.first_contact) << "nobody asked for the motion between poses";
-  question.wanted.poses = false;
+  question.wanted = {};
+  question.wanted.first_poses = true;
+  found = answer();
+  EXPECT_THAT(found.collisions.first_pose, ElementsAre(1, 0));
+  EXPECT_EQ(found.collisions.colliding, 2u);
+  EXPECT_TRUE(found.collisions.flags.empty());
+  question.wanted.contacts = true;
   question.swept = 0.01;
   question.path = {at(0), at(0)};
   found = answer();
   ASSERT_TRUE(found.collisions.first_contact);
   EXPECT_EQ(found.collisions.first_contact->pose, 0u);
   EXPECT_EQ(found.collisions.first_contact->fraction, 0.0);
+  question.path = {at(0), at(1.5)}; // its wall comes later
+  EXPECT_EQ(answer().collisions.first_contact->fraction, 0.0);
 }
 
 /// The first contact that is certain is that of points which are held wherever they truly are.
@@ -173,10 +212,12 @@ TEST_F(SolidsTest, OnAWayWhatIsCertainlyInsideMeetsForCertain)
   ASSERT_TRUE(found.collisions.certain_contact);
   EXPECT_EQ(found.collisions.certain_contact->pose, 0u);
   EXPECT_EQ(found.collisions.certain_contact->fraction, 0.0);
+  EXPECT_THAT(found.collisions.certain_pose, ElementsAre(0));
   question.path = {at(1.125), at(1.125)}; // outside, or inside
   found = answer();
   EXPECT_TRUE(found.collisions.first_contact);
   EXPECT_FALSE(found.collisions.certain_contact);
+  EXPECT_THAT(found.collisions.certain_pose, ElementsAre(-1));
 }
 
 TEST_F(SolidsTest, ASurfaceInsideCollides)
@@ -375,6 +416,43 @@ TEST_F(TwoSolidsTest, UncertainPlacesLeaveUndecidedWhatMayStillBeOutside)
   EXPECT_EQ(found.collisions.flags, std::vector<Verdict>(12, Verdict::undecided));
   question.obstacle_uncertainty.length = 0.75;
   EXPECT_EQ(answer().collisions.flags, std::vector<Verdict>(12, Verdict::colliding));
+}
+
+/// Where one of two solids holds nothing, and where each holds a body of its own.
+TEST_F(TwoSolidsTest, SummariesOfPosesCountWhatEitherHolds)
+{
+  const auto add = [](test::ClosedMesh& mesh, double edge) {
+    mesh.add(test::boxMesh(), edge, {-0.5 * edge, -0.5 * edge, -0.5 * edge});
+  };
+  question.clearance = 0.0;
+  question.solid = question.input_solid = true;
+  question.wanted.poses = true;
+  question.path = {Eigen::Isometry3d::Identity()};
+  second = test::ClosedMesh();
+  add(second, 4.0);
+  for (const auto& [edges, held] :
+       {std::pair(std::vector<double>{1.0}, 12u), {{9.0}, 12u}, {{1.0, 9.0}, 24u}, {{9.0, 1.0}, 24u}}) {
+    first = test::ClosedMesh();
+    for (const double edge : edges) add(first, edge);
+    const Answer found = answer();
+    const PoseSummary& pose = found.collisions.poses.at(0);
+    EXPECT_TRUE(pose.colliding);
+    EXPECT_EQ(pose.colliding_points, held);
+    EXPECT_EQ(pose.distance, 0.0);
+  }
+  for (const double uncertainty : {0.25, 1.75, 9.0}) {
+    question.obstacle_uncertainty.length = uncertainty;
+    question.path = {Eigen::Isometry3d::Identity()};
+    question.wanted = {};
+    question.wanted.poses = true;
+    const PoseSummary pose = answer().collisions.poses.at(0);
+    question.path.reset();
+    question.wanted.flags = true;
+    question.wanted.poses = false;
+    const std::vector<Verdict> flags = answer().collisions.flags;
+    EXPECT_EQ(pose.colliding_points, countOf(flags, Verdict::colliding)) << uncertainty;
+    EXPECT_EQ(pose.undecided_points, countOf(flags, Verdict::undecided)) << uncertainty;
+  }
 }
 
 TEST_F(TwoSolidsTest, AnInputWithoutFacesIsNoSolid)

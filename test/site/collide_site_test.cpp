@@ -15,6 +15,7 @@
 #include <pcl_bsh/site/collide_site.h>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <map>
@@ -415,6 +416,7 @@ TEST_F(CollideSite, OnTwoRanks)
                                               " --closest" + pose,
                                               " --distances" + pose,
                                               std::string(" --clearance 0.2 --trajectory poses.txt"),
+                                              std::string(" --clearance 0.2 --uncertainty 0.1 --trajectory poses.txt"),
                                               std::string(" --clearance 0.2 --swept 0.01 --trajectory poses.txt")};
   for (const std::string& question : questions) {
     SCOPED_TRACE(question);
@@ -430,6 +432,25 @@ TEST_F(CollideSite, OnTwoRanks)
   const Outcome damaged = runOnTwoRanks("collide site b.pcd --report - --distances", folder.path());
   EXPECT_NE(damaged.exit_code, 0);
   EXPECT_THAT(damaged.err, HasSubstr("pcl_bsh_site: rank "));
+}
+
+/// The rank that meets nothing has no say.
+TEST_F(CollideSite, FirstContactOfOneOfTwoRanks)
+{
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  io::writeCloud(folder / "a.pcd", float64Cloud({{7.25, 0, 0}, {500, 0, 0}}));
+  io::writeCloud(folder / "b.pcd", float64Cloud({{0, 0, 0}}));
+  const Eigen::Isometry3d begin = Eigen::Isometry3d::Identity(), end(Eigen::Translation3d(8, 0, 0));
+  io::writePoses(folder / "poses.txt", {begin, begin, end});
+  MakeOptions options;
+  options.tile_points = 1;
+  EXPECT_EQ(makeSite({folder / "a.pcd"}, folder / "site", options).tiles.size(), 2U);
+  const Outcome two = runOnTwoRanks(
+      "collide site b.pcd --report - --clearance 0.25 --swept 0.01 --trajectory poses.txt", folder.path());
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  const auto contact = nlohmann::json::parse(two.out).at("first_contact");
+  EXPECT_EQ(contact.at("pose"), 1);
+  EXPECT_NEAR(contact.at("fraction").get<double>(), 7.0 / 8, 0.01);
 }
 
 } // namespace

@@ -74,13 +74,13 @@ protected:
     options.angle = sight.angle;
     const SeenSpace space(beams, options);
     PointsView view = viewOf(all.front().data(), all.size());
-    view.uncertainty = request.uncertainty.length;
+    view.uncertainty = request.uncertainty.length + request.uncertainty.pose.length;
     const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
     FlagsRequest flags;
     flags.clearance = request.clearance;
     flags.flagged = Side::b;
     UnseenRequest asked;
-    asked.clearance = request.clearance;
+    asked.clearance = request.clearance + request.uncertainty.pose.length; // beams and their scanner move together
     Answer::Unseen unseen;
     gravest.assign(machine.size(), Verdict::free);
     for (const Eigen::Isometry3d& pose : poses) {
@@ -118,6 +118,62 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
     EXPECT_EQ(found.unseen.first_pose, right.first_pose);
     EXPECT_EQ(found.unseen.count, right.count);
     EXPECT_LT(found.beams, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
+  }
+}
+
+TEST_F(SeeSite, TheSitesPoseMayBeUncertain)
+{
+  std::vector<Verdict> at_once, before;
+  expected(before);
+  request.uncertainty.pose.length = 0.05;
+  const Answer::Unseen right = expected(at_once);
+  ASSERT_NE(at_once, before);
+  const SiteUnseen found = asked(siteOf(3000));
+  EXPECT_EQ(found.unseen.where, right.where);
+  EXPECT_EQ(found.verdicts, at_once);
+}
+
+/// A scan of one beam, for which all tiles are looked through once more.
+TEST_F(SeeSite, BeamsAreUncertainWhateverElseIsRead)
+{
+  scans[1] = {{7, 5, 3}};
+  io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
+  request.uncertainty = 0.05;
+  std::vector<Verdict> at_once;
+  const Answer::Unseen right = expected(at_once);
+  for (const std::uint64_t tile_points : {1000000u, 3000u})
+    EXPECT_EQ(asked(siteOf(tile_points)).unseen.where, right.where);
+}
+
+/// Answers of another question that may go on are none of this one.
+TEST_F(SeeSite, TakesNoAnswersThatWereKept)
+{
+  struct Kept : TileAnswers {
+    const std::vector<double>* known(std::size_t) const override { return &none; }
+    void keep(std::size_t, const std::vector<double>&) override { ADD_FAILURE(); }
+    std::vector<double> none;
+  } kept;
+  const Site site = siteOf(3000);
+  poses = {Eigen::Isometry3d(Eigen::Translation3d(0.2, 3, 1))}; // partly in a wall
+  const SiteUnseen right = asked(site);
+  ASSERT_GT(countOf(right.verdicts, Verdict::colliding), 0u);
+  request.answers = &kept;
+  EXPECT_EQ(asked(site).verdicts, right.verdicts);
+}
+
+TEST_F(SeeSite, CollidingWinsOverUndecidedOfAnotherTile)
+{
+  machine = {{0, 0, 0}};
+  poses = {Eigen::Isometry3d(Eigen::Translation3d(4, 3, 1))};
+  request.clearance = 0.25;
+  request.uncertainty = 0.05;
+  for (const double side : {1.0, -1.0}) {
+    scans[0] = {{4 + 0.15 * side, 3, 1}, {4 - 0.27 * side, 3, 1}};
+    scans[1] = {{0, 0, 0}, {8, 6, 3}};
+    for (std::size_t s = 0; s < 2; ++s)
+      io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
+    EXPECT_EQ(asked(siteOf(side > 0 ? 1 : 2)).verdicts, std::vector<Verdict>{Verdict::colliding});
+    EXPECT_EQ(asked(siteOf(side > 0 ? 3 : 4)).verdicts, std::vector<Verdict>{Verdict::colliding});
   }
 }
 

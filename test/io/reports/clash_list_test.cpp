@@ -158,6 +158,10 @@ TEST(ClashLists, OfEarlierVersionsAreReadWithAWarning)
   now.uncertainty = 0.01;
   EXPECT_THAT(requireComparable("old.json", list, now), ElementsAre(HasSubstr("old.json: is of an earlier version")));
   EXPECT_TRUE(surveyWarnings("old.json", list, Survey(posesAt({0}), std::nullopt), 1).empty());
+  const ClashList without_survey = parseClashes(oldListWith(R"("options": {})"), "old.json");
+  EXPECT_TRUE(without_survey.states_options);
+  EXPECT_THAT(requireComparable("old.json", without_survey, without_survey.question),
+              ElementsAre(HasSubstr("old.json: is of an earlier version")));
 }
 
 TEST(ClashLists, RefuseQuestionsAndSurveysThatNoRunWrites)

@@ -522,6 +522,24 @@ TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
             (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", "", ""}));
 }
 
+TEST_F(ClashReports, TellWhereTheyAreNotExact)
+{
+  ClashReport list = twoClashes();
+  list.question.accuracy = Accuracy::tolerance(0.01);
+  EXPECT_EQ(Json::parse(clashJson(list))["accuracy"], "tolerance=0.01");
+  EXPECT_THAT(clashCsv(list), HasSubstr(",tolerance=0.01,,,\n"));
+  EXPECT_TRUE(has(clashPage(list), "<b>tolerance=0.01</b><span>accuracy"));
+}
+
+TEST(ClusterDistance, IsAPowerOfTwoThatSpansTheScansGaps)
+{
+  Spacing scan;
+  scan.median = 0.1;
+  EXPECT_EQ(clusterDistanceFor(0.0, scan), 0.5);
+  EXPECT_EQ(clusterDistanceFor(0.6, scan), 1.0);
+  EXPECT_EQ(clusterDistanceFor(0.0, Spacing()), 1.0);
+}
+
 TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
 {
   setenv("SOURCE_DATE_EPOCH", "1700000000", 1);

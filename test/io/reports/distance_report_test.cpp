@@ -90,6 +90,18 @@ TEST_F(DistanceReports, TellBothDirectionsInNumbers)
   EXPECT_EQ(told["hausdorff_pair"], (Json{42, 42}));
 }
 
+TEST_F(DistanceReports, TellWhatWasAskedForOtherThanUsual)
+{
+  for (std::size_t i = 0; i < 100; ++i) high[3 * i + 2] = 0.001 * static_cast<double>(i);
+  const Json to = json()["input_to_obstacle"];
+  EXPECT_EQ(to["places_beyond"], to["percentiles"]["95"]) << "where nothing is said";
+  question.beyond = 0.25;
+  question.request.accuracy = Accuracy::tolerance(0.01);
+  EXPECT_EQ(json()["input_to_obstacle"]["places_beyond"], 0.25);
+  EXPECT_EQ(json()["accuracy"], "tolerance=0.01");
+  EXPECT_THAT(page(), HasSubstr("tolerance=0.01"));
+}
+
 TEST_F(DistanceReports, TellWhatHasNoDistance)
 {
   question.request.max_distance = 1;
