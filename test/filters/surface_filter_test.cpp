@@ -272,6 +272,10 @@ TEST(MeshFilter, AMeshThatHasChangedIsNotAskedAbout)
   refused([&] { filter.computeFlags(flags); });
   std::swap(mesh->polygons[0].vertices[0], mesh->polygons[0].vertices[1]);
   EXPECT_NO_THROW(filter.computeFlags(flags)) << "as it was";
+  pcl::Indices &first = mesh->polygons[0].vertices, &second = mesh->polygons[1].vertices;
+  second.insert(second.begin(), first.back()); // the same vertices one after another, divided otherwise
+  first.pop_back();
+  refused([&] { filter.computeFlags(flags); });
 }
 
 TEST(MeshFilter, HoldsWhatItsInputEncloses)

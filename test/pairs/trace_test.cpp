@@ -106,6 +106,19 @@ TEST(Trace, OfCloudsFarApartIsTheirVoxels)
   EXPECT_EQ(countOf(trace.a, SphereFate::pruned), 3u);
 }
 
+TEST(Trace, WhatWaitsWhenACollisionIsFoundIsKept)
+{
+  const Cloud three({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}), one({{0, 0, 0}});
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  const SphereHierarchy many(three.view(), options), single(one.view(), options);
+  for (const std::vector<TracedSphere>& spheres :
+       {traceCollision({many}, {single}, within(25.0)).a, traceCollision({single}, {many}, within(25.0)).b}) {
+    EXPECT_GE(countOf(spheres, SphereFate::kept), 2u);
+    EXPECT_EQ(countOf(spheres, SphereFate::pruned), 0u) << "all are within reach";
+  }
+}
+
 TEST(Trace, EmptyCloudsAndRefusals)
 {
   const SphereHierarchy nothing{PointsView{}};

@@ -338,7 +338,8 @@ TEST(Las, ExtraBytesWithoutSoundDescriptions)
 TEST(Las, ExtraBytesDescribedBehindThePoints)
 {
   LasSample sample(4, 6, 2);
-  sample.extended = {LasSample::extendedRecord("LASF_Spec", 4, LasSample::descriptor(3, "late"))};
+  const std::string other = LasSample::extendedRecord("somebody", 9, "more"), late = LasSample::descriptor(3, "late");
+  sample.extended = {other, LasSample::extendedRecord("LASF_Spec", 4, late)};
   sample.addPoints(3);
   const Las las = readText(sample.text());
   EXPECT_EQ(las.cloud.fields.back().name, "late");
@@ -346,6 +347,8 @@ TEST(Las, ExtraBytesDescribedBehindThePoints)
   const Las more = readText(written(withField(las.cloud, "collision", test::verdictsOf({1, 0, 1})), &las.header));
   EXPECT_EQ(namesOf(more.cloud), namesOf(las.cloud) + " collision");
   EXPECT_EQ(valueOf(more.cloud, 2, "late"), valueOf(las.cloud, 2, "late"));
+  EXPECT_EQ(difference(more.header.behind_points, other + LasSample::extendedRecord("LASF_Spec", 7, late)), "")
+      << "superseded";
 }
 
 TEST(Las, ResultsAreExtraBytesWithDescriptions)
@@ -413,6 +416,21 @@ TEST(Las, MovedPointsGetAPlace)
         EXPECT_EQ(valueOf(again.cloud, i, "y"), valueOf(moved, i, "y"));
       }
     }
+  }
+}
+
+TEST(Las, OtherTypesTakeThePlaceOfAFieldUpToItsEnds)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT32);
+  addField(cloud, "intensity", Field::FLOAT32);
+  allocate(cloud, 2, 1);
+  for (const auto& [greatest, name] : {std::pair(65535.0F, "intensity"), {65536.0F, "extra_intensity"}}) {
+    std::memcpy(&cloud.data[cloud.point_step + 12], &greatest, sizeof greatest);
+    const pcl::PCLPointCloud2 read = readText(written(cloud, nullptr)).cloud;
+    EXPECT_EQ(valueOf(read, 0, name), 0.0);
+    EXPECT_EQ(valueOf(read, 1, name), greatest);
+    EXPECT_EQ(namesOf(read).find("extra_intensity") == std::string::npos, greatest == 65535.0F);
   }
 }
 
