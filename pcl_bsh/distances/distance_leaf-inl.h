@@ -53,6 +53,7 @@ public:
   void measureBelow(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut)
   {
     begin(voxel, visit, lane);
+    bounds_points_ = true;
     if (points_.findBelow(cut)) writePoints(visit, lane, cut);
   }
 
@@ -61,6 +62,7 @@ public:
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
     begin(voxel, visit, lane);
+    bounds_points_ = false;
     const float cut = visit.cut[lane];
     if (points_.floatsTell(near)) {
       gather(near);
@@ -125,7 +127,7 @@ private:
     float miss = 0.0f;
     double within = 0.0;
     for (const NearLeaf& candidate : near_leaves_) {
-      const double farthest = most + own_radius; // lower bounds may be those of the point, not of its ball
+      const double farthest = bounds_points_ ? most + own_radius : most;
       if (double{candidate.lower} * leaf_.unit > farthest + std::abs(farthest) * kDoubleMargin) continue;
       const DistanceObstacle& obstacle = leaf_.obstacles[candidate.obstacle];
       const LeafRange& other = candidate.range;
@@ -212,8 +214,9 @@ private:
   NearestTriangles triangles_;
   const DistanceSheet& sheet_;
   std::vector<NearLeaf>& near_leaves_;
-  const bool laid_flat_;    ///< whether b is, and points of a have no radii
-  const bool lengths_only_; ///< whether distances are lengths of differences between given points, and a shift
+  bool bounds_points_ = false; ///< whether their lower bounds are those of the leaf's points, not of its balls
+  const bool laid_flat_;       ///< whether b is, and points of a have no radii
+  const bool lengths_only_;    ///< whether distances are lengths of differences between given points, and a shift
   std::array<WithError, 3> shift_;
 
   GivenPairs given_ = {};
