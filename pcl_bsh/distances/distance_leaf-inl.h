@@ -69,7 +69,11 @@ public:
       if (points_.find(cut)) writePoints(visit, lane, cut);
       return;
     }
-    std::sort(near.begin(), near.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
+    const auto nearer = [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; };
+    if (leaf_.of_triangles)
+      std::sort(near.begin(), near.end(), nearer);
+    else if (!near.empty()) // to sort long lists costs more than it spares; the nearest leaves little to the others
+      std::iter_swap(near.begin(), std::min_element(near.begin(), near.end(), nearer));
     if (laid_flat_) {
       if (!triangles_.find(cut, near)) return;
     }

@@ -323,7 +323,7 @@ private:
     if (among == 0) return 0;
     const CarriedNode& own = carried(visit, sphere.obstacle);
     const float radius = sphere.node->r[sphere.lane];
-    const float times = leaves_alone_ && sphere.level > 0 ? kWide : 1.0f;
+    const float times = leaves_alone_ && sphere.level > 0 && obstacles_[sphere.obstacle].is_plain ? kWide : 1.0f;
     std::uint32_t smaller = 0;
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) smaller |= (own.r[lane] * times < radius ? 1u : 0u) << lane;
     return smaller & among;
