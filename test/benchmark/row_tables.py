@@ -120,7 +120,7 @@ def surfaces(rows):
     yield "|---|---|---|---|---|---|---|---|---|"
     for question, title in (("within 1/400 of its size", "flags, 1/400"), ("within 1/40.0 of its size", "flags, 1/40"),
                             ("distances", "distances"), ("inside", "inside")):
-        for mesh in ("box", "part", "bumpy", "tubes", "fan"):
+        for mesh in ("box", "part", "bumpy", "tubes"):
             of = rows.where(question=question, mesh=mesh)
             if not of:
                 continue
