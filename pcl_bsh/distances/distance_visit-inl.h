@@ -59,11 +59,7 @@ struct DistanceObstacle {
   /// What a sphere of the voxel holds, between its slabs. @pre it has slabs
   CrossedSlabs heldBy(const ObstacleSphere& sphere) const
   {
-    const Node& node = *sphere.node;
-    const std::uint32_t k = sphere.lane;
-    const auto index = &node - voxel->nodes.data();
-    return crossedOf(slabs[index], cross_slabs ? cross_slabs + index : nullptr, k, {node.x[k], node.y[k], node.z[k]},
-                     node.r[k] * frame.stretch_b);
+    return sphere.between(*voxel, slabs, cross_slabs, frame.stretch_b);
   }
 };
 
@@ -134,6 +130,14 @@ struct DistanceVisit {
   }
 };
 
+/// A lower bound of a length in the frame as one in the walk's unit, whether it is above 0 or below.
+template <class Vector>
+HWY_INLINE Vector atLeast(const DistanceObstacle& obstacle, Vector near)
+{
+  const hn::DFromV<Vector> d;
+  return hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+}
+
 /// Lower bounds of the distances from each of eight spheres to one other; lowers each `cut` to an upper bound of the
 /// distances from any point of that sphere to its nearest one in the other.
 ///
@@ -152,8 +156,7 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
     const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
     const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
     const LaneVector far = hn::Add(hn::Add(between, radii), margin);
-    hn::StoreU(hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most))), d,
-               lower + i);
+    hn::StoreU(atLeast(obstacle, near), d, lower + i);
     const LaneVector upper = hn::Mul(far, hn::Set(d, obstacle.most)), old = hn::LoadU(d, cut + i);
     hn::StoreU(hn::IfThenElse(hn::Lt(upper, old), upper, old), d, cut + i);
   }
@@ -191,8 +194,7 @@ HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle&
         lengthToSlabs(slabs, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i));
     const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack));
     const LaneVector near = hn::Sub(hn::Sub(length, radii), hn::Mul(hn::Add(length, radii), hn::Set(d, kBoundMargin)));
-    const LaneVector scaled =
-        hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+    const LaneVector scaled = atLeast(obstacle, near);
     const LaneVector before = hn::LoadU(d, lower + i);
     hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower + i);
   }
@@ -216,8 +218,7 @@ HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle&
         hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch)), hn::Set(d, obstacle.slack));
     const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
     const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
-    const LaneVector bound =
-        hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+    const LaneVector bound = atLeast(obstacle, near);
     hn::StoreU(hn::IfThenElse(hn::Eq(bound, bound), bound, hn::Set(d, -std::numeric_limits<float>::infinity())), d,
                lower + i);
   }
@@ -313,7 +314,7 @@ HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, f
   const auto doubt = hn::Mul(hn::Add(hn::Add(length, radius), hn::Set(d, error)), hn::Set(d, kFlatMargin));
   const auto more = hn::Add(doubt, hn::Set(d, error));
   const auto near = hn::Sub(hn::Min(length, hn::Set(d, 0x1p63f)), hn::Add(more, radius));
-  low = hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
+  low = atLeast(obstacle, near);
   high = hn::Mul(hn::Add(length, more), hn::Set(d, obstacle.most));
 }
 

@@ -213,10 +213,11 @@ private:
       boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
-    if (obstacle.slabs) raiseBySlabs(own, obstacle, obstacle.heldBy(sphere), row.lower);
+    CrossedSlabs held = {};
+    if (obstacle.slabs) raiseBySlabs(own, obstacle, held = obstacle.heldBy(sphere), row.lower);
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
-      const std::uint32_t asked = isThin(visit, obstacle, sphere) ? 1 : leaf.count;
+      const std::uint32_t asked = isThin(visit, obstacle, held) ? 1 : leaf.count;
       boundByTriangles(visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
                        [&](std::uint32_t j) -> const FlatRecord& {
                          return scratch_.flat.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
@@ -237,12 +238,10 @@ private:
 
   /// Whether both slabs of a leaf are thinner than what its distance from a child may be: then one of its triangles
   /// tells how far it is at most, and the others tell little more than slabs.
-  bool isThin(const DistanceVisit& visit, const DistanceObstacle& obstacle, const ObstacleSphere& sphere) const
+  static bool isThin(const DistanceVisit& visit, const DistanceObstacle& obstacle, const CrossedSlabs& held)
   {
-    if (!obstacle.cross_slabs) return false;
-    const CrossedSlabs held = obstacle.heldBy(sphere);
-    return std::max(held.h, held.cross_h) <
-           *std::min_element(visit.cut, visit.cut + visit.node->count) * obstacle.at_most_inside;
+    return obstacle.cross_slabs &&
+           held.thickness() < *std::min_element(visit.cut, visit.cut + visit.node->count) * obstacle.at_most_inside;
   }
 
   /// Sharpens the bounds of children which float arithmetic cannot tell from the row's sphere by the points as given.

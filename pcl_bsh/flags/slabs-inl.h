@@ -85,7 +85,7 @@ public:
     const Slab slab = slabOf(obstacle.slabs[index], candidate.lane, center, radius);
     near &= ~slabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h}, slab, obstacle.reach);
     if (near == 0 || !of_triangles_) return near;
-    return nearAcross(visit, candidate, slab, near);
+    return nearAcross(visit, candidate, near);
   }
 
   /// Whether both slabs of what a candidate holds, which the visit's children were compared with, are thinner than the
@@ -93,10 +93,8 @@ public:
   bool isThin(const FlagVisit& visit, const ObstacleSphere& candidate) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    if (!visit.has_slabs || !obstacle.cross_slabs) return false;
-    const auto index = candidate.node - obstacle.voxel->nodes.data();
-    return std::max(obstacle.slabs[index].h[candidate.lane], obstacle.cross_slabs[index].h[candidate.lane]) <
-           visit.smallest + obstacle.reach;
+    return visit.has_slabs && obstacle.cross_slabs &&
+           heldBy(obstacle, candidate).thickness() < visit.smallest + obstacle.reach;
   }
 
   /// Whether a is of long triangles, and this is a leaf of points.
@@ -146,30 +144,22 @@ public:
   std::uint32_t facingPoints(const FlagVisit& visit, const LeafPoints& points, const ObstacleSphere& candidate) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    const Node& node = *candidate.node;
-    const std::uint32_t k = candidate.lane;
-    const CrossedSlabs held =
-        heldBy(obstacle, candidate, {node.x[k], node.y[k], node.z[k]}, node.r[k] * obstacle.frame.stretch_b);
-    return pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, held, obstacle.reach);
+    return pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, heldBy(obstacle, candidate), obstacle.reach);
   }
 
 private:
   /// What a candidate holds, between both of its slabs where its triangles are long.
-  static CrossedSlabs heldBy(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate, const Point& center,
-                             float radius)
+  static CrossedSlabs heldBy(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate)
   {
-    const auto index = candidate.node - obstacle.voxel->nodes.data();
-    return crossedOf(obstacle.slabs[index], obstacle.cross_slabs ? obstacle.cross_slabs + index : nullptr,
-                     candidate.lane, center, radius);
+    return candidate.between(*obstacle.voxel, obstacle.slabs, obstacle.cross_slabs, obstacle.frame.stretch_b);
   }
 
   /// The same across the slabs of long triangles, and of leaves of points by each point.
-  HWY_NOINLINE std::uint32_t nearAcross(FlagVisit& visit, const ObstacleSphere& candidate, const Slab& slab,
-                                        std::uint32_t near)
+  HWY_NOINLINE std::uint32_t nearAcross(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    const CrossedSlabs held = heldBy(obstacle, candidate, slab.center, slab.radius);
+    const CrossedSlabs held = heldBy(obstacle, candidate);
     static constexpr float kNone[kLanes] = {};
     near &= ~crossedSlabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h},
                                has_long_triangles_ ? SlabLanes{visit.cx, visit.cy, visit.cz, visit.cross_slabs->h}

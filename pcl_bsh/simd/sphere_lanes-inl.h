@@ -393,6 +393,8 @@ struct CrossedSlabs {
   float h, cross_h;
   Point center;
   float radius;
+
+  float thickness() const { return h > cross_h ? h : cross_h; }
 };
 
 /// The same by how far the points in two slabs each reach along d.

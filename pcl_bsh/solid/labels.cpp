@@ -2,10 +2,9 @@
 #include <pcl_bsh/solid/labels.h>
 
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/query/prefetch.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/label_walk.h>
-
-#include <hwy/cache_control.h>
 
 #include <utility>
 
@@ -20,10 +19,7 @@ struct LabelArray {
   std::size_t inside_count = 0, on_surface = 0;
 
   static bool wants(std::uint32_t) { return true; }
-  void expect(const std::uint32_t* first, const std::uint32_t* last) const
-  {
-    for (; first != last; ++first) hwy::Prefetch(labels + *first); // they are anywhere in the array
-  }
+  void expect(const std::uint32_t* first, const std::uint32_t* last) const { prefetchEach(labels, first, last); }
   void inside(const std::uint32_t* first, const std::uint32_t* last)
   {
     for (; first != last; ++first) one(*first, Label::inside);

@@ -4,10 +4,9 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/query/prefetch.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/label_walk.h>
-
-#include <hwy/cache_control.h>
 
 #include <algorithm>
 #include <memory>
@@ -85,7 +84,7 @@ private:
     static bool wants(std::uint32_t) { return true; }
     void expect(const std::uint32_t* first, const std::uint32_t* last) const
     {
-      for (; first != last; ++first) hwy::Prefetch(&search.found_.first[*first]); // they are anywhere in the array
+      prefetchEach(search.found_.first.data(), first, last);
     }
     void inside(const std::uint32_t* first, const std::uint32_t* last)
     {

@@ -68,18 +68,6 @@ inline Slab slabOf(const Slabs& slabs, std::uint32_t lane, const Point& center, 
   return {{slabs.x[lane], slabs.y[lane], slabs.z[lane]}, slabs.h[lane], center, radius};
 }
 
-/// Both slabs of one child of a node. @param cross null: it has one alone
-inline CrossedSlabs crossedOf(const Slabs& slabs, const Slabs* cross, std::uint32_t lane, const Point& center,
-                              float radius)
-{
-  CrossedSlabs held{
-      {slabs.x[lane], slabs.y[lane], slabs.z[lane]}, {0.0f, 0.0f, 0.0f}, slabs.h[lane], 0.0f, center, radius};
-  if (!cross) return held;
-  held.cross = {cross->x[lane], cross->y[lane], cross->z[lane]};
-  held.cross_h = cross->h[lane];
-  return held;
-}
-
 /// A leaf of a in the frame of b's voxel.
 HWY_INLINE void carryLeaf(const RelativeFrame& frame, const LeafRange& leaf, LeafPoints& out)
 {

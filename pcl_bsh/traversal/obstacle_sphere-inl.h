@@ -28,6 +28,19 @@ struct ObstacleSphere {
     return {&child, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(level + 1), obstacle};
   }
   LeafRange leaf(const Voxel& voxel) const { return {&voxel, node->begin[lane], node->comparedPoints(lane)}; }
+
+  /// What it holds, between the slabs of its voxel. @param cross null: there is one slab alone @param stretch of radii
+  CrossedSlabs between(const Voxel& voxel, const Slabs* slabs, const Slabs* cross, float stretch) const
+  {
+    const auto index = node - voxel.nodes.data();
+    const Slabs& own = slabs[index];
+    CrossedSlabs held{{own.x[lane], own.y[lane], own.z[lane]},       {0.0f, 0.0f, 0.0f},     own.h[lane], 0.0f,
+                      {node->x[lane], node->y[lane], node->z[lane]}, node->r[lane] * stretch};
+    if (!cross) return held;
+    held.cross = {cross[index].x[lane], cross[index].y[lane], cross[index].z[lane]};
+    held.cross_h = cross[index].h[lane];
+    return held;
+  }
 };
 
 /// A sphere in the frame of a's voxel.
