@@ -26,6 +26,9 @@ void beginMpi()
   int begun = 0;
   MPI_Initialized(&begun);
   if (begun != 0) return;
+  // MPI asks hwloc what the machine is made of, and hwloc's component `gl` opens each X display from :0 to :9 for it: a
+  // server that ends meanwhile ends the program. What the user has set stays.
+  setenv("HWLOC_COMPONENTS", "-gl", 0);
   MPI_Init(nullptr, nullptr);
   std::atexit([] {
     int ended = 0;
