@@ -123,10 +123,9 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
   for (std::size_t i = 0; i < scan.count; ++i) {
     if (found.flags[i] != Verdict::free) colliding.push_back(static_cast<std::int32_t>(i));
   }
-  PointsView subset = scan;
-  subset.indices = colliding.data();
-  subset.index_count = colliding.size();
   if (colliding.empty()) return {};
+  PointsView subset = scan;
+  subset.restrictTo(colliding.data(), colliding.size());
   const Clusters clusters = euclideanClusters(SphereHierarchy(subset), cluster_distance);
 
   constexpr double infinity = std::numeric_limits<double>::infinity();

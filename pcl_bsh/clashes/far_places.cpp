@@ -68,8 +68,7 @@ std::vector<FarPlace> findFarPlaces(const PointsView& cloud, const PointDistance
   if (far.empty()) return {};
   std::sort(far.begin(), far.end());
   PointsView subset = cloud;
-  subset.indices = far.data();
-  subset.index_count = far.size();
+  subset.restrictTo(far.data(), far.size());
   const Clusters clusters = euclideanClusters(SphereHierarchy(subset), cluster_distance);
 
   std::vector<FarPlace> places(clusters.sizes.size());

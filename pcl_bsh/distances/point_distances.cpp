@@ -171,10 +171,8 @@ PointDistances pointDistances(const Placed& a, const std::vector<std::uint32_t>&
                               const PointDistancesRequest& request)
 {
   const std::vector<std::int32_t> subset(records.begin(), records.end());
-  static const std::int32_t none = 0;
   PointsView view = a.hierarchy().view();
-  view.indices = subset.empty() ? &none : subset.data();
-  view.index_count = subset.size();
+  view.restrictTo(subset.data(), subset.size());
   const SphereHierarchy some(view);
   return pointDistances({some, a.pose}, b, request);
 }

@@ -28,7 +28,7 @@ struct PointsView {
   std::size_t stride = 0;                        ///< bytes from one record to the next
   std::array<std::size_t, 3> offset = {0, 0, 0}; ///< bytes from a record's start to its x, y, z
   Scalar scalar = Scalar::float32;
-  const std::int32_t* indices = nullptr;       ///< optional subset: only these records are points
+  const std::int32_t* indices = nullptr;       ///< optional subset (restrictTo()): only these records are points
   std::size_t index_count = 0;                 ///< length of `indices`; ignored when that is null
   const float* radii = nullptr;                ///< optional, one per record (not per index): finite and >= 0
   std::shared_ptr<const void> owner = nullptr; ///< optional: keeps alive whatever the pointers here point to
@@ -41,6 +41,14 @@ struct PointsView {
   /// Optional: what the records are, of which points and radii say balls that hold them (triangles_view.h).
   const TrianglesView* triangles = nullptr;
   double off_middle = 0.0; ///< how far such a point may be from its triangle, by rounding
+
+  /// Only these records are points; none where there are no records, wherever the pointer points to.
+  void restrictTo(const std::int32_t* records, std::size_t record_count) noexcept
+  {
+    static constexpr std::int32_t kNone = 0; // for null means all
+    indices = record_count == 0 ? &kNone : records;
+    index_count = record_count;
+  }
 
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }

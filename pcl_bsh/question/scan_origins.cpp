@@ -101,11 +101,9 @@ std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordF
     subsets->records[static_cast<std::size_t>(found - origins.entries.begin())].push_back(
         static_cast<std::int32_t>(record));
   }
-  static constexpr std::int32_t kNoRecord = 0; // without a list a view is of all points
   for (std::size_t s = 0; s < scans.size(); ++s) {
     scans[s].returns = view;
-    scans[s].returns.indices = subsets->records[s].empty() ? &kNoRecord : subsets->records[s].data();
-    scans[s].returns.index_count = subsets->records[s].size();
+    scans[s].returns.restrictTo(subsets->records[s].data(), subsets->records[s].size());
     scans[s].returns.owner = subsets;
   }
   return scans;

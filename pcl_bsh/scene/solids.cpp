@@ -126,8 +126,7 @@ std::vector<std::uint32_t> SceneSolids::entered(const SweptPart& solid, const Sw
     if (of_places[i] != Verdict::free) met.push_back(static_cast<std::int32_t>(i));
   std::vector<std::uint32_t> triangles;
   if (met.empty()) return triangles;
-  view.indices = met.data();
-  view.index_count = met.size();
+  view.restrictTo(met.data(), met.size());
   const SphereHierarchy passing(view);
   const SolidBodies& bodies = *known_.at(&solid.hierarchy).bodies;
   for (const SolidBodies::Body& body : bodies.all()) {

@@ -74,10 +74,8 @@ PointsView viewOf(const std::shared_ptr<Cloud>& cloud)
 template <typename Cloud>
 PointsView viewOf(const Cloud& cloud, const pcl::Indices& indices)
 {
-  static constexpr std::int32_t none = 0; // a view without points still needs a list, for null means all of them
   PointsView view = viewOf(cloud);
-  view.indices = indices.empty() ? &none : indices.data();
-  view.index_count = indices.size();
+  view.restrictTo(indices.data(), indices.size());
   return view;
 }
 

@@ -17,9 +17,7 @@ bool isHeld(std::uint8_t label)
 
 SphereHierarchy partOf(PointsView view, const std::vector<std::int32_t>& places)
 {
-  static const std::int32_t none = 0;
-  view.indices = places.empty() ? &none : places.data();
-  view.index_count = places.size();
+  view.restrictTo(places.data(), places.size());
   return SphereHierarchy(view);
 }
 

@@ -174,8 +174,7 @@ TrajectoryResult walk(const Placed& scan, const SphereHierarchy& model,
 SphereHierarchy hierarchyOf(const SphereHierarchy& of, const std::vector<std::int32_t>& records)
 {
   PointsView some = of.view();
-  some.indices = records.data();
-  some.index_count = records.size();
+  some.restrictTo(records.data(), records.size());
   return SphereHierarchy(some, of.options());
 }
 

@@ -65,6 +65,19 @@ TEST(PointsView, RefitHoldsTheNewOwnerAndLetsTheOldOneGo)
   EXPECT_TRUE(hierarchy.validate().none());
 }
 
+TEST(PointsView, RestrictedToNothingHasNoPoint)
+{
+  const std::shared_ptr<const Points> points = row(0);
+  PointsView view = owned(points);
+  const std::vector<std::int32_t> some = {2, 0}, none; // whose data() may be null
+  view.restrictTo(some.data(), some.size());
+  EXPECT_EQ(view.size(), 2U);
+  EXPECT_EQ(view.record(0), 2U);
+  view.restrictTo(none.data(), none.size());
+  EXPECT_EQ(view.size(), 0U);
+  EXPECT_EQ(closestPair({SphereHierarchy(view)}, {SphereHierarchy(owned(points))}).pair, std::nullopt);
+}
+
 TEST(PointsView, WithoutOwnerBorrows)
 {
   const std::shared_ptr<const Points> points = row(0);

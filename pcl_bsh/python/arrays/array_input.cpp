@@ -229,8 +229,7 @@ PointsView keptViewOf(const std::string& name, const PointsInput& input)
     std::transform(records.begin(), records.end(), own.mutable_data(), [](std::uint32_t record) {
       return static_cast<std::int32_t>(std::min<std::uint32_t>(record, std::numeric_limits<std::int32_t>::max()));
     });
-    view.indices = static_cast<const std::int32_t*>(kept->keep(own));
-    view.index_count = records.size();
+    view.restrictTo(static_cast<const std::int32_t*>(kept->keep(own)), records.size());
   }
   view.owner = std::shared_ptr<const void>(kept, static_cast<const Owner*>(kept.get()));
   return view;

@@ -83,8 +83,7 @@ PointsView ObstacleTiles::cut(std::uint32_t i, const Bounds& box, double distanc
   for (std::uint32_t record = 0; record < points.count; ++record)
     if (is_near(points.point(record))) indices_.push_back(static_cast<std::int32_t>(record));
   if (indices_.size() == points.count) return points;
-  points.indices = indices_.data();
-  points.index_count = indices_.size();
+  points.restrictTo(indices_.data(), indices_.size());
   return points;
 }
 

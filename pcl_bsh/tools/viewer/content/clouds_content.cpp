@@ -197,8 +197,7 @@ std::optional<double> CloudsContent::distanceOf(std::uint32_t part, std::size_t 
   if (viewed_clouds_.size() == 1) return std::nullopt;
   const auto record = static_cast<std::int32_t>(part);
   PointsView view = scan().points();
-  view.indices = &record;
-  view.index_count = 1;
+  view.restrictTo(&record, 1);
   Shape alone(viewed_clouds_[0].file.string(), view);
   Question question;
   question.wanted.closest = true;
