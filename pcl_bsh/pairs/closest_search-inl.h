@@ -229,15 +229,36 @@ private:
           next.reset();
           continue;
         }
+        if (diving_ && isDeepEnough(*next)) {
+          queue_.push(alone(*next));
+          next.reset();
+          continue;
+        }
       }
       next = openNearestNext(*next);
     }
   }
 
-  /// Whether each pair of points below is within the tolerance of all that the pair bounds.
+  /// Whether each pair of points below is within the tolerance of all that the pair bounds; or, where a budget may stop
+  /// the search, whether any of them is likely to make the interval narrower.
   bool isSmall(const LanePair& pair) const
   {
-    return goal_.tolerance > 0.0 && 2.0 * walk_.radiiOf(pair) <= goal_.tolerance;
+    if (!goal_.rule.mayStop()) return goal_.tolerance > 0.0 && 2.0 * walk_.radiiOf(pair) <= goal_.tolerance;
+    return walk_.radiiOf(pair) <= widthBefore(pair);
+  }
+
+  /// Whether a dive for a nearer pair than the one considered has come to where less is to be gained than by raising
+  /// the interval's lower end: a budget may end before a leaf is reached. (The factor: intervals after the same work,
+  /// of 2 to 16.)
+  bool isDeepEnough(const LanePair& pair) const
+  {
+    return goal_.rule.mayStop() && 6.0 * walk_.radiiOf(pair) <= widthBefore(pair);
+  }
+
+  /// The width of the interval if the search stopped before this pair.
+  double widthBefore(const LanePair& next) const
+  {
+    return best_.high - std::max(std::min(next.key, queue_.least()), lowest_key_);
   }
 
   /// Whether to search best first no more.

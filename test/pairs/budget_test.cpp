@@ -4,6 +4,7 @@
 #include <pcl_bsh/query/accuracy.h>
 #include <pcl_bsh/roadmap/brute_force.h>
 
+#include "support/adversarial_clouds.h"
 #include "support/facing_sheets.h"
 #include "support/journeys.h"
 #include "support/question.h"
@@ -85,6 +86,32 @@ struct TwoSurfaces {
   Cloud b_points{test::makePoints(Shape::sphere, 20000, 1, random)};
   Eigen::Isometry3d pose = Eigen::Isometry3d(Eigen::Translation3d(1.5, 0, 0));
 };
+
+/// Budgets of as many sphere tests as a tolerance takes give narrower intervals than it does, in the mean.
+TEST(Budget, IntervalsAreNarrowerThanThoseOfATolerance)
+{
+  double logarithms = 0.0;
+  Random random(4200);
+  for (const Shape shape : {Shape::uniform, Shape::sphere, Shape::plane, Shape::clusters}) {
+    const Cloud points_a(test::makePoints(shape, 20'000, 1.0, random)),
+        points_b(test::makePoints(shape, 5'000, 0.3, random));
+    const SphereHierarchy a(points_a.view()), b(points_b.view());
+    for (int i = 0; i < 10; ++i) {
+      const Point3 way = test::adversarial::direction(random);
+      const Eigen::Isometry3d pose(Eigen::Translation3d(random.uniform(1.5, 8.0) * Eigen::Vector3d(way.data())));
+      const double distance = closestPair({a}, {b, pose}).distance;
+      for (const double part : {0.01, 0.1, 0.5}) {
+        const DistanceResult tolerant = closestPair({a}, {b, pose}, {Accuracy::tolerance(part * distance)});
+        const DistanceResult hurried = closestPair({a}, {b, pose}, {Accuracy::nodePairs(tolerant.work.node_pairs + 1)});
+        EXPECT_LE(hurried.interval.lower, distance);
+        EXPECT_GE(hurried.interval.upper, distance);
+        const double width = hurried.interval.upper - hurried.interval.lower;
+        logarithms += std::log(std::max(0.1, width / (tolerant.interval.upper - tolerant.interval.lower)));
+      }
+    }
+  }
+  EXPECT_LT(std::exp(logarithms / 120), 0.6);
+}
 
 TEST(Budget, BothSidesShareIt)
 {
