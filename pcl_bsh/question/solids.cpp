@@ -288,7 +288,8 @@ void Solids::turn(Pairing& pair, PointDistances& found)
     for (const std::uint32_t record : deep) {
       found.distance[record] = measured.distance[record];
       found.closest_point[record] = measured.closest_point[record];
-      if (!found.interval.empty()) found.interval[record] = {measured.distance[record], measured.distance[record]};
+      if (!found.interval.empty())
+        found.interval[record] = outward(measured.distance[record], measured.distance[record]);
       found.measured += !std::isnan(measured.distance[record]);
     }
   }

@@ -3,19 +3,23 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/question/held.h>
 #include <pcl_bsh/question/options.h>
 
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/solid/brute_force_labels.h>
 
 #include "solid/meshes.h"
+#include "support/random.h"
 #include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -162,6 +166,36 @@ TEST_F(SolidsTest, ABallIsAsDeepAsItsFarSide)
   EXPECT_EQ(ask(question, input, obstacle).distances.a.distance, depths);
   EXPECT_EQ(ask(question, input, obstacle).closest.distance, -0.75);
   EXPECT_EQ(ask(question, input, obstacle).closest.pair->a, 1u);
+}
+
+/// Where a depth is rounded to a double, and so is its sum with a ball's width.
+TEST_F(SolidsTest, IntervalsHoldDepthsToTheLastBit)
+{
+  test::Random random(1);
+  std::vector<float> radii;
+  std::vector<long double> depths;
+  points.clear();
+  for (int i = 0; i < 200; ++i) {
+    const double x = random.uniform(0.01, 0.4);
+    const auto radius = static_cast<float>(i % 2 == 0 ? 0.0 : random.uniform(0.1, 0.4));
+    points.push_back({i % 3 == 0 ? -x : x, 0, 0});
+    radii.push_back(radius);
+    depths.push_back((1.0L - x) + radius); // exact
+  }
+  PointsView balls = viewOf(points[0].data(), points.size());
+  balls.radii = radii.data();
+  question.wanted.distances = true;
+  question.accuracy = Accuracy::tolerance(0.01); // tells intervals
+  Shape input("the scan", balls), obstacle("the tank", viewOf(view()));
+  for (const double told : {0.125, 2.0}) {
+    question.max_distance = told;
+    const std::vector<Interval> intervals = ask(question, input, obstacle).distances.a.interval;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      EXPECT_LE(intervals[i].lower, -depths[i]) << i;
+      EXPECT_GE(intervals[i].upper, -depths[i]) << i;
+      EXPECT_LT(intervals[i].upper - intervals[i].lower, told < 1 ? 1e-15 : 0.05) << i;
+    }
+  }
 }
 
 TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
@@ -326,6 +360,144 @@ TEST_F(TwoSolidsTest, FlagsListsAndAnyAreThoseOfBruteForce)
   EXPECT_GT(held_only, 5u); // else the surfaces tell all
 }
 
+TEST_F(SolidsTest, OfSeveralAtOneDepthTheFirstIsTold)
+{
+  points = {{NAN, 0, 0}, {0, 0.5, 0}, {NAN, 0, 0}, {0.5, 0, 0}, {-0.5, 0, 0}};
+  question.wanted.closest = question.wanted.distances = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.closest.pair->a, 1u);
+  EXPECT_EQ(found.closest.pair->b, found.distances.a.closest_point[1]);
+  EXPECT_EQ(found.distances.a.greatest, -0.5);
+  EXPECT_EQ(found.distances.a.greatest_pair->a, 1u);
+}
+
+/// Of the greatest distance: of several, the first record's.
+void expectGreatest(const PointDistances& found)
+{
+  std::optional<std::uint32_t> greatest;
+  for (std::uint32_t i = 0; i < found.distance.size(); ++i)
+    if (!std::isnan(found.distance[i]) && !(greatest && found.distance[i] <= found.distance[*greatest])) greatest = i;
+  ASSERT_EQ(found.greatest_pair.has_value(), greatest.has_value());
+  if (!greatest) return;
+  EXPECT_EQ(found.greatest, found.distance[*greatest]);
+  EXPECT_EQ(*found.greatest_pair, (PointPair{*greatest, found.closest_point[*greatest]}));
+}
+
+/// For who asks the queries: what is added to each makes it what ask() answers, whichever is solid, or neither.
+TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
+{
+  test::Random random(9);
+  std::size_t changed = 0;
+  for (int i = 0; i < 24; ++i) {
+    SCOPED_TRACE(i);
+    question = Question();
+    question.solid = i % 4 == 1 || i % 4 == 3;
+    question.input_solid = i % 4 >= 2;
+    question.clearance = i % 3 == 0 ? 0.0 : 0.05;
+    question.uncertainty.length = i % 5 < 2 ? 0.05 : 0.0;
+    first = test::ClosedMesh();
+    first.add(test::boxMesh(), i % 8 < 4 ? 2.0 : 0.1, {i % 8 < 4 ? -0.5 : 0.45, 0.2, 0.25});
+    question.pose_of_input = Eigen::Isometry3d(Eigen::Translation3d(random.uniform(-0.2, 0.2), 0, 0));
+    std::vector<Eigen::Isometry3d> poses;
+    for (int k = 0; k < 4; ++k) {
+      poses.push_back(Eigen::Isometry3d(Eigen::AngleAxisd(random.uniform(0, 0.5), Eigen::Vector3d::UnitY())));
+      for (int axis = 0; axis < 3; ++axis) poses.back().translation()[axis] = random.uniform(-0.15, 0.15);
+    }
+    poses[2].translation().x() += 9.0;
+    question.pose = poses[i % 4];
+    Shape input("the machine", viewOf(first.view())), obstacle("the tank", viewOf(second.view()));
+    const Placed a(input.hierarchy(question.uncertaintyOfInput(), 1), question.pose_of_input);
+    const SphereHierarchy& tank = obstacle.hierarchy({}, 1);
+    const Placed b(tank, question.pose);
+    const double clearance = *question.clearance;
+
+    question.wanted.flags = question.wanted.obstacle_flags = question.wanted.any = true;
+    Answer expected = ask(question, input, obstacle);
+    FlagsResult flags = collisionFlags(a, b, {clearance, Side::both});
+    const FlagsResult of_surfaces = flags;
+    addHeld(question, input, obstacle, flags);
+    EXPECT_EQ(flags.a, expected.collisions.flags);
+    EXPECT_EQ(flags.b, expected.obstacle_flags);
+    EXPECT_EQ(flags.colliding_a, countOf(flags.a, Verdict::colliding));
+    EXPECT_EQ(flags.colliding_b, countOf(flags.b, Verdict::colliding));
+    EXPECT_EQ(flags.undecided_a, countOf(flags.a, Verdict::undecided));
+    EXPECT_EQ(flags.undecided_b, countOf(flags.b, Verdict::undecided));
+    changed += flags.a != of_surfaces.a || flags.b != of_surfaces.b;
+    AnyResult any = anyCollision(a, b, {clearance, {}});
+    addHeld(question, input, obstacle, any);
+    EXPECT_EQ(any.verdict, expected.any.verdict);
+    EXPECT_EQ(any.pair, expected.any.pair);
+
+    std::vector<Verdict> verdicts, each;
+    for (const Eigen::Isometry3d& pose : poses) {
+      verdicts.push_back(anyCollision(a, {tank, pose}, {clearance, {}}).verdict);
+      question.pose = pose;
+      each.push_back(ask(question, input, obstacle).any.verdict);
+    }
+    question.pose = b.pose;
+    addHeld(question, input, obstacle, poses, verdicts);
+    EXPECT_EQ(verdicts, each);
+
+    question.path = poses;
+    question.wanted = {};
+    question.wanted.flags = question.wanted.contacts = true;
+    TrajectoryRequest along;
+    along.clearance = clearance;
+    along.distances = along.first_poses = along.closest_poses = true;
+    TrajectoryResult path = collideAlong(a, tank, poses, along);
+    expected = ask(question, input, obstacle);
+    addHeld(question, input, obstacle, path);
+    EXPECT_EQ(path.flags, expected.collisions.flags);
+    EXPECT_EQ(path.first_pose, expected.collisions.first_pose);
+    EXPECT_EQ(path.colliding, expected.collisions.colliding);
+
+    question.uncertainty = {};
+    question.path.reset();
+    question.wanted = {};
+    question.wanted.closest = question.wanted.distances = question.wanted.both_ways = true;
+    question.clearance.reset();
+    const Placed sure(input.hierarchy({}, 1), question.pose_of_input);
+    expected = ask(question, input, obstacle);
+    DistanceResult closest = closestPair(sure, b);
+    addHeld(question, input, obstacle, closest);
+    EXPECT_EQ(closest.distance, expected.closest.distance);
+    EXPECT_EQ(closest.pair, expected.closest.pair);
+    const PointDistances &of_a = expected.distances.a, &of_b = expected.distances.b;
+    EXPECT_TRUE(
+        (of_a.distance[closest.pair->a] == closest.distance &&
+         of_a.closest_point[closest.pair->a] == closest.pair->b) ||
+        (of_b.distance[closest.pair->b] == closest.distance && of_b.closest_point[closest.pair->b] == closest.pair->a));
+    PointDistances distances = pointDistances(sure, b);
+    const bool input_solid = std::exchange(question.input_solid, false); // of which these distances are none
+    addHeld(question, input, obstacle, distances);
+    question.input_solid = input_solid;
+    EXPECT_EQ(distances.distance, expected.distances.a.distance);
+    EXPECT_EQ(distances.closest_point, expected.distances.a.closest_point);
+    for (const PointDistances* const found : {&distances, &expected.distances.a, &expected.distances.b})
+      expectGreatest(*found);
+
+    std::vector<double> at_poses, each_distance;
+    std::vector<PointPair> pairs, each_pair;
+    for (const Eigen::Isometry3d& pose : poses) {
+      const DistanceResult here = closestPair(sure, {tank, pose});
+      at_poses.push_back(here.distance);
+      pairs.push_back(*here.pair);
+      question.pose = pose;
+      const DistanceResult there = ask(question, input, obstacle).closest;
+      each_distance.push_back(there.distance);
+      each_pair.push_back(*there.pair);
+    }
+    std::vector<PointPair> none;
+    std::vector<double> unchanged = at_poses;
+    addHeld(question, input, obstacle, poses, unchanged, none); // as of a cloud that is empty
+    EXPECT_EQ(unchanged, at_poses);
+    addHeld(question, input, obstacle, poses, at_poses, pairs);
+    EXPECT_EQ(at_poses, each_distance);
+    EXPECT_EQ(pairs, each_pair);
+  }
+  EXPECT_GT(changed, 4u); // else nothing was held
+}
+
 TEST_F(TwoSolidsTest, AlongAPathEachPoseIsThatOfBruteForce)
 {
   test::Random random(8);
@@ -452,6 +624,7 @@ TEST_F(TwoSolidsTest, SummariesOfPosesCountWhatEitherHolds)
     const std::vector<Verdict> flags = answer().collisions.flags;
     EXPECT_EQ(pose.colliding_points, countOf(flags, Verdict::colliding)) << uncertainty;
     EXPECT_EQ(pose.undecided_points, countOf(flags, Verdict::undecided)) << uncertainty;
+    EXPECT_EQ(pose.colliding, pose.colliding_points > 0) << uncertainty;
   }
 }
 
