@@ -165,7 +165,9 @@ double nearestOf(const Question& question, const Answer& answer)
 {
   const Wanted& wanted = question.wanted;
   if (wanted.any && answer.any.verdict != Verdict::free) return 0.0;
-  if (!answer.indices.a.empty() || !answer.indices.b.empty()) return 0.0;
+  const CollidingIndices& lists = answer.indices;
+  for (const auto* const list : {&lists.a, &lists.b, &lists.undecided_a, &lists.undecided_b})
+    if (!list->empty()) return 0.0;
   if (wanted.collisions()) return std::min(nearestOf(answer.obstacle_flags), nearestOf(answer.collisions));
   if (question.path) {
     const std::vector<float>& distances = answer.collisions.distance;
