@@ -2,15 +2,21 @@
 #include <pcl_bsh/question/scan_origins.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/seen/unseen_points.h>
 
+#include "solid/meshes.h"
 #include "support/made_scans.h"
 #include "support/verdicts.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +33,7 @@ protected:
   struct Record {
     double x, y, z;
     std::uint8_t scan;
+    float sigma;
   };
 
   Unseen()
@@ -38,7 +45,7 @@ protected:
       const Eigen::Vector3d origin(scan == 0 ? 1 : 7, 3, 1.5);
       const std::vector<double> ends = test::makeScan(room, {origin, 0.02, -1.57, 1.57}, random).returns;
       for (std::size_t i = 0; i < ends.size(); i += 3) {
-        const Record record{ends[i], ends[i + 1], ends[i + 2], static_cast<std::uint8_t>(scan + 5)};
+        const Record record{ends[i], ends[i + 1], ends[i + 2], static_cast<std::uint8_t>(scan + 5), 0.05f};
         if (scan == 0) first_.push_back(record);
         both_.push_back(record);
       }
@@ -52,12 +59,14 @@ protected:
   static Shape shapeOf(const std::vector<Record>& records)
   {
     PointsView view = viewOf(&records.front().x, records.size(), sizeof(Record));
-    return {"room.ptx", view, {{"scan", offsetof(Record, scan), 2, 1}}};
+    return {"room.ptx", view, {{"scan", offsetof(Record, scan), 2, 1}, {"sigma", offsetof(Record, sigma), 7, 1}}};
   }
+
+  Shape modelShape() const { return {"model", viewOf(model_.data(), model_.size() / 3)}; }
 
   Answer asked(const std::vector<Record>& records)
   {
-    Shape room = shapeOf(records), model("model", viewOf(model_.data(), 3));
+    Shape room = shapeOf(records), model = modelShape();
     return ask(question, room, model);
   }
 
@@ -127,6 +136,45 @@ TEST_F(Unseen, IsToldOfEachPoseOfAPath)
   EXPECT_EQ(found.unseen.count, 2u);
 }
 
+/// What is kept of the input between two questions is that of no other origin, angle or uncertainty.
+TEST_F(Unseen, EachQuestionIsAnsweredAsIfItWereTheFirst)
+{
+  model_.clear();
+  for (int i = 0; i < 150; ++i) model_.insert(model_.end(), {0.5 + 0.5 * (i % 15), 0.3 + 0.54 * (i / 15), 1.5});
+  std::vector<Record> scans;
+  for (std::size_t i = 0; i < both_.size(); i += 7) scans.push_back(both_[i]);
+  question.seen_angle = 0.1;
+  const Question usual = question;
+  const std::vector<std::function<void()>> changes = {
+      [&] {
+        question.origin = ScanOrigins::of({1, 2.5, 1.5});
+      },
+      [&] { question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5"); },
+      [&] { question.seen_angle = 0.2; },
+      [&] { question.seen_angle.reset(); },
+      [&] { question.uncertainty = 0.2; },
+      [&] {
+        question.uncertainty = {"sigma", 4.0};
+      },
+      [&] { question.input_pose_uncertainty = {0.1}; },
+      [&] { question.clearance = 0.2; },
+      [&] { question.pose.translation().x() = 0.1; },
+      [&] { question.pose_of_input.translation().x() = 0.1; },
+  };
+  Shape room = shapeOf(scans), model = modelShape();
+  const Answer first = asked(scans);
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    SCOPED_TRACE(i);
+    question = usual;
+    EXPECT_EQ(ask(question, room, model).obstacle_flags, first.obstacle_flags);
+    changes[i]();
+    const Answer expected = asked(scans), kept = ask(question, room, model);
+    EXPECT_EQ(kept.obstacle_flags, expected.obstacle_flags);
+    EXPECT_EQ(kept.unseen.angles, expected.unseen.angles);
+    EXPECT_NE(expected.obstacle_flags, first.obstacle_flags) << "else it tells nothing";
+  }
+}
+
 TEST_F(Unseen, UncertainPointsStayUndecided)
 {
   model_ = {2, 3, 1.5, 5, 3, 1.5, 2.85, 3, 1.5}; // the last may be within the clearance
@@ -191,6 +239,81 @@ TEST_F(Unseen, IsTheInsideOfASolidToo)
   EXPECT_LT(hidden, 2.0);
 }
 
+/// Of two boxes, most of whose bounds is neither: cubes that either holds a part of, each in a ball, as they are
+/// placed.
+TEST_F(Unseen, TheInsideOfASolidIsThatOfItsCubes)
+{
+  const std::vector<Eigen::AlignedBox3d> boxes = {{Eigen::Vector3d(-0.5, -0.4, -0.2), Eigen::Vector3d(0.1, 0.1, 0.0)},
+                                                  {Eigen::Vector3d(0.2, 0.15, 0.1), Eigen::Vector3d(0.46, 0.4, 0.31)}};
+  test::ClosedMesh mesh;
+  for (const Eigen::AlignedBox3d& box : boxes) {
+    test::ClosedMesh unit = test::boxMesh();
+    for (std::size_t i = 0; i < unit.xyz.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i % 3);
+      unit.xyz[i] = unit.xyz[i] == 0.0 ? box.min()[k] : box.max()[k];
+    }
+    mesh.add(unit);
+  }
+  const Eigen::AlignedBox3d bounds = boxes[0].merged(boxes[1]);
+  question.pose_of_input = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
+  question.path.emplace();
+  for (const Eigen::Vector3d& at :
+       {Eigen::Vector3d(2.5, 3, 1.4), Eigen::Vector3d(3.2, 3.7, 1.5), // partly behind it
+        Eigen::Vector3d(3.7, 4.0, 1.2), Eigen::Vector3d(1, 3, 1), Eigen::Vector3d(20, 3, 1)})
+    question.path->push_back(question.pose_of_input * Eigen::Translation3d(at) *
+                             Eigen::AngleAxisd(at.x(), Eigen::Vector3d::UnitZ()));
+  question.solid = true;
+  Shape room = shapeOf(first_), solid("solid", viewOf(mesh.view()));
+  const PointsView returns = viewOf(&first_.front().x, first_.size(), sizeof(Record));
+  const SeenSpace space({{Point3{1, 3, 1.5}, returns}});
+  const SphereHierarchy scan(returns);
+  for (const auto& [clearance, edge] : {std::pair(0.0, 0.96 / 48), {0.03, 0.03}, {0.1, 0.1}, {0.2, 0.96 / 8}}) {
+    const Eigen::Array3i count = (bounds.sizes().array() / edge).ceil().cast<int>();
+    const auto radius = static_cast<float>(0.5 * std::sqrt(3.0) * edge * (1.0 + 1e-6));
+    std::vector<Point3> middles;
+    for (int i = 0; i < count.prod(); ++i) {
+      const Eigen::Array3d place(i % count[0], i / count[0] % count[1], i / count[0] / count[1]);
+      const Eigen::Vector3d middle = bounds.min() + edge * (place + 0.5).matrix();
+      const auto holds = [&](const auto& box) { return box.exteriorDistance(middle) <= static_cast<double>(radius); };
+      if (std::any_of(boxes.begin(), boxes.end(), holds)) middles.push_back({middle[0], middle[1], middle[2]});
+    }
+    const std::vector<float> radii(middles.size(), radius);
+    PointsView view = viewOf(middles.front().data(), middles.size());
+    view.radii = radii.data();
+    const SphereHierarchy balls(view);
+    std::vector<double> inside;
+    for (const Eigen::Isometry3d& pose : *question.path) {
+      FlagsRequest touching;
+      touching.flagged = Side::b;
+      FlagsResult found = collisionFlags({scan, question.pose_of_input}, {balls, pose}, touching);
+      UnseenRequest request;
+      request.clearance = clearance;
+      inside.push_back(
+          static_cast<double>(
+              markUnseen(space, {balls, question.pose_of_input.inverse() * pose}, request, found.b).unseen) *
+          edge * edge * edge);
+    }
+    question.clearance = clearance;
+    EXPECT_THAT(ask(question, room, solid).unseen.inside, testing::Pointwise(testing::DoubleNear(1e-9), inside))
+        << clearance;
+    EXPECT_GT(inside[1], 0.0);
+    EXPECT_LT(inside[1], inside[4]);
+  }
+}
+
+TEST(UnseenAnswer, TheFirstPoseIsThatOfTheFirstThatHasAny)
+{
+  Answer::Unseen unseen;
+  std::vector<Verdict> gravest = test::verdictsOf({0, 0});
+  unseen.addPose(test::verdictsOf({0, 1}), false, gravest);
+  EXPECT_FALSE(unseen.first_pose);
+  for (int i = 0; i < 2; ++i) unseen.addPose(test::verdictsOf({4, 4}), false, gravest);
+  EXPECT_EQ(unseen.first_pose, 1u);
+  EXPECT_THAT(unseen.at_poses, ElementsAre(0u, 2u, 2u));
+  EXPECT_EQ(unseen.count, 1u) << "the other one collides";
+  EXPECT_TRUE(unseen.where.empty()) << "nobody asked for it";
+}
+
 TEST_F(Unseen, TellsWhichAtEachPose)
 {
   question.path = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0, -1.5, 0))};
@@ -208,7 +331,8 @@ TEST_F(Unseen, NeedsToKnowWhereScannersStood)
   question.origin = ScanOrigins::parse("scan:5=1,3,1.5");
   EXPECT_THAT(refusalOf(both_), HasSubstr("is of scan 6 in field 'scan', which has no origin: give one for each scan"));
   question.origin = ScanOrigins::parse("id:5=1,3,1.5");
-  EXPECT_EQ(refusalOf(first_), "room.ptx: field 'id' that numbers its scans is missing: give one of its fields: scan");
+  EXPECT_EQ(refusalOf(first_),
+            "room.ptx: field 'id' that numbers its scans is missing: give one of its fields: scan, sigma");
 }
 
 TEST_F(Unseen, RefusesWhatDoesNotGoTogether)
