@@ -453,6 +453,26 @@ TEST_F(CollideSite, FirstContactOfOneOfTwoRanks)
   EXPECT_NEAR(contact.at("fraction").get<double>(), 7.0 / 8, 0.01);
 }
 
+/// A tile whose box is near, and whose points are not, is asked about on the one rank, the other tile on the other.
+TEST_F(CollideSite, WhatOneOfTwoRanksLeavesUndecided)
+{
+  if (!hasMpirun()) GTEST_SKIP() << "no mpirun";
+  io::writeCloud(folder / "b.pcd", float64Cloud({{0, 0, 0}}));
+  MakeOptions options;
+  options.tile_points = 2;
+  for (const double beside : {0.01, 0.2}) { // before the tile that matters, or after it
+    io::writeCloud(folder / "a.pcd", float64Cloud({{0.35, 0, 0}, {5, 0, 0}, {-beside, 5, 0}, {-5, beside, 0}}));
+    const std::string site = beside < 0.1 ? "before" : "after";
+    ASSERT_EQ(makeSite({folder / "a.pcd"}, folder / site, options).tiles.size(), 2U);
+    const Outcome two =
+        runOnTwoRanks("collide " + site + " b.pcd --report - --clearance 0.25 --uncertainty 0.2 --any", folder.path());
+    ASSERT_EQ(two.exit_code, 0) << two.err;
+    const auto report = nlohmann::json::parse(two.out);
+    EXPECT_EQ(report.at("undecided"), true) << site;
+    EXPECT_EQ(report.at("tiles").at("read"), 2);
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh::site
 #endif

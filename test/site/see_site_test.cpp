@@ -17,6 +17,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ protected:
       const Eigen::Vector3d& o = origins[s];
       const std::vector<double> ends = test::makeScan(room, {o, 0.03, -1.2, 1.3}, random).returns;
       for (std::size_t i = 0; i < ends.size(); i += 3) scans[s].push_back({ends[i], ends[i + 1], ends[i + 2]});
-      io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
+      for (std::size_t i = 0; i < scans[s].size(); ++i) sigmas[s].push_back(i % 5 == 0 ? 0.1f : 0.01f);
+      writeScan(s);
     }
     for (int i = 0; i < 800; ++i)
       machine.push_back({random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.0, 1.0)});
@@ -50,6 +52,19 @@ protected:
     sight.angle = 0.05;
     request.clearance = 0.1;
     request.uncertainty = 0.01;
+  }
+
+  void writeScan(std::size_t s) const
+  {
+    pcl::PCLPointCloud2 cloud;
+    for (const char* name : {"x", "y", "z"}) io::addField(cloud, name, io::Field::FLOAT64);
+    io::addField(cloud, "sigma", io::Field::FLOAT32);
+    io::allocate(cloud, static_cast<std::uint32_t>(scans[s].size()));
+    for (std::size_t i = 0; i < scans[s].size(); ++i) {
+      std::memcpy(&cloud.data[i * cloud.point_step], scans[s][i].data(), sizeof(Point3));
+      std::memcpy(&cloud.data[i * cloud.point_step + sizeof(Point3)], &sigmas[s][i], sizeof(float));
+    }
+    io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), cloud);
   }
 
   Site siteOf(std::uint64_t tile_points)
@@ -65,16 +80,20 @@ protected:
   {
     std::vector<ScanBeams> beams;
     std::vector<Point3> all;
+    std::vector<float> all_sigmas;
     for (std::size_t s = 0; s < 2; ++s) {
       beams.push_back({sight.origins.entries[s].origin, viewOf(scans[s].front().data(), scans[s].size())});
       beams.back().returns.uncertainty = request.uncertainty.length;
+      if (!request.uncertainty.field.empty()) beams.back().returns.uncertainties = sigmas[s].data();
       all.insert(all.end(), scans[s].begin(), scans[s].end());
+      all_sigmas.insert(all_sigmas.end(), sigmas[s].begin(), sigmas[s].end());
     }
     SeenOptions options;
     options.angle = sight.angle;
     const SeenSpace space(beams, options);
     PointsView view = viewOf(all.front().data(), all.size());
     view.uncertainty = request.uncertainty.length + request.uncertainty.pose.length;
+    if (!request.uncertainty.field.empty()) view.uncertainties = all_sigmas.data();
     const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
     FlagsRequest flags;
     flags.clearance = request.clearance;
@@ -99,6 +118,7 @@ protected:
   io::TemporaryFolder folder;
   std::vector<Eigen::Vector3d> origins = {{1, 1, 1.5}, {7, 5, 1.5}};
   std::vector<Point3> scans[2], machine;
+  std::vector<float> sigmas[2];
   std::vector<Eigen::Isometry3d> poses;
   SiteSight sight;
   SiteRequest request;
@@ -131,6 +151,23 @@ TEST_F(SeeSite, TheSitesPoseMayBeUncertain)
   const SiteUnseen found = asked(siteOf(3000));
   EXPECT_EQ(found.unseen.where, right.where);
   EXPECT_EQ(found.verdicts, at_once);
+}
+
+/// Each beam is as uncertain as its own return, on whichever tile that is; and the pose on top shortens none.
+TEST_F(SeeSite, EachPointHasItsOwnUncertainty)
+{
+  std::vector<Verdict> of_a_length, gravest;
+  expected(of_a_length);
+  request.uncertainty = Uncertainty("sigma", 1.0);
+  const Site site = siteOf(500);
+  for (const double of_pose : {0.0, 0.03}) {
+    request.uncertainty.pose.length = of_pose;
+    const Answer::Unseen right = expected(gravest);
+    EXPECT_NE(gravest, of_a_length);
+    const SiteUnseen found = asked(site);
+    EXPECT_EQ(found.unseen.where, right.where);
+    EXPECT_EQ(found.verdicts, gravest);
+  }
 }
 
 /// A scan of one beam, for which all tiles are looked through once more.

@@ -2,6 +2,7 @@
 // Obstacles with faces: a site is asked about their surface, with the answers of pcl_bsh_collide; and no site is made
 // of faces.
 #include "float64_cloud.h"
+#include "solid/meshes.h"
 #include "tools/programs/process.h"
 #include "tools/programs/program_run.h"
 
@@ -12,6 +13,9 @@
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/result_site.h>
 
@@ -216,6 +220,53 @@ TEST_F(SurfaceSite, SolidsAreThoseOfMemory)
   }
   expectedOf("--clearance 0.05 --trajectory poses.txt --solid");
   for (const char* field : {"collision", "first_pose"}) expectSame("out", "m.pcd", field);
+}
+
+/// Near the surface what a solid holds is certain or not by the clearance, too.
+TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
+{
+  const test::ClosedMesh mesh = test::boxMesh(2.0);
+  const pcl::PCLPointCloud2 scan = io::readCloud(folder / "scan.pcd");
+  Shape crate("crate", viewOf(mesh.view())), points("scan", viewOf(scan));
+  Question question;
+  question.clearance = 0.2;
+  question.uncertainty = 0.1;
+  question.solid = true;
+  const SphereHierarchy& surface = crate.hierarchy({}, 1);
+  SiteRequest request;
+  request.clearance = 0.2;
+  request.uncertainty = 0.1;
+  request.solid = &crate;
+  std::vector<Verdict> flags(scan.width);
+  const auto put = [&](const pcl::PCLPointCloud2& cloud, const std::vector<Verdict>& found) {
+    for (std::uint32_t i = 0; i < cloud.width; ++i)
+      flags[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = found[i];
+  };
+
+  question.wanted.flags = true;
+  std::fill(flags.begin(), flags.end(), Verdict::free);
+  collisionFlags(site, {surface}, Side::a, request,
+                 [&](const Tile&, const pcl::PCLPointCloud2& cloud, const FlagsResult& found) { put(cloud, found.a); });
+  EXPECT_EQ(flags, pcl_bsh::ask(question, points, crate).collisions.flags);
+  question.path = io::readPoses(folder / "poses.txt");
+  std::fill(flags.begin(), flags.end(), Verdict::free);
+  const auto putPath = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
+    put(cloud, found.flags);
+  };
+  collideAlong(site, surface, *question.path, request, putPath);
+  EXPECT_EQ(flags, pcl_bsh::ask(question, points, crate).collisions.flags);
+
+  question.path.reset();
+  question.wanted = {};
+  question.wanted.any = true;
+  for (const double depth : {0.05, 0.15, 0.25, 0.35}) {
+    const std::vector<Point3> one = {{1, 1, 2 - depth}};
+    io::writeCloud(folder / "one.pcd", float64Cloud(one));
+    const Site of_one = makeSite({folder / "one.pcd"}, folder / ("one" + std::to_string(depth)), {});
+    Shape point("point", viewOf(one[0].data(), 1));
+    EXPECT_EQ(anyCollision(of_one, {surface}, request).verdict, pcl_bsh::ask(question, point, crate).any.verdict)
+        << depth;
+  }
 }
 
 /// Of a tile in the middle of a solid, no box about parts of its surface knows.

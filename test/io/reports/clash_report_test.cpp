@@ -295,6 +295,20 @@ TEST_F(ClashReports, AClashThatIsNotFoundAgainMayBeUnseen)
   EXPECT_EQ(parseClashes(clashJson(now), "list.json").clashes[1].distance, before.clashes[1].distance);
 }
 
+/// Up to what may part two points of one clash, scans are of one place: the clearance, and how far its points may step.
+TEST_F(ClashReports, ExtentsOfScansAreComparedByTheListsDistances)
+{
+  const ClashReport earlier = twoClashes();
+  const ClashList before = parseClashes(clashJson(earlier), "list.json");
+  for (const double change : {0.79, 0.81}) {
+    ClashReport now = report();
+    now.survey.scan->high[1] += change;
+    EXPECT_EQ(compareWithList(now, "list.json", before, [](FormerPlaces&) {}).size(), change > 0.3 + 0.5 ? 1U : 0U);
+    EXPECT_EQ(now.previous, "list.json");
+    EXPECT_EQ(now.count(ClashStatus::persisting), 2U);
+  }
+}
+
 TEST_F(ClashReports, UncertaintiesOfPosesAreComparedToo)
 {
   ClashReport list = twoClashes();
