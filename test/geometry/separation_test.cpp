@@ -85,6 +85,38 @@ MovingCorners anyMotion(Random& random)
   return moving;
 }
 
+/// Along the very direction between two places, where only what is taken off for rounding keeps the bound below.
+TEST(MovingCorners, AreNoNearerThanIsSaidHoweverFarTheyBeginGoAndBend)
+{
+  using Real = long double;
+  Random random(17);
+  constexpr double sizes[] = {0.0, 1.0, 1e4};
+  for (int i = 0; i < 4000; ++i) {
+    const auto any = [&] {
+      const double size = random.pick(sizes);
+      return random.point([&] { return size * random.uniform(-1, 1); });
+    };
+    MovingCorners moving[2] = {};
+    for (MovingCorners& one : moving) one = {{any()}, {any()}, {any()}, 1};
+    const double s = random.uniform(0, 1);
+    Real apart[3], squared = 0.0L;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = [&](const MovingCorners& one) {
+        return one.from[0][axis] + s * Real(one.way[0][axis]) + 4.0L * s * (1.0L - s) * one.bow[0][axis];
+      };
+      apart[axis] = at(moving[0]) - at(moving[1]);
+      squared += apart[axis] * apart[axis];
+    }
+    const Real distance = std::sqrt(squared);
+    if (distance == 0.0L) continue;
+    Point3 direction;
+    for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = static_cast<double>(apart[axis] / distance);
+    const double least = leastApart(direction, moving[0], moving[1], s, s);
+    EXPECT_LE(least, distance) << i;
+    EXPECT_GE(least, distance - 1e-9L) << i;
+  }
+}
+
 TEST(MovingCorners, AreNoNearerThanTheDirectionSays)
 {
   Random random(6);

@@ -440,11 +440,13 @@ TEST(DensityGuard, RefusesWhatIsNoSpacing)
   const Cloud cloud({{0, 0, 0}, {1, 1, 1}});
   const SphereHierarchy a(cloud.view());
   FlagsRequest request = within(1.0, Side::a);
-  for (const double wrong : {-1.0, kInfinity, std::nan("")}) {
-    const std::vector<float> spacings = {0.0f, static_cast<float>(wrong)};
-    request.spacings_of_b = spacings.data();
-    EXPECT_THROW(collisionFlags({a}, {a}, request), InvalidInput);
-  }
+  for (const double wrong : {-1.0, kInfinity, std::nan("")})
+    for (const std::size_t place : {0, 1}) {
+      std::vector<float> spacings = {0.0f, 0.0f};
+      spacings[place] = static_cast<float>(wrong);
+      request.spacings_of_b = spacings.data();
+      EXPECT_THROW(collisionFlags({a}, {a}, request), InvalidInput);
+    }
   const std::vector<float> spacings = {0.0f, 0.0f};
   request.spacings_of_b = spacings.data();
   EXPECT_THROW(collidingIndices({a}, {a}, request), InvalidInput);

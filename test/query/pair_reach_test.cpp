@@ -6,6 +6,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 namespace pcl_bsh {
@@ -14,10 +15,10 @@ namespace {
 using test::Cloud;
 using test::Random;
 
-std::vector<float> lengths(Random& random)
+std::vector<float> lengths(Random& random, double unit = 1.0)
 {
   std::vector<float> found;
-  for (int i = 0; i < 8; ++i) found.push_back(static_cast<float>(random.uniform(0, 0.1)));
+  for (int i = 0; i < 8; ++i) found.push_back(static_cast<float>(unit * random.uniform(0, 0.1)));
   return found;
 }
 
@@ -26,15 +27,16 @@ TEST(PairReach, IsAroundItsSum)
   using Rational = boost::multiprecision::cpp_rational;
   Random random(5);
   Cloud a(std::vector<Point3>(8)), b(std::vector<Point3>(8));
-  for (int trial = 0; trial < 50; ++trial) {
-    a.setRadii(lengths(random));
-    a.setUncertainties(random.uniform(0, 0.1), lengths(random));
-    b.setUncertainties(random.uniform(0, 0.1), lengths(random));
+  for (int trial = 0; trial < 90; ++trial) {
+    const double unit = std::array{1.0, 0x1p30, 0x1p-30}[static_cast<std::size_t>(trial % 3)];
+    a.setRadii(lengths(random, unit));
+    a.setUncertainties(unit * random.uniform(0, 0.1), lengths(random, unit));
+    b.setUncertainties(unit * random.uniform(0, 0.1), lengths(random, unit));
     const PointsView view_a = a.view(), view_b = b.view();
-    const std::vector<float> spacings = lengths(random);
+    const std::vector<float> spacings = lengths(random, unit);
     for (const Places places : {Places::measured, Places::certain, Places::possible, Places::covered}) {
       const PatchSpacings patches = places == Places::covered ? PatchSpacings(spacings.data(), 8) : PatchSpacings();
-      const PairReach reach(view_a, view_b, random.uniform(0, 1), places, patches);
+      const PairReach reach(view_a, view_b, unit * random.uniform(0, 1), places, patches);
       const Reach of_all(reach.of({0, 0})[0], UncertaintyRange(view_a), UncertaintyRange(view_b), places, patches);
       for (std::uint32_t i = 0; i < 8; ++i) {
         const PointPair pair{i, 7 - i};
@@ -43,7 +45,7 @@ TEST(PairReach, IsAroundItsSum)
         const auto [least, most] = reach.around(pair);
         EXPECT_LE(Rational(least), sum);
         EXPECT_GE(Rational(most), sum);
-        EXPECT_LT(most - least, 1e-11);
+        EXPECT_LT(most - least, 1e-11 * unit);
         sum -= Rational(view_a.radius(i)); // which reaches of all pairs do not have
         EXPECT_LE(Rational(of_all.least), sum);
         EXPECT_GE(Rational(of_all.most), sum);

@@ -304,11 +304,18 @@ TEST(AtPoses, ACallbackStopsThemInThreads)
 {
   struct Mine {};
   const Bodies bodies(300, 1500, 0.05);
+  PointsView view = bodies.a.view();
+  view.uncertainty = 0.01; // which is decided in two parts
+  const SphereHierarchy uncertain(view);
   for (const unsigned threads : {1u, 2u})
     for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.1)}) {
       const auto any = [&](const std::function<bool(double)>& progress) {
         const Effort effort(accuracy, threads, progress);
         return anyCollisionAtPoses({bodies.a}, bodies.b, bodies.poses, {0.03, effort}).flags;
+      };
+      const auto any_uncertain = [&](const std::function<bool(double)>& progress) {
+        const Effort effort(accuracy, threads, progress);
+        return anyCollisionAtPoses({uncertain}, bodies.b, bodies.poses, {0.03, effort}).flags;
       };
       const auto closest = [&](const std::function<bool(double)>& progress) {
         const Poses some(bodies.poses.begin(), bodies.poses.begin() + 300);
@@ -348,6 +355,7 @@ TEST(AtPoses, ACallbackStopsThemInThreads)
         EXPECT_EQ(query({}), whole);
       };
       expectStops(any);
+      expectStops(any_uncertain);
       expectStops(closest);
     }
 }

@@ -584,7 +584,11 @@ TEST(OnMotions, ACallbackStopsItInThreads)
 {
   struct Mine {};
   Roadmap map(2000, 150, 1.5);
-  for (const unsigned threads : {1u, 2u}) {
+  PointsView view = map.hall.view();
+  view.uncertainty = 0.02; // which is decided in two parts
+  const SphereHierarchy uncertain(view);
+  const SphereHierarchy& certain = map.hall;
+  for (const auto& [hall, threads] : {std::pair(&certain, 1u), {&certain, 2u}, {&uncertain, 1u}}) {
     map.request.threads = threads;
     double last = 0.0;
     map.request.progress = [&](double done) {
@@ -593,22 +597,22 @@ TEST(OnMotions, ACallbackStopsItInThreads)
       last = done;
       return true;
     };
-    const AnyOnMotions whole = anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request);
+    const AnyOnMotions whole = anyCollisionOnMotions({*hall}, map.body, map.poses, map.motions, map.request);
     EXPECT_EQ(last, 1.0);
     for (const int stop_at : {1, 2, 5}) {
       int calls = 0;
       map.request.progress = [&](double) { return ++calls < stop_at; };
-      EXPECT_THROW(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request), Cancelled);
+      EXPECT_THROW(anyCollisionOnMotions({*hall}, map.body, map.poses, map.motions, map.request), Cancelled);
       EXPECT_EQ(calls, stop_at) << "no call after the one that asked to stop";
       calls = 0;
       map.request.progress = [&](double) -> bool {
         if (++calls == stop_at) throw Mine();
         return true;
       };
-      EXPECT_THROW(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request), Mine);
+      EXPECT_THROW(anyCollisionOnMotions({*hall}, map.body, map.poses, map.motions, map.request), Mine);
     }
     map.request.progress = nullptr;
-    EXPECT_EQ(anyCollisionOnMotions({map.hall}, map.body, map.poses, map.motions, map.request).flags, whole.flags);
+    EXPECT_EQ(anyCollisionOnMotions({*hall}, map.body, map.poses, map.motions, map.request).flags, whole.flags);
   }
 }
 
