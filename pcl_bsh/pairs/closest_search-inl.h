@@ -9,6 +9,7 @@
 #define PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
 #endif
 
+#include <pcl_bsh/pairs/behind_plane.h>
 #include <pcl_bsh/pairs/closest_goal.h>
 #include <pcl_bsh/pairs/nearest.h>
 #include <pcl_bsh/pairs/opening-inl.h>
@@ -46,6 +47,11 @@ inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
 /// What a search with a time compares of leaves before it may take long steps: most searches come to no more.
 inline constexpr std::uint64_t kPairsBeforePoints = 48;
+
+/// Decisions in vain before planes are tried, and how many records each of them allows to be looked at then: a
+/// look costs a hundredth of a decision.
+inline constexpr std::uint64_t kDecisionsBeforePlanes = 256;
+inline constexpr std::uint64_t kLooksForDecision = 16;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
 ///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
@@ -144,7 +150,7 @@ public:
   Next visit(const LanePair& pair)
   {
     others_.hear(best_);
-    if (!canImprove(pair)) return Next::prune;
+    if (!mayImprove(pair)) return Next::prune;
     return others_.stops() ? Next::stop : Next::go_on;
   }
 
@@ -171,6 +177,7 @@ public:
   Next compare(const LanePair& pair)
   {
     const ComparedLeaves leaves = walk_.compare(pair);
+    ++steps_in_vain_;
     at_least_ = std::max(pair.key, lowest_key_);
     if (walk_.haveTriangles()) {
       eachPairNearTriangles(
@@ -205,7 +212,7 @@ private:
         }
         if (queue_.isEmpty()) return;
         next = queue_.pop();
-        if (!canImprove(*next)) { // and of those left, none but for its numbers
+        if (!mayImprove(*next)) { // and of those left, none but for its numbers
           if (next->key <= best_.to_beat && !queue_.isEmpty()) {
             next.reset();
             continue;
@@ -353,6 +360,67 @@ private:
     return walk_.lowest(pair) < *best_.pair;
   }
 
+  /// The same of a pair whose turn has come.
+  bool mayImprove(const LanePair& pair)
+  {
+    none_nearer_ = false;
+    const bool in_vain = decisions_in_vain_ >= kDecisionsBeforePlanes || steps_in_vain_ >= steps_to_look_round_;
+    return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
+  }
+
+  /// The same where bounds tell little: of ties, and what doubles hardly tell from them.
+  HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
+  {
+    if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
+    return canImprove(pair) && (decisions_in_vain_ < kDecisionsBeforePlanes || !isSettledByPlanes(pair));
+  }
+
+  /// For what is nearer to one of the best pair, among all of the other cloud: half of what was done in vain before.
+  void lookRound()
+  {
+    has_looked_round_ = true;
+    if (goal_.rule.mayStop() || !pairs_.ofTriangles()) return;
+    at_least_ = lowest_key_;
+    const auto each = [](const Spaces& side, const auto& visit) {
+      for (std::size_t voxel = 0; voxel < side.storage.voxel_count; ++voxel) side.storage.forEachRecord(voxel, visit);
+    };
+    const std::uint32_t of_a = best_.pair->a;
+    each(walk_.b, [&](std::uint32_t j) { consider({of_a, j}); });
+    const std::uint32_t of_b = best_.pair->b;
+    each(walk_.a, [&](std::uint32_t i) { consider({i, of_b}); });
+  }
+
+  /// Whether nothing below a pair is nearer than the best, as planes between that one's nearest places tell exactly
+  /// where bounds cannot, and nothing as near has smaller record numbers. Planes of a pair that is farther than the
+  /// best tell less, but nothing wrong.
+  bool isSettledByPlanes(const LanePair& pair)
+  {
+    if (best_.high < planes_.of) {
+      planes_.of = best_.high;
+      planes_.a.reset(), planes_.b.reset();
+      if (const auto found = pairs_.distance.planesBetween(*best_.pair)) {
+        planes_.a.emplace(walk_.a.storage, (*found)[0]);
+        planes_.b.emplace(walk_.b.storage, (*found)[1]);
+      }
+    }
+    const std::uint64_t allowed = kLooksForDecision * decisions_in_vain_;
+    if (!planes_.a || planes_.looked >= allowed) return false;
+    std::uint64_t looks = allowed - planes_.looked;
+    const auto lowest = [&](BehindPlane& behind, const Spaces& side, const Lane& lane) {
+      return behind.lowestTouching(lane.space, walk_.nodeOf(side, lane), lane.lane, looks);
+    };
+    const auto of_a = lowest(*planes_.a, walk_.a, pair.a);
+    const auto of_b = of_a ? lowest(*planes_.b, walk_.b, pair.b) : std::nullopt;
+    planes_.looked = allowed - looks;
+    none_nearer_ = of_b.has_value();
+    if (!none_nearer_) return false;
+    if (goal_.tolerance > 0.0 || *of_a == BehindPlane::kNoRecord || *of_b == BehindPlane::kNoRecord) return true;
+    const PointPair first{*of_a, *of_b}; // of those that may be as near
+    at_least_ = std::max(pair.key, lowest_key_);
+    if (first < *best_.pair) consider(first);
+    return !(first < *best_.pair);
+  }
+
   /// Of the children that the last step found near, those that can.
   std::uint32_t improvingOf(const WaitingChildren& children) const
   {
@@ -371,9 +439,12 @@ private:
 
   void consider(PointPair candidate)
   {
-    if (best_.high == 0.0 && !pairs_.mayOverlap() && *best_.pair < candidate) return; // nothing is nearer than at 0
+    const bool none_nearer = none_nearer_ || (best_.high == 0.0 && !pairs_.mayOverlap()); // as nothing is than at 0
+    if (none_nearer && *best_.pair < candidate) return;
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
+    ++steps_in_vain_;
+    ++decisions_in_vain_;
     if (best_.pair && pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
     if (best_.pair) {
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
@@ -386,6 +457,8 @@ private:
       }
     }
     best_.pair = candidate;
+    steps_in_vain_ = decisions_in_vain_ = 0, has_looked_round_ = false;
+    planes_.of = kInfinity, planes_.looked = 0;
     best_lower_ = static_cast<double>(at_least_);
     const auto [low, high] = boundGap(posed);
     best_.low = low;
@@ -440,6 +513,19 @@ private:
   StopCheck stop_check_;
   Others others_;
   Nearest best_;
+
+  /// Between the nearest places of the best pair: see isSettledByPlanes().
+  struct Planes {
+    double of = kInfinity; ///< Nearest::high of that pair
+    std::uint64_t looked = 0;
+    std::optional<BehindPlane> a, b;
+  };
+  Planes planes_;
+  std::uint64_t decisions_in_vain_ = 0; ///< since a nearer pair was found
+  std::uint64_t steps_in_vain_ = 0;     ///< likewise, with pairs of leaves
+  const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
+  bool has_looked_round_ = false;
+  bool none_nearer_ = false; ///< than the best below the pair that is visited
 };
 
 } // namespace HWY_NAMESPACE

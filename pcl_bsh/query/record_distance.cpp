@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/record_distance.h>
 
+#include <pcl_bsh/geometry/exact/exact_plane.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <type_traits>
+#include <utility>
 
 namespace pcl_bsh {
 
@@ -84,6 +86,15 @@ Eigen::Vector3d RecordDistance::between(PointPair records) const
   }
   const Point3 z = withTriangles(records, [&](const auto& pair) { return distanceOfPair().between(pair); });
   return (b_->triangles ? 1.0 : -1.0) * Eigen::Vector3d(z[0], z[1], z[2]);
+}
+
+std::optional<std::array<ExactPlane, 2>> RecordDistance::planesBetween(PointPair records) const
+{
+  const auto areBalls = [](const PointsView& view) { return view.radii && !view.triangles; };
+  if (!ofTriangles() || areBalls(*a_) || areBalls(*b_)) return std::nullopt;
+  auto planes = withTriangles(records, [&](const auto& pair) { return distanceOfPair().planesBetween(pair); });
+  if (planes && !b_->triangles) std::swap((*planes)[0], (*planes)[1]); // what is a point came first
+  return planes;
 }
 
 } // namespace pcl_bsh

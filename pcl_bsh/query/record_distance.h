@@ -16,6 +16,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -99,6 +100,11 @@ public:
 
   /// From b's nearest place to a's, in the world, within rounding; 0 where they meet. Of balls, between their centres.
   Eigen::Vector3d between(PointPair records) const;
+
+  /// Planes through the nearest places of a's record and of b's, exactly as far apart as these: what is behind the
+  /// first, where its normal points away from, is no nearer to what is behind the second. In the coordinates of a's
+  /// view and of b's. Nothing where records meet, without triangles, and where points have radii.
+  std::optional<std::array<ExactPlane, 2>> planesBetween(PointPair records) const;
 
   /// Sign of gap(first) - gap(second), before rounding.
   int compareGaps(const Pair& first, const Pair& second) const { return compareGaps(first, *this, second); }

@@ -2,6 +2,7 @@
 // Points, balls and triangles on either side, against the definition in rational numbers.
 #include <pcl_bsh/query/record_distance.h>
 
+#include <pcl_bsh/geometry/exact/exact_plane.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/query/pair_reach.h>
@@ -10,9 +11,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -116,6 +119,57 @@ TEST(RecordDistance, OfEveryKindEqualsTheDefinition)
           }
       }
   EXPECT_GT(ties, 20);
+}
+
+TEST(RecordDistance, NothingBehindThePlanesIsNearer)
+{
+  Random random(43);
+  int found = 0, touching = 0;
+  for (const Kind kind_a : kKinds)
+    for (const Kind kind_b : kKinds)
+      for (const test::TriangleShape shape : test::kTriangleShapes) {
+        const Records a(kind_a, shape, random), b(kind_b, shape, random);
+        Eigen::Isometry3d pose_a = random.chance(0.5) ? Eigen::Isometry3d::Identity() : random.pose(1.0);
+        Eigen::Isometry3d pose_b = random.chance(0.5) ? pose_a : random.pose(0.1);
+        pose_a.translation().x() += random.integer(0, 1); // so that records of lattices do not meet
+        const RecordDistance distance(a.view, pose_a, b.view, pose_b);
+        const auto cornersOf = [](const Records& records, std::uint32_t i) {
+          return std::vector<Point3>(records.given[i].begin(),
+                                     records.given[i].begin() + (records.kind == Kind::triangles ? 3 : 1));
+        };
+        for (std::uint32_t i = 0; i < 8; ++i)
+          for (std::uint32_t j = 0; j < 8; ++j) {
+            const auto planes = distance.planesBetween({i, j});
+            const Rational squared = squaredBetween(a, pose_a, i, b, pose_b, j);
+            const bool have_planes = kind_a != Kind::balls && kind_b != Kind::balls &&
+                                     (kind_a == Kind::triangles || kind_b == Kind::triangles) && squared != 0;
+            ASSERT_EQ(planes.has_value(), have_planes);
+            if (!planes) continue;
+            ++found;
+            const auto farthest = [](const ExactPlane& plane, const std::vector<Point3>& corners) {
+              int side = -1;
+              for (const Point3& corner : corners) side = std::max(side, plane.side(corner));
+              return side;
+            };
+            EXPECT_EQ(farthest((*planes)[0], cornersOf(a, i)), 0);
+            EXPECT_EQ(farthest((*planes)[1], cornersOf(b, j)), 0);
+            for (int k = 0; k < 10; ++k) { // beside the corners that touch
+              const auto beside = [&](const ExactPlane& plane, const std::vector<Point3>& corners) {
+                Point3 at = corners[static_cast<std::size_t>(random.integer(0, static_cast<int>(corners.size()) - 1))];
+                const double size = std::ldexp(1.0, random.integer(-30, -8));
+                for (double& x : at) x += size * random.uniform(-1, 1);
+                return std::pair(at, plane.side(at) <= 0);
+              };
+              const auto [x, x_is_behind] = beside((*planes)[0], cornersOf(a, i));
+              const auto [y, y_is_behind] = beside((*planes)[1], cornersOf(b, j));
+              if (!x_is_behind || !y_is_behind) continue;
+              ++touching;
+              EXPECT_GE(test::squaredLength(test::posed(pose_a, x) - test::posed(pose_b, y)), squared);
+            }
+          }
+      }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(touching, 500);
 }
 
 } // namespace

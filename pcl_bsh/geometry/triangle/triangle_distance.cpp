@@ -3,6 +3,7 @@
 // the digits that know their error, and the same in integers of any length.
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 
+#include <pcl_bsh/geometry/exact/exact_plane.h>
 #include <pcl_bsh/geometry/exact/nearest_double.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/double_distance.h>
@@ -431,6 +432,61 @@ Point3 TriangleDistance::betweenNearest(const Pair& pair) const
   return -1.0 * along(at.b[j] - at.a[0], cross(at.a[1] - at.a[0], at.a[2] - at.a[0]));
 }
 
+template <class Pair>
+std::optional<std::array<ExactPlane, 2>> TriangleDistance::planesOfNearest(const Pair& pair) const
+{
+  using Vector = Vector3<Dyadic>;
+  bool by_integers = false;
+  const Features features = nearestFeatures(pair, by_integers);
+  const auto given_a = [&pair](std::size_t i) {
+    if constexpr (std::is_same_v<Pair, PointPair>)
+      return pair.a;
+    else
+      return pair.a[i % 3];
+  };
+  const auto edge_a = [&](std::size_t i) {
+    return placed<Dyadic>(a_, given_a(i + 1)) - placed<Dyadic>(a_, given_a(i));
+  };
+  const auto edge_b = [&](std::size_t j) {
+    return placed<Dyadic>(b_, pair.b[(j + 1) % 3]) - placed<Dyadic>(b_, pair.b[j]);
+  };
+  const std::size_t i = features.i, j = features.j;
+  const Vector between = placed<Dyadic>(b_, pair.b[j]) - placed<Dyadic>(a_, given_a(i)); // from one plane to the other
+  const auto across = [&](const Vector& edge) { return dot(edge, edge) * between - dot(between, edge) * edge; };
+  Vector normal;
+  switch (features.kind) {
+  case Features::meeting:
+    return std::nullopt;
+  case Features::corners:
+    normal = between;
+    break;
+  case Features::corner_edge:
+    normal = across(edge_b(j));
+    break;
+  case Features::edge_corner:
+    normal = across(edge_a(i));
+    break;
+  case Features::edges:
+    normal = cross(edge_a(i), edge_b(j));
+    break;
+  case Features::corner_face:
+    normal = cross(edge_b(0), edge_b(1));
+    break;
+  case Features::face_corner:
+    normal = cross(edge_a(0), edge_a(1));
+    break;
+  }
+  const int side = dot(normal, between).sign();
+  if (side == 0) return std::nullopt;
+  const auto plane = [&normal](const Pose& pose, const Point3& through, double towards) {
+    Vector turned; // back
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t k = 0; k < 3; ++k) turned[k] += Dyadic(towards * pose[row][k]) * normal[row];
+    return ExactPlane(through, turned);
+  };
+  return std::array<ExactPlane, 2>{plane(a_, given_a(i), side), plane(b_, pair.b[j], -side)};
+}
+
 Point3 TriangleDistance::between(const PointPair& pair) const
 {
   return betweenNearest(pair);
@@ -439,6 +495,16 @@ Point3 TriangleDistance::between(const PointPair& pair) const
 Point3 TriangleDistance::between(const TrianglePair& pair) const
 {
   return betweenNearest(pair);
+}
+
+std::optional<std::array<ExactPlane, 2>> TriangleDistance::planesBetween(const PointPair& pair) const
+{
+  return planesOfNearest(pair);
+}
+
+std::optional<std::array<ExactPlane, 2>> TriangleDistance::planesBetween(const TrianglePair& pair) const
+{
+  return planesOfNearest(pair);
 }
 
 } // namespace pcl_bsh

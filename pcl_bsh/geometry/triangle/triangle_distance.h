@@ -14,12 +14,14 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
 namespace pcl_bsh {
 
+class ExactPlane;
 struct Features;
 class LongNumber;
 template <class Number>
@@ -87,6 +89,12 @@ public:
   Point3 between(const PointPair& pair) const;
   Point3 between(const TrianglePair& pair) const;
 
+  /// Planes through the nearest places, across the way between them: the first's and the second's, each in the
+  /// coordinates that these are given in, its normal towards the other. They are exactly as far apart as the places.
+  /// Nothing where the pair meets. Radii do not count.
+  std::optional<std::array<ExactPlane, 2>> planesBetween(const PointPair& pair) const;
+  std::optional<std::array<ExactPlane, 2>> planesBetween(const TrianglePair& pair) const;
+
 private:
   using Row = std::array<double, 4>; // of a pose: rotation, then translation
   using Pose = std::array<Row, 3>;
@@ -120,6 +128,8 @@ private:
   double rounded(const Pair& pair, Stages& stages) const;
   template <class Pair>
   Point3 betweenNearest(const Pair& pair) const;
+  template <class Pair>
+  std::optional<std::array<ExactPlane, 2>> planesOfNearest(const Pair& pair) const;
 
   ExactDistance points_;
   Pose a_, b_;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl_bsh/geometry/exact/dyadic.h>
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace pcl_bsh {
+
+/// The plane through a place across an exact normal, which may have any length but 0.
+class ExactPlane {
+public:
+  ExactPlane(const Point3& at, const Vector3<Dyadic>& normal) : at_(at), normal_(normal)
+  {
+    const Dyadic::Scaled scaled[3] = {normal[0].scaled(), normal[1].scaled(), normal[2].scaled()};
+    const int largest = std::max({scaled[0].exponent, scaled[1].exponent, scaled[2].exponent});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& [mantissa, exponent] = scaled[k];
+      const bool is_rough = exponent - largest > -500; // others might vanish
+      rough_[k] = mantissa == 0.0 ? 0.0
+                  : is_rough      ? std::ldexp(mantissa, exponent - largest)
+                                  : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  /// Whether a finite place is on the side that the normal points to (1), on the other (-1), or in the plane (0).
+  int side(const Point3& place) const
+  {
+    // Each term errs by 4 v of itself, 2 v of which are the normal's, and their sum by 2 v of all of them.
+    double sum = 0.0, terms = 0.0, least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (rough_[k] == 0.0 || place[k] == at_[k]) continue;
+      const double term = rough_[k] * (place[k] - at_[k]);
+      sum += term;
+      terms += std::abs(term);
+      least = std::min(least, std::abs(term));
+    }
+    if (least == std::numeric_limits<double>::infinity() && terms == 0.0) return 0;
+    if (std::abs(sum) > kFewDoubleRoundings * terms && least > 0x1p-900 && std::isfinite(sum))
+      return sum > 0.0 ? 1 : -1;
+    Dyadic exact;
+    for (std::size_t k = 0; k < 3; ++k) exact += normal_[k] * (Dyadic(place[k]) - Dyadic(at_[k]));
+    return exact.sign();
+  }
+
+private:
+  Point3 at_;
+  Vector3<Dyadic> normal_;
+  Point3 rough_; ///< the normal but for its length; NaN where that is out of range beside it
+};
+
+} // namespace pcl_bsh

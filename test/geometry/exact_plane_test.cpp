@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/exact/exact_plane.h>
+
+#include "geometry/triangle_oracle.h"
+#include "support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Random;
+using test::Rational;
+
+TEST(ExactPlane, SidesAreThoseOfRationalNumbers)
+{
+  Random random(5);
+  int in_plane = 0;
+  for (int i = 0; i < 30000; ++i) {
+    const int scale = random.pick({0, 0, -1000, 900, -300});
+    const auto number = [&] {
+      const double x = random.chance(0.5) ? random.integer(-3, 3) : random.uniform(-1, 1);
+      return std::ldexp(x, scale + (random.chance(0.05) ? random.integer(-60, 0) : 0));
+    };
+    const Point3 at = random.point(number), u = random.point(number);
+    Point3 normal = random.point([&] { return std::ldexp(number(), -scale); });
+    if (random.chance(0.1)) normal[2] = std::ldexp(normal[2], -600); // rough beside the others, if at all
+    Point3 place = random.point(number);
+    if (random.chance(0.5)) { // in the plane, or by a rounding beside it
+      place = {at[0] - u[2] * normal[1], at[1] + u[2] * normal[0], at[2]};
+      if (random.chance(0.3)) place[0] = std::nextafter(place[0], 1e300);
+    }
+    if (normal == Point3{0, 0, 0}) continue;
+    Rational height = 0;
+    for (std::size_t k = 0; k < 3; ++k) height += Rational(normal[k]) * (Rational(place[k]) - Rational(at[k]));
+    const ExactPlane plane(at, {Dyadic(normal[0]), Dyadic(normal[1]), Dyadic(normal[2])});
+    ASSERT_EQ(plane.side(place), height.sign());
+    in_plane += height == 0;
+  }
+  EXPECT_GT(in_plane, 300);
+}
+
+} // namespace
+} // namespace pcl_bsh
