@@ -245,6 +245,7 @@ TEST(Hollow, NearestIsWhatThePartOfTheAnswerSaysThatWasWanted)
   EXPECT_EQ(ofCollisions([](TrajectoryResult&) {}), infinity);
   EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.colliding = 1; }), 0.0);
   EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.undecided = 1; }), 0.0);
+  EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.colliding = found.undecided = 1; }), 0.0);
   EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.first_contact = FirstContact{0, 0.5}; }), 0.0);
   EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.first_pose = {-1, 0}; }), 0.0);
   EXPECT_EQ(ofCollisions([](TrajectoryResult& found) { found.first_pose = {-1, -1}; }), infinity);

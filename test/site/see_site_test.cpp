@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/question/model_stray.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -92,18 +93,22 @@ protected:
     options.angle = sight.angle;
     const SeenSpace space(beams, options);
     PointsView view = viewOf(all.front().data(), all.size());
-    view.uncertainty = request.uncertainty.length + request.uncertainty.pose.length;
+    view.uncertainty = request.uncertainty.length;
     if (!request.uncertainty.field.empty()) view.uncertainties = all_sigmas.data();
+    Uncertainty of_pose;
+    of_pose.pose = request.uncertainty.pose;
+    view = withUncertainty(view, std::vector<RecordField>(), "all", of_pose);
     const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
     FlagsRequest flags;
     flags.clearance = request.clearance;
     flags.flagged = Side::b;
     UnseenRequest asked;
-    asked.clearance = request.clearance + request.uncertainty.pose.length; // beams and their scanner move together
     Answer::Unseen unseen;
     gravest.assign(machine.size(), Verdict::free);
     for (const Eigen::Isometry3d& pose : poses) {
       FlagsResult found = pcl_bsh::collisionFlags({scan}, {model, pose}, flags);
+      asked.clearance = request.clearance + // beams and their scanner move together
+                        strayOf(request.uncertainty.pose, CornerBox(model.view()), pose);
       markUnseen(space, {model, pose}, asked, found.b);
       unseen.addPose(found.b, true, gravest);
     }
@@ -137,6 +142,7 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
     EXPECT_EQ(found.unseen.where, right.where);
     EXPECT_EQ(found.unseen.first_pose, right.first_pose);
     EXPECT_EQ(found.unseen.count, right.count);
+    EXPECT_EQ(found.unseen.angles, (std::vector<double>{0.05, 0.05}));
     EXPECT_LT(found.beams, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
   }
 }
@@ -145,12 +151,15 @@ TEST_F(SeeSite, TheSitesPoseMayBeUncertain)
 {
   std::vector<Verdict> at_once, before;
   expected(before);
-  request.uncertainty.pose.length = 0.05;
-  const Answer::Unseen right = expected(at_once);
-  ASSERT_NE(at_once, before);
-  const SiteUnseen found = asked(siteOf(3000));
-  EXPECT_EQ(found.unseen.where, right.where);
-  EXPECT_EQ(found.verdicts, at_once);
+  const Site site = siteOf(3000);
+  for (const PoseUncertainty& of_pose : {PoseUncertainty{0.05}, PoseUncertainty{0.0, 0.03, {1, 3, 1}}}) {
+    request.uncertainty.pose = of_pose;
+    const Answer::Unseen right = expected(at_once);
+    ASSERT_NE(at_once, before);
+    const SiteUnseen found = asked(site);
+    EXPECT_EQ(found.unseen.where, right.where);
+    EXPECT_EQ(found.verdicts, at_once);
+  }
 }
 
 /// Each beam is as uncertain as its own return, on whichever tile that is; and the pose on top shortens none.
@@ -170,16 +179,20 @@ TEST_F(SeeSite, EachPointHasItsOwnUncertainty)
   }
 }
 
-/// A scan of one beam, for which all tiles are looked through once more.
+/// A scan of one beam, or of none, for which all tiles are looked through once more.
 TEST_F(SeeSite, BeamsAreUncertainWhateverElseIsRead)
 {
-  scans[1] = {{7, 5, 3}};
-  io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
   request.uncertainty = 0.05;
-  std::vector<Verdict> at_once;
-  const Answer::Unseen right = expected(at_once);
-  for (const std::uint64_t tile_points : {1000000u, 3000u})
-    EXPECT_EQ(asked(siteOf(tile_points)).unseen.where, right.where);
+  std::uint64_t another = 0; // name for its folder
+  for (const Point3& only : {Point3{7, 5, 3}, Point3{7, 5, 1.5}}) {
+    scans[1] = {only};
+    io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
+    std::vector<Verdict> at_once;
+    const Answer::Unseen right = expected(at_once);
+    for (const std::uint64_t tile_points : {1000000u, 3000u})
+      EXPECT_EQ(asked(siteOf(tile_points + another)).unseen.where, right.where);
+    ++another;
+  }
 }
 
 /// Answers of another question that may go on are none of this one.
@@ -195,6 +208,10 @@ TEST_F(SeeSite, TakesNoAnswersThatWereKept)
   const SiteUnseen right = asked(site);
   ASSERT_GT(countOf(right.verdicts, Verdict::colliding), 0u);
   request.answers = &kept;
+  request.progress = [](double) {
+    ADD_FAILURE() << "of a part";
+    return true;
+  };
   EXPECT_EQ(asked(site).verdicts, right.verdicts);
 }
 
@@ -219,6 +236,8 @@ TEST_F(SeeSite, ReadsTilesInTheDirectionsOfTheModelAlone)
   poses.resize(1);
   const SiteUnseen found = asked(siteOf(500));
   EXPECT_LT(found.tiles_of_beams.read, found.tiles_of_beams.tiles);
+  EXPECT_EQ(found.tiles_of_beams.read, found.tiles_of_beams.needed);
+  EXPECT_GT(found.tiles_of_beams.read, 0u);
   std::vector<Verdict> gravest;
   EXPECT_EQ(found.unseen.where, expected(gravest).where);
 }
@@ -231,6 +250,17 @@ TEST_F(SeeSite, NeedsAllBeamsWhereABallHoldsTheScanner)
   EXPECT_GE(found.beams, scans[0].size());
   std::vector<Verdict> gravest;
   EXPECT_EQ(found.unseen.where, expected(gravest).where);
+}
+
+TEST_F(SeeSite, WhatIsNoBeamIsNotCounted)
+{
+  scans[0] = {{std::nan(""), 0, 0}, {1, 1, 1.5}, {0, 0, 0}, {0, 0.1, 0}}; // the second is where the scanner is
+  scans[1] = {{7, 1, 1.5}, {1, 5, 1.5}};
+  for (std::size_t s = 0; s < 2; ++s)
+    io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
+  machine = {{0, 0, 0}};
+  poses = {Eigen::Isometry3d(Eigen::Translation3d(1, 1, 1.5))}; // for which all beams of its scan count
+  EXPECT_EQ(asked(siteOf(10)).beams, 4u);
 }
 
 TEST_F(SeeSite, ABeamAloneSeesNothingWhateverTheTiles)

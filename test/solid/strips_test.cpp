@@ -88,6 +88,12 @@ TEST(Strips, OfAFanListAsManyHoweverManyThereAre)
 {
   EXPECT_LT(listedOf(test::fanMesh(4000)), 200);
   EXPECT_LT(listedOf(test::fanMesh(100000)), 200) << "of 200,000 triangles";
+  const test::ClosedMesh fan = test::fanMesh(4000);
+  test::ClosedMesh mixed = fan;
+  const std::size_t count = fan.view().count;
+  for (std::size_t i = 0; i < count; ++i) // 4099 has no divisor in common with their number
+    std::copy_n(&fan.corners[3 * (i * 4099 % count)], 3, &mixed.corners[3 * i]);
+  EXPECT_LT(listedOf(mixed), 60) << "in whichever order";
 }
 
 TEST(Strips, OfAFanHaveTheLabelsOfBruteForce)
