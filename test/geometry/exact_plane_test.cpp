@@ -19,20 +19,24 @@ TEST(ExactPlane, SidesAreThoseOfRationalNumbers)
   Random random(5);
   int in_plane = 0;
   for (int i = 0; i < 30000; ++i) {
-    const int scale = random.pick({0, 0, -1000, 900, -300});
+    const int scale = random.pick({0, 0, -1072, -1000, 1021, -300});
     const auto number = [&] {
       const double x = random.chance(0.5) ? random.integer(-3, 3) : random.uniform(-1, 1);
       return std::ldexp(x, scale + (random.chance(0.05) ? random.integer(-60, 0) : 0));
     };
     const Point3 at = random.point(number), u = random.point(number);
     Point3 normal = random.point([&] { return std::ldexp(number(), -scale); });
-    if (random.chance(0.1)) normal[2] = std::ldexp(normal[2], -600); // rough beside the others, if at all
+    if (random.chance(0.2)) { // out of range beside the others
+      normal[2] = std::ldexp(normal[2], -600);
+      for (const std::size_t k : {0, 1}) normal[k] = std::ldexp(normal[k], random.pick({0, 500}));
+    }
     Point3 place = random.point(number);
     if (random.chance(0.5)) { // in the plane, or by a rounding beside it
       place = {at[0] - u[2] * normal[1], at[1] + u[2] * normal[0], at[2]};
       if (random.chance(0.3)) place[0] = std::nextafter(place[0], 1e300);
+      if (random.chance(0.3)) place[2] = number();
     }
-    if (normal == Point3{0, 0, 0}) continue;
+    if (normal == Point3{0, 0, 0} || !isFinite(place)) continue;
     Rational height = 0;
     for (std::size_t k = 0; k < 3; ++k) height += Rational(normal[k]) * (Rational(place[k]) - Rational(at[k]));
     const ExactPlane plane(at, {Dyadic(normal[0]), Dyadic(normal[1]), Dyadic(normal[2])});
