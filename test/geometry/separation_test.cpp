@@ -137,7 +137,7 @@ TEST(Approach, IsThatOfManyInstants)
   Random random(7);
   constexpr double resolution = 1e-4;
   constexpr int instants = 400;
-  int contacts = 0, passed = 0;
+  int contacts = 0, passed = 0, later = 0;
   for (int i = 0; i < 600; ++i) {
     const MovingCorners a = anyMotion(random), b = anyMotion(random);
     const double near_enough = random.uniform(0, 0.6);
@@ -167,10 +167,23 @@ TEST(Approach, IsThatOfManyInstants)
       ASSERT_GE(found.distance, least - step) << i;
       ASSERT_EQ(found.distance, separationOf(a.at(found.at), b.at(found.at)).high) << i;
     }
+    const Approach whole = approachOf(a, b, near_enough, resolution, false);
+    for (const double early_enough : {0.0, 0.5, random.uniform(0, 1)}) {
+      const Approach found = approachOf(a, b, near_enough, resolution, false, early_enough);
+      ASSERT_EQ(found.contact, whole.contact) << i;
+      if (!found.contact) continue;
+      later += found.enter > whole.enter;
+      ASSERT_GE(found.enter, whole.enter) << i;
+      if (whole.enter < early_enough) {
+        ASSERT_EQ(found.enter, whole.enter) << i;
+      }
+      ASSERT_LE(separationOf(a.at(found.enter), b.at(found.enter)).high, near_enough) << i;
+    }
     ++(least <= near_enough ? contacts : passed);
   }
   EXPECT_GT(contacts, 100);
   EXPECT_GT(passed, 50);
+  EXPECT_GT(later, 50);
 }
 
 } // namespace

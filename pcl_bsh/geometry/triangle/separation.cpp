@@ -145,67 +145,6 @@ double speedOf(const MovingCorners& corners)
   return speed;
 }
 
-/// Halves an interval until directions show that no instant in it matters, or it is so short that none differ.
-class ApproachSearch {
-public:
-  ApproachSearch(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest)
-  : a_(a),
-    b_(b),
-    near_enough_(near_enough),
-    resolution_(resolution),
-    shortest_(resolution / (speedOf(a) + speedOf(b))),
-    nearest_(nearest)
-  {
-  }
-
-  Approach run()
-  {
-    const Point3 direction = look(0.0);
-    if (nearest_ || !found_.contact) look(1.0);
-    if (matters(direction, 0.0, 1.0)) halve(0.0, 1.0);
-    return found_;
-  }
-
-private:
-  /// @return the direction along which both are apart at this instant
-  Point3 look(double s)
-  {
-    const Separation apart = separationOf(a_.at(s), b_.at(s));
-    if (apart.high <= near_enough_) {
-      if (!found_.contact || s < found_.enter) found_.enter = s;
-      if (!found_.contact || apart.high < found_.distance) {
-        found_.distance = apart.high;
-        found_.at = s;
-      }
-      found_.contact = true;
-    }
-    return apart.direction;
-  }
-
-  bool matters(const Point3& direction, double begin, double end) const
-  {
-    const double least = leastApart(direction, a_, b_, begin, end);
-    if (least > near_enough_ - resolution_) return false; // so that each instant is of one kind or the other
-    if (!found_.contact || begin < found_.enter) return true;
-    return nearest_ && least < found_.distance - resolution_;
-  }
-
-  void halve(double begin, double end)
-  {
-    if (!(end - begin > shortest_)) return;
-    const double middle = 0.5 * (begin + end);
-    if (!(middle > begin && middle < end)) return;
-    const Point3 direction = look(middle);
-    if (matters(direction, begin, middle)) halve(begin, middle);
-    if (matters(direction, middle, end)) halve(middle, end);
-  }
-
-  const MovingCorners &a_, &b_;
-  const double near_enough_, resolution_, shortest_;
-  const bool nearest_;
-  Approach found_;
-};
-
 /// Of directions from b to a, the one along which both are farthest apart; of length 1.
 class BestDirection {
 public:
@@ -231,20 +170,31 @@ private:
   const Corners &a_, &b_;
 };
 
-} // namespace
+/// The distance, up to rounding, and between which places.
+struct Near {
+  Separation at; ///< its places and `high`
+  double length, error;
+};
 
-Separation separationOf(const Corners& a, const Corners& b)
+Near nearOf(const Corners& a, const Corners& b)
 {
-  Separation apart;
-  NearestPlaces nearest(apart);
+  Near near{{}, 0.0, 0.0};
+  NearestPlaces nearest(near.at);
   findNearest(a, b, nearest);
   double largest = 0.0;
   for (const Corners* corners : {&a, &b})
     for (std::size_t i = 0; i < corners->count; ++i)
       for (const double x : corners->at[i]) largest = std::max(largest, std::abs(x));
-  const double error = kSeparationError * largest + kVanishing, length = std::sqrt(nearest.squared());
-  apart.high = length * (1.0 + kFewDoubleRoundings) + error;
-  if (!(length > 0.0)) return apart;
+  near.error = kSeparationError * largest + kVanishing;
+  near.length = std::sqrt(nearest.squared());
+  near.at.high = near.length * (1.0 + kFewDoubleRoundings) + near.error;
+  return near;
+}
+
+Separation separationOf(const Corners& a, const Corners& b, const Near& near)
+{
+  Separation apart = near.at;
+  if (!(near.length > 0.0)) return apart;
   // Where faces or edges are parallel, many places are as near as these, to rounding; of directions between them those
   // count that hold both apart.
   const Point3 between = apart.place_a - apart.place_b;
@@ -262,8 +212,90 @@ Separation separationOf(const Corners& a, const Corners& b)
     }
   }
   apart.direction = best.direction;
-  apart.low = std::max(0.0, best.gap * (1.0 - kFewDoubleRoundings) - error);
+  apart.low = std::max(0.0, best.gap * (1.0 - kFewDoubleRoundings) - near.error);
   return apart;
+}
+
+/// Halves an interval until directions show that no instant in it matters, or it is so short that none differ.
+class ApproachSearch {
+public:
+  ApproachSearch(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest,
+                 double early_enough)
+  : a_(a),
+    b_(b),
+    near_enough_(near_enough),
+    resolution_(resolution),
+    shortest_(resolution / (speedOf(a) + speedOf(b))),
+    nearest_(nearest),
+    early_enough_(early_enough)
+  {
+  }
+
+  Approach run()
+  {
+    const Point3 direction = look(0.0, 0.0);
+    if (nearest_ || !found_.contact) find(nearOf(a_.at(1.0), b_.at(1.0)), 1.0);
+    if (matters(direction, 0.0, 1.0)) halve(0.0, 1.0);
+    return found_;
+  }
+
+private:
+  /// @return the direction along which both are apart at this instant, if something from `begin` on can still matter
+  Point3 look(double s, double begin)
+  {
+    const Corners a = a_.at(s), b = b_.at(s);
+    const Near near = nearOf(a, b);
+    find(near, s);
+    return nearest_ || mayBeFirst(begin) ? separationOf(a, b, near).direction : Point3{0, 0, 0};
+  }
+
+  void find(const Near& near, double s)
+  {
+    const double distance = near.at.high;
+    if (!(distance <= near_enough_)) return;
+    if (!found_.contact || s < found_.enter) found_.enter = s;
+    if (!found_.contact || distance < found_.distance) {
+      found_.distance = distance;
+      found_.at = s;
+    }
+    found_.contact = true;
+  }
+
+  /// Whether a contact from this instant on may be the first that counts.
+  bool mayBeFirst(double begin) const { return !found_.contact || begin < std::min(found_.enter, early_enough_); }
+
+  bool matters(const Point3& direction, double begin, double end) const
+  {
+    const bool may_be_first = mayBeFirst(begin);
+    if (!may_be_first && !nearest_) return false;
+    const double least = leastApart(direction, a_, b_, begin, end);
+    if (least > near_enough_ - resolution_) return false; // so that each instant is of one kind or the other
+    return may_be_first || least < found_.distance - resolution_;
+  }
+
+  void halve(double begin, double end)
+  {
+    if (!(end - begin > shortest_)) return;
+    const double middle = 0.5 * (begin + end);
+    if (!(middle > begin && middle < end)) return;
+    const Point3 direction = look(middle, begin);
+    if (matters(direction, begin, middle)) halve(begin, middle);
+    if (matters(direction, middle, end)) halve(middle, end);
+  }
+
+  const MovingCorners &a_, &b_;
+  const double near_enough_, resolution_, shortest_;
+  const bool nearest_;
+  const double early_enough_;
+  Approach found_;
+};
+
+} // namespace
+
+Separation separationOf(const Corners& a, const Corners& b)
+{
+  const Near near = nearOf(a, b);
+  return separationOf(a, b, near);
 }
 
 Point3 faceBetween(const Corners& a, const Corners& b, double least)
@@ -301,9 +333,10 @@ double leastApart(const Point3& direction, const MovingCorners& a, const MovingC
   return low_a - high_b - (kSeparationError * largest + kVanishing);
 }
 
-Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest)
+Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest,
+                    double early_enough)
 {
-  return ApproachSearch(a, b, near_enough, resolution, nearest).run();
+  return ApproachSearch(a, b, near_enough, resolution, nearest, early_enough).run();
 }
 
 } // namespace pcl_bsh

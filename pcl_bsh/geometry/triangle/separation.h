@@ -59,8 +59,8 @@ struct Approach {
 /// There is no contact where both stay beyond `near_enough`, and there is one where they come nearer than that by more
 /// than `resolution`. Distances are the smallest within it, and instants those before which none are nearer by more.
 /// @param resolution above what rounding takes; bounds the work. @param nearest whether the smallest distance counts;
-/// if not, only the first instant does
+/// if not, only the first instant does @param early_enough from here on any contact is as good as the first
 PCL_BSH_EXPORT_INTERNAL Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough,
-                                            double resolution, bool nearest);
+                                            double resolution, bool nearest, double early_enough = 1.0);
 
 } // namespace pcl_bsh

@@ -56,10 +56,10 @@ Corners RecordCourse::seenAt(const PathPose& pose) const
 }
 
 Approach RecordCourse::approachTo(const TrajectoryQuery& query, std::uint32_t record, const PathInterval& interval,
-                                  double near_enough, bool nearest) const
+                                  double near_enough, bool nearest, double early_enough) const
 {
   return approachOf(arcs, stretchingIn(query, record, interval), near_enough, kResolution * *query.request.swept,
-                    nearest);
+                    nearest, early_enough);
 }
 
 MovingCorners restingAt(const TrajectoryQuery& query, std::uint32_t record)

@@ -18,9 +18,9 @@ struct RecordCourse {
   Corners seenAt(const PathPose& pose) const;
 
   /// Swept: of the record to one of the model, within a 64th of the tolerance. @param nearest whether the smallest
-  /// distance counts, or the first instant alone
+  /// distance counts, or the first instant alone @param early_enough as approachOf() has it
   Approach approachTo(const TrajectoryQuery& query, std::uint32_t record, const PathInterval& interval,
-                      double near_enough, bool nearest) const;
+                      double near_enough, bool nearest, double early_enough = 1.0) const;
 };
 
 /// A record of the model, which is at rest.

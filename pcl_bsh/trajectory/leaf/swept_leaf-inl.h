@@ -59,9 +59,9 @@ public:
         ++results_.work.exact_decisions;
         const double near_enough = query_.nearEnough(pair);
         if (near_enough < 0.0) continue;
-        const Approach approach =
-            segment ? segment->approachTo(query_, pair.b, near_enough)
-                    : course->approachTo(query_, pair.b, *motion.interval, near_enough, query_.closest);
+        const Approach approach = segment ? segment->approachTo(query_, pair.b, near_enough)
+                                          : course->approachTo(query_, pair.b, *motion.interval, near_enough,
+                                                               query_.closest, earlyEnough(begin, steps));
         if (!approach.contact) continue;
         if (query_.witness) return keepWitness(leaf, pair);
         keep(leaf, i, pair, approach, begin, steps);
@@ -78,6 +78,14 @@ private:
   bool isSettled(const LeafVisit& leaf, std::uint32_t i, double from) const
   {
     return !query_.closest && !query_.witness && isHit(leaf, i) && results_.firstOf(leaf.points.begin + i) <= from;
+  }
+
+  /// From which part of an interval on contacts of a point need not be its first.
+  double earlyEnough(double begin, double steps) const
+  {
+    if (query_.witness) return 0.0;
+    if (query_.request.first_poses || query_.closest) return 1.0;
+    return (results_.earliest - begin) / steps + kDoubleMargin * (1.0 + begin / steps); // above what rounding takes
   }
 
   bool isHit(const LeafVisit& leaf, std::uint32_t i) const { return (results_.hit[leaf.slot] >> i & 1) != 0; }
