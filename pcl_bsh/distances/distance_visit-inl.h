@@ -36,12 +36,14 @@ struct DistanceObstacle {
   float error;                        ///< of carried points, at least
   float least, most;                  ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
   float at_most_inside;               ///< at least what a length of 1 in the walk's unit is in the frame
+  float normal_scale;                 ///< of normals that the frame has carried, to make them of length 1
   bool is_plain;                      ///< whether float distances in the frame can be compared with those in others
-  const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where it has triangles
+  const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where they are compared
   const Slabs* cross_slabs = nullptr; ///< likewise, where they are long
 
-  /// @param unit of the walk, in the clouds' unit
-  DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit)
+  /// @param unit of the walk, in the clouds' unit @param unit_a of a's voxel
+  DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit,
+                   double unit_a)
   : voxel(entered),
     frame(from_a),
     slack(frame.pruneReach(0.0)),
@@ -53,6 +55,8 @@ struct DistanceObstacle {
     least = ratio < smallest ? 0.0f : roundDown(std::min(ratio, largest) * (1.0 - margin));
     most = roundUp(std::max(ratio, smallest) * (1.0 + margin));
     at_most_inside = roundUp(std::max(1.0 / ratio, smallest) * (1.0 + margin));
+    const double from_unit_a = space.unit / unit_a; // a power of 2; normals of 0 tell nothing
+    normal_scale = from_unit_a > smallest && from_unit_a < largest ? static_cast<float>(from_unit_a) : 0.0f;
     is_plain = ratio == 1.0 && frame.error < std::numeric_limits<double>::infinity();
   }
 
@@ -67,7 +71,8 @@ struct DistanceObstacle {
 struct CarriedNode {
   std::uint64_t stamp = 0; ///< of the visit it was carried for
   float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
-  Point center; ///< of the sphere around them all
+  float nx[kLanes], ny[kLanes], nz[kLanes], h[kLanes]; ///< their slabs, where both sides have them
+  Point center;                                        ///< of the sphere around them all
   float radius;
 };
 
@@ -83,6 +88,7 @@ struct DistanceRow {
   ObstacleSphere sphere;
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
+  float about_center[kLanes]; ///< the same without the child's slab, for Outdoing; where it has one
   std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
 };
 
@@ -184,20 +190,38 @@ HWY_INLINE LaneVector lengthToSlabs(const CrossedSlabs& slab, LaneVector x, Lane
                             hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.0f - kBoundMargin)));
 }
 
-/// Raises lower bounds as boundDistances() has them by what the slabs of the other sphere say.
+/// Raises lower bounds as boundDistances() has them by lengths in the frame, less `radii`.
+HWY_INLINE void raise(const DistanceObstacle& obstacle, LaneVector length, LaneVector radii, float* lower)
+{
+  const LaneTag d;
+  const LaneVector near = hn::Sub(hn::Sub(length, radii), hn::Mul(hn::Add(length, radii), hn::Set(d, kBoundMargin)));
+  const LaneVector scaled = atLeast(obstacle, near);
+  const LaneVector before = hn::LoadU(d, lower);
+  hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower);
+}
+
+/// The same by what the slabs of the other sphere say.
 HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle& obstacle, const CrossedSlabs& slabs,
                              float* lower)
 {
   const LaneTag d;
-  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-    const LaneVector length =
-        lengthToSlabs(slabs, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i));
-    const LaneVector radii = hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack));
-    const LaneVector near = hn::Sub(hn::Sub(length, radii), hn::Mul(hn::Add(length, radii), hn::Set(d, kBoundMargin)));
-    const LaneVector scaled = atLeast(obstacle, near);
-    const LaneVector before = hn::LoadU(d, lower + i);
-    hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower + i);
-  }
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    raise(obstacle,
+          lengthToSlabs(slabs, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i)),
+          hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack)), lower + i);
+}
+
+/// The same by the slabs of both: of surfaces that face each other from far away, only what is opposite is near.
+HWY_INLINE void raiseByBothSlabs(const CarriedNode& own, const DistanceObstacle& obstacle, const CrossedSlabs& other,
+                                 float* lower)
+{
+  const LaneTag d;
+  alignas(32) float gaps[kLanes];
+  slabGaps({own.x, own.y, own.z, own.r, 1.0f}, {own.nx, own.ny, own.nz, own.h},
+           {other.normal, other.h, other.center, other.radius}, gaps);
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+    raise(obstacle, hn::Mul(hn::Load(d, gaps + i), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, obstacle.slack),
+          lower + i);
 }
 
 /// Lower bounds of the distances from a box to eight spheres in its frame, as boundDistances() has them; minus infinity

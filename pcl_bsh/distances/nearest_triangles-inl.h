@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -143,7 +144,8 @@ private:
   struct Nearest {
     bool compared = false; ///< with another one; the following are set
     SharedPart part;
-    double gap; ///< of the triangle, at most
+    double gap;   ///< of the triangle, at most
+    bool bounded; ///< whether doubles have told that
   };
 
   /// Of the triangles that may be the nearest.
@@ -211,6 +213,7 @@ private:
     if (!nearest.compared) {
       nearest.compared = true;
       nearest.gap = double{most_[i]} * leaf_.unit;
+      nearest.bounded = false;
       if (by_parts) nearest.part = partOf(best);
       best.least = -kInfinity; // of several: what floats say is not the least of them
       best.most = kInfinity;
@@ -220,6 +223,7 @@ private:
       best.voxel = found.voxel;
       best.point = found.point;
       nearest.part = part;
+      nearest.bounded = false;
     };
     if (by_parts) {
       part = partOf(found);
@@ -231,7 +235,8 @@ private:
       }
     }
     const RecordDistance::Pair pair = leaf_.posed(i, found), best_pair = leaf_.posed(i, best);
-    nearest.gap = std::min(nearest.gap, leaf_.query.pairs.distance.enclose(best_pair).high);
+    if (!std::exchange(nearest.bounded, true))
+      nearest.gap = std::min(nearest.gap, leaf_.query.pairs.distance.enclose(best_pair).high);
     if (leaf_.query.pairs.distance.isSurelyBeyond(pair, nearest.gap)) return;
     const int sign = leaf_.query.pairs.distance.compareGaps(pair, best_pair);
     if (sign < 0 || (sign == 0 && recordOf(found) < recordOf(best))) take();

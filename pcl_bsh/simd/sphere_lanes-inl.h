@@ -106,6 +106,9 @@ HWY_INLINE void carry(const float* m, const float* g, const float* x, const floa
   }
 }
 
+/// The shift of directions.
+inline constexpr float kNowhere[3] = {0.0f, 0.0f, 0.0f};
+
 /// One point by y = m x + g, rounded as carry() rounds.
 struct Point {
   float x, y, z;

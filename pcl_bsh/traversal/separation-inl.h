@@ -19,9 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Without a shift: what carries normals.
-inline constexpr float kNowhere[3] = {0.0f, 0.0f, 0.0f};
-
 /// A node's children and a sphere of the other cloud, in the frame of b's space.
 struct Facing {
   const RelativeFrame& frame;

@@ -37,7 +37,7 @@ void longLengthOnTarget(const std::array<double, 3>& p, const std::array<double,
 
 DistanceObstacle obstacleOf(const test::FrameBounds& frame)
 {
-  DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0);
+  DistanceObstacle obstacle(nullptr, LocalFrame(), RelativeFrame(), 1.0, 1.0);
   obstacle.slack = frame.prune_reach;
   obstacle.least = frame.least;
   obstacle.most = frame.most;

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 namespace pcl_bsh {
 namespace {
@@ -62,6 +63,11 @@ void checkEverything(const Isometry3d& pose_a, const Isometry3d& pose_b, const A
       EXPECT_LE(signOf(Rational(enclosure.low) * Rational(enclosure.low) - squared), 0);
     }
   }
+  if constexpr (std::is_same_v<A, Triangle3>) // what is beyond a reach need not be known well
+    for (const double reach : {0.0, 0.5 * length, 0.99 * length, std::nextafter(length, 0.0), length}) {
+      const double low = distance.enclose(a, b, reach).low;
+      EXPECT_TRUE(low <= 0 || signOf(Rational(low) * Rational(low) - squared) <= 0) << std::hexfloat << reach;
+    }
   for (const double clearance : {length, std::nextafter(length, infinity), std::nextafter(length, 0.0), 0.0,
                                  length * random.uniform(0.5, 1.5), infinity}) {
     const int expected = clearance == infinity ? -1 : signOf(squared - Rational(clearance) * Rational(clearance));

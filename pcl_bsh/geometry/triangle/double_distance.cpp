@@ -42,6 +42,25 @@ double gapAlong(const Point3 (&a)[Count], const Point3 (&b)[Count], const Point3
   return std::max(along_b.low - along_a.high, along_a.low - along_b.high) / std::sqrt(square);
 }
 
+/// The same of the gap along the normal of a and, across it, of the circles about both; within three times the error.
+/// Of surfaces that face each other from far away it tells apart all but what is opposite.
+double gapAboutNormal(const Point3 (&a)[3], const Point3 (&b)[3])
+{
+  const Point3 normal = cross(a[1] - a[0], a[2] - a[0]);
+  const double along = std::max(gapAlong(a, b, normal), 0.0); // 0, too, where the normal tells nothing
+  if (along == 0.0) return -kEndless;
+  const Point3 middle_a = (1.0 / 3.0) * (a[0] + a[1] + a[2]), middle_b = (1.0 / 3.0) * (b[0] + b[1] + b[2]);
+  double squared_a = 0.0, squared_b = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point3 from_a = a[k] - middle_a, from_b = b[k] - middle_b;
+    squared_a = std::max(squared_a, dot(from_a, from_a)), squared_b = std::max(squared_b, dot(from_b, from_b));
+  }
+  const Point3 between = middle_b - middle_a;
+  const Point3 rest = between - (dot(between, normal) / dot(normal, normal)) * normal;
+  const double across = std::max(std::sqrt(dot(rest, rest)) - std::sqrt(squared_a) - std::sqrt(squared_b), 0.0);
+  return std::sqrt(along * along + across * across);
+}
+
 /// From a place on the first of two edges to one on the second, near the nearest.
 /// (After Ericson: Real-Time Collision Detection, 2005, 5.1.9; written anew.)
 Point3 betweenEdges(const Point3& from_a, const Point3& way_a, const Point3& from_b, const Point3& way_b)
@@ -114,6 +133,11 @@ DoubleDistance distanceOfTriangles(const Triangle3& a, const Triangle3& b, doubl
 
   found.distance.low = gapAlong(corners_a, corners_b, (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2])) - doubt;
   if (found.distance.low > reach) return found;
+  if (reach < kEndless) {
+    const double doubt_about = error + 3 * kPlaceError * largest;
+    found.distance.low = std::max(found.distance.low, gapAboutNormal(corners_a, corners_b) - doubt_about);
+    if (found.distance.low > reach) return found;
+  }
 
   // Corners and faces.
   const FlatTriangle<double> flat_a = flatten<double>(a), flat_b = flatten<double>(b);
