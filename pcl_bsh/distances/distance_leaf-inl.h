@@ -79,7 +79,7 @@ public:
     }
     else {
       near_leaves_.clear();
-      leaf_.work.leaf_pairs += near.size();
+      if (leaf_.of_triangles) leaf_.work.leaf_pairs += near.size(); // as those of triangles of b are counted
       for (const auto& [sphere, lower] : near)
         near_leaves_.push_back({sphere.obstacle, sphere.leaf(*leaf_.obstacles[sphere.obstacle].voxel), lower});
       for (std::uint32_t i = 0; i < leaf_.range.count; ++i) leaf_.found[i] = decide(i, NearestFound(), cut);
