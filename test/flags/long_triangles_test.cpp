@@ -81,28 +81,31 @@ TEST(LongTriangles, HaveTheFlagsOfBruteForce)
   std::size_t colliding = 0, free = 0;
   for (const Make make : {fan, strips, needles})
     for (const Point3& at : {kNear, kFar})
-      for (const bool turned : {false, true})
-        for (const bool known : {false, true}) { // slabs, by an earlier query
-          const TestMesh mesh = moved(make(900), at), scan = scanAbout(200, at);
-          const SphereHierarchy triangles(viewOf(mesh.trianglesView())), points(scan.view());
-          Eigen::Isometry3d pose = shifted({0.03, 0.02, 0.05});
-          if (turned) {
-            const Eigen::Vector3d middle(at[0], at[1], at[2]);
-            pose = Eigen::Translation3d(middle) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()) *
-                   Eigen::Translation3d(-middle);
-          }
-          if (known) closestPair({triangles}, {triangles, shifted({0, 0, 3})});
-          for (const SphereHierarchy* other : {&points, &triangles})
-            for (const double clearance : {0.0, 0.004, 0.05}) {
-              const Placed a(*other, pose), b(triangles);
-              const FlagsResult expected = brute_force::collisionFlags(a, b, bothWithin(clearance));
-              const FlagsResult found = collisionFlags(a, b, bothWithin(clearance));
+      for (const bool turned : {false, true}) {
+        const TestMesh mesh = moved(make(900), at), scan = scanAbout(200, at);
+        const SphereHierarchy points(scan.view());
+        Eigen::Isometry3d pose = shifted({0.03, 0.02, 0.05});
+        if (turned) {
+          const Eigen::Vector3d middle(at[0], at[1], at[2]);
+          pose = Eigen::Translation3d(middle) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()) *
+                 Eigen::Translation3d(-middle);
+        }
+        const SphereHierarchy fresh(viewOf(mesh.trianglesView())), known(viewOf(mesh.trianglesView()));
+        closestPair({known}, {known, shifted({0, 0, 3})}); // fits slabs
+        for (const bool of_points : {true, false})
+          for (const double clearance : {0.0, 0.004, 0.05}) {
+            const auto request = bothWithin(clearance);
+            const FlagsResult expected =
+                brute_force::collisionFlags({of_points ? points : fresh, pose}, {fresh}, request);
+            for (const SphereHierarchy* triangles : {&fresh, &known}) {
+              const FlagsResult found = collisionFlags({of_points ? points : *triangles, pose}, {*triangles}, request);
               ASSERT_EQ(found.a, expected.a) << clearance;
               ASSERT_EQ(found.b, expected.b) << clearance;
-              colliding += found.colliding_a + found.colliding_b;
-              free += found.a.size() + found.b.size() - found.colliding_a - found.colliding_b;
             }
-        }
+            colliding += expected.colliding_a + expected.colliding_b;
+            free += expected.a.size() + expected.b.size() - expected.colliding_a - expected.colliding_b;
+          }
+      }
   EXPECT_GT(colliding, 5000u);
   EXPECT_GT(free, 5000u);
 }
