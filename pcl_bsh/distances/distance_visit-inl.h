@@ -38,7 +38,7 @@ struct DistanceObstacle {
   float at_most_inside;               ///< at least what a length of 1 in the walk's unit is in the frame
   float normal_scale;                 ///< of normals that the frame has carried, to make them of length 1
   bool is_plain;                      ///< whether float distances in the frame can be compared with those in others
-  const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where they are compared
+  const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where it has triangles
   const Slabs* cross_slabs = nullptr; ///< likewise, where they are long
 
   /// @param unit of the walk, in the clouds' unit @param unit_a of a's voxel
@@ -71,9 +71,10 @@ struct DistanceObstacle {
 struct CarriedNode {
   std::uint64_t stamp = 0; ///< of the visit it was carried for
   float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
-  float nx[kLanes], ny[kLanes], nz[kLanes], h[kLanes]; ///< their slabs, where both sides have them
-  Point center;                                        ///< of the sphere around them all
+  Point center; ///< of the sphere around them all
   float radius;
+  std::uint64_t slabs_stamp = 0; ///< of the visit that the following were carried for: what is not far needs none
+  float nx[kLanes], ny[kLanes], nz[kLanes], h[kLanes];
 };
 
 /// A leaf of a likewise.
@@ -88,7 +89,8 @@ struct DistanceRow {
   ObstacleSphere sphere;
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
-  float about_center[kLanes]; ///< the same without the child's slab, for Outdoing; where it has one
+  float
+      about_center[kLanes]; ///< the same without the child's slab, for Outdoing; where slabs of both sides are compared
   std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
 };
 
@@ -212,13 +214,12 @@ HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle&
 }
 
 /// The same by the slabs of both: of surfaces that face each other from far away, only what is opposite is near.
-HWY_INLINE void raiseByBothSlabs(const CarriedNode& own, const DistanceObstacle& obstacle, const CrossedSlabs& other,
+HWY_INLINE void raiseByBothSlabs(const CarriedNode& own, const DistanceObstacle& obstacle, const Slab& other,
                                  float* lower)
 {
   const LaneTag d;
   alignas(32) float gaps[kLanes];
-  slabGaps({own.x, own.y, own.z, own.r, 1.0f}, {own.nx, own.ny, own.nz, own.h},
-           {other.normal, other.h, other.center, other.radius}, gaps);
+  slabGaps({own.x, own.y, own.z, own.r, 1.0f}, {own.nx, own.ny, own.nz, own.h}, other, gaps);
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
     raise(obstacle, hn::Mul(hn::Load(d, gaps + i), hn::Set(d, 1.0f - kSphereMargin)), hn::Set(d, obstacle.slack),
           lower + i);

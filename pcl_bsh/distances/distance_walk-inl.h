@@ -40,6 +40,7 @@ public:
     b_(query.b),
     unit_(b_.storage.frame.unit),
     max_(query.pairs.reach.most),
+    compares_slabs_(a_.storage.view.triangles && (b_.storage.view.triangles || !b_.storage.view.radii)),
     leaf_(query, sheet, scratch, found.work)
   {
     forgetObstacles();
@@ -67,9 +68,6 @@ public:
     }
     if (query_.reached && query_.exceeds(boundVoxel(cut).upper, unit_)) return;
     a_voxel_ = &a_.voxel(voxel, found.work);
-    a_slabs_ = a_.storage.view.triangles && hasSlabs(b_.storage.view)
-                   ? a_.storage.voxels[voxel].slabs.of(*a_voxel_, a_.storage.view, found.work)
-                   : nullptr;
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch;
     if (const float least = bounds().least(a_voxel_->radius); least > 0.0f)
@@ -217,8 +215,7 @@ private:
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
     CrossedSlabs held = {};
-    if (obstacle.slabs) held = obstacle.heldBy(sphere);
-    if (b_.storage.view.triangles && obstacle.slabs) raiseBySlabs(own, obstacle, held, row.lower);
+    if (obstacle.slabs) raiseBySlabs(own, obstacle, held = obstacle.heldBy(sphere), row.lower);
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
       const std::uint32_t asked = isThin(visit, obstacle, held) ? 1 : leaf.count;
@@ -228,9 +225,11 @@ private:
                        });
       found.work.node_pairs += asked;
     }
-    if (a_slabs_) std::copy_n(row.lower, kLanes, row.about_center);
-    if (obstacle.slabs && a_slabs_ && isFar(visit, row, radius * obstacle.most))
-      raiseByBothSlabs(own, obstacle, held, row.lower);
+    if (compares_slabs_) {
+      std::copy_n(row.lower, kLanes, row.about_center);
+      if (obstacle.voxel && isFar(visit, row, radius * obstacle.most))
+        raiseByBothSlabs(carriedSlabs(visit, sphere.obstacle), obstacle, slabOfSphere(sphere, radius), row.lower);
+    }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
   }
@@ -285,7 +284,7 @@ private:
   {
     const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
     if (!outdoing_.isPossible()) return near;
-    return near & (notAbove(a_slabs_ ? row.about_center : row.lower, visit.limit) | row.as_given);
+    return near & (notAbove(compares_slabs_ ? row.about_center : row.lower, visit.limit) | row.as_given);
   }
 
   /// Keeps a sphere of b for those children that it matters to, or opens it: where it is larger than they are, and for
@@ -360,14 +359,11 @@ private:
     return {obstacles_[obstacle].voxel->nodes.data(), 0, 1, obstacle};
   }
 
-  /// Whether planes hold what is in a node of b: of triangles, and of points that triangles are asked about.
-  bool hasSlabs(const PointsView& of_b) const { return of_b.triangles || (a_.storage.view.triangles && !of_b.radii); }
-
   void addObstacle(std::uint32_t space, const Voxel* voxel)
   {
     const RelativeFrame frame(a_.frame(voxel_), a_.pose, b_.frame(space), b_.pose, query_.rotation);
     obstacles_.emplace_back(voxel, b_.frame(space), frame, unit_, a_.frame(voxel_).unit);
-    if (voxel && hasSlabs(b_.storage.view)) {
+    if (voxel && b_.storage.view.triangles) {
       Voxel& entered = b_.storage.voxels[space];
       obstacles_.back().slabs = entered.slabs.of(*voxel, b_.storage.view, found.work);
       if (b_.storage.hasLongTriangles(space))
@@ -386,19 +382,38 @@ private:
     const RelativeFrame& frame = obstacles_[obstacle].frame;
     carry(frame.m.data(), frame.g.data(), visit.node->x, visit.node->y, visit.node->z, kLanes, own.x, own.y, own.z);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) own.r[lane] = visit.node->r[lane] * frame.stretch_a;
-    if (a_slabs_ && obstacles_[obstacle].slabs) {
-      const Slabs& slabs = a_slabs_[visit.node - a_voxel_->nodes.data()];
-      const float scale = obstacles_[obstacle].normal_scale;
-      carry(frame.m.data(), kNowhere, slabs.x, slabs.y, slabs.z, kLanes, own.nx, own.ny, own.nz);
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        for (float* const normal : {own.nx, own.ny, own.nz}) normal[lane] *= scale;
-        own.h[lane] = slabs.h[lane] * frame.stretch_a;
-      }
-    }
     own.center = carryPoint(frame.m.data(), frame.g.data(), visit.around.center);
     own.radius = visit.around.radius * frame.stretch_a;
     found.work.volumes_carried += visit.node->count + std::uint64_t{1};
     return own;
+  }
+
+  /// The same with their slabs. @pre compares_slabs_, and carried() for this visit
+  const CarriedNode& carriedSlabs(DistanceVisit& visit, std::uint32_t obstacle)
+  {
+    CarriedNode& own = visit.carried[obstacle];
+    if (own.slabs_stamp == visit.stamp) return own;
+    own.slabs_stamp = visit.stamp;
+    const auto index = visit.node - a_voxel_->nodes.data();
+    const Slabs& slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, a_.storage.view, found.work)[index];
+    const RelativeFrame& frame = obstacles_[obstacle].frame;
+    const float scale = obstacles_[obstacle].normal_scale;
+    carry(frame.m.data(), kNowhere, slabs.x, slabs.y, slabs.z, kLanes, own.nx, own.ny, own.nz);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      for (float* const normal : {own.nx, own.ny, own.nz}) normal[lane] *= scale;
+      own.h[lane] = slabs.h[lane] * frame.stretch_a;
+    }
+    return own;
+  }
+
+  /// Of a sphere below a voxel. @param radius of it, stretched
+  Slab slabOfSphere(const ObstacleSphere& sphere, float radius)
+  {
+    const Voxel& voxel = *obstacles_[sphere.obstacle].voxel;
+    const Node& node = *sphere.node;
+    LazySlabs& slabs = b_.storage.voxels[scratch_.entered[sphere.obstacle - 1]].slabs;
+    return slabOf(slabs.of(voxel, b_.storage.view, found.work)[&node - voxel.nodes.data()], sphere.lane,
+                  {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius);
   }
 
   void forgetObstacles() noexcept
@@ -459,13 +474,13 @@ private:
   const Spaces a_, b_;
   const double unit_; ///< of bounds, in the clouds' unit
   const double max_;
+  const bool compares_slabs_; ///< of both sides: of triangles, and of triangles or points that are no balls
   DistanceLeaf leaf_;
   bool leaves_alone_ = false;      ///< whether leaves of a go through lists by themselves: see measureAlone()
   Outdoing outdoing_;              ///< of the voxel of a
   double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   const Voxel* a_voxel_ = nullptr;
-  const Slabs* a_slabs_ = nullptr; ///< of its nodes, where it is of triangles and b has slabs, too
   std::uint32_t steps_ = 0;
 };
 
