@@ -238,6 +238,43 @@ TEST(TriangleDistance, ComparesDistancesAsTheDefinitionDoes)
   EXPECT_GT(ties, 100);
 }
 
+/// A corner in common is a place in common under one pose alone.
+TEST(TriangleDistance, KnowsThatWhatSharesACornerMeetsUnderOnePose)
+{
+  Random random(306);
+  for (const TriangleShape shape : test::kTriangleShapes)
+    for (int i = 0; i < 60; ++i) {
+      const Isometry3d pose = poseOf(i % 5, random);
+      Isometry3d other = pose;
+      if (i % 2 == 1) other.translation()[random.integer(0, 2)] += random.pick({1e-9, 0.25, 3.0});
+      const TriangleDistance distance(pose, other);
+      const Triangle3 a = test::triangleOf(shape, 1.0, random);
+      const auto sharing = [&](const Point3& corner) {
+        Triangle3 t = test::triangleOf(shape, 1.0, random);
+        t[static_cast<std::size_t>(random.integer(0, 2))] = corner;
+        return t;
+      };
+      const Triangle3 b = sharing(a[0]), c = sharing(a[2]), alone = test::triangleOf(shape, 1.0, random);
+      const auto squaredTo = [&](const auto& of_a, const Triangle3& of_b) {
+        return test::squaredDistance(posed(pose, of_a), posed(other, of_b));
+      };
+      const Rational to_b = squaredTo(a, b), to_c = squaredTo(a, c), to_alone = squaredTo(a, alone),
+                     from_corner = squaredTo(b[1], b);
+      Stages stages;
+      EXPECT_EQ(distance.compareGaps({a, b}, distance, {a, c}, &stages), signOf(to_b - to_c));
+      EXPECT_EQ(distance.compare(a, b, 0.0, &stages), signOf(to_b));
+      EXPECT_EQ(distance.compare(b[1], b, 0.0, 0.0, &stages), signOf(from_corner));
+      if (i % 2 == 0) {
+        EXPECT_EQ(stages.integers + stages.long_numbers, 0u);
+      }
+      EXPECT_EQ(distance.compareGaps({a, b}, distance, {a, alone}), signOf(to_b - to_alone));
+      EXPECT_EQ(distance.compareGaps({a, alone}, distance, {a, b}), signOf(to_alone - to_b));
+      expectNearest(distance.distance(a, b), to_b);
+      expectNearest(distance.distance(b[1], b), from_corner);
+      EXPECT_EQ(distance.compare(a, b, 1e-12), signOf(to_b - Rational(1e-12) * Rational(1e-12)));
+    }
+}
+
 /// Sign of the root of x less the root of y less d.
 int signOfRoots(const Rational& x, const Rational& y, const Rational& d)
 {

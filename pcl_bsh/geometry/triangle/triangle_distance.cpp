@@ -248,16 +248,32 @@ Fraction<Number> TriangleDistance::squared(const Pair& pair, const Features& fea
 template <class Pair>
 std::optional<LongNumber> TriangleDistance::facing(const Pair& pair) const
 {
+  if (shareCorner(pair)) return LongNumber(0.0);
   if constexpr (std::is_same_v<Pair, PointPair>)
     return std::nullopt;
   else
     return gapOfFacing(longCorners(a_, pair.a), longCorners(b_, pair.b));
 }
 
+/// Whether both have a corner at one place for certain: of a mesh against itself nearly all that meet do.
+template <class Pair>
+bool TriangleDistance::shareCorner(const Pair& pair) const
+{
+  if (a_ != b_) return false;
+  const auto isOfB = [&pair](const Point3& corner) {
+    return std::find(pair.b.begin(), pair.b.end(), corner) != pair.b.end();
+  };
+  if constexpr (std::is_same_v<Pair, PointPair>)
+    return isOfB(pair.a);
+  else
+    return std::any_of(pair.a.begin(), pair.a.end(), isOfB);
+}
+
 /// Which features are nearest, by the quickest numbers that are sure.
 template <class Pair>
 Features TriangleDistance::nearestFeatures(const Pair& pair, bool& by_integers) const
 {
+  if (shareCorner(pair)) return {Features::meeting, 0, 0};
   const Seen at = seen(pair.a, pair.b);
   if (isFinite(at.a) && isFinite(at.b) && std::isfinite(at.error)) {
     const auto rough = [&](const Triangle3& t) {
@@ -292,6 +308,11 @@ int TriangleDistance::settle(const Pair& pair, const ExactDistance::Sum& reach, 
   };
   bool by_integers = false, sure = true;
   const LongNumber length = sumOf(LongNumber(pair.radius));
+  if (shareCorner(pair)) {
+    const int side = -length.sign(sure);
+    if (sure) return ++stages.doubles, side;
+    sure = true;
+  }
   if constexpr (std::is_same_v<Pair, TrianglePair>) {
     const LongCorners a = longCorners(a_, pair.a), b = longCorners(b_, pair.b);
     if (const std::optional<LongNumber> gap = gapOfFacing(a, b)) {
@@ -313,6 +334,7 @@ template <class Pair>
 int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& other, const Pair& second,
                                   Stages& stages) const
 {
+  if (first.radius == second.radius && shareCorner(first) && other.shareCorner(second)) return ++stages.doubles, 0;
   const Enclosure x = enclose(first.a, first.b), y = other.enclose(second.a, second.b);
   const double slack =
       first.radius == second.radius ? 0.0 : 2 * kFewDoubleRoundings * (x.high + y.high + first.radius + second.radius);

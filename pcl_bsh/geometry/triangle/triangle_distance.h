@@ -117,6 +117,8 @@ private:
   template <class Pair>
   std::optional<LongNumber> facing(const Pair& pair) const;
   template <class Pair>
+  bool shareCorner(const Pair& pair) const;
+  template <class Pair>
   Features nearestFeatures(const Pair& pair, bool& by_integers) const;
   template <class Pair>
   int compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const;
