@@ -9,9 +9,11 @@
 #define PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/distances/best_record-inl.h>
 #include <pcl_bsh/distances/nearest_points-inl.h>
 #include <pcl_bsh/distances/nearest_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>
+#include <pcl_bsh/distances/triangle_descent-inl.h>
 #include <pcl_bsh/query/prefetch.h>
 
 #include <algorithm>
@@ -31,9 +33,10 @@ public:
   : leaf_(query, scratch, work),
     points_(leaf_, scratch),
     triangles_(leaf_, scratch),
+    descent_(leaf_),
     sheet_(sheet),
     near_leaves_(scratch.near_leaves),
-    laid_flat_(leaf_.view_b.triangles && (leaf_.view_a.triangles || !leaf_.view_a.radii)),
+    laid_flat_(leaf_.view_b.triangles && !leaf_.view_a.radii),
     lengths_only_(!query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
                   query.b.pose.linear() == Eigen::Matrix3d::Identity())
   {
@@ -61,9 +64,13 @@ public:
   /// @param near those that can hold a nearest point; left in another order
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
+    const float cut = visit.cut[lane];
+    if (leaf_.view_a.triangles) {
+      const auto none = [](const ObstacleSphere& leaf) { return leaf; };
+      return measureTriangles(voxel, visit, lane, cut, near, none);
+    }
     begin(voxel, visit, lane);
     bounds_points_ = false;
-    const float cut = visit.cut[lane];
     if (points_.floatsTell(near)) {
       gather(near);
       if (points_.find(cut)) writePoints(visit, lane, cut);
@@ -79,12 +86,26 @@ public:
     }
     else {
       near_leaves_.clear();
-      if (leaf_.of_triangles) leaf_.work.leaf_pairs += near.size(); // as those of triangles of b are counted
+      leaf_.work.leaf_pairs += near.size();
       for (const auto& [sphere, lower] : near)
         near_leaves_.push_back({sphere.obstacle, sphere.leaf(*leaf_.obstacles[sphere.obstacle].voxel), lower});
       for (std::uint32_t i = 0; i < leaf_.range.count; ++i) leaf_.found[i] = decide(i, NearestFound(), cut);
     }
     writeAll(visit, lane);
+  }
+
+  /// The same of a leaf of triangles, each of which goes down from the list by itself.
+  /// @param below as TriangleDescent::nearest() has it
+  template <class Below>
+  void measureTriangles(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut,
+                        const std::vector<NearSphere>& list, const Below& below)
+  {
+    begin(voxel, visit, lane);
+    descent_.begin(*visit.node, lane);
+    for (std::uint32_t i = 0; i < leaf_.range.count; ++i) {
+      const NearestFound found = descent_.nearest(i, cut, list, below);
+      if (!leaf_.query.exceeds(descent_.limit())) write(i, found, visit.node->begin[lane], visit.node->begin[lane + 1]);
+    }
   }
 
 private:
@@ -115,52 +136,33 @@ private:
   }
 
   /// The nearest to one point, of the near leaves, in exact arithmetic; of several the smallest record.
-  /// @param best one that may be it, or none @param cut upper bound of its distance, unless that exceeds the greatest
-  NearestFound decide(std::uint32_t i, NearestFound best, float cut)
+  /// @param named one that may be it, or none @param cut upper bound of its distance, unless that exceeds the greatest
+  NearestFound decide(std::uint32_t i, const NearestFound& named, float cut)
   {
     const double own_radius = leaf_.range.radius(i);
-    RecordDistance::Pair best_pair;
-    double most = double{cut} * leaf_.unit; // of the distance
-    const auto take = [&](const NearestFound& found, const RecordDistance::Pair& pair) {
-      best = found;
-      best_pair = pair;
-      const double radii = pair.radius_p + pair.radius_q, far = leaf_.query.pairs.distance.enclose(pair).high;
-      most = std::min(most, far - radii + kFewDoubleRoundings * (far + radii));
-    };
-    if (best.voxel) take(best, leaf_.posed(i, best));
+    BestRecord best(leaf_, i, cut);
+    if (named.voxel) best.begin(named);
     std::uint32_t band_of = kNoVoxel; // the obstacle that `miss` is of
     float miss = 0.0f;
     double within = 0.0;
     for (const NearLeaf& candidate : near_leaves_) {
-      const double farthest = bounds_points_ ? most + own_radius : most;
+      const double farthest = bounds_points_ ? best.most() + own_radius : best.most();
       if (double{candidate.lower} * leaf_.unit > farthest + std::abs(farthest) * kDoubleMargin) continue;
       const DistanceObstacle& obstacle = leaf_.obstacles[candidate.obstacle];
       const LeafRange& other = candidate.range;
       const LeafPoints& points = leaf_.carried(candidate.obstacle).points;
       alignas(64) float squared[kLeafPoints];
       leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared);
-      const double reach = (most + own_radius + leaf_.largest_radius) * (1.0 + kDoubleMargin);
+      const double reach = (best.most() + own_radius + leaf_.largest_radius) * (1.0 + kDoubleMargin);
       if (band_of != candidate.obstacle || !(within == reach)) {
         band_of = candidate.obstacle;
         within = reach;
         miss = obstacle.frame.band(std::isnan(reach) ? kInfinity : std::max(reach, 0.0)).miss;
       }
-      for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1) {
-        const NearestFound found{other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))};
-        if (found.voxel == best.voxel && found.point == best.point) continue;
-        const RecordDistance::Pair pair = leaf_.posed(i, found);
-        if (leaf_.of_triangles && leaf_.query.pairs.distance.isSurelyBeyond(pair, most)) continue;
-        if (best.voxel) {
-          ++leaf_.work.exact_decisions;
-          const int sign = leaf_.query.pairs.distance.compareGaps(pair, best_pair);
-          if (sign > 0 || (sign == 0 && recordOf(best) < recordOf(found))) continue;
-        }
-        take(found, pair);
-      }
+      for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1)
+        best.consider({other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))});
     }
-    best.least = -kInfinity; // the float distance, if there is one, may be another point's
-    best.most = kInfinity;
-    return best;
+    return best.found();
   }
 
   /// Whether the nearest point is within max_distance.
@@ -217,6 +219,7 @@ private:
   MeasuredLeaf leaf_;
   NearestPoints points_;
   NearestTriangles triangles_;
+  TriangleDescent descent_;
   const DistanceSheet& sheet_;
   std::vector<NearLeaf>& near_leaves_;
   bool bounds_points_ = false; ///< whether their lower bounds are those of the leaf's points, not of its balls

@@ -18,14 +18,14 @@ struct DistancesQuery {
   const Placed& b;
   const PointPairs& pairs;
   RelativeRotation rotation;
+  double unit;            ///< of lengths as floats, in the clouds' unit
   double tolerance = 0.0; ///< how much farther than the nearest a point may be
   /// Where only the greatest distance is asked for: what is nearer than this one need not be measured. Null: all are.
   /// @pre not null: no max_distance, the accuracy exact; else bounds are not those of the nearest
   ReachedDistance* reached = nullptr;
 
   /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
-  /// @param unit of the bound, in the clouds' unit
-  bool exceeds(float upper, double unit) const { return reached && reached->exceeds(upper, unit); }
+  bool exceeds(float upper) const { return reached && reached->exceeds(upper, unit); }
 };
 
 /// Where the answers of one walk go: arrays with an entry for each record of a. No interval: null.

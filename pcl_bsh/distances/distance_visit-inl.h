@@ -77,6 +77,16 @@ struct CarriedNode {
   float nx[kLanes], ny[kLanes], nz[kLanes], h[kLanes];
 };
 
+/// Adds slabs to them. @param slabs of the same node
+HWY_INLINE void carrySlabs(const DistanceObstacle& obstacle, const Slabs& slabs, CarriedNode& own)
+{
+  carry(obstacle.frame.m.data(), kNowhere, slabs.x, slabs.y, slabs.z, kLanes, own.nx, own.ny, own.nz);
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (float* const normal : {own.nx, own.ny, own.nz}) normal[lane] *= obstacle.normal_scale;
+    own.h[lane] = slabs.h[lane] * obstacle.frame.stretch_a;
+  }
+}
+
 /// A leaf of a likewise.
 struct CarriedLeaf {
   LeafPoints points;       ///< those past the leaf's count are its first
@@ -211,6 +221,13 @@ HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle&
     raise(obstacle,
           lengthToSlabs(slabs, hn::LoadU(d, spheres.x + i), hn::LoadU(d, spheres.y + i), hn::LoadU(d, spheres.z + i)),
           hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack)), lower + i);
+}
+
+/// Whether a child is much farther from a sphere of b than that is wide. Nearer ones differ in more than what is
+/// opposite, and slabs cost more than they spare.
+inline bool isFar(const float* lower, std::uint32_t count, float radius)
+{
+  return *std::max_element(lower, lower + count) > 8.0f * radius;
 }
 
 /// The same by the slabs of both: of surfaces that face each other from far away, only what is opposite is near.

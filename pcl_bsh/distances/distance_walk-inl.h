@@ -38,7 +38,7 @@ public:
     obstacles_(scratch.obstacles),
     a_(query.a),
     b_(query.b),
-    unit_(b_.storage.frame.unit),
+    unit_(query.unit),
     max_(query.pairs.reach.most),
     compares_slabs_(a_.storage.view.triangles && (b_.storage.view.triangles || !b_.storage.view.radii)),
     leaf_(query, sheet, scratch, found.work)
@@ -66,7 +66,7 @@ public:
         return forAll([&](std::uint32_t record) { leave(record, interval); });
       }
     }
-    if (query_.reached && query_.exceeds(boundVoxel(cut).upper, unit_)) return;
+    if (query_.reached && query_.exceeds(boundVoxel(cut).upper)) return;
     a_voxel_ = &a_.voxel(voxel, found.work);
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch;
@@ -120,7 +120,8 @@ private:
     visit.begin(node, around, cut, ++scratch_.stamp);
     for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
       visit.turn[lane] = outdoing_.turnOf(node.r[lane] * radius_unit_);
-    const std::uint32_t others = firstBits(node.count) & ~measureAlone(visit, list, cut);
+    const std::uint32_t others =
+        firstBits(node.count) & ~measureAlone(visit, list, cut) & ~measureTriangles(visit, list, cut);
     if (others == 0) return;
     for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, others));
     if (query_.reached) leaveNearer(visit);
@@ -131,7 +132,7 @@ private:
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
     for (const std::uint8_t lane : visit.order) {
-      if ((others >> lane & 1) == 0 || query_.exceeds(visit.cut[lane], unit_)) continue;
+      if ((others >> lane & 1) == 0 || query_.exceeds(visit.cut[lane])) continue;
       std::vector<NearSphere>& near = visit.near[lane];
       const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
       if (near.empty())
@@ -156,6 +157,17 @@ private:
     for (std::uint32_t bits = alone; bits != 0; bits &= bits - 1)
       leaf_.measureBelow(*a_voxel_, visit, static_cast<std::uint32_t>(std::countr_zero(bits)), cut);
     return alone;
+  }
+
+  /// Measures the leaves of triangles: each of these goes down from the list by itself.
+  /// @return them
+  std::uint32_t measureTriangles(const DistanceVisit& visit, const std::vector<NearSphere>& list, float cut)
+  {
+    if (!a_.storage.view.triangles || rule_.mayStop()) return 0;
+    for (std::uint32_t bits = visit.leaves; bits != 0; bits &= bits - 1)
+      leaf_.measureTriangles(*a_voxel_, visit, static_cast<std::uint32_t>(std::countr_zero(bits)), cut, list,
+                             [this](const ObstacleSphere& sphere) { return childOf(sphere); });
+    return visit.leaves;
   }
 
   /// Those to which none of the list's spheres is above a voxel, in another unit, or to be told apart by the points as
@@ -185,7 +197,7 @@ private:
     });
     std::uint32_t wanted = 0;
     for (std::uint32_t lane = 0; lane < visit.node->count; ++lane)
-      wanted |= (query_.exceeds(visit.cut[lane], unit_) ? 0u : 1u) << lane;
+      wanted |= (query_.exceeds(visit.cut[lane]) ? 0u : 1u) << lane;
     for (DistanceRow& row : visit.rows) row.lanes &= wanted;
   }
 
@@ -227,18 +239,11 @@ private:
     }
     if (compares_slabs_) {
       std::copy_n(row.lower, kLanes, row.about_center);
-      if (obstacle.voxel && isFar(visit, row, radius * obstacle.most))
+      if (obstacle.voxel && isFar(row.lower, visit.node->count, radius * obstacle.most))
         raiseByBothSlabs(carriedSlabs(visit, sphere.obstacle), obstacle, slabOfSphere(sphere, radius), row.lower);
     }
     if (radius <= obstacle.blunt_radius && obstacle.voxel) compareAsGiven(visit, own, row);
     return row;
-  }
-
-  /// Whether a child is much farther from a sphere of b than that is wide. Nearer ones differ in more than what is
-  /// opposite, and slabs cost more than they spare.
-  static bool isFar(const DistanceVisit& visit, const DistanceRow& row, float radius)
-  {
-    return *std::max_element(row.lower, row.lower + visit.node->count) > 8.0f * radius;
   }
 
   /// Whether a leaf of triangles has a ball that is large beside the smallest child.
@@ -396,13 +401,7 @@ private:
     own.slabs_stamp = visit.stamp;
     const auto index = visit.node - a_voxel_->nodes.data();
     const Slabs& slabs = a_.storage.voxels[voxel_].slabs.of(*a_voxel_, a_.storage.view, found.work)[index];
-    const RelativeFrame& frame = obstacles_[obstacle].frame;
-    const float scale = obstacles_[obstacle].normal_scale;
-    carry(frame.m.data(), kNowhere, slabs.x, slabs.y, slabs.z, kLanes, own.nx, own.ny, own.nz);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      for (float* const normal : {own.nx, own.ny, own.nz}) normal[lane] *= scale;
-      own.h[lane] = slabs.h[lane] * frame.stretch_a;
-    }
+    carrySlabs(obstacles_[obstacle], slabs, own);
     return own;
   }
 

@@ -31,6 +31,18 @@ inline std::uint32_t recordOf(const NearestFound& found)
   return found.voxel->records()[found.point];
 }
 
+/// A float that is not below a double >= 0, nor much above it.
+inline float enough(double x)
+{
+  return roundToFloat(x) * (1.0f + 0x1p-22f) + 0x1p-140f;
+}
+
+/// At least what a length of the clouds' unit is in the obstacle's.
+inline float stretchOf(const DistanceObstacle& obstacle)
+{
+  return enough(static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit);
+}
+
 struct MeasuredLeaf {
   MeasuredLeaf(const DistancesQuery& asked, DistanceScratch& scratch, Work& counted)
   : query(asked),
@@ -41,7 +53,7 @@ struct MeasuredLeaf {
     view_a(asked.a.hierarchy().view()),
     view_b(asked.b.hierarchy().view()),
     of_triangles(asked.pairs.ofTriangles()),
-    unit(asked.b.hierarchy().storage().frame.unit),
+    unit(asked.unit),
     largest_radius(asked.b.hierarchy().storage().largest_radius),
     max(asked.pairs.reach.most)
   {

@@ -98,7 +98,7 @@ private:
   bool findGathered()
   {
     leaf_.largest_radius > 0.0 ? findNearest<true>() : findNearest<false>();
-    return !leaf_.query.exceeds(limit_, leaf_.unit);
+    return !leaf_.query.exceeds(limit_);
   }
 
   /// Finds the nearest two of b's points to each point of the leaf by their float distances. Ends early where all
@@ -115,7 +115,7 @@ private:
     const std::uint32_t nearest = gathered_.nearest();
     float* const lower = gathered_.lower();
     const auto take = [&](std::uint32_t place) {
-      if (lower[place] > farthest() || leaf_.query.exceeds(limit_, leaf_.unit)) return;
+      if (lower[place] > farthest() || leaf_.query.exceeds(limit_)) return;
       takeSphere<kBalls>(gathered_.sphere(place), lower[place]);
     };
     if (lower[nearest] < GatheredSpheres::kDone) take(nearest);
@@ -178,7 +178,7 @@ private:
     for (std::uint32_t lanes = firstBits(node.count); lanes != 0;) {
       const std::uint32_t lane = smallestLane(lower, lanes);
       lanes &= ~(1u << lane);
-      if (lower[lane] > farthest() || leaf_.query.exceeds(limit_, leaf_.unit)) break;
+      if (lower[lane] > farthest() || leaf_.query.exceeds(limit_)) break;
       if (node.isLeaf(lane))
         takeLeaf<kBalls>(own, of, node, lane, lower[lane]);
       else

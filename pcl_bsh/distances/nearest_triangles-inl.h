@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nearest triangles of b to the points of one leaf of a.
+// The nearest triangles of b to the points of one leaf of a that have no radii.
 
 #if defined(PCL_BSH_DISTANCES_NEAREST_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_DISTANCES_NEAREST_TRIANGLES_INL_H_
@@ -68,7 +68,7 @@ public:
         MaybeNearest& entry = maybe_.emplace_back();
         entry.obstacle = candidate.sphere.obstacle;
         entry.point = other.begin + j;
-        entry.error = enough(triangle.error(obstacle.frame) + leaf_.view_a.off_middle / other.voxel->frame.unit);
+        entry.error = enough(triangle.error(obstacle.frame));
         squaredToTriangle(triangle.flat, own.points.x, own.points.y, own.points.z, leaf_.lanes, entry.squared);
         any = false;
         for (std::size_t i = 0; i < leaf_.lanes; i += hn::Lanes(d)) {
@@ -87,32 +87,19 @@ public:
         hn::Store(hn::IfThenElse(hn::Lt(high, before), high, before), d, most_ + i);
       }
     }
-    if (leaf_.query.exceeds(largestOf(most_, kLeafPoints), leaf_.unit)) return false;
+    if (leaf_.query.exceeds(largestOf(most_, kLeafPoints))) return false;
     decideAmong();
     return true;
   }
 
 private:
-  /// A float that is not below a double >= 0, nor much above it.
-  static float enough(double x) { return roundToFloat(x) * (1.0f + 0x1p-22f) + 0x1p-140f; }
-
-  /// At least what a length of the clouds' unit is in the obstacle's.
-  static float stretchOf(const DistanceObstacle& obstacle)
-  {
-    return enough(static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit);
-  }
-
-  /// Sets `radii_`, and lengths in the obstacle's unit: what is farther from a point of the leaf, or from its ball, is
-  /// not the nearest.
+  /// Sets lengths in the obstacle's unit: what is farther from a point of the leaf is not the nearest.
   void setReach(const DistanceObstacle& obstacle, float* reach)
   {
     const LaneTag d;
-    const float stretched = stretchOf(obstacle);
-    for (std::uint32_t i = 0; leaf_.view_a.radii && i < leaf_.range.count; ++i)
-      radii_[i] = enough(leaf_.range.radius(i) * double{stretched});
     for (std::size_t i = 0; i < leaf_.lanes; i += hn::Lanes(d)) {
       const LaneVector scaled = hn::Mul(hn::Load(d, most_ + i), hn::Set(d, obstacle.at_most_inside));
-      const LaneVector sum = hn::Add(hn::Add(scaled, hn::Load(d, radii_ + i)), hn::Set(d, obstacle.slack));
+      const LaneVector sum = hn::Add(scaled, hn::Set(d, obstacle.slack));
       hn::Store(hn::Mul(sum, hn::Set(d, 1.0f + kFlatMargin)), d, reach + i);
     }
   }
@@ -174,13 +161,12 @@ private:
           continue;
         }
         leaf_.found[i] = found;
-        if (leaf_.max < kInfinity)
-          setBounds(leaf_.found[i], leaf_.obstacles[obstacle], entry.squared[i], radii_[i], entry.error);
+        if (leaf_.max < kInfinity) setBounds(leaf_.found[i], leaf_.obstacles[obstacle], entry.squared[i], entry.error);
       }
     }
     for (std::uint32_t i = 0; i < leaf_.range.count; ++i) {
       leaf_.length[i] = kNotKnown;
-      if (!leaf_.found[i].voxel || leaf_.view_a.radii) continue;
+      if (!leaf_.found[i].voxel) continue;
       LongTriangle& triangle = longOf(leaf_.found[i]);
       const LongVector& place = placeOf(i);
       leaf_.length[i] = (several >> i & 1) != 0 ? longDistance(triangle, nearest_[i].part, place)
@@ -189,12 +175,12 @@ private:
   }
 
   /// What floats say of a distance.
-  void setBounds(NearestFound& found, const DistanceObstacle& obstacle, float squared, float radius, float error) const
+  void setBounds(NearestFound& found, const DistanceObstacle& obstacle, float squared, float error) const
   {
     const LaneTag d;
     LaneVector low, high;
-    boundsOfFlat(d, hn::Set(d, squared), hn::Set(d, radius), enough(obstacle.frame.error + double{error}), obstacle,
-                 low, high);
+    boundsOfFlat(d, hn::Set(d, squared), hn::Zero(d), enough(obstacle.frame.error + double{error}), obstacle, low,
+                 high);
     const float most = hn::GetLane(high);
     found.least = double{orNone(hn::GetLane(low))} * leaf_.unit;
     found.most = std::isnan(most) ? kInfinity : double{most} * leaf_.unit;
@@ -205,7 +191,6 @@ private:
   {
     NearestFound& best = leaf_.found[i];
     ++leaf_.work.exact_decisions;
-    const bool by_parts = !leaf_.view_a.radii;
     const auto partOf = [&](const NearestFound& of) {
       const LongTriangle& triangle = longOf(of);
       return SharedPart(nearPartOf(triangle, placeOf(i)), triangle);
@@ -214,25 +199,22 @@ private:
       nearest.compared = true;
       nearest.gap = double{most_[i]} * leaf_.unit;
       nearest.bounded = false;
-      if (by_parts) nearest.part = partOf(best);
+      nearest.part = partOf(best);
       best.least = -kInfinity; // of several: what floats say is not the least of them
       best.most = kInfinity;
     }
-    SharedPart part;
+    const SharedPart part = partOf(found);
     const auto take = [&] {
       best.voxel = found.voxel;
       best.point = found.point;
       nearest.part = part;
       nearest.bounded = false;
     };
-    if (by_parts) {
-      part = partOf(found);
-      if (part.low > nearest.part.high) return;
-      if (part.high < nearest.part.low) return take();
-      if (part.isSameAs(nearest.part)) {
-        if (recordOf(found) < recordOf(best)) take();
-        return;
-      }
+    if (part.low > nearest.part.high) return;
+    if (part.high < nearest.part.low) return take();
+    if (part.isSameAs(nearest.part)) {
+      if (recordOf(found) < recordOf(best)) take();
+      return;
     }
     const RecordDistance::Pair pair = leaf_.posed(i, found), best_pair = leaf_.posed(i, best);
     if (!std::exchange(nearest.bounded, true))
@@ -274,9 +256,8 @@ private:
 
   LongVector places_[kLeafPoints]; ///< of the points that have their bit in placed_
   std::uint32_t placed_ = 0;
-  alignas(64) float most_[kLeafPoints];       ///< that points are away from what is nearest, in the walk's unit
-  alignas(64) float radii_[kLeafPoints] = {}; ///< of a's balls, in the obstacle's unit, at least
-  Nearest nearest_[kLeafPoints];              ///< of points that several triangles may be the nearest to
+  alignas(64) float most_[kLeafPoints]; ///< that points are away from what is nearest, in the walk's unit
+  Nearest nearest_[kLeafPoints];        ///< of points that several triangles may be the nearest to
 };
 
 } // namespace HWY_NAMESPACE

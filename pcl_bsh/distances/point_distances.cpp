@@ -69,6 +69,14 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   result = std::move(fresh);
 }
 
+/// That of the voxel with most of the points. In the unit of all voxels, a stray at 1e20 leaves floats nothing to tell.
+double unitOfMost(const SphereHierarchy::Storage& storage)
+{
+  const Voxel* const first = storage.voxels.get();
+  const auto has_less = [](const Voxel& x, const Voxel& y) { return x.count < y.count; };
+  return std::max_element(first, first + storage.voxel_count, has_less)->frame.unit;
+}
+
 /// One direction of a request.
 class Direction {
 public:
@@ -79,6 +87,7 @@ public:
            b,
            pairs_,
            RelativeRotation(a.pose, b.pose),
+           unitOfMost(b.hierarchy().storage()),
            request.accuracy.mode == Accuracy::Mode::tolerance ? request.accuracy.value : 0.0,
            reached},
     sheet_{result.distance.data(), result.closest_point.data(),

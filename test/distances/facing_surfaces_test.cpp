@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -44,10 +45,14 @@ TEST(PointDistances, OfSurfacesThatFaceEachOther)
     const TestMesh first = any(), second = any();
     HierarchyOptions options;
     if (random.chance(0.5)) options.voxel_edge = random.pick({0.3, 4.0, 100.0});
-    const auto hierarchyOf = [&](const TestMesh& mesh, bool is_mesh) {
-      return is_mesh ? SphereHierarchy(viewOf(mesh.trianglesView()), options) : SphereHierarchy(mesh.view(), options);
+    const std::vector<float> radii(random.chance(0.5) ? second.vertices.size() : 0, 0.1f);
+    const auto hierarchyOf = [&](const TestMesh& mesh, bool is_mesh, const std::vector<float>& balls) {
+      if (is_mesh) return SphereHierarchy(viewOf(mesh.trianglesView()), options);
+      PointsView view = mesh.view();
+      if (!balls.empty()) view.radii = balls.data();
+      return SphereHierarchy(view, options);
     };
-    const SphereHierarchy ha = hierarchyOf(first, seed % 4 != 0), hb = hierarchyOf(second, seed % 4 != 1);
+    const SphereHierarchy ha = hierarchyOf(first, seed % 4 != 0, {}), hb = hierarchyOf(second, seed % 4 != 1, radii);
     const double apart = random.pick({0.1, 0.7, 1.5, 3.0, 20.0, 300.0});
     Eigen::Isometry3d facing(Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), apart));
     if (random.chance(0.5)) facing.rotate(Eigen::AngleAxisd(random.uniform(0, 6), Eigen::Vector3d::UnitZ()));

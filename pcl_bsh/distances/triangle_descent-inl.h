@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nearest record of b to one triangle of a, which goes down the tree of b by itself. The ball around a long
+// triangle holds much that is far from it; the spheres of b are compared with the triangle, in the frame of its voxel.
+
+#if defined(PCL_BSH_DISTANCES_TRIANGLE_DESCENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_DISTANCES_TRIANGLE_DESCENT_INL_H_
+#undef PCL_BSH_DISTANCES_TRIANGLE_DESCENT_INL_H_
+#else
+#define PCL_BSH_DISTANCES_TRIANGLE_DESCENT_INL_H_
+#endif
+
+#include <pcl_bsh/distances/best_record-inl.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// Of one voxel of a.
+class TriangleDescent {
+public:
+  explicit TriangleDescent(MeasuredLeaf& leaf)
+  : leaf_(leaf),
+    a_(leaf.query.a),
+    b_(leaf.query.b),
+    rotation_(leaf.query.b.pose, leaf.query.a.pose),
+    compares_slabs_(leaf.view_b.triangles || !leaf.view_b.radii)
+  {
+  }
+
+  /// Before the first triangle of a leaf. @param lane the child of a node that it is
+  void begin(const Node& node, std::uint32_t lane)
+  {
+    node_ = &node;
+    lane_ = lane;
+  }
+
+  /// @param i of the leaf's triangles @param cut it is no farther than this from b, unless that exceeds the greatest
+  /// distance @param list spheres that hold all that can be the nearest @param below(sphere) the first of those below a
+  /// sphere; not asked of leaves
+  template <class Below>
+  NearestFound nearest(std::uint32_t i, float cut, const std::vector<NearSphere>& list, const Below& below)
+  {
+    const std::uint32_t record = leaf_.range.record(i);
+    flat_ = FlatRecord::of(leaf_.range.voxel->frame, record, leaf_.view_a.triangles->triangle(record));
+    BestRecord best(leaf_, i, cut);
+    limit_ = cut;
+    near_.clear();
+    for (std::size_t k = 0; k < list.size();) { // neighbours of one node at once
+      const ObstacleSphere& sphere = list[k].sphere;
+      std::uint32_t lanes = 0;
+      for (; k < list.size() && list[k].sphere.node == sphere.node; ++k) lanes |= 1u << list[k].sphere.lane;
+      alignas(32) float lower[kLanes];
+      bound(sphere, lanes, lower);
+      for (; lanes != 0; lanes &= lanes - 1) {
+        ObstacleSphere one = sphere;
+        one.lane = static_cast<std::uint16_t>(std::countr_zero(lanes));
+        near_.push_back({one, lower[one.lane]});
+      }
+    }
+    std::sort(near_.begin(), near_.end(), [](const NearSphere& x, const NearSphere& y) { return x.lower < y.lower; });
+    for (const NearSphere& near : near_) {
+      if (near.lower > limit_ || leaf_.query.exceeds(limit_)) break;
+      take(near.sphere, best, below);
+    }
+    return best.found();
+  }
+
+  /// No less than the distance of the last triangle, in the walk's unit.
+  float limit() const { return limit_; }
+
+private:
+  static constexpr int kFewTriangles = 2; ///< that are measured at once
+
+  template <class Below>
+  void take(const ObstacleSphere& sphere, BestRecord& best, const Below& below)
+  {
+    if (sphere.level > 0 && sphere.isLeaf()) return takeLeaf(sphere, best);
+    ObstacleSphere child = below(sphere);
+    const Node& node = *child.node;
+    alignas(32) float lower[kLanes];
+    bound(child, firstBits(node.count), lower);
+    for (std::uint32_t lanes = firstBits(node.count); lanes != 0;) {
+      const std::uint32_t lane = smallestLane(lower, lanes);
+      lanes &= ~(1u << lane);
+      if (lower[lane] > limit_ || leaf_.query.exceeds(limit_)) break;
+      child.lane = static_cast<std::uint16_t>(lane);
+      take(child, best, below);
+    }
+  }
+
+  /// Lower bounds of the distances of what is in some children of a node, of which each holds a record.
+  void bound(const ObstacleSphere& sphere, std::uint32_t lanes, float* lower)
+  {
+    const LaneTag d;
+    const Node& node = *sphere.node;
+    const DistanceObstacle& own = frameOf(sphere.obstacle);
+    CarriedNode carried;
+    carry(own.frame.m.data(), own.frame.g.data(), node.x, node.y, node.z, kLanes, carried.x, carried.y, carried.z);
+    alignas(32) float upper[kLanes];
+    squaredToTriangle(flat_.flat, carried.x, carried.y, carried.z, kLanes, lower);
+    const float error = errorIn(own);
+    for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+      const LaneVector radius = hn::Mul(hn::LoadU(d, node.r + i), hn::Set(d, own.frame.stretch_a));
+      hn::StoreU(radius, d, carried.r + i);
+      boundOne(own, hn::Load(d, lower + i), radius, error, lower + i, upper + i);
+    }
+    leaf_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
+    leaf_.work.volumes_carried += node.count;
+    lowerLimit(upper, lanes);
+    if (compares_slabs_ && sphere.level > 0 && isFar(lower, node.count, carried.r[0] * own.most)) {
+      const Voxel& voxel = *leaf_.obstacles[sphere.obstacle].voxel;
+      carrySlabs(own, slabsOf(b_, voxel, leaf_.view_b, node), carried);
+      raiseByBothSlabs(carried, own, ownSlab(own), lower);
+    }
+  }
+
+  /// Of a node of a voxel, which are fitted when first asked for.
+  const Slabs& slabsOf(const Spaces& side, const Voxel& voxel, const PointsView& view, const Node& node)
+  {
+    Voxel& fitted = side.storage.voxels[&voxel - side.storage.voxels.get()];
+    return fitted.slabs.of(voxel, view, leaf_.work)[&node - voxel.nodes.data()];
+  }
+
+  /// Of the leaf.
+  Slab ownSlab(const DistanceObstacle& own)
+  {
+    const Slabs& slabs = slabsOf(a_, *leaf_.range.voxel, leaf_.view_a, *node_);
+    return slabOf(slabs, lane_, {node_->x[lane_], node_->y[lane_], node_->z[lane_]},
+                  node_->r[lane_] * own.frame.stretch_b);
+  }
+
+  void takeLeaf(const ObstacleSphere& sphere, BestRecord& best)
+  {
+    const LaneTag d;
+    const LeafRange other = sphere.leaf(*leaf_.obstacles[sphere.obstacle].voxel);
+    const DistanceObstacle& own = frameOf(sphere.obstacle);
+    LeafPoints points;
+    carryLeaf(own.frame, other, points);
+    alignas(64) float lower[kLeafPoints], upper[kLeafPoints], radii[kLeafPoints] = {};
+    squaredToTriangle(flat_.flat, points.x, points.y, points.z, kLeafPoints, lower);
+    const float stretch = stretchOf(own), error = errorIn(own);
+    for (std::uint32_t j = 0; leaf_.view_b.radii && j < other.count; ++j)
+      radii[j] = enough(other.radius(j) * double{stretch});
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+      boundOne(own, hn::Load(d, lower + i), hn::Load(d, radii + i), error, lower + i, upper + i);
+    ++leaf_.work.leaf_pairs;
+    lowerLimit(upper, firstBits(other.count));
+    std::uint32_t near = 0;
+    for (std::uint32_t j = 0; j < other.count; ++j) near |= (lower[j] > limit_ ? 0u : 1u) << j;
+    if (leaf_.view_b.triangles && std::popcount(near) > kFewTriangles) near = nearTriangles(own, other, near);
+    while (near != 0) { // the nearest first: few others remain
+      std::uint32_t nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+        const auto j = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (lower[j] < lower[nearest]) nearest = j;
+      }
+      near &= ~(1u << nearest);
+      if (lower[nearest] > limit_) break;
+      best.consider({other.voxel, other.begin + nearest});
+      limit_ = std::min(limit_, roundUp(best.most() / leaf_.unit * (1.0 + kDoubleMargin)));
+    }
+  }
+
+  /// Those of b's triangles that floats do not prove to be beyond the limit: a long one is not its ball.
+  std::uint32_t nearTriangles(const DistanceObstacle& own, const LeafRange& other, std::uint32_t among)
+  {
+    carried_.carry(leaf_.view_b, other, own.frame);
+    const float reach = limit_ * own.at_most_inside + own.slack + roundUp(carried_.error + flat_.error(own.frame));
+    return among & ~compareWithTriangle(flat_.flat, carried_.leaf, among, reach * (1.0f + kFlatMargin), -1.0f).apart;
+  }
+
+  /// Of places at such squared distances from the triangle, with spheres around them: what is in one is no nearer than
+  /// `lower`, and some of it no farther than `upper`, in the walk's unit.
+  static HWY_INLINE void boundOne(const DistanceObstacle& own, LaneVector squared, LaneVector radius, float error,
+                                  float* lower, float* upper)
+  {
+    const LaneTag d;
+    LaneVector low, high;
+    boundsOfFlat(d, squared, radius, error, own, low, high);
+    const LaneVector nothing = hn::Set(d, -std::numeric_limits<float>::infinity());
+    hn::Store(hn::IfThenElse(hn::Eq(low, low), low, nothing), d, lower);
+    hn::Store(hn::Add(high, hn::Mul(radius, hn::Set(d, own.most * (1.0f + 2 * kSphereMargin)))), d, upper);
+  }
+
+  void lowerLimit(const float* upper, std::uint32_t lanes)
+  {
+    for (; lanes != 0; lanes &= lanes - 1) limit_ = std::min(limit_, upper[std::countr_zero(lanes)]);
+  }
+
+  /// Of carried places, and of the triangle, in the unit of its voxel.
+  float errorIn(const DistanceObstacle& own) const { return roundUp(flat_.error(own.frame)) + own.slack; }
+
+  /// The voxel of a, as seen from a space of b.
+  const DistanceObstacle& frameOf(std::uint32_t obstacle)
+  {
+    if (frames_.size() <= obstacle) frames_.resize(obstacle + std::size_t{1});
+    std::optional<DistanceObstacle>& own = frames_[obstacle];
+    if (own) return *own;
+    const LocalFrame &from = spaceOf(obstacle), &to = leaf_.range.voxel->frame;
+    return own.emplace(leaf_.range.voxel, to, RelativeFrame(from, b_.pose, to, a_.pose, rotation_), leaf_.unit,
+                       from.unit);
+  }
+
+  const LocalFrame& spaceOf(std::uint32_t obstacle) const
+  {
+    const Voxel* const voxel = leaf_.obstacles[obstacle].voxel;
+    return voxel ? voxel->frame : b_.frame(kAboveVoxels);
+  }
+
+  MeasuredLeaf& leaf_;
+  const Spaces a_, b_;
+  const RelativeRotation rotation_; ///< of the poses of b and a
+  const bool compares_slabs_;       ///< of b, too: of triangles, or points that are no balls
+  const Node* node_ = nullptr;      ///< the leaf's
+  std::uint32_t lane_ = 0;          ///< of it
+  FlatRecord flat_;                 ///< the triangle in the frame of its voxel
+  float limit_ = 0.0f;              ///< what is farther than this is not the nearest, in the walk's unit
+  std::vector<std::optional<DistanceObstacle>> frames_; ///< by obstacle; empty until asked for
+  std::vector<NearSphere> near_;
+  CarriedTriangles carried_; ///< of a leaf of b, in the frame of a's voxel
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
