@@ -237,6 +237,44 @@ class Scanner:
         return False
 
 
+ENDS_OPERAND = re.compile(r"[,;?]|(?<!:):(?!:)|(?<![=!<>])=(?!=)|\breturn\b|(?<= )\|\|(?= )|(?<= )&&(?= )")
+
+
+def operands(code, begin, end):
+    """What to leave out so that one operand of && or || is gone, with its operator: of a chain each operand once."""
+    def level(i, last, step):
+        """The places from i on that no bracket encloses, until the one that encloses i ends."""
+        depth = 0
+        while i != last:
+            if code[i] in "([{":
+                depth += step
+            elif code[i] in ")]}":
+                depth -= step
+            if depth < 0:
+                return
+            if depth == 0:
+                yield i
+            i += step
+
+    def bound(operator, places):
+        """The last place of an operand, which ends at `operator` and at what binds less, and the match of what ends it."""
+        last = None
+        for i in places:
+            found = ENDS_OPERAND.match(code, i)
+            if found and (found.group() != "&&" or operator == "&&"):
+                return last, found
+            last = i
+        return last, None
+
+    for found in re.finditer(r"(?<= )(?:&&|\|\|)(?= )", code[begin:end]):
+        operator, first, after = found.group(), begin + found.start(), begin + found.end()
+        right, _ = bound(operator, level(after, end, 1))
+        yield first, right + 1
+        left, before = bound(operator, level(first - 1, begin - 1, -1))
+        if not before or before.group() != operator:
+            yield before.end() if before else left, after
+
+
 def mutants_of(name, text):
     """All mutants of a file's text, in the order of lines."""
     code, plain = blanked(text), blanked(text, strings=False)
@@ -255,6 +293,8 @@ def mutants_of(name, text):
         for operator, pattern, replacement in OPERATORS:
             for match in re.finditer(pattern, inner):
                 add(site, operator, site.begin + match.start(), site.begin + match.end(), match.expand(replacement))
+        for begin, end in operands(code, site.begin, site.end):
+            add(site, "operand", begin, end, "")
         follows = code[site.end + 1:site.end + 60].lstrip()
         if site.kind == "condition" and re.match(r"(?:return|continue|break|throw)\b", follows):
             add(site, "guard", site.begin, site.end, "false")

@@ -2,18 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the tests by what they notice of small changes of the sources.
 
-    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--unseen FILE] [--again FILE]
-                        [--release build/release]
+    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--favour OPERATOR] [--unseen FILE] [--again FILE]
+                        [--release build/release] [--jobs 2]
     mutate.py run WORK [--rooms flags,pairs] [--only ID] [--seconds 10]
     mutate.py report WORK [--csv FILE]
 
-WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room, spread
-over its files, none of them in the stored report --unseen; beside them those of the report --again that are still
-there), writes all of them into the copy behind a switch, and builds copy and tests once. `run` runs the tests of each
-room once to see which mutants each reaches, then, for each mutant, the tests that reach it until one fails: a second of
-quick ones of its own room, then those of all its rooms, quick ones first, for so many --seconds. Survivors are tried
-again with more. Stopped, it goes on where it was. Tests of the core are taken from the release build as they are.
-Reasons why survivors cannot be seen are rows of survivors.csv beside this file.
+WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room,
+spread over its files, none of them in the stored report --unseen, in half of the files those of the operator --favour
+first; beside them those of the report --again that are still there), writes all of them into the copy behind a switch,
+and builds copy and tests once. `run` runs the tests of each room once to see which mutants each reaches, then, for each
+mutant, the tests that reach it until one fails: a second of quick ones of its own room, then those of all its rooms,
+quick ones first, for so many --seconds. Survivors are tried again with more. Stopped, it goes on where it was. Tests of
+the core are taken from the release build as they are. Reasons why survivors cannot be seen are rows of survivors.csv
+beside this file.
 """
 import argparse
 import collections
@@ -94,7 +95,7 @@ def write_changed(file, data):
 
 # Making ---------------------------------------------------------------------------------------------------------------
 
-def choose(room, names, count, rng, again, seen):
+def choose(names, count, rng, favour, again, seen):
     """Mutants of a room: those to be tried again, and so many that were not seen, a file after the other, of each one of
     an operator not yet taken there as long as there are."""
     left, chosen, sites = {}, [], set()
@@ -106,14 +107,12 @@ def choose(room, names, count, rng, again, seen):
                 chosen.append(mutant)
                 sites.add((name, mutant.site))
         rng.shuffle(found)
-        taken = collections.Counter()
-        for mutant in found:
-            taken[mutant.operator] += 1
+        favoured = favour and rng.random() < 0.5
         rank = collections.Counter()
         ordered = []
         for mutant in found:
             rank[mutant.operator] += 1
-            ordered.append((rank[mutant.operator], mutant))
+            ordered.append((0 if favoured and mutant.operator == favour else rank[mutant.operator], mutant))
         left[name] = [mutant for _, mutant in sorted(ordered, key=lambda pair: pair[0])]
     # A file with many mutants has more turns than one with few.
     turns = [name for name in names for _ in range((len(left[name]) + 19) // 20)]
@@ -145,14 +144,18 @@ def write_copy(work, chosen):
         write_changed(work / "source" / name, data)
 
 
-def compile_all(work, chosen, targets):
-    """Builds, and leaves out what does not compile, now or before. Returns the numbers left out."""
+def not_compiled(work):
     kept = work / "not_compiled.json"
-    known = set(json.loads(kept.read_text())) if kept.exists() else set()
+    return set(json.loads(kept.read_text())) if kept.exists() else set()
+
+
+def compile_all(work, chosen, targets, jobs):
+    """Builds, and leaves out what does not compile, now or before. Returns the numbers left out."""
+    kept, known = work / "not_compiled.json", not_compiled(work)
     left_out = {number for number, mutant in chosen.items() if mutant.id in known}
     while True:
         write_copy(work, {n: m for n, m in chosen.items() if n not in left_out})
-        built = subprocess.run(["nice", "-n", "10", "cmake", "--build", str(work / "build"), "--target", *targets, "--", "-j2"],
+        built = subprocess.run(["nice", "-n", "10", "cmake", "--build", str(work / "build"), "--target", *targets, "--", f"-j{jobs}"],
                                capture_output=True, text=True, errors="replace")
         if built.returncode == 0:
             return left_out
@@ -193,14 +196,15 @@ def make(options):
     for room in rooms:
         rng = random.Random(f"{options.seed} {room}")
         ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room]
-        for mutant in choose(room, ours, options.count, rng, again, seen):
+        for mutant in choose(ours, options.count, rng, options.favour, again, seen):
             number += 1
             chosen[number] = mutant
-    write_copy(work, chosen)
+    known = not_compiled(work)
+    write_copy(work, {n: mutant for n, mutant in chosen.items() if mutant.id not in known})
     subprocess.run(["cmake", "--preset", "mutation", "-D", f"PCL_BSH_TEST_OBJECTS={options.release.resolve()}", "-D",
                     f"PCL_BSH_SHARED_DIR={SOURCE.parent / 'shared'}"], cwd=work / "source", check=True, stdout=subprocess.DEVNULL)
     tests = list(dict.fromkeys(f"{test}_test" for room in rooms for test in ROOMS[room]))
-    left_out = compile_all(work, chosen, tests)
+    left_out = compile_all(work, chosen, tests, options.jobs)
     rows = [dict(mutant._asdict(), number=number, room=room_of(mutant.file), compiled=number not in left_out, site=None)
             for number, mutant in chosen.items()]
     (work / "mutants.json").write_text(json.dumps(rows, indent=1))
@@ -378,6 +382,8 @@ def main():
     parser.add_argument("--rooms", default=",".join(ROOMS))
     parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--favour")
+    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--release", type=pathlib.Path, default=SOURCE / "build" / "release")
     parser.add_argument("--only")
     parser.add_argument("--seconds", type=float, default=3600)

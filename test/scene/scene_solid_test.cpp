@@ -12,6 +12,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -103,6 +104,27 @@ TEST_F(SceneOfSolids, AnyFlagsAndDistancesOfRandomBodies)
   }
   EXPECT_GT(held_only, 3);
   EXPECT_GT(free, 3);
+}
+
+/// Each holds some of the other, to depths that differ.
+TEST_F(SceneOfSolids, TheDeeperOfTwoCountsInEitherOrder)
+{
+  options.effects.distance = std::numeric_limits<double>::infinity();
+  const auto fine = keep(test::bumpyMesh(24, 0.1)), coarse = keep(test::bumpyMesh(12, 0.1));
+  const auto depth = [&](bool fine_first, bool fine_is_solid, bool coarse_is_solid) {
+    Scene scene(options);
+    const SceneObject of_fine = objectOf("fine", fine, fine_is_solid);
+    const SceneObject of_coarse = objectOf("coarse", coarse, coarse_is_solid, at(0.45, 0, 0));
+    scene.add(fine_first ? of_fine : of_coarse);
+    scene.add(fine_first ? of_coarse : of_fine);
+    return -scene.query().distance[0].distance;
+  };
+  const double of_fine = depth(true, false, true), of_coarse = depth(true, true, false);
+  ASSERT_GT(of_fine, 0.0);
+  ASSERT_GT(of_coarse, 0.0);
+  ASSERT_NE(of_fine, of_coarse);
+  EXPECT_EQ(depth(true, true, true), std::max(of_fine, of_coarse));
+  EXPECT_EQ(depth(false, true, true), std::max(of_fine, of_coarse));
 }
 
 TEST_F(SceneOfSolids, WhatIsHeldFarFromAllOfTheSolidsVoxelsIsFound)
@@ -238,6 +260,12 @@ TEST_F(SceneOfSolids, PartsOfOneObjectHoldEachOther)
     scene.setPartPose(0, 1, at(9, 0, 0));
     EXPECT_TRUE(scene.query().self.empty());
   }
+  Scene scene(options); // the later part holds the earlier
+  SceneObject robot = objectOf("robot", box(1.0), false);
+  robot.parts.push_back({"outer", box(4.0), at(0.5, 0, 0)});
+  robot.parts[1].solid = true;
+  scene.add(std::move(robot));
+  EXPECT_EQ(scene.query().self.size(), 1u);
 }
 
 TEST_F(SceneOfSolids, UncertainPlacesMayStillBeOutside)

@@ -74,6 +74,12 @@ TEST(Bounds, MovedHoldsAllPlacesWithinReachAndTouchesThem)
   EXPECT_LT(huge.high[1], infinity);
 }
 
+TEST(Bounds, MovedHoldsAPlaceAtTheOrigin)
+{
+  const Bounds found = moved(boxOf({0, 0, 0}, 0.0), Eigen::Isometry3d::Identity(), 0.0);
+  EXPECT_TRUE(holds(found, Eigen::Vector3d::Zero()));
+}
+
 TEST(Bounds, OverlapWhereTheyTouch)
 {
   const Bounds box = boxOf({0, 0, 0}, 1.0);

@@ -26,6 +26,8 @@ TEST(JsonSchema, NamesPlaceFaultAndRemedyOfEachKeyword)
   EXPECT_EQ(faultOf(R"({"type": "object"})", "[]"), "d.json: [] is no object: give { ... }");
   EXPECT_EQ(faultOf(R"({"type": "integer"})", "1.5"), "d.json: 1.5 is no whole number: give one");
   EXPECT_EQ(faultOf(R"({"type": "integer"})", "2.0"), "");
+  EXPECT_EQ(faultOf(R"({"type": "integer"})", "\"a\""), "d.json: \"a\" is no whole number: give one");
+  EXPECT_EQ(faultOf(R"({"type": "integer"})", "[2]"), "d.json: [2] is no whole number: give one");
   EXPECT_EQ(faultOf(R"({"minLength": 1})", "\"\""), "d.json: \"\" is no text: give \"...\"");
   EXPECT_EQ(faultOf(R"({"enum": ["left", "right"]})", "\"lift\""), "d.json: 'lift' is unknown: did you mean 'left'?");
   EXPECT_EQ(faultOf(R"({"minimum": 1})", "0.5"), "d.json: 0.5 is too small: give at least 1");
