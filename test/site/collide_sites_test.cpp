@@ -20,6 +20,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <utility>
 
 namespace pcl_bsh::site {
@@ -372,6 +373,24 @@ TEST_F(CollideSites, TellTheirProgressAndStop)
   request.progress = [third](double done) { return done < third; };
   EXPECT_THROW(collisionFlags(site, {other}, request), Cancelled);
   EXPECT_THROW(pointDistances(site, {other}, 1.0, request), Cancelled);
+}
+
+/// Tiles that follow each other are asked about in runs: of one that fails the next hides nothing.
+TEST_F(CollideSites, AFailureEndsTheVisit)
+{
+  const Points a = floorOf(900, 5), b = lattice(6, 0.0, 0.0);
+  const Site site = siteOf("a", a, 30), other = siteOf("b", b, 1000);
+  SiteRequest request;
+  request.clearance = 20.0;
+  int asked = 0;
+  const auto fail_once = [&](const Tile&, const Cloud&, const TrajectoryResult&) {
+    if (asked++ == 0) throw std::length_error("the first tile");
+  };
+  EXPECT_THROW(collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request, fail_once), std::length_error);
+  EXPECT_EQ(asked, 1);
+  asked = 1;
+  EXPECT_NO_THROW(collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request, fail_once));
+  EXPECT_GE(asked, 8) << "runs of several tiles";
 }
 
 TEST_F(CollideSites, RefuseWhatOneHierarchyWouldRefuse)
