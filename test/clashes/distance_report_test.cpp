@@ -155,6 +155,15 @@ TEST_F(FarPlaces, HoldPointsWithoutADistance)
   EXPECT_EQ(places[0].point, 404u);
 }
 
+TEST_F(FarPlaces, OfTheSameDistanceAreThoseOfMorePointsFirst)
+{
+  for (int x = 3; x < 5; ++x) add(after, 1 + 0.1 * x, 1.5, 2); // records 409 and 410, of the lamp
+  const std::vector<FarPlace> places = findFarPlaces(view(), distances(0.45), 0.15, 0.15);
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_EQ(places[0].records, (std::vector<std::uint32_t>{405, 406, 407, 409, 410}));
+  EXPECT_EQ(places[1].records, (std::vector<std::uint32_t>{401, 402, 403, 404}));
+}
+
 TEST_F(FarPlaces, EveryFarPointIsInOnePlace)
 {
   std::mt19937 generator(9);

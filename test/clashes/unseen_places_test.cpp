@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 
 namespace pcl_bsh {
 namespace {
@@ -82,6 +83,7 @@ TEST_F(UnseenPlaces, AreNoneWhereAllIsSeen)
   stop(0, {});
   EXPECT_TRUE(places().empty());
   EXPECT_THROW(places(0.0), std::invalid_argument);
+  EXPECT_THROW(places(std::numeric_limits<double>::infinity()), std::invalid_argument);
 }
 
 TEST_F(UnseenPlaces, PassTheirIdsOnAmongThemselves)

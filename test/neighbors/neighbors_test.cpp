@@ -364,8 +364,11 @@ TEST(Neighbors, SaysWhatIsWrong)
   EXPECT_THAT([&] { anyInRadius(cloud, {0, 0, 0}, kNan); }, refused("radius: "));
   EXPECT_THAT([&] { boxSearch(cloud, {kNan, 0, 0}, {1, 1, 1}, indices); }, refused("a bound is NaN"));
   EXPECT_THAT([&] { anyInBalls(cloud, viewOf(xyz, 1)); }, refused("no radii"));
-  EXPECT_THAT([&] { nearestKSearch(cloud, viewOf(static_cast<const float*>(nullptr), 2), 1, many); },
-              refused("data is null"));
+  const PointsView none = viewOf(static_cast<const float*>(nullptr), 2);
+  std::vector<std::uint8_t> flags;
+  EXPECT_THAT([&] { nearestKSearch(cloud, none, 1, many); }, refused("data is null"));
+  EXPECT_THAT([&] { radiusSearch(cloud, none, 1.0, many); }, refused("data is null"));
+  EXPECT_THAT([&] { flagAnyInRadius(cloud, none, 1.0, flags); }, refused("data is null"));
 }
 
 TEST(Neighbors, VoxelsAreBuiltWhereQueriesGo)

@@ -219,6 +219,7 @@ TEST(PoseUncertainty, IsComputedFromACovariance)
   covariance(1, 0) = 1.0;
   EXPECT_THROW(PoseUncertainty::of(covariance, 3.0), InvalidInput); // a negative variance
   EXPECT_THROW(PoseUncertainty::of(Eigen::Matrix<double, 6, 6>::Identity(), -1.0), InvalidInput);
+  EXPECT_THROW(PoseUncertainty::of(Eigen::Matrix<double, 6, 6>::Identity(), INFINITY), InvalidInput);
 }
 
 } // namespace

@@ -360,6 +360,19 @@ TEST_F(TwoSolidsTest, FlagsListsAndAnyAreThoseOfBruteForce)
   EXPECT_GT(held_only, 5u); // else the surfaces tell all
 }
 
+TEST_F(TwoSolidsTest, FlagsOfOneSideTakeLessWorkThanOfBoth)
+{
+  question.solid = true;
+  question.clearance = 0.3;
+  question.wanted.flags = true;
+  first = test::bumpyMesh(12, 0.1);
+  question.pose = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0, 0));
+  const Work of_one = answer().work;
+  question.wanted.obstacle_flags = true;
+  const Work of_both = answer().work;
+  EXPECT_LT(of_one.node_pairs, of_both.node_pairs);
+}
+
 TEST_F(SolidsTest, OfSeveralAtOneDepthTheFirstIsTold)
 {
   points = {{NAN, 0, 0}, {0, 0.5, 0}, {NAN, 0, 0}, {0.5, 0, 0}, {-0.5, 0, 0}};

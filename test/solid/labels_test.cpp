@@ -196,6 +196,24 @@ TEST(Labels, OfWholeNodesTakeFewTests)
   EXPECT_EQ(in.work.voxels_built, 0u);
 }
 
+/// Crowds of one place, near the surface: a ray from there goes through edges of the other box, and doubles tell
+/// nothing.
+TEST(Labels, OfCrowdsInOnePlace)
+{
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double at : {-1e-3, 0.0, 1e-3, 1.0, 1.0 + 1e-3, 2.0 - 1e-3}) {
+      Mesh boxes = test::boxMesh();
+      Point3 shift = {0, 0, 0}, place = {0.5, 0.5, 0.5};
+      shift[axis] = 2.0;
+      place[axis] = at;
+      boxes.add(test::boxMesh(), 1.0, shift);
+      std::vector<double> points;
+      for (int i = 0; i < 40; ++i) points.insert(points.end(), place.begin(), place.end());
+      expectExact(boxes, points, Isometry3d::Identity(), Isometry3d::Identity(),
+                  std::to_string(axis) + " " + std::to_string(at));
+    }
+}
+
 TEST(Labels, CountAPointThatIsNamedTwiceOnce)
 {
   const Mesh box = test::boxMesh();
