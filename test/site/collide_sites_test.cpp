@@ -375,6 +375,27 @@ TEST_F(CollideSites, TellTheirProgressAndStop)
   EXPECT_THROW(pointDistances(site, {other}, 1.0, request), Cancelled);
 }
 
+TEST_F(CollideSites, APathPastEverythingHasNoDistanceAndNoContact)
+{
+  const Site site = siteOf("a", floorOf(300, 8), 50), other = siteOf("b", lattice(4, 0.0, 0.0), 1000);
+  std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
+  poses[0].translation().z() = 4.0;
+  poses[1].translation().z() = 5.0;
+  const Point3 origin = {0, 0, 0};
+  const SphereHierarchy model(viewOf(origin.data(), 1));
+  SiteRequest request;
+  request.clearance = 0.25;
+  request.swept = 1e-3;
+  for (const SitePassage& passage :
+       {collideAlong(site, model, poses, request), collideAlong(site, other, {}, poses, request)}) {
+    EXPECT_EQ(passage.colliding, 0u);
+    EXPECT_TRUE(std::isnan(passage.distance));
+    EXPECT_EQ(passage.first_pose, -1);
+    EXPECT_FALSE(passage.first_contact);
+    EXPECT_FALSE(passage.certain_contact);
+  }
+}
+
 /// Tiles that follow each other are asked about in runs: of one that fails the next hides nothing.
 TEST_F(CollideSites, AFailureEndsTheVisit)
 {

@@ -159,7 +159,9 @@ inline std::string compressed(const std::string& las, const LazOptions& options 
     std::vector<std::string> records;
     for (; records.size() < chunks[i] && done < count; ++done)
       records.push_back(las.substr(points_at + done * length, length));
-    const std::string chunk = in_layers ? layeredChunk(items, records) : pointwiseChunk(items, records);
+    const std::string chunk = records.empty() ? std::string()
+                              : in_layers     ? layeredChunk(items, records)
+                                              : pointwiseChunk(items, records);
     sizes.push_back(static_cast<std::uint32_t>(chunk.size()));
     out += chunk;
   }

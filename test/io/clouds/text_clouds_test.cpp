@@ -79,7 +79,8 @@ TEST(TextClouds, TakesAnEmptyValueForNaN)
   EXPECT_TRUE(std::isnan(valueOf(coloured, 0, "blue"))) << "so the channels are no colour";
   EXPECT_EQ(valueOf(coloured, 1, "blue"), 6);
   EXPECT_EQ(defectOf([] { parseColumns("x,y,z,i,t\n1,2,3,4\n"); }), "line 2 has fewer values than it should");
-  EXPECT_EQ(defectOf([] { parseColumns("X,Y,Z,i\n1,2,3,4\n1,,3,4\n"); }), "line 3 has an empty value");
+  for (const char* row : {",2,3,4\n", "1,,3,4\n", "1,2,,4\n"})
+    EXPECT_EQ(defectOf([row] { parseColumns(std::string("X,Y,Z,i\n1,2,3,4\n") + row); }), "line 3 has an empty value");
   EXPECT_EQ(defectOf([] { parseColumns("i,x,y,z\n,1,2,\n"); }), "line 2 has fewer values than it should");
 }
 

@@ -105,7 +105,7 @@ TEST(UnpackedLaz, EveryKindOfChunks)
         EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "") << points;
       }
       for (const std::vector<std::uint32_t>& chunks :
-           {std::vector<std::uint32_t>{1000}, {1, 1, 998}, {500, 20, 470, 10}, {990, 20}}) {
+           {std::vector<std::uint32_t>{1000}, {1, 1, 998}, {500, 20, 470, 10}, {990, 20}, {0, 600, 0, 400}}) {
         options.chunks = chunks;
         EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "") << chunks.size();
       }

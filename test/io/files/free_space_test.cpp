@@ -72,6 +72,10 @@ TEST_F(FreeSpace, KnowsWhatAFolderTakes)
   fs::resize_file(folder / "a/sparse", std::uintmax_t{1} << 30);
   EXPECT_GE(spaceTaken(folder.path()), 100000U);
   EXPECT_LT(spaceTaken(folder.path()), 1U << 20) << "holes take nothing";
+  const std::uint64_t of_files = spaceTaken(folder.path());
+  fs::create_directories(folder / "c/d");
+  fs::create_symlink(std::string(200, 'x'), folder / "link");
+  EXPECT_EQ(spaceTaken(folder.path()), of_files) << "folders and links are no files";
 }
 
 } // namespace pcl_bsh::files

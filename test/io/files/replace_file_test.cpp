@@ -9,7 +9,9 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -262,6 +264,26 @@ TEST(ReplaceFile, DoesNotReplaceDevices)
 {
   replaceFile("/dev/null", [](std::ostream& out) { out << "gone"; });
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(ReplaceFile, SaysWhatCannotBeOpened)
+{
+  const TemporaryFolder folder;
+  const fs::path path = folder / "socket";
+  sockaddr_un address = {AF_UNIX, {}};
+  path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+  const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  close(listener);
+  try {
+    const FileReplacement replacement(path);
+    FAIL();
+  }
+  catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot be written (No such device or address)"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_TRUE(fs::is_socket(path));
 }
 
 TEST(ReplaceFile, SaysWhatIsWrongWithTheDisk)

@@ -146,6 +146,7 @@ TEST_F(PoseFile, PrintedMatricesStandForTheirNearestRotations)
   std::vector<std::string> warnings;
   readPoses(folder.write("poses.txt", printed(50, 9)), &warnings);
   EXPECT_THAT(warnings, testing::IsEmpty()) << "rigid as they are";
+  EXPECT_EQ(parsePoses(printed(5, 6)).size(), 5U) << "nobody asks for warnings";
   EXPECT_THROW(read(printed(50, 3)), files::FileError);
 }
 

@@ -315,6 +315,8 @@ TEST_F(ClashReports, UncertaintiesOfPosesAreComparedToo)
   list.question.pose_uncertainty = {0.01, 0.002, {1, 2, 3}};
   const ClashList read = parseClashes(clashJson(list), "list.json");
   EXPECT_EQ(read.question.uncertaintyOfObstacle(), list.question.uncertaintyOfObstacle());
+  EXPECT_EQ(Json::parse(clashJson(list))["uncertainty"]["obstacle"].dump(),
+            R"({"length":0.0,"pose":{"length":0.01,"angle":0.002,"about":[1.0,2.0,3.0]}})");
   EXPECT_EQ(cellsOf(clashCsv(list))[0].back(), "pose_uncertainty");
   EXPECT_THAT(clashCsv(list), HasSubstr("\"0.01,0.002,1,2,3\""));
   EXPECT_NO_THROW(requireComparable("list.json", read, list.question));
@@ -397,6 +399,7 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
     EXPECT_EQ(rows[i][20], "certain");
     EXPECT_EQ(rows[i][21], rows[i][2]);
     EXPECT_EQ(rows[i][22], "0.3");
+    EXPECT_EQ(rows[i][25], "") << "sigmas of no field";
     EXPECT_EQ(rows[i][26], "exact");
   }
 }

@@ -52,6 +52,18 @@ TEST(ShapePoints, LieOnTheirSurfaces)
   }
 }
 
+/// As many above as below, and the nearest to either pole as near.
+TEST(ShapePoints, OfASphereAreEvenlySpread)
+{
+  double sum = 0.0, low = 0.0, high = 0.0;
+  for (const Place& place : placesOf(shapePoints("sphere", {2, 2, 2}, 0.3))) {
+    sum += place.z();
+    low = std::min(low, place.z()), high = std::max(high, place.z());
+  }
+  EXPECT_NEAR(sum, 0.0, 1e-3);
+  EXPECT_NEAR(low, -high, 1e-5);
+}
+
 /// No place of a surface is far from all points: nothing passes between them that is larger than the spacing.
 TEST(ShapePoints, CoverTheirSurfaces)
 {

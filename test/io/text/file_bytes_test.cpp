@@ -92,6 +92,7 @@ TEST(FileBytes, AreRefusedWithReasons)
     EXPECT_THAT(fault([&] { openBytes(folder / name); }), testing::EndsWith(wrong)) << name;
   }
   EXPECT_THAT(fault([] { FileBytes("/dev/null"); }), testing::HasSubstr("is neither a file nor a pipe"));
+  EXPECT_THAT(fault([] { FileBytes("/proc/self/mem"); }), testing::HasSubstr("cannot be read")) << "nothing lies at 0";
 }
 
 TEST(ByteSource, ReadsFromAnyPlace)
