@@ -108,8 +108,7 @@ def choose(names, count, rng, favour, again, seen):
                 sites.add((name, mutant.site))
         rng.shuffle(found)
         favoured = favour and rng.random() < 0.5
-        rank = collections.Counter()
-        ordered = []
+        rank, ordered = collections.Counter(), []
         for mutant in found:
             rank[mutant.operator] += 1
             ordered.append((0 if favoured and mutant.operator == favour else rank[mutant.operator], mutant))
@@ -151,7 +150,7 @@ def not_compiled(work):
 
 def compile_all(work, chosen, targets, jobs):
     """Builds, and leaves out what does not compile, now or before. Returns the numbers left out."""
-    kept, known = work / "not_compiled.json", not_compiled(work)
+    known = not_compiled(work)
     left_out = {number for number, mutant in chosen.items() if mutant.id in known}
     while True:
         write_copy(work, {n: m for n, m in chosen.items() if n not in left_out})
@@ -181,19 +180,17 @@ def compile_all(work, chosen, targets, jobs):
             sys.exit(f"mutate.py: the copy does not compile: see {work / 'errors.txt'}")
         left_out |= new
         known |= {chosen[number].id for number in new}
-        kept.write_text(json.dumps(sorted(known)))
+        (work / "not_compiled.json").write_text(json.dumps(sorted(known)))
         print(f"{len(new)} mutants do not compile", flush=True)
 
 
 def make(options):
     work = options.work.resolve()
-    rooms = options.rooms
     names = sources()
-    def stored(file):
-        return {row["id"] for row in csv.DictReader(file.read_text().splitlines())} if file else set()
-    again, seen = stored(options.again), stored(options.unseen)
+    again, seen = ({row["id"] for row in csv.DictReader(file.read_text().splitlines())} if file else set()
+                   for file in (options.again, options.unseen))
     chosen, number = {}, 0
-    for room in rooms:
+    for room in options.rooms:
         rng = random.Random(f"{options.seed} {room}")
         ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room]
         for mutant in choose(ours, options.count, rng, options.favour, again, seen):
@@ -203,7 +200,7 @@ def make(options):
     write_copy(work, {n: mutant for n, mutant in chosen.items() if mutant.id not in known})
     subprocess.run(["cmake", "--preset", "mutation", "-D", f"PCL_BSH_TEST_OBJECTS={options.release.resolve()}", "-D",
                     f"PCL_BSH_SHARED_DIR={SOURCE.parent / 'shared'}"], cwd=work / "source", check=True, stdout=subprocess.DEVNULL)
-    tests = list(dict.fromkeys(f"{test}_test" for room in rooms for test in ROOMS[room]))
+    tests = list(dict.fromkeys(f"{test}_test" for room in options.rooms for test in ROOMS[room]))
     left_out = compile_all(work, chosen, tests, options.jobs)
     rows = [dict(mutant._asdict(), number=number, room=room_of(mutant.file), compiled=number not in left_out, site=None)
             for number, mutant in chosen.items()]
@@ -391,8 +388,7 @@ def main():
     parser.add_argument("--unseen", type=pathlib.Path)
     parser.add_argument("--csv", type=pathlib.Path)
     options = parser.parse_args()
-    options.rooms = options.rooms.split(",")
-    options.rooms = [room if room in ROOMS else f"pcl_bsh/{room}" for room in options.rooms]
+    options.rooms = [room if room in ROOMS else f"pcl_bsh/{room}" for room in options.rooms.split(",")]
     for room in options.rooms:
         if room not in ROOMS:
             sys.exit(f"mutate.py: --rooms: there is no {room}: there are {', '.join(ROOMS)}")

@@ -126,6 +126,17 @@ TEST(PointsNear, AreThoseInTheGrownBox)
   EXPECT_TRUE(any({1.7e308, 1.7e308, 1.7e308})) << "places may overflow: any may be near";
 }
 
+TEST(PointsNear, HoldTheOnePlaceOfABox)
+{
+  for (const double side : {-1.0, 1.0}) {
+    const Point3 place = {0x1p-10 * side, 0x1p-11 * side, 0x1p-12 * side};
+    const Bounds box = boxOf(place, 0.0);
+    const PointsNear near(box, 0.0, box, Eigen::Isometry3d::Identity());
+    EXPECT_TRUE(near(place));
+    EXPECT_FALSE(near({0, 0, 0}));
+  }
+}
+
 TEST(CloudBoxes, HoldAllPointsWithTheirRadiiAndUncertainties)
 {
   Random random(4);
