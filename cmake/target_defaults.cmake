@@ -92,11 +92,20 @@ function(pcl_bsh_add_library name)
   endif()
 endfunction()
 
+# g++ collects garbage after every 128 MB: without it, what includes PCL compiles a tenth faster and takes a fifth more memory.
+cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
+cmake_host_system_information(RESULT megabytes QUERY TOTAL_PHYSICAL_MEMORY)
+math(EXPR needed "2000 * (${processors} + 1)")
+if(PROJECT_IS_TOP_LEVEL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT megabytes LESS needed)
+  add_compile_options(--param=ggc-min-heapsize=1000000)
+endif()
+
 if(PROJECT_IS_TOP_LEVEL)
   find_program(CCACHE_PROGRAM ccache)
   mark_as_advanced(CCACHE_PROGRAM)
   if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
-    # ccache must be told that it may trust precompiled headers
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
+    # ccache must be told that it may trust precompiled headers, and which options change nothing of what is compiled
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+                                    CCACHE_IGNOREOPTIONS=--param=ggc* "${CCACHE_PROGRAM}")
   endif()
 endif()
