@@ -19,23 +19,23 @@
 namespace pcl_bsh {
 namespace {
 
-using Rational = CGAL::Exact_rational;
-using Kernel = CGAL::Simple_cartesian<Rational>;
+using Kernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using Number = Kernel::FT;
 using test::Random;
 
-Kernel::Point_3 exact(const Eigen::Isometry3d& pose, const Point3& p)
+Kernel::Point_3 placed(const Eigen::Isometry3d& pose, const Point3& p)
 {
-  Rational at[3];
+  Number at[3];
   for (int k = 0; k < 3; ++k) {
-    at[k] = Rational(pose(k, 3));
-    for (int j = 0; j < 3; ++j) at[k] += Rational(pose(k, j)) * Rational(p[static_cast<std::size_t>(j)]);
+    at[k] = Number(pose(k, 3));
+    for (int j = 0; j < 3; ++j) at[k] += Number(pose(k, j)) * Number(p[static_cast<std::size_t>(j)]);
   }
   return {at[0], at[1], at[2]};
 }
 
-Kernel::Triangle_3 exact(const Eigen::Isometry3d& pose, const Triangle3& t)
+Kernel::Triangle_3 placed(const Eigen::Isometry3d& pose, const Triangle3& t)
 {
-  return {exact(pose, t[0]), exact(pose, t[1]), exact(pose, t[2])};
+  return {placed(pose, t[0]), placed(pose, t[1]), placed(pose, t[2])};
 }
 
 /// Any, on a lattice, or thin; not degenerate, which CGAL does not take.
@@ -49,7 +49,7 @@ Triangle3 someTriangle(int kind, Random& random)
     Triangle3 t = {corner(), corner(), corner()};
     if (kind == 2)
       for (std::size_t k = 0; k < 3; ++k) t[2][k] = t[0][k] + 1e-5 * t[2][k];
-    if (!exact(Eigen::Isometry3d::Identity(), t).is_degenerate()) return t;
+    if (!placed(Eigen::Isometry3d::Identity(), t).is_degenerate()) return t;
   }
 }
 
@@ -57,10 +57,10 @@ template <class A>
 void expectAsCgal(const A& a, const Triangle3& b, const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
 {
   const TriangleDistance distance(pose_a, pose_b);
-  const Rational squared = CGAL::squared_distance(exact(pose_a, a), exact(pose_b, b));
+  const Number squared = CGAL::squared_distance(placed(pose_a, a), placed(pose_b, b));
   const double length = distance.distance(a, b);
   for (const double clearance : {length, std::nextafter(length, 1e9), std::nextafter(length, 0.0), 0.0, 0.01}) {
-    const Rational reach(clearance);
+    const Number reach(clearance);
     EXPECT_EQ(distance.compare(a, b, clearance), static_cast<int>(CGAL::compare(squared, reach * reach)));
   }
 }
@@ -91,17 +91,18 @@ TEST(TriangleGeometry, InsideIsThatOfCgal)
     };
     const Point3 a = random.point(coordinate), b = random.point(coordinate), c = random.point(coordinate),
                  d = random.point(coordinate);
-    const auto turn = CGAL::orientation(exact(identity, a), exact(identity, b), exact(identity, c), exact(identity, d));
+    const auto turn =
+        CGAL::orientation(placed(identity, a), placed(identity, b), placed(identity, c), placed(identity, d));
     if (turn == CGAL::COPLANAR) continue;
     Polyhedron body;
-    body.make_tetrahedron(exact(identity, a), exact(identity, b), exact(identity, c), exact(identity, d));
+    body.make_tetrahedron(placed(identity, a), placed(identity, b), placed(identity, c), placed(identity, d));
     const std::vector<Triangle3> soup = {{a, c, b}, {a, b, d}, {b, c, d}, {c, a, d}};
     const CGAL::Side_of_triangle_mesh<Polyhedron, Kernel> side(body);
     const Winding winding(identity, identity, round % 3);
     for (int i = 0; i < 100; ++i) {
       const Point3 p = random.point(coordinate);
       const auto number = winding.number(p, soup.size(), [&](std::size_t k) { return soup[k]; });
-      switch (side(exact(identity, p))) {
+      switch (side(placed(identity, p))) {
       case CGAL::ON_BOUNDARY:
         EXPECT_FALSE(number.has_value());
         ++on_surface;

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace pcl_bsh::fuzz {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Hands out values from the front of an input; zeros once it is used up, so that every input means something.
 class Bytes {

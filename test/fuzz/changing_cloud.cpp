@@ -14,8 +14,6 @@ namespace {
 using test::Random;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Point3 plus(const Point3& p, const Point3& d)
 {
   return {p[0] + d[0], p[1] + d[1], p[2] + d[2]};

@@ -2,6 +2,7 @@
 #include "questions.h"
 #include "support/question.h"
 
+#include "bytes.h"
 #include "target.h"
 
 #include <pcl_bsh/base/float_environment.h>
@@ -28,8 +29,6 @@ namespace {
 using brute_force::FinitePoint;
 using brute_force::finitePoints;
 using test::Random;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A finite point of the view, if the first one looked at is.
 std::optional<std::uint32_t> anyPoint(const PointsView& view, Random& random)

@@ -16,8 +16,6 @@
 namespace pcl_bsh::fuzz {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Numbers that have broken programs before.
 constexpr double troubles[] = {0.0,        -0.0,
                                1.0,        0x1p-10,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_questions.h"
 
+#include "bytes.h"
 #include "questions.h"
 #include "target.h"
 
@@ -26,8 +27,6 @@ namespace pcl_bsh::fuzz {
 namespace {
 
 using test::Random;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Throws a Finding that tells what differs; NaN equals NaN.
 void requireSame(const std::vector<double>& found, const std::vector<double>& expected, const char* what)
