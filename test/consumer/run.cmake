@@ -26,7 +26,7 @@ endif()
 # What is installed to copy from is built with what is installed.
 file(GLOB samples "${WORK}/prefix/share/doc/pcl_bsh/cpp")
 run(${CMAKE_COMMAND} -S "${samples}" -B "${WORK}/samples" -G Ninja -D CMAKE_BUILD_TYPE=Debug -D
-    "CMAKE_PREFIX_PATH=${WORK}/prefix")
+    "CMAKE_PREFIX_PATH=${WORK}/prefix" -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror")
 run(${CMAKE_COMMAND} --build "${WORK}/samples")
 foreach(program IN ITEMS filter_chain search_chain own_stage)
   execute_process(COMMAND "${WORK}/samples/pcl_bsh_${program}" RESULT_VARIABLE status ERROR_VARIABLE text)
