@@ -257,7 +257,7 @@ void bindHierarchy(py::module_& module)
                   "uncertainty"_a = 0.0, "pose_uncertainty"_a = py::none(), "copy"_a = false, "voxel_edge"_a = 0.0,
                   "threads"_a = 1)
       .def("__len__", &sizeOf)
-      .def("__repr__", &textOf)
+      .def("__repr__", [](const Cloud& hierarchy) { return textOf(hierarchy); })
       .def_property_readonly(
           "array",
           [](const Cloud& hierarchy) -> std::optional<py::array> {
