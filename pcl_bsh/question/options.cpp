@@ -17,6 +17,7 @@ namespace {
 
 using Kind = QuestionKind;
 using Range = OptionRange;
+using Effect = OptionEffect;
 using Q = Question;
 
 std::vector<QuestionOption> table()
@@ -27,7 +28,8 @@ std::vector<QuestionOption> table()
       {"swept", &Q::swept, Kind::collisions, "TOL", "m", Input::swept,
        "above 0, the motion between the poses of a path counts, too, to this tolerance: what comes within the "
        "clearance "
-       "collides, what stays beyond clearance + tolerance does not; 0: the poses alone"},
+       "collides, what stays beyond clearance + tolerance does not; 0: the poses alone",
+       Range::from_zero, false, nullptr, nullptr, Effect::other_answers},
       {"accuracy", &Q::accuracy, Kind::any, "HOW", "", Input::accuracy,
        "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, clearance + "
        "LENGTH] may count, too, and distances are that much too great at most; of collisions also `level=N`, "
@@ -58,18 +60,19 @@ std::vector<QuestionOption> table()
       {"seen", &Q::seen, Kind::collisions, "", "", std::nullopt,
        "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
        "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
-       "edges; not with swept motion"},
+       "edges; not with swept motion",
+       Range::from_zero, false, nullptr, nullptr, Effect::other_answers},
       {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
        "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
        "the field that numbers them; without it, what the input's file says",
-       Range::from_zero, false, nullptr, "seen"},
+       Range::from_zero, false, nullptr, "seen", Effect::other_answers},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
        "with `seen`: up to this angle from its own direction a beam tells what is empty, from 0.0001 to 0.25; without "
        "it, one and a half times the angle between the scan's beams as measured",
-       Range::above_zero, false, nullptr, "seen"},
+       Range::above_zero, false, nullptr, "seen", Effect::other_answers},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
-       Range::from_zero_to_infinity},
+       Range::from_zero_to_infinity, false, nullptr, nullptr, Effect::other_answers},
       {"solid", &Q::solid, Kind::any, "", "", std::nullopt,
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
@@ -82,7 +85,8 @@ std::vector<QuestionOption> table()
        "input "
        "with faces, whose triangles are asked about"},
       {"threads", &Q::threads, Kind::any, "N", "", std::nullopt,
-       "0: all of the machine's; the result is the same for any number", Range::from_zero, false, "number_of_threads"},
+       "0: all of the machine's; the result is the same for any number", Range::from_zero, false, "number_of_threads",
+       nullptr, Effect::none},
   };
 }
 
@@ -232,7 +236,7 @@ std::vector<std::pair<std::string, std::string>> givenOptions(const Question& qu
 {
   std::vector<std::pair<std::string, std::string>> given;
   for (const QuestionOption& option : questionOptions()) {
-    if (option.name == std::string("threads")) continue; // the answer is the same
+    if (option.effect == OptionEffect::none) continue;
     if (std::string text = textOf(option, question); !text.empty()) given.emplace_back(option.name, std::move(text));
   }
   return given;

@@ -39,6 +39,10 @@ using OptionMember =
 /// Which numbers an option accepts; counts go up to 1024.
 enum class OptionRange : std::uint8_t { from_zero, above_zero, from_zero_to_infinity };
 
+/// What another value of an option changes: which points collide at a pose, and so which clashes there are; other
+/// answers alone; or none.
+enum class OptionEffect : std::uint8_t { clashes, other_answers, none };
+
 /// A row of the table.
 struct QuestionOption {
   const char* name; ///< in pipelines and Python; with hyphens after -- on command lines
@@ -52,6 +56,7 @@ struct QuestionOption {
   bool required = false;                ///< of questions of its kind alone
   const char* name_of_stages = nullptr; ///< where pipelines call it as PCL does
   const char* with = nullptr;           ///< the switch without which it means nothing, and is refused
+  OptionEffect effect = OptionEffect::clashes;
 
   bool accepts(double number) const; ///< whether it is in range
   double most() const;               ///< that is accepted

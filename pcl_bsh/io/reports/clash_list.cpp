@@ -157,14 +157,6 @@ std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
   return text;
 }
 
-/// Whether another value of it has other points collide, and clashes appear or vanish by it. What is unseen is no
-/// clash.
-bool tellsWhatCollides(const QuestionOption& option)
-{
-  const std::set<std::string> others = {"swept", "seen", "origin", "seen_angle", "max_distance", "threads"};
-  return others.count(option.name) == 0;
-}
-
 } // namespace
 
 std::string uncertaintyText(const Uncertainty& uncertainty)
@@ -226,7 +218,7 @@ std::vector<std::string> requireComparable(const std::filesystem::path& path, co
   const ClashQuestion& before = earlier.question;
   for (const QuestionOption& option : questionOptions()) {
     const std::string was = textOf(option, before), is = textOf(option, now);
-    if (was == is || !tellsWhatCollides(option)) continue;
+    if (was == is || option.effect != OptionEffect::clashes) continue;
     if (!earlier.states_options && option.name != std::string("clearance")) continue;
     const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
     throw files::FileError(
