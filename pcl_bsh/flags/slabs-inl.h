@@ -53,9 +53,8 @@ public:
   bool mayHave(const FlagVisit& visit) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    const auto areBalls = [](const Spaces& side) { return side.storage.view.radii && !side.storage.view.triangles; };
-    return obstacle.voxel->frame.unit == a_voxel_->frame.unit && !areBalls(a_) && !areBalls(b_) &&
-           (!of_triangles_ || has_long_triangles_ || obstacle.has_long_triangles);
+    return obstacle.voxel->frame.unit == a_voxel_->frame.unit && !a_.storage.view.areBalls() &&
+           !b_.storage.view.areBalls() && (!of_triangles_ || has_long_triangles_ || obstacle.has_long_triangles);
   }
 
   /// Has the visit's children, and the obstacle, compared as slabs too. Where surfaces face each other across the

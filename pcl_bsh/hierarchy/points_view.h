@@ -50,6 +50,9 @@ struct PointsView {
     index_count = record_count;
   }
 
+  /// Whether records are balls. Those that hold triangles only bound these.
+  bool areBalls() const noexcept { return radii && !triangles; }
+
   /// How many points the view names (a subset counts its indices).
   std::size_t size() const noexcept { return indices ? index_count : count; }
 

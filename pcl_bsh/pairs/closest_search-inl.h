@@ -356,7 +356,7 @@ private:
   {
     const double bound = std::max(pair.key, lowest_key_);
     if (bound < best_.to_beat) return true;
-    if (bound > best_.to_beat || goal_.tolerance > 0.0 || bound > best_.high) return false;
+    if (bound > best_.to_beat || goal_.tolerance > 0.0) return false;
     return walk_.lowest(pair) < *best_.pair;
   }
 
@@ -445,7 +445,7 @@ private:
     ++walk_.work.exact_decisions;
     ++steps_in_vain_;
     ++decisions_in_vain_;
-    if (best_.pair && pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
+    if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
     if (best_.pair) {
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
       if (sign > 0 || (sign == 0 && *best_.pair < candidate)) return;

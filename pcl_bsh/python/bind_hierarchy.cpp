@@ -189,7 +189,7 @@ std::string textOf(const Cloud& hierarchy)
   std::string text = "SphereHierarchy(" + counted(finite, view.triangles ? "triangle" : "point");
   if (finite != view.size()) text += " of " + std::to_string(view.size());
   text += view.scalar == Scalar::float32 ? ", float32" : ", float64";
-  if (view.radii && !view.triangles) text += ", with radii";
+  if (view.areBalls()) text += ", with radii";
   if (view.isUncertain()) text += ", uncertain";
   return text + ")";
 }

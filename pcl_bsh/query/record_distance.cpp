@@ -90,8 +90,7 @@ Eigen::Vector3d RecordDistance::between(PointPair records) const
 
 std::optional<std::array<ExactPlane, 2>> RecordDistance::planesBetween(PointPair records) const
 {
-  const auto areBalls = [](const PointsView& view) { return view.radii && !view.triangles; };
-  if (!ofTriangles() || areBalls(*a_) || areBalls(*b_)) return std::nullopt;
+  if (!ofTriangles() || a_->areBalls() || b_->areBalls()) return std::nullopt;
   auto planes = withTriangles(records, [&](const auto& pair) { return distanceOfPair().planesBetween(pair); });
   if (planes && !b_->triangles) std::swap((*planes)[0], (*planes)[1]); // what is a point came first
   return planes;

@@ -125,8 +125,7 @@ void Scene::State::pointsChanged(ObjectId object)
 void Scene::State::recover() noexcept
 {
   result = SceneResult();
-  grid_stale = near_stale = true;
-  near.clear();
+  grid_stale = true;
 }
 
 /// A step that throws has not been made.

@@ -516,11 +516,9 @@ private:
   /// Whether slabs can be compared: in voxels of the same unit, where points are no balls.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {
-    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !areBalls(a) && !areBalls(b) &&
-           a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
+    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.areBalls() &&
+           !b.storage.view.areBalls() && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
   }
-
-  static bool areBalls(const Spaces& side) { return side.storage.view.radii && !side.storage.view.triangles; }
 
   const Slabs& slabsOf(const Spaces& side, const Lane& lane)
   {

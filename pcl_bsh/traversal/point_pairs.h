@@ -60,7 +60,7 @@ public:
   bool ofTriangles() const { return distance.ofTriangles(); }
 
   /// Whether gaps may be below 0.
-  bool mayOverlap() const { return (a_.radii && !a_.triangles) || (b_.radii && !b_.triangles); }
+  bool mayOverlap() const { return a_.areBalls() || b_.areBalls(); }
 
   /// What balls nearer than this collide for certain: Reach::least, or nothing.
   double surelyOfBalls() const { return ofTriangles() ? -std::numeric_limits<double>::infinity() : reach.least; }

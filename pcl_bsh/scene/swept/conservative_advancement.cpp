@@ -75,7 +75,7 @@ public:
       return leaving > 0.0 ? 2.0 * leaving / bend_ : 0.0;
     }
     // No farther than both can go.
-    double step = speed_ > 0.0 ? gap / speed_ : infinity;
+    double step = gap / speed_;
     // The distance of two points in straight motion is convex; turning bends it by no more than this.
     step = std::max(step, firstRoot(gap, -(closing + drift_), bend_));
     // The squared distance by its own second derivative, which is small where both turn about one axis: a ring about a
@@ -199,7 +199,7 @@ public:
         const double leaving = direction.dot(velocityOfA(places_a_.at[i]) - velocityOfB(places_b_.at[j])) - drift_;
         step = std::min(step, stepOf(between, leaving));
       }
-    return gap > 0.0 && speed_ > 0.0 ? std::max(step, gap / speed_) : step;
+    return gap > 0.0 ? std::max(step, gap / speed_) : step;
   }
 
 private:

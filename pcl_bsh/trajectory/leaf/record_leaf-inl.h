@@ -31,7 +31,7 @@ public:
   : query_(query),
     voxel_frame_(voxel_frame),
     placing_(query.error(voxel_frame.origin)),
-    may_overlap_(areBalls(query.scan.hierarchy().view()) || areBalls(query.model.view())),
+    may_overlap_(query.scan.hierarchy().view().areBalls() || query.model.view().areBalls()),
     results_(results),
     at_pose_(at_pose),
     compared_(compared),
@@ -222,8 +222,6 @@ private:
     if (areSameParts(here, part, pose, there, part_of_best, pose_of_best)) return 0;
     return longOrder(here, part, there, part_of_best, place);
   }
-
-  static bool areBalls(const PointsView& view) { return view.radii && !view.triangles; }
 
   /// Whether the pair meets, so that nothing is nearer.
   bool isLeast(const Pair& pair, std::uint32_t k, double high) const
