@@ -24,7 +24,11 @@ public:
   BestRecord(MeasuredLeaf& leaf, std::uint32_t i, float cut) : leaf_(leaf), i_(i), most_(double{cut} * leaf.unit) {}
 
   /// Takes one that may be the nearest, before any other.
-  void begin(const NearestFound& found) { take(found, leaf_.posed(i_, found)); }
+  void begin(const NearestFound& found)
+  {
+    const RecordDistance::Pair pair = leaf_.posed(i_, found);
+    take(found, pair, gapOf(pair));
+  }
 
   /// Takes it if it is nearer than the best.
   void consider(const NearestFound& found)
@@ -32,12 +36,13 @@ public:
     if (found.voxel == best_.voxel && found.point == best_.point) return;
     const RecordDistance::Pair pair = leaf_.posed(i_, found);
     if (leaf_.of_triangles && leaf_.query.pairs.distance.isSurelyBeyond(pair, most_)) return;
-    if (best_.voxel) {
+    const Interval gap = gapOf(pair);
+    if (best_.voxel && !(gap.upper < least_)) {
       ++leaf_.work.exact_decisions;
       const int sign = leaf_.query.pairs.distance.compareGaps(pair, pair_);
       if (sign > 0 || (sign == 0 && recordOf(best_) < recordOf(found))) return;
     }
-    take(found, pair);
+    take(found, pair, gap);
   }
 
   /// The nearest of those considered; `voxel` is null where there is none.
@@ -47,18 +52,28 @@ public:
   double most() const { return most_; }
 
 private:
-  void take(const NearestFound& found, const RecordDistance::Pair& pair)
+  /// As far as doubles know it.
+  Interval gapOf(const RecordDistance::Pair& pair) const
+  {
+    const double radii = pair.radius_p + pair.radius_q;
+    const RecordDistance::Enclosure apart = leaf_.query.pairs.distance.enclose(pair);
+    const double doubt = kFewDoubleRoundings * (apart.high + radii);
+    return {apart.low - radii - doubt, apart.high - radii + doubt};
+  }
+
+  void take(const NearestFound& found, const RecordDistance::Pair& pair, const Interval& gap)
   {
     best_.voxel = found.voxel; // what floats say of a distance may be that of another one
     best_.point = found.point;
     pair_ = pair;
-    const double radii = pair.radius_p + pair.radius_q, far = leaf_.query.pairs.distance.enclose(pair).high;
-    most_ = std::min(most_, far - radii + kFewDoubleRoundings * (far + radii));
+    least_ = gap.lower;
+    most_ = std::min(most_, gap.upper);
   }
 
   MeasuredLeaf& leaf_;
   const std::uint32_t i_;
   double most_;
+  double least_ = 0.0; ///< of the best one's gap
   NearestFound best_;
   RecordDistance::Pair pair_;
 };

@@ -40,7 +40,7 @@ public:
     b_(query.b),
     unit_(query.unit),
     max_(query.pairs.reach.most),
-    compares_slabs_(a_.storage.view.triangles && (b_.storage.view.triangles || !b_.storage.view.radii)),
+    compares_slabs_(a_.storage.view.triangles && !b_.storage.view.areBalls()),
     leaf_(query, sheet, scratch, found.work)
   {
     forgetObstacles();

@@ -30,7 +30,7 @@ public:
     a_(leaf.query.a),
     b_(leaf.query.b),
     rotation_(leaf.query.b.pose, leaf.query.a.pose),
-    compares_slabs_(leaf.view_b.triangles || !leaf.view_b.radii)
+    compares_slabs_(!leaf.view_b.areBalls())
   {
   }
 
@@ -168,12 +168,22 @@ private:
     }
   }
 
-  /// Those of b's triangles that floats do not prove to be beyond the limit: a long one is not its ball.
+  /// Those of b's triangles that floats do not prove to be beyond the limit, which their corners lower: a long one is
+  /// not its ball.
   std::uint32_t nearTriangles(const DistanceObstacle& own, const LeafRange& other, std::uint32_t among)
   {
+    const LaneTag d;
     carried_.carry(leaf_.view_b, other, own.frame);
-    const float reach = limit_ * own.at_most_inside + own.slack + roundUp(carried_.error + flat_.error(own.frame));
-    return among & ~compareWithTriangle(flat_.flat, carried_.leaf, among, reach * (1.0f + kFlatMargin), -1.0f).apart;
+    const float error = own.slack + roundUp(carried_.error + flat_.error(own.frame));
+    alignas(64) float lower[kLeafPoints], upper[kLeafPoints];
+    for (const LeafPoints& corner : carried_.leaf.corners) {
+      squaredToTriangle(flat_.flat, corner.x, corner.y, corner.z, kLeafPoints, lower);
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+        boundOne(own, hn::Load(d, lower + i), hn::Zero(d), error, lower + i, upper + i);
+      lowerLimit(upper, among);
+    }
+    const float reach = (limit_ * own.at_most_inside + error) * (1.0f + kFlatMargin);
+    return among & ~compareWithTriangle(flat_.flat, carried_.leaf, among, reach, -1.0f).apart;
   }
 
   /// Of places at such squared distances from the triangle, with spheres around them: what is in one is no nearer than
@@ -217,7 +227,7 @@ private:
   MeasuredLeaf& leaf_;
   const Spaces a_, b_;
   const RelativeRotation rotation_; ///< of the poses of b and a
-  const bool compares_slabs_;       ///< of b, too: of triangles, or points that are no balls
+  const bool compares_slabs_;       ///< of both sides: balls have none
   const Node* node_ = nullptr;      ///< the leaf's
   std::uint32_t lane_ = 0;          ///< of it
   FlatRecord flat_;                 ///< the triangle in the frame of its voxel
