@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -33,13 +34,13 @@ public:
   : leaf_(query, scratch, work),
     points_(leaf_, scratch),
     triangles_(leaf_, scratch),
-    descent_(leaf_),
     sheet_(sheet),
     near_leaves_(scratch.near_leaves),
     laid_flat_(leaf_.view_b.triangles && !leaf_.view_a.radii),
     lengths_only_(!query.pairs.haveRadii() && query.a.pose.linear() == Eigen::Matrix3d::Identity() &&
                   query.b.pose.linear() == Eigen::Matrix3d::Identity())
   {
+    if (leaf_.view_a.triangles) descent_.emplace(leaf_);
     for (int k = 0; k < 3; ++k)
       shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
@@ -101,10 +102,11 @@ public:
                         const std::vector<NearSphere>& list, const Below& below)
   {
     begin(voxel, visit, lane);
-    descent_.begin(*visit.node, lane);
+    descent_->begin(*visit.node, lane);
     for (std::uint32_t i = 0; i < leaf_.range.count; ++i) {
-      const NearestFound found = descent_.nearest(i, cut, list, below);
-      if (!leaf_.query.exceeds(descent_.limit())) write(i, found, visit.node->begin[lane], visit.node->begin[lane + 1]);
+      const NearestFound found = descent_->nearest(i, cut, list, below);
+      if (!leaf_.query.exceeds(descent_->limit()))
+        write(i, found, visit.node->begin[lane], visit.node->begin[lane + 1]);
     }
   }
 
@@ -219,7 +221,7 @@ private:
   MeasuredLeaf leaf_;
   NearestPoints points_;
   NearestTriangles triangles_;
-  TriangleDescent descent_;
+  std::optional<TriangleDescent> descent_; ///< where a is of triangles
   const DistanceSheet& sheet_;
   std::vector<NearLeaf>& near_leaves_;
   bool bounds_points_ = false; ///< whether their lower bounds are those of the leaf's points, not of its balls

@@ -124,8 +124,8 @@ private:
   /// Of a node of a voxel, which are fitted when first asked for.
   const Slabs& slabsOf(const Spaces& side, const Voxel& voxel, const PointsView& view, const Node& node)
   {
-    Voxel& fitted = side.storage.voxels[&voxel - side.storage.voxels.get()];
-    return fitted.slabs.of(voxel, view, leaf_.work)[&node - voxel.nodes.data()];
+    Voxel* const first = side.storage.voxels.get();
+    return first[&voxel - first].slabs.of(voxel, view, leaf_.work)[&node - voxel.nodes.data()];
   }
 
   /// Of the leaf.
