@@ -148,6 +148,16 @@ struct DistanceVisit {
   }
 };
 
+/// A lower bound that is NaN bounds nothing.
+HWY_INLINE float orNone(float lower)
+{
+  return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower;
+}
+HWY_INLINE LaneVector orNone(LaneVector lower)
+{
+  return hn::IfThenElse(hn::Eq(lower, lower), lower, hn::Set(LaneTag(), -std::numeric_limits<float>::infinity()));
+}
+
 /// A lower bound of a length in the frame as one in the walk's unit, whether it is above 0 or below.
 template <class Vector>
 HWY_INLINE Vector atLeast(const DistanceObstacle& obstacle, Vector near)
@@ -260,9 +270,7 @@ HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle&
         hn::Add(hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch)), hn::Set(d, obstacle.slack));
     const LaneVector margin = hn::Mul(hn::Add(between, radii), hn::Set(d, kBoundMargin));
     const LaneVector near = hn::Sub(hn::Sub(hn::Min(between, hn::Set(d, 0x1p63f)), radii), margin);
-    const LaneVector bound = atLeast(obstacle, near);
-    hn::StoreU(hn::IfThenElse(hn::Eq(bound, bound), bound, hn::Set(d, -std::numeric_limits<float>::infinity())), d,
-               lower + i);
+    hn::StoreU(orNone(atLeast(obstacle, near)), d, lower + i);
   }
 }
 
@@ -288,12 +296,6 @@ HWY_INLINE float farthestFromBox(const SphereLanes& spheres, const DistanceObsta
     nearest = hn::IfThenElse(hn::And(hn::FirstN(d, count - i), hn::Lt(far, nearest)), far, nearest);
   }
   return hn::GetLane(hn::MinOfLanes(d, nearest));
-}
-
-/// A lower bound that is NaN bounds nothing.
-HWY_INLINE float orNone(float lower)
-{
-  return std::isnan(lower) ? -std::numeric_limits<float>::infinity() : lower;
 }
 
 /// Which of eight values are not above those of others.
@@ -346,8 +348,9 @@ HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& 
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
 }
 
-/// The squared distances of eight values from a triangle as lengths in the walk's unit: at least, less a radius, and at
-/// most. @param error of the triangle and of what is carried, in the obstacle's unit
+/// The squared distances of eight places from a triangle as lengths in the walk's unit, with spheres around the places:
+/// of all that is in one, at least, and of its farthest, at most. @param error of the triangle and of what is carried,
+/// in the obstacle's unit
 template <class Tag>
 HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, float error,
                              const DistanceObstacle& obstacle, hn::Vec<Tag>& low, hn::Vec<Tag>& high)
@@ -358,6 +361,7 @@ HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, f
   const auto near = hn::Sub(hn::Min(length, hn::Set(d, 0x1p63f)), hn::Add(more, radius));
   low = atLeast(obstacle, near);
   high = hn::Mul(hn::Add(length, more), hn::Set(d, obstacle.most));
+  high = hn::Add(high, hn::Mul(radius, hn::Set(d, obstacle.most * (1.0f + 2 * kSphereMargin))));
 }
 
 /// The same as boundByPoints() of a leaf of triangles. @param lower null: of some of them, which tell `cut` alone
@@ -376,9 +380,7 @@ HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own,
     const float error = roundUp(record.error(obstacle.frame)) + obstacle.slack;
     for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
       LaneVector low, high;
-      const LaneVector radius = hn::LoadU(d, own.r + i);
-      boundsOfFlat(d, hn::Load(d, squared + i), radius, error, obstacle, low, high);
-      high = hn::Add(high, hn::Mul(radius, hn::Set(d, obstacle.most * (1.0f + 2 * kSphereMargin)))); // of the farthest
+      boundsOfFlat(d, hn::Load(d, squared + i), hn::LoadU(d, own.r + i), error, obstacle, low, high);
       hn::Store(low, d, of_triangle + i);
       hn::Store(hn::IfThenElse(hn::Lt(high, hn::Load(d, upper + i)), high, hn::Load(d, upper + i)), d, upper + i);
     }

@@ -7,6 +7,7 @@
 #include <pcl_bsh/traversal/voxel_passes.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #undef HWY_TARGET_INCLUDE
@@ -69,12 +70,12 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   result = std::move(fresh);
 }
 
-/// That of the voxel with most of the points. In the unit of all voxels, a stray at 1e20 leaves floats nothing to tell.
+/// That of the voxel with the middle point. In the unit of all voxels, a stray at 1e20 leaves floats nothing to tell.
 double unitOfMost(const SphereHierarchy::Storage& storage)
 {
   const Voxel* const first = storage.voxels.get();
-  const auto has_less = [](const Voxel& x, const Voxel& y) { return x.count < y.count; };
-  return std::max_element(first, first + storage.voxel_count, has_less)->frame.unit;
+  const auto begins_before = [&storage](const Voxel& voxel) { return voxel.begin <= storage.size / 2; };
+  return std::prev(std::partition_point(first, first + storage.voxel_count, begins_before))->frame.unit;
 }
 
 /// One direction of a request.

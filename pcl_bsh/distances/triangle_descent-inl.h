@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -76,8 +75,6 @@ public:
   float limit() const { return limit_; }
 
 private:
-  static constexpr int kFewTriangles = 2; ///< that are measured at once
-
   template <class Below>
   void take(const ObstacleSphere& sphere, BestRecord& best, const Below& below)
   {
@@ -116,22 +113,22 @@ private:
     lowerLimit(upper, lanes);
     if (compares_slabs_ && sphere.level > 0 && isFar(lower, node.count, carried.r[0] * own.most)) {
       const Voxel& voxel = *leaf_.obstacles[sphere.obstacle].voxel;
-      carrySlabs(own, slabsOf(b_, voxel, leaf_.view_b, node), carried);
+      carrySlabs(own, slabsOf(b_, voxel, node), carried);
       raiseByBothSlabs(carried, own, ownSlab(own), lower);
     }
   }
 
   /// Of a node of a voxel, which are fitted when first asked for.
-  const Slabs& slabsOf(const Spaces& side, const Voxel& voxel, const PointsView& view, const Node& node)
+  const Slabs& slabsOf(const Spaces& side, const Voxel& voxel, const Node& node)
   {
     Voxel* const first = side.storage.voxels.get();
-    return first[&voxel - first].slabs.of(voxel, view, leaf_.work)[&node - voxel.nodes.data()];
+    return first[&voxel - first].slabs.of(voxel, side.storage.view, leaf_.work)[&node - voxel.nodes.data()];
   }
 
   /// Of the leaf.
   Slab ownSlab(const DistanceObstacle& own)
   {
-    const Slabs& slabs = slabsOf(a_, *leaf_.range.voxel, leaf_.view_a, *node_);
+    const Slabs& slabs = slabsOf(a_, *leaf_.range.voxel, *node_);
     return slabOf(slabs, lane_, {node_->x[lane_], node_->y[lane_], node_->z[lane_]},
                   node_->r[lane_] * own.frame.stretch_b);
   }
@@ -152,9 +149,8 @@ private:
       boundOne(own, hn::Load(d, lower + i), hn::Load(d, radii + i), error, lower + i, upper + i);
     ++leaf_.work.leaf_pairs;
     lowerLimit(upper, firstBits(other.count));
-    std::uint32_t near = 0;
-    for (std::uint32_t j = 0; j < other.count; ++j) near |= (lower[j] > limit_ ? 0u : 1u) << j;
-    if (leaf_.view_b.triangles && std::popcount(near) > kFewTriangles) near = nearTriangles(own, other, near);
+    std::uint32_t near = firstBits(other.count) & ~above(lower, limit_);
+    if (leaf_.view_b.triangles && near != 0) near = nearTriangles(own, other, near);
     while (near != 0) { // the nearest first: few others remain
       std::uint32_t nearest = static_cast<std::uint32_t>(std::countr_zero(near));
       for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
@@ -186,17 +182,15 @@ private:
     return among & ~compareWithTriangle(flat_.flat, carried_.leaf, among, reach, -1.0f).apart;
   }
 
-  /// Of places at such squared distances from the triangle, with spheres around them: what is in one is no nearer than
-  /// `lower`, and some of it no farther than `upper`, in the walk's unit.
+  /// As boundsOfFlat() has them.
   static HWY_INLINE void boundOne(const DistanceObstacle& own, LaneVector squared, LaneVector radius, float error,
                                   float* lower, float* upper)
   {
     const LaneTag d;
     LaneVector low, high;
     boundsOfFlat(d, squared, radius, error, own, low, high);
-    const LaneVector nothing = hn::Set(d, -std::numeric_limits<float>::infinity());
-    hn::Store(hn::IfThenElse(hn::Eq(low, low), low, nothing), d, lower);
-    hn::Store(hn::Add(high, hn::Mul(radius, hn::Set(d, own.most * (1.0f + 2 * kSphereMargin)))), d, upper);
+    hn::Store(orNone(low), d, lower);
+    hn::Store(high, d, upper);
   }
 
   void lowerLimit(const float* upper, std::uint32_t lanes)
