@@ -168,23 +168,35 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
 {
   const LaneTag d;
   const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
-  alignas(64) float squared[kLeafPoints], beyond[kLeafPoints];
+  alignas(64) float squared[kLeafPoints], beyond[kLeafPoints], within[kLeafPoints] = {};
+  const auto beyondEach = [&](const auto& lengths) HWY_ATTR {
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
+      const LaneVector limit = lengths(i);
+      hn::Store(
+          hn::Add(hn::Mul(hn::Mul(limit, limit), hn::Set(d, 1.0f + 8 * kSphereMargin)), hn::Set(d, kVanishingSquare)),
+          d, beyond + i);
+    }
+    return aboveEach(squared, beyond);
+  };
   for (const ObstacleSphere& candidate : visit.near[lane]) {
     std::uint32_t open = visit.open_points[lane] & ~hit;
     if (open != 0) open &= facingOf(candidate);
     if (open == 0) continue;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    for (std::uint32_t j = 0; j < other.count; ++j) {
-      const LaneVector within = hn::Set(d, obstacle.reach + static_cast<float>(other.radius(j) * stretched));
-      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-        const LaneVector limit = hn::Add(within, hn::Load(d, radii + i));
-        hn::Store(
-            hn::Add(hn::Mul(hn::Mul(limit, limit), hn::Set(d, 1.0f + 8 * kSphereMargin)), hn::Set(d, kVanishingSquare)),
-            d, beyond + i);
-      }
+    for (std::uint32_t j = 0; j < other.count; ++j)
+      within[j] = obstacle.reach + static_cast<float>(other.radius(j) * stretched);
+    leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
+    const LaneVector around = hn::Set(d, visit.r[lane]); // a's leaf, with its balls
+    std::uint32_t facing = firstBits(other.count) & ~beyondEach([&](std::size_t i) HWY_ATTR {
+                             return hn::Add(hn::Load(d, within + i), around);
+                           });
+    for (; facing != 0; facing &= facing - 1) {
+      const auto j = static_cast<std::uint32_t>(std::countr_zero(facing));
       squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
-      const std::uint32_t near = open & ~hit & ~aboveEach(squared, beyond);
+      const LaneVector of_ball = hn::Set(d, within[j]);
+      const std::uint32_t near =
+          open & ~hit & ~beyondEach([&](std::size_t i) HWY_ATTR { return hn::Add(of_ball, hn::Load(d, radii + i)); });
       if (near == 0) continue;
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);

@@ -3,10 +3,10 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/made_once.h>
-#include <pcl_bsh/geometry/triangle/open_edges.h>
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/solid/enclosure.h>
+#include <pcl_bsh/solid/mesh_edges.h>
 
 #include <atomic>
 #include <utility>
@@ -147,9 +147,7 @@ bool Shape::isClosed()
 {
   if (surface_->enclosing.get()) return true;
   return madeOnce(surface_->closed, [this] {
-    const TrianglesView& triangles = *hierarchy_->view().triangles;
-    const auto corners = [&](std::size_t i) { return triangles.triangle(static_cast<std::uint32_t>(i)); };
-    return std::make_unique<const bool>(findOpenEdges(triangles.count, corners).closed());
+    return std::make_unique<const bool>(openEdgesOf(*hierarchy_->view().triangles).closed());
   });
 }
 

@@ -45,6 +45,19 @@ double perUnit(double cells, double length)
   return per < kInfinity ? per : 0.0;
 }
 
+/// For a few finer grids, so that what is there need not move.
+std::size_t withRoom(std::size_t size)
+{
+  return size + size / 8;
+}
+
+/// Gives back more memory than that.
+template <class T>
+void shrink(std::vector<T>& some)
+{
+  if (some.capacity() > withRoom(some.size())) some.shrink_to_fit();
+}
+
 /// The middle of most triangles, whatever lies far off: what is near it has the most precise boxes.
 Point3 middleOf(const TrianglesView& view)
 {
@@ -71,13 +84,16 @@ Point3 middleOf(const TrianglesView& view)
 /// How much of a grid triangles fill: columns of width w take count + extent / w + area / w^2 entries, about.
 struct Columns::Shadows {
   std::size_t count = 0;
-  double extent = 0.0, area = 0.0;
+  double extent = 0.0, area = 0.0, boxes = 0.0; ///< sums
 
-  void add(double width, double height, double own_area)
+  /// Of a triangle along the axes x and y: so much of its width and height counts.
+  void add(const Triangle3& t, std::size_t x, std::size_t y, double width, double height)
   {
+    const double twice = (t[1][x] - t[0][x]) * (t[2][y] - t[0][y]) - (t[1][y] - t[0][y]) * (t[2][x] - t[0][x]);
     ++count;
     extent += width + height;
-    area += std::min(width * height, own_area);
+    boxes += width * height;
+    area += std::min(width * height, 0.5 * std::abs(twice));
   }
   double entries(double per) const { return static_cast<double>(count) + per * (extent + per * area); }
 };
@@ -86,7 +102,7 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
 {
   boxes_.resize(view_.count);
   Point3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
-  Point3 shadows = {}; // along each axis
+  std::array<Shadows, 3> shadows; // along each axis
   for (std::size_t i = 0; i < view_.count; ++i) {
     const Triangle3 t = seenTriangle(static_cast<std::uint32_t>(i));
     Box& box = boxes_[i];
@@ -102,7 +118,8 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
       low[k] = std::min(low[k], least), high[k] = std::max(high[k], most);
       wide[k] = most - least;
     }
-    for (std::size_t k = 0; k < 3; ++k) shadows[k] += wide[(k + 1) % 3] * wide[(k + 2) % 3];
+    for (std::size_t k = 0; k < 3; ++k)
+      shadows[k].add(t, (k + 1) % 3, (k + 2) % 3, wide[(k + 1) % 3], wide[(k + 2) % 3]);
   }
   low_ = low, high_ = high;
   if (empty()) return;
@@ -111,7 +128,7 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   double least = kInfinity;
   for (std::size_t k = 0; k < 3; ++k) {
     const double whole = (high[(k + 1) % 3] - low[(k + 1) % 3]) * (high[(k + 2) % 3] - low[(k + 2) % 3]);
-    const double layers = whole > 0.0 ? shadows[k] / whole : kInfinity;
+    const double layers = whole > 0.0 ? shadows[k].boxes / whole : kInfinity;
     if (layers < least) least = layers, axis = k;
     error_ = std::max({error_, kDoubleUnit * std::abs(low[k]), kDoubleUnit * std::abs(high[k])});
   }
@@ -130,13 +147,15 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
     all.push_back(i);
     cubes_.mark(seenTriangle(i));
   }
-  makeGrid(low_, high_, all, false);
+  makeGrid(low_, high_, all, shadows[axis], false);
   refine();
-  cells_.shrink_to_fit();
-  entries_.shrink_to_fit();
+  shrink(cells_);
+  shrink(entries_);
 }
 
-bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles, bool finer)
+/// Of triangles in a column.
+Columns::Shadows Columns::shadowsWithin(const Point3& low, const Point3& high,
+                                        const std::vector<std::uint32_t>& triangles) const
 {
   Shadows shadows;
   for (const std::uint32_t i : triangles) {
@@ -146,9 +165,14 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
       const auto [least, most] = std::minmax({t[0][k], t[1][k], t[2][k]});
       wide[k] = std::max(0.0, std::min(most, high[k]) - std::max(least, low[k]));
     }
-    shadows.add(wide[0], wide[1],
-                0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0])));
+    shadows.add(t, 0, 1, wide[0], wide[1]);
   }
+  return shadows;
+}
+
+bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles,
+                       const Shadows& shadows, bool finer)
+{
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
   double most_entries =
@@ -186,6 +210,7 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   grid.first = static_cast<std::uint32_t>(cells_.size());
   std::uint32_t begin = static_cast<std::uint32_t>(entries_.size()), sum = begin;
   for (std::uint32_t& n : ends) sum += std::exchange(n, sum);
+  if (!finer) cells_.reserve(withRoom(ends.size())), entries_.reserve(withRoom(sum));
   entries_.resize(sum);
   for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { entries_[ends[cell]++] = i; });
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) cells_.push_back({std::exchange(begin, ends[i]), ends[i]});
@@ -293,7 +318,7 @@ void Columns::refine()
     // Finer than what double arithmetic tells apart at the largest coordinate is of no use.
     const bool is_wide = std::max(high[0] - low[0], high[1] - low[1]) * kCellPad * kCellPad > error_;
     some.assign(entries_.begin() + cells_[cell].begin, entries_.begin() + cells_[cell].end);
-    if (!has_room || !is_wide || !makeGrid(low, high, some, true)) {
+    if (!has_room || !is_wide || !makeGrid(low, high, some, shadowsWithin(low, high, some), true)) {
       if (count > kTooCrowded) cells_[cell] = inStrips(cells_[cell].begin, count);
       continue;
     }

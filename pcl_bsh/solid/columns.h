@@ -96,7 +96,9 @@ private:
   };
 
   struct Shadows;
-  bool makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles, bool finer);
+  Shadows shadowsWithin(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles) const;
+  bool makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles,
+                const Shadows& shadows, bool finer);
   template <class Visit>
   void forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
   void refine();

@@ -5,8 +5,8 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/counted.h>
-#include <pcl_bsh/geometry/triangle/open_edges.h>
 #include <pcl_bsh/solid/columns.h>
+#include <pcl_bsh/solid/mesh_edges.h>
 
 #include <string>
 
@@ -15,8 +15,7 @@ namespace {
 
 void checkClosed(const TrianglesView& view)
 {
-  const OpenEdges open =
-      findOpenEdges(view.count, [&](std::size_t i) { return view.triangle(static_cast<std::uint32_t>(i)); });
+  const OpenEdges open = openEdgesOf(view);
   if (open.closed()) return;
   const auto text = [](const Point3& p) {
     return '(' + plainText(p[0]) + ", " + plainText(p[1]) + ", " + plainText(p[2]) + ')';

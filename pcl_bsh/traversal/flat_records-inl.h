@@ -15,6 +15,8 @@
 #include <pcl_bsh/simd/triangle_pair_lanes-inl.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -64,14 +66,15 @@ public:
   void prepare(const SphereHierarchy::Storage& cloud)
   {
     if (!cloud.view.triangles || cloud.revision == revision_) return;
-    slots_.assign(kSlots, FlatRecord());
+    slots_.assign(std::bit_ceil(std::clamp<std::size_t>(cloud.size, 2, kMostSlots)), FlatRecord());
+    shift_ = 32 - std::countr_zero(slots_.size());
     revision_ = cloud.revision;
   }
 
   /// @param frame of the voxel that holds the record. Valid until the next call
   const FlatRecord& of(const PointsView& view, const LocalFrame& frame, std::uint32_t record)
   {
-    FlatRecord& slot = slots_[record * 0x9e3779b1u >> (32 - kSlotBits)];
+    FlatRecord& slot = slots_[record * 0x9e3779b1u >> shift_];
     if (slot.record == record) return slot;
     return slot = FlatRecord::of(frame, record, view.triangles->triangle(record));
   }
@@ -79,9 +82,10 @@ public:
   std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(FlatRecord); }
 
 private:
-  static constexpr std::uint32_t kSlotBits = 12, kSlots = 1u << kSlotBits;
+  static constexpr std::size_t kMostSlots = 1u << 14;
 
-  std::vector<FlatRecord> slots_;
+  std::vector<FlatRecord> slots_; ///< a power of two of them
+  int shift_ = 0;                 ///< of a hash, to its slot
   std::uint64_t revision_ = 0; ///< of the cloud; none has 0
 };
 

@@ -4,8 +4,8 @@
 #include "caption.h"
 #include "text.h"
 
-#include <pcl_bsh/geometry/triangle/open_edges.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/solid/mesh_edges.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
@@ -127,10 +127,7 @@ void addBeams(PropGroup& group, const ViewContent& content)
 std::vector<OpenEdge> listOpenEdges(const ViewedCloud& viewed)
 {
   std::vector<OpenEdge> edges;
-  if (const TrianglesView* const triangles = viewed.points().triangles) {
-    findOpenEdges(
-        triangles->count, [&](std::size_t i) { return triangles->triangle(static_cast<std::uint32_t>(i)); }, &edges);
-  }
+  if (const TrianglesView* const triangles = viewed.points().triangles) openEdgesOf(*triangles, &edges);
   return edges;
 }
 
