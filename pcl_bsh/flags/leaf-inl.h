@@ -157,6 +157,32 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, const FlagVisit& 
   return hit;
 }
 
+/// Bits of squared distances that are beyond the sum of two radii and a pruneReach(), each rounded once.
+HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
+{
+  const LaneTag d;
+  const LaneVector limit = hn::Mul(hn::Mul(length, length), hn::Set(d, 1.0f + 8 * kSphereMargin));
+  return bitsOf(d, hn::Gt(squared, hn::Add(limit, hn::Set(d, kVanishingSquare))));
+}
+
+/// Which balls of a leaf of b are not proven to be farther than the reach from all of a child. @param within gets how
+/// far what matters may be from the middle of each
+inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
+                                 const LeafRange& other, float* within)
+{
+  const LaneTag d;
+  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+  alignas(64) float squared[kLeafPoints];
+  leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
+  std::fill_n(within, kLeafPoints, 0.0f);
+  for (std::uint32_t j = 0; j < other.count; ++j)
+    within[j] = obstacle.reach + static_cast<float>(other.radius(j) * stretched);
+  std::uint32_t far = 0;
+  for (std::size_t j = 0; j < kLeafPoints; j += hn::Lanes(d))
+    far |= lanesBeyond(hn::Load(d, squared + j), hn::Add(hn::Load(d, within + j), hn::Set(d, visit.r[lane]))) << j;
+  return firstBits(other.count) & ~far;
+}
+
 /// Calls compare(leaf, record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
 /// points of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those;
 /// until it returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's
@@ -167,36 +193,19 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
                       FlatRecords& flat, Work& work, const FacingOf& facingOf, const Compare& compare)
 {
   const LaneTag d;
-  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
-  alignas(64) float squared[kLeafPoints], beyond[kLeafPoints], within[kLeafPoints] = {};
-  const auto beyondEach = [&](const auto& lengths) HWY_ATTR {
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
-      const LaneVector limit = lengths(i);
-      hn::Store(
-          hn::Add(hn::Mul(hn::Mul(limit, limit), hn::Set(d, 1.0f + 8 * kSphereMargin)), hn::Set(d, kVanishingSquare)),
-          d, beyond + i);
-    }
-    return aboveEach(squared, beyond);
-  };
+  alignas(64) float squared[kLeafPoints], within[kLeafPoints];
   for (const ObstacleSphere& candidate : visit.near[lane]) {
     std::uint32_t open = visit.open_points[lane] & ~hit;
     if (open != 0) open &= facingOf(candidate);
     if (open == 0) continue;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    for (std::uint32_t j = 0; j < other.count; ++j)
-      within[j] = obstacle.reach + static_cast<float>(other.radius(j) * stretched);
-    leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
-    const LaneVector around = hn::Set(d, visit.r[lane]); // a's leaf, with its balls
-    std::uint32_t facing = firstBits(other.count) & ~beyondEach([&](std::size_t i) HWY_ATTR {
-                             return hn::Add(hn::Load(d, within + i), around);
-                           });
-    for (; facing != 0; facing &= facing - 1) {
+    for (std::uint32_t facing = facingBalls(obstacle, visit, lane, other, within); facing != 0; facing &= facing - 1) {
       const auto j = static_cast<std::uint32_t>(std::countr_zero(facing));
       squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
-      const LaneVector of_ball = hn::Set(d, within[j]);
-      const std::uint32_t near =
-          open & ~hit & ~beyondEach([&](std::size_t i) HWY_ATTR { return hn::Add(of_ball, hn::Load(d, radii + i)); });
+      std::uint32_t near = open & ~hit;
+      for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+        near &= ~(lanesBeyond(hn::Load(d, squared + i), hn::Add(hn::Set(d, within[j]), hn::Load(d, radii + i))) << i);
       if (near == 0) continue;
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
