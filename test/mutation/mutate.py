@@ -54,7 +54,7 @@ ROOMS = {
     "pcl_bsh/roadmap": ["roadmap", "query", "symmetries"],
     "pcl_bsh/scene": ["scene", "query"],
     "pcl_bsh/clashes": ["clashes", "headers"],
-    "pcl_bsh/question": ["question", "headers", "symmetries"],
+    "pcl_bsh/question": ["question", "headers", "query", "symmetries"],
     "pcl_bsh/io/files": ["files", "clouds", "site"],
     "pcl_bsh/io/text": ["text", "poses", "json", "clouds"],
     "pcl_bsh/io/poses": ["poses", "pipeline"],

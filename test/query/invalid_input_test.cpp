@@ -4,7 +4,10 @@
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/neighbors/neighbors.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -73,6 +76,30 @@ TEST_F(InvalidInputTest, NamesWhatAQueryRefuses)
   EXPECT_EQ(pose.input(), Input::pose);
   EXPECT_NEAR(pose.value().value_or(0), 3 * std::sqrt(3.0), 1e-12) << "|R'R - I|";
   EXPECT_FALSE(pose.index());
+}
+
+TEST_F(InvalidInputTest, NamesThePoseThatAQueryRefuses)
+{
+  Eigen::Isometry3d mirrored = Eigen::Isometry3d::Identity();
+  mirrored.linear() *= -1.0;
+  const Placed right(two), wrong(two, mirrored);
+  using Query = void (*)(const Placed&, const Placed&);
+  const std::pair<const char*, Query> queries[] = {
+      {"any collision", [](const Placed& a, const Placed& b) { anyCollision(a, b, AnyRequest()); }},
+      {"closest pair", [](const Placed& a, const Placed& b) { closestPair(a, b); }},
+      {"nearest contacts", [](const Placed& a, const Placed& b) { nearestContacts(a, b, ContactsRequest()); }},
+      {"pairs within", [](const Placed& a, const Placed& b) { pairsWithin(a, b, ContactsRequest()); }},
+      {"trace", [](const Placed& a, const Placed& b) { traceCollision(a, b, AnyRequest()); }},
+      {"flags", [](const Placed& a, const Placed& b) { collisionFlags(a, b, FlagsRequest()); }},
+      {"indices", [](const Placed& a, const Placed& b) { collidingIndices(a, b, FlagsRequest()); }},
+      {"distances", [](const Placed& a, const Placed& b) { pointDistances(a, b, PointDistancesRequest()); }},
+      {"both distances", [](const Placed& a, const Placed& b) { symmetricDistances(a, b, PointDistancesRequest()); }},
+      {"Hausdorff", [](const Placed& a, const Placed& b) { hausdorffDistance(a, b); }}};
+  for (const auto& [name, ask] : queries) {
+    SCOPED_TRACE(name);
+    EXPECT_THAT(thrownBy([&] { ask(wrong, right); }).what(), testing::HasSubstr("pose of a: "));
+    EXPECT_THAT(thrownBy([&] { ask(right, wrong); }).what(), testing::HasSubstr("pose of b: "));
+  }
 }
 
 TEST_F(InvalidInputTest, NamesWhatATrajectoryRefuses)

@@ -272,6 +272,7 @@ TEST(Triangles, AreRefusedWhereOnlyPointsHaveAMeaning)
   FlagsRequest guarded = flagsWithin(0.1);
   guarded.spacings_of_b = &spacing;
   EXPECT_THROW(collisionFlags(p, t, guarded), InvalidInput);
+  EXPECT_NO_THROW(collisionFlags(t, p, guarded)) << "b's are asked for";
 }
 
 } // namespace
