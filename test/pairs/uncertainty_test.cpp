@@ -147,6 +147,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
       if (any.verdict != Verdict::undecided) {
         ASSERT_EQ(any.verdict, truth);
       }
+      ASSERT_EQ(any.pair.has_value(), any.verdict == Verdict::colliding);
       const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, accuracy));
       for (std::size_t i = 0; i < all.a.size(); ++i) {
         if (found.a[i] == Verdict::undecided) continue;
