@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -209,12 +210,12 @@ TEST(SceneResponse, TooManyPairsToFollowAreFollowedInShorterWays)
 {
   Shelf shelf;
   const auto dense = sheet({0, -1, -1}, {0, 0.01, 0}, {0, 0, 0.01}, 200, 200);
-  for (const Response response : {Response::stop, Response::slide}) {
+  for (const auto& [response, turn] : {std::pair(Response::stop, 0.0), {Response::slide, 0.0}, {Response::stop, 0.1}}) {
     Scene scene(responding(response, 0.1));
     scene.add(fixedObject("wall", shelf.add(dense)));
     SceneObject plate =
         object("plate", shelf.add(sheet({0, -0.5, -0.5}, {0, 0.02, 0}, {0, 0, 0.02}, 50, 50)), at(-3, 0, 0));
-    plate.motion = VelocityMotion{{5, 0, 0}};
+    plate.motion = VelocityMotion{{5, 0, 0}, {turn, 0, 0}};
     scene.add(plate);
     const SceneResult result = scene.step(1);
     EXPECT_TRUE(result.outcomes[0].touched);
