@@ -113,8 +113,7 @@ private:
                std::size_t depth)
   {
     if (stops()) return;
-    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs))
-      return leave(node.begin[0], node.begin[node.count], list, cut);
+    if (rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count], list, cut);
     if (scratch_.visits.size() == depth) scratch_.visits.emplace_back();
     DistanceVisit& visit = scratch_.visits[depth];
     visit.begin(node, around, cut, ++scratch_.stamp);

@@ -50,7 +50,7 @@ public:
   void run(std::uint32_t voxel)
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
-    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs)) return leaveAll();
+    if (rule_.isSpent(found.work.node_pairs)) return leaveAll();
     const bool apart = above.separates(reach_ + a_.storage.largest_radius + b_.storage.largest_radius);
     if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
@@ -182,8 +182,7 @@ private:
   void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
                std::size_t depth, bool may_collide)
   {
-    if (rule_.mayStop() && rule_.isSpent(found.work.node_pairs))
-      return tell(Finding::left, node.begin[0], node.begin[node.count]);
+    if (rule_.isSpent(found.work.node_pairs)) return tell(Finding::left, node.begin[0], node.begin[node.count]);
     if (visits_.size() == depth) visits_.emplace_back();
     FlagVisit& visit = visits_[depth];
     visit.begin(node, around, may_collide);
@@ -338,7 +337,7 @@ private:
     }
     const bool opens = !candidate.isLeaf() && candidate.level < rule_.deepest;
     std::uint32_t opening = candidate.isLeaf() ? 0 : near & visit.leaves;
-    if (opening != 0 && !opens) {
+    if (!opens) {
       visit.unsure |= opening;
       near &= ~opening;
       opening = 0;
