@@ -109,8 +109,9 @@ struct Between {
 /// The middles are compared in exact arithmetic.
 ///
 /// With u along D, from centre to centre, |D + q - p| >= u . (D + q - p) >= |D| - support(u) - support(-u) for all p, q
-/// about their centres. u is computed from coordinates that err by e, so its angle to D is below 1.01 e / |D|, and
-/// u . D >= |D| - e^2 / |D|. Where doubles say that it is not so, nothing is compared.
+/// about their centres. u is d / |d| of a difference d that is off D by e at most, so that
+/// u . D = (|d|^2 + |D|^2 - |d - D|^2) / (2 |d|) >= |D| - e^2 / (2 |d|), of which four times is added for roundings.
+/// Where doubles say that it is not so, nothing is compared.
 /// @param exact_decisions counts the comparison
 inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometry3d& pose_a, const NodeSupport& a,
                              const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance,
@@ -118,7 +119,7 @@ inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometr
 {
   const Between between(pose_a, a.center(), pose_b, b.center());
   const double length = between.vector.norm(), error = between.error;
-  if (!(error < 0x1p-20 * length && length > 0x1p-400 && length < 0x1p400)) return false; // squares are in range
+  if (!(length > 0x1p-400 && length < 0x1p400)) return false; // squares are in range
   const Eigen::Vector3d direction = between.vector / length;
   const double off = error / length * error;
   const double support_a = a.along(pose_a.linear().transpose() * direction) + off;
