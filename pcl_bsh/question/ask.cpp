@@ -77,7 +77,7 @@ public:
 
   Answer answer()
   {
-    if (wanted_.contacts || wanted_.poses || wanted_.first_poses || question_.path)
+    if (alongPath())
       followPath();
     else if (wanted_.flags || wanted_.obstacle_flags)
       flag();
@@ -148,11 +148,14 @@ private:
     answer_.indices.work = found.work;
   }
 
+  /// Whether the answer is that of a path, if only of one pose.
+  bool alongPath() const { return question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses; }
+
   /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
   /// guard, collisions, the closest pair, distances. Some may turn out not to be needed.
   int queries() const
   {
-    const bool path = question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses;
+    const bool path = alongPath();
     const bool flags = wanted_.flags || wanted_.obstacle_flags;
     return (question_.density && flags && !path) + (path || flags) + wanted_.any +
            (wanted_.indices || wanted_.obstacle_indices) + (wanted_.closest && !path) +
