@@ -476,7 +476,9 @@ TEST(OnMotions, EmptyListsAndClouds)
   MotionsRequest request;
   request.swept = 0.1;
   EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses(), {}, request).flags.empty());
-  EXPECT_TRUE(anyCollisionOnMotions({a}, a, Poses{identity}, {}, request).flags.empty());
+  const AnyOnMotions of_none = anyCollisionOnMotions({a}, a, Poses{identity}, {}, request);
+  EXPECT_TRUE(of_none.flags.empty());
+  EXPECT_EQ(of_none.work.volumes_built, 0u);
   EXPECT_EQ(anyCollisionOnMotions({a}, empty, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::free);
   EXPECT_EQ(anyCollisionOnMotions({empty}, a, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::free);
   EXPECT_EQ(anyCollisionOnMotions({a}, a, Poses{identity}, {{0, 0}}, request).flags[0], Verdict::colliding);
