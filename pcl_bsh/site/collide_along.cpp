@@ -10,7 +10,6 @@
 #include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace pcl_bsh::site {
@@ -73,7 +72,7 @@ private:
   bool isNearer(std::uint32_t i, const TrajectoryResult& found, const MetPoint& nearest) const
   {
     const float before = joined_.distance[i], now = found.distance[i];
-    if (std::isnan(before) || now != before) return !(now > before);
+    if (now != before) return !(now > before); // as they are where there was none before
     const std::int32_t pose = found.closest_pose[i], pose_before = joined_.closest_pose[i];
     int sign = 0;
     if (!is_swept_) {
