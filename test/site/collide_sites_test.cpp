@@ -238,6 +238,10 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
     float least = std::numeric_limits<float>::infinity();
     for (const float distance : right.distance) least = std::fmin(least, distance);
     EXPECT_EQ(passage.distance, least);
+    std::int32_t first = -1;
+    for (const std::int32_t pose : right.first_pose)
+      if (pose >= 0 && (first < 0 || pose < first)) first = pose;
+    EXPECT_EQ(passage.first_pose, first);
     EXPECT_EQ(passage.tiles.read, passage.tiles.needed);
     ASSERT_EQ(passage.poses.size(), right.poses.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
