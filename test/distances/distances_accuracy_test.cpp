@@ -189,5 +189,19 @@ TEST_F(DistancesAccuracy, BudgetsSpentBeforeTheFirstStepLeaveIntervalsOfOverlapp
   EXPECT_GT(begun, 0u) << "else nothing is tested";
 }
 
+/// A gap above 0 that rounds to 0.
+TEST_F(DistancesAccuracy, IntervalsHoldAGapBelowAllDoubles)
+{
+  Cloud ball({{0, 0, 0}}), beside({{1, 0x1p-600, 0}}, {Scalar::float64});
+  ball.setRadii({1.0f});
+  const SphereHierarchy a(beside.view()), b(ball.view());
+  PointDistancesRequest request;
+  request.accuracy = Accuracy::tolerance(0.0);
+  const PointDistances found = pointDistances(a, b, request);
+  EXPECT_EQ(found.distance[0], 0.0);
+  EXPECT_LE(found.interval[0].lower, 0.0);
+  EXPECT_GT(found.interval[0].upper, 0.0);
+}
+
 } // namespace
 } // namespace pcl_bsh
