@@ -315,6 +315,8 @@ TEST(BoundingSphereSearch, ConstQueriesFromSeveralThreads)
   const auto cloud = latticeCloud(3000);
   BoundingSphereSearch<Point> search;
   search.setInputCloud(cloud);
+  const HierarchyStatistics statistics = search.getHierarchy().statistics();
+  EXPECT_EQ(statistics.voxels_built, statistics.voxels) << "queries build nothing";
   std::vector<std::vector<int>> counts(4);
   std::vector<std::thread> threads;
   for (auto& mine : counts)
