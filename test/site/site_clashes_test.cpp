@@ -346,6 +346,13 @@ TEST_F(SiteClashList, OfThePrograms)
   ASSERT_EQ(sites_on_two.exit_code, 0) << sites_on_two.err;
   EXPECT_EQ(Json::parse(files::contentOf(folder / "s2.json")), found_of_both);
   EXPECT_EQ(files::contentOf(folder / "s2.html"), files::contentOf(folder / "s.html"));
+  options.tile_points = scene.points.size(); // one tile: a rank has none
+  makeSite({folder / "a.pcd"}, folder / "whole", options);
+  const Outcome whole_on_two = runOnTwoRanks("collide whole moved" + asked + "--clashes w2.json", folder.path());
+  ASSERT_EQ(whole_on_two.exit_code, 0) << whole_on_two.err;
+  Json of_whole = Json::parse(files::contentOf(folder / "w2.json"));
+  of_whole["input"] = "site";
+  EXPECT_EQ(of_whole, found_of_both);
 }
 
 /// Where the points are uncertain, and where a later run does not look: as pcl_bsh_collide.
