@@ -25,17 +25,23 @@ SphereHierarchy partOf(PointsView view, const std::vector<std::int32_t>& places)
 
 Content::Content(const SphereHierarchy& thing) : thing_(thing)
 {
-  const TrianglesView* const triangles = thing.view().triangles;
-  if (!triangles) return;
-  std::vector<bool> used(triangles->vertices.count, false);
-  for (std::uint32_t i = 0; i < triangles->count; ++i) {
-    if (!isFinite(triangles->triangle(i))) continue;
-    for (const std::uint32_t corner : triangles->cornersOf(i)) used[corner] = true;
+  if (!thing.view().triangles) return;
+  const TrianglesView& triangles = *thing.view().triangles;
+  std::vector<bool> named(triangles.count, false), used(triangles.vertices.count, false);
+  for (std::size_t i = 0; i < thing.view().size(); ++i) named[thing.view().record(i)] = true;
+  std::vector<Triangle> corners;
+  for (std::uint32_t i = 0; i < triangles.count; ++i) {
+    if (!named[i] || !isFinite(triangles.triangle(i))) continue;
+    triangles_.push_back(i);
+    corners.push_back(triangles.cornersOf(i));
+    for (const std::uint32_t corner : corners.back()) used[corner] = true;
   }
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i]) used_.push_back(static_cast<std::int32_t>(i));
-  corners_ = std::make_unique<const SphereHierarchy>(partOf(triangles->vertices, used_));
-  shells_ = firstOfShells(*triangles);
+  corners_ = std::make_unique<const SphereHierarchy>(partOf(triangles.vertices, used_));
+  for (const std::uint32_t i :
+       firstOfShells({triangles.vertices, corners.empty() ? nullptr : corners.front().data(), corners.size()}))
+    shells_.push_back(triangles_[i]);
 }
 
 std::vector<std::int32_t> Content::placesOf(const std::vector<std::uint32_t>& records) const
@@ -60,14 +66,15 @@ std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& conte
   if (work) *work += found.work;
   std::vector<std::uint32_t> held;
   if (found.inside + found.on_surface == 0) return held;
-  const PointsView& view = content.thing().view();
-  for (std::uint32_t i = 0; i < view.count; ++i) {
-    bool is_held = false;
-    if (!content.isSurface())
-      is_held = isHeld(found.labels[i]);
-    else if (isFinite(view.triangles->triangle(i)))
-      for (const std::uint32_t corner : view.triangles->cornersOf(i)) is_held |= isHeld(found.labels[corner]);
-    if (is_held) held.push_back(i);
+  if (!content.isSurface()) {
+    for (std::uint32_t i = 0; i < found.labels.size(); ++i)
+      if (isHeld(found.labels[i])) held.push_back(i);
+    return held;
+  }
+  for (const std::uint32_t i : content.triangles()) {
+    const Triangle corners = content.thing().view().triangles->cornersOf(i);
+    if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) { return isHeld(found.labels[corner]); }))
+      held.push_back(i);
   }
   return held;
 }

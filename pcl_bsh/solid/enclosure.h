@@ -21,7 +21,8 @@
 
 namespace pcl_bsh {
 
-/// What solids are asked about: a thing by what is labelled of it, its points, or the corners of its finite triangles.
+/// What solids are asked about: a thing by what is labelled of it, its points, or the corners of its finite triangles;
+/// of those that its view names.
 class Content {
 public:
   /// @param thing borrowed; of triangles, their corners are sorted into voxels here
@@ -34,12 +35,15 @@ public:
   /// Places of these records, ascending.
   std::vector<std::int32_t> placesOf(const std::vector<std::uint32_t>& records) const;
 
+  const std::vector<std::uint32_t>& triangles() const noexcept { return triangles_; } ///< whose corners these are
+
   /// A triangle of each of its shells, which share vertices by number. @pre isSurface()
   const std::vector<std::uint32_t>& shells() const noexcept { return shells_; }
 
 private:
   const SphereHierarchy& thing_;
-  std::vector<std::int32_t> used_; ///< vertices that are corners
+  std::vector<std::uint32_t> triangles_; ///< ascending
+  std::vector<std::int32_t> used_;       ///< vertices that are corners
   std::unique_ptr<const SphereHierarchy> corners_;
   std::vector<std::uint32_t> shells_;
 };

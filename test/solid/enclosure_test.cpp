@@ -77,10 +77,12 @@ void expectExact(const Mesh& solid_mesh, const PointsView& content, const Isomet
   const PointsView& places = content.triangles ? content.triangles->vertices : content;
 
   const std::vector<std::uint8_t> labels = labelsByHand(view, pose_of_solid, places, pose_of_content);
-  Records held;
-  for (std::uint32_t i = 0; i < content.count; ++i)
-    for (const std::uint32_t place : placesOf(content, i))
-      if (labels[place] != labelOf(Label::outside) && (held.empty() || held.back() != i)) held.push_back(i);
+  Records held; // of what the view names
+  for (std::size_t k = 0; k < content.size(); ++k)
+    for (const std::uint32_t place : placesOf(content, content.record(k)))
+      if (labels[place] != labelOf(Label::outside)) held.push_back(content.record(k));
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());
 
   const std::vector<std::size_t> body_of = bodiesByHand(view);
   Records holders;
@@ -126,6 +128,11 @@ TEST(Enclosure, OfRandomMeshesPointsAndTriangles)
     expectExact(mesh, viewOf(points.data(), 200));
     expectExact(mesh, viewOf(other.view()));
     expectExact(mesh, viewOf(other.view()), poseOf(0.4, {0.1, 0, 0}), poseOf(-0.3, {0, 0.1, 0}));
+    const std::vector<std::int32_t> some = {7, 3, 3, 12, 5};
+    for (PointsView part : {viewOf(points.data(), 200), viewOf(other.view())}) {
+      part.restrictTo(some.data(), some.size());
+      expectExact(mesh, part);
+    }
   }
 }
 
