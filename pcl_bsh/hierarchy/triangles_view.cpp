@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/apart.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
@@ -22,11 +23,6 @@ namespace pcl_bsh {
 namespace {
 
 constexpr auto kName = "triangles";
-
-double apart(const Point3& p, const Point3& q)
-{
-  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-}
 
 /// Squares of the sides that face the corners, as shares of the longest one's.
 std::array<double, 3> sharesOf(const std::array<Point3, 3>& corners)

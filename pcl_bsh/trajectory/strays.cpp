@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/trajectory/strays.h>
 
+#include <pcl_bsh/geometry/apart.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
@@ -62,8 +63,7 @@ private:
 
   double distanceOf(std::uint32_t v) const
   {
-    const Point3& at = storage_.voxels[v].frame.origin;
-    return std::hypot(at[0] - middle_[0], at[1] - middle_[1], at[2] - middle_[2]);
+    return apart(storage_.voxels[v].frame.origin, {middle_[0], middle_[1], middle_[2]});
   }
 
   double sizeOf(std::uint32_t v) const

@@ -199,8 +199,11 @@ TEST(TrianglesView, RefusesWhatCannotBeRead)
   const float radius[3] = {0, 0, 0};
   view.vertices.radii = radius;
   EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
-  const std::vector<double> huge = {-1e300, 0, 0, 1e300, 0, 0, 0, 1e300, 0};
-  EXPECT_NE(messageOf(trianglesOf(huge, two)).find("triangle 0 is too large for a float32 radius"), std::string::npos);
+  for (const double size : {1e300, 1.7e308}) { // sides of the second are beyond all doubles
+    const std::vector<double> huge = {-size, 0, 0, -size, 0, 0, size, 0, 0};
+    EXPECT_NE(messageOf(trianglesOf(huge, two)).find("triangle 0 is too large for a float32 radius"),
+              std::string::npos);
+  }
 }
 
 TEST(TrianglesView, OfAListIsKeptAlive)
