@@ -146,9 +146,8 @@ const SolidBodies& Shape::solid()
 bool Shape::isClosed()
 {
   if (surface_->enclosing.get()) return true;
-  return madeOnce(surface_->closed, [this] {
-    return std::make_unique<const bool>(openEdgesOf(*hierarchy_->view().triangles).closed());
-  });
+  return madeOnce(surface_->closed,
+                  [this] { return std::make_unique<const bool>(openEdgesOf(*hierarchy_->view().triangles).closed()); });
 }
 
 std::optional<bool> Shape::isKnownToClose()

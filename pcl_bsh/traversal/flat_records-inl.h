@@ -86,7 +86,7 @@ private:
 
   std::vector<FlatRecord> slots_; ///< a power of two of them
   int shift_ = 0;                 ///< of a hash, to its slot
-  std::uint64_t revision_ = 0; ///< of the cloud; none has 0
+  std::uint64_t revision_ = 0;    ///< of the cloud; none has 0
 };
 
 /// The triangles of a leaf of a in the frame of a voxel of b.
