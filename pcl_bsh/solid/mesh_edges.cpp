@@ -31,8 +31,7 @@ bool numbersClose(const TrianglesView& triangles)
       }
     }
   };
-  std::vector<std::uint32_t> ends(
-      triangles.vertices.count); // of each vertex's edges to higher numbers, once these are in
+  std::vector<std::uint32_t> ends(triangles.vertices.count); // of each vertex's edges to higher numbers, in the end
   for_each_edge([&](std::uint32_t low, std::uint32_t) { ++ends[low]; });
   std::uint32_t sum = 0;
   for (std::uint32_t& n : ends) sum += std::exchange(n, sum);
