@@ -247,6 +247,16 @@ public:
   /// @param pair one of the children, whichever
   void boundKeys(const LanePair& pair, const Step& step, float* keys) const
   {
+    const auto boundNear = [&](const auto& take) {
+      for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+        LanePair child = pair;
+        (step.of_a ? child.a : child.b).lane = lane;
+        keys[lane] = take(keys[lane], boundKey(child, step, lane));
+      }
+    };
+    // In smaller units keys are near the least floats, where these do not round relatively.
+    if (HWY_UNLIKELY(b.frame(pair.b.space).unit < 0x1p-60)) return boundNear([](float, float key) { return key; });
     const LaneTag d;
     const LaneVector error = hn::Set(d, step.frame->pruneReach(0.0) * (1.0f + kReachMargin));
     const LaneVector skew = hn::Set(d, roundUp(step.frame->skew()) + 4 * kReachMargin);
@@ -264,12 +274,7 @@ public:
       hn::StoreU(hn::IfThenElse(hn::IsFinite(key), key, none), d, keys + i);
     }
     if (HWY_LIKELY(step.radius > step.frame->bluntRadius())) return;
-    for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      LanePair child = pair;
-      (step.of_a ? child.a : child.b).lane = lane;
-      keys[lane] = std::max(keys[lane], boundKey(child, step, lane));
-    }
+    boundNear([](float by_stored, float key) { return std::max(by_stored, key); });
   }
 
   /// Two leaves, and which points of a's may be near b's. @param reach as step() takes it; none: all of them
