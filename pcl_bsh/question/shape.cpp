@@ -6,7 +6,7 @@
 #include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/solid/enclosure.h>
-#include <pcl_bsh/solid/mesh_edges.h>
+#include <pcl_bsh/solid/open_edges.h>
 
 #include <atomic>
 #include <utility>

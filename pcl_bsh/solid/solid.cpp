@@ -6,7 +6,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/solid/columns.h>
-#include <pcl_bsh/solid/mesh_edges.h>
+#include <pcl_bsh/solid/open_edges.h>
 
 #include <string>
 

@@ -8,7 +8,7 @@
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/distances/brute_force_distances.h>
-#include <pcl_bsh/geometry/triangle/open_edges.h>
+#include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/geometry/triangle/winding.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/roadmap/brute_force.h>
@@ -51,7 +51,7 @@ void requireSame(const PointDistances& found, const PointDistances& expected)
 }
 
 /// Directed edges that nothing cancels, counted one by one.
-std::uint64_t openEdgesOf(const TrianglesView& triangles)
+std::uint64_t countOpenEdges(const TrianglesView& triangles)
 {
   std::map<std::pair<Point3, Point3>, std::int64_t> edges;
   const auto plain = [](Point3 p) {
@@ -166,7 +166,7 @@ void askSolid(const Placed& a, const Placed& b, double unit, Random& random)
 {
   const TrianglesView* const triangles = b.hierarchy().view().triangles;
   if (!triangles) return;
-  const std::uint64_t open = openEdgesOf(*triangles);
+  const std::uint64_t open = countOpenEdges(*triangles);
   std::optional<Solid> solid;
   try {
     solid.emplace(*triangles);

@@ -5,7 +5,7 @@
 #include "text.h"
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
-#include <pcl_bsh/solid/mesh_edges.h>
+#include <pcl_bsh/solid/open_edges.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
