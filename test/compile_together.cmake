@@ -1,87 +1,57 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests are compiled several files at a time: what they include takes longer to read and to instantiate than they do
-# themselves. Names of their unnamed namespaces would clash: of two files that define the same name, or one of which
-# mentions a type of the other, each goes to a group of its own. Groups are made when CMake configures: where an edit makes two
-# names of one group clash, configure again.
+# Tests are compiled many files at a time: what they include takes longer to read and to instantiate than they do
+# themselves. Their texts follow each other in one file, each from its unnamed namespace on in a namespace that is named after
+# the file, so that no names clash.
+#   cmake -D OUT=<file to write> -D "FILES=<files>" -D FOLDER=<what names in messages are relative to> -P compile_together.cmake
 
-# The names that are declared at the beginning of lines, the types among them, the line of each name, and the text.
-function(pcl_bsh_read_names file)
-  file(READ "${file}" text)
-  string(REGEX REPLACE "[][;]" " " text "${text}") # which lists would take amiss
-  string(REGEX MATCHALL "\n[A-Za-z][^\n]*" lines "${text}")
-  list(FILTER lines EXCLUDE REGEX "^\n(namespace|TEST|TYPED|INSTANTIATE|template|extern)")
-  foreach(line IN LISTS lines)
-    if(line MATCHES "^\n(using|enum class|enum|struct|class) ")
-      string(REGEX REPLACE "^\n(using .*::|using|enum class|enum|struct|class) *([A-Za-z0-9_]+).*" "\\2" name "${line}")
-      if(line MATCHES "^\nusing [A-Za-z0-9_]+ =") # whose right side may have colons
-        string(REGEX REPLACE "^\nusing ([A-Za-z0-9_]+) =.*" "\\1" name "${line}")
-      endif()
-      list(APPEND types "${name}")
-    elseif(line MATCHES "^\n[^(={]*[ *&]([A-Za-z0-9_]+) *([(={]|$)")
-      set(name "${CMAKE_MATCH_1}")
-    else()
-      continue()
+if(CMAKE_SCRIPT_MODE_FILE)
+  set(joined "")
+  foreach(file IN LISTS FILES)
+    file(READ "${file}" text)
+    cmake_path(GET file STEM name)
+    if(text MATCHES "\nnamespace {\n")
+      string(REPLACE "\nnamespace {\n" "\nnamespace in_${name} { namespace {\n" text "${text}")
+      string(REGEX REPLACE "^(.*\n)(} // namespace pcl_bsh)" "\\1}\\2" text "${text}") # the last one
     endif()
-    list(APPEND names "${name}")
-    set("line_${file}_${name}" "${line}" PARENT_SCOPE)
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${FOLDER}" OUTPUT_VARIABLE shown)
+    string(APPEND joined "#line 1 \"${shown}\"\n${text}")
   endforeach()
-  set("names_${file}" "${names}" PARENT_SCOPE)
-  set("types_${file}" "${types}" PARENT_SCOPE)
-  set("text_${file}" "${text}" PARENT_SCOPE)
-endfunction()
+  file(WRITE "${OUT}" "${joined}")
+  return()
+endif()
 
-function(pcl_bsh_find_clash a b result)
-  set(${result} TRUE PARENT_SCOPE)
-  foreach(name IN LISTS "names_${a}")
-    set(line "${line_${a}_${name}}")
-    if(name IN_LIST "names_${b}" AND NOT (line STREQUAL "${line_${b}_${name}}" AND line MATCHES "^\nusing "))
-      return()
-    endif()
-  endforeach()
-  foreach(name IN LISTS "types_${a}" "types_${b}")
-    foreach(file IN ITEMS "${a}" "${b}")
-      if(NOT name IN_LIST "names_${file}" AND "${text_${file}}" MATCHES "[^A-Za-z0-9_:]${name}[^A-Za-z0-9_]")
-        return()
-      endif()
-    endforeach()
-  endforeach()
-  set(${result} FALSE PARENT_SCOPE)
-endfunction()
-
-# Puts files into groups of up to six, for a target with UNITY_BUILD_MODE GROUP. Sets `objects` to what is compiled, in the
-# target's folder.
-function(pcl_bsh_group_tests objects)
-  set(groups "")
-  set(compiled "")
+# Sets `compiled` to what stands for the files of a room, relative to the folder of these sources or of what is built of
+# them: those that are joined, of up to so many bytes, and those that stay alone, which define what others call, include
+# themselves again or read PCL's headers in another way.
+set(bytes_together 170000) # g++ takes 2 GB then
+function(pcl_bsh_compile_together compiled room)
+  set(alone "")
+  set(bytes 0)
+  set(group 1)
   foreach(file IN LISTS ARGN)
-    pcl_bsh_read_names("${file}")
-    cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE path)
-    # Alone: what includes itself again, and what reads PCL's headers in another way.
-    if("${text_${file}}" MATCHES "foreach_target|PCL_NO_PRECOMPILE")
-      list(APPEND compiled "${path}.o")
+    file(STRINGS "${file}" special REGEX "foreach_target|PCL_NO_PRECOMPILE")
+    if(special OR NOT file MATCHES "_test\\.cpp$")
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
+      list(APPEND alone "${file}")
       continue()
     endif()
-    set(group "")
-    foreach(candidate IN LISTS groups)
-      list(LENGTH members_${candidate} count)
-      set(clash FALSE)
-      foreach(member IN LISTS members_${candidate})
-        if(NOT clash)
-          pcl_bsh_find_clash("${file}" "${member}" clash)
-        endif()
-      endforeach()
-      if(NOT clash AND count LESS 6)
-        set(group ${candidate})
-        break()
-      endif()
-    endforeach()
-    if(NOT group) # a new one, named after its first file
-      cmake_path(GET file STEM group)
-      list(APPEND groups "${group}")
-      list(APPEND compiled "Unity/unity_${group}_cxx.cxx.o")
+    file(SIZE "${file}" size)
+    math(EXPR bytes "${bytes} + ${size}")
+    if(bytes GREATER bytes_together)
+      math(EXPR group "${group} + 1")
+      set(bytes ${size})
     endif()
-    list(APPEND members_${group} "${file}")
-    set_source_files_properties("${file}" PROPERTIES UNITY_GROUP "${group}")
+    list(APPEND files_${group} "${file}")
   endforeach()
-  set(${objects} "${compiled}" PARENT_SCOPE)
+  foreach(i RANGE 1 ${group})
+    if(files_${i})
+      set(out "together/${room}_${i}.cpp")
+      add_custom_command(
+        OUTPUT "${out}" DEPENDS ${files_${i}} "${CMAKE_CURRENT_FUNCTION_LIST_FILE}" VERBATIM
+        COMMAND ${CMAKE_COMMAND} -D "OUT=${CMAKE_CURRENT_BINARY_DIR}/${out}" -D "FILES=${files_${i}}" -D "FOLDER=${PROJECT_SOURCE_DIR}" -P
+                "${CMAKE_CURRENT_FUNCTION_LIST_FILE}")
+      list(APPEND joined "${out}")
+    endif()
+  endforeach()
+  set(${compiled} ${joined} ${alone} PARENT_SCOPE)
 endfunction()
