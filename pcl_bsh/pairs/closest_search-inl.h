@@ -9,11 +9,11 @@
 #define PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
 #endif
 
-#include <pcl_bsh/pairs/behind_plane.h>
 #include <pcl_bsh/pairs/closest_goal.h>
 #include <pcl_bsh/pairs/nearest.h>
 #include <pcl_bsh/pairs/opening-inl.h>
 #include <pcl_bsh/traversal/pair_queue-inl.h>
+#include <pcl_bsh/traversal/planes_between.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
@@ -47,11 +47,6 @@ inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
 /// What a search with a time compares of leaves before it may take long steps: most searches come to no more.
 inline constexpr std::uint64_t kPairsBeforePoints = 48;
-
-/// Decisions in vain before planes are tried, and how many records each of them allows to be looked at then: a
-/// look costs a hundredth of a decision.
-inline constexpr std::uint64_t kDecisionsBeforePlanes = 256;
-inline constexpr std::uint64_t kLooksForDecision = 16;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
 ///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
@@ -364,7 +359,7 @@ private:
   bool mayImprove(const LanePair& pair)
   {
     none_nearer_ = false;
-    const bool in_vain = decisions_in_vain_ >= kDecisionsBeforePlanes || steps_in_vain_ >= steps_to_look_round_;
+    const bool in_vain = planes_.areWorthTheirCost() || steps_in_vain_ >= steps_to_look_round_;
     return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
   }
 
@@ -372,7 +367,7 @@ private:
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
-    return canImprove(pair) && (decisions_in_vain_ < kDecisionsBeforePlanes || !isSettledByPlanes(pair));
+    return canImprove(pair) && !(planes_.areWorthTheirCost() && isSettledByPlanes(pair));
   }
 
   /// For what is nearer to one of the best pair, among all of the other cloud: half of what was done in vain before.
@@ -395,30 +390,17 @@ private:
   /// best tell less, but nothing wrong.
   bool isSettledByPlanes(const LanePair& pair)
   {
-    if (best_.high < planes_.of) {
-      planes_.of = best_.high;
-      planes_.a.reset(), planes_.b.reset();
-      if (const auto found = pairs_.distance.planesBetween(*best_.pair)) {
-        planes_.a.emplace(walk_.a.storage, (*found)[0]);
-        planes_.b.emplace(walk_.b.storage, (*found)[1]);
-      }
+    if (best_.high < planes_of_) {
+      planes_of_ = best_.high;
+      planes_.lay(*best_.pair);
     }
-    const std::uint64_t allowed = kLooksForDecision * decisions_in_vain_;
-    if (!planes_.a || planes_.looked >= allowed) return false;
-    std::uint64_t looks = allowed - planes_.looked;
-    const auto lowest = [&](BehindPlane& behind, const Spaces& side, const Lane& lane) {
-      return behind.lowestTouching(lane.space, walk_.nodeOf(side, lane), lane.lane, looks);
-    };
-    const auto of_a = lowest(*planes_.a, walk_.a, pair.a);
-    const auto of_b = of_a ? lowest(*planes_.b, walk_.b, pair.b) : std::nullopt;
-    planes_.looked = allowed - looks;
-    none_nearer_ = of_b.has_value();
+    const auto first = planes_.lowestTouching(walk_.child(walk_.a, pair.a), walk_.child(walk_.b, pair.b));
+    none_nearer_ = first.has_value();
     if (!none_nearer_) return false;
-    if (goal_.tolerance > 0.0 || *of_a == BehindPlane::kNoRecord || *of_b == BehindPlane::kNoRecord) return true;
-    const PointPair first{*of_a, *of_b}; // of those that may be as near
+    if (goal_.tolerance > 0.0 || first->a == BehindPlane::kNoRecord || first->b == BehindPlane::kNoRecord) return true;
     at_least_ = std::max(pair.key, lowest_key_);
-    if (first < *best_.pair) consider(first);
-    return !(first < *best_.pair);
+    if (*first < *best_.pair) consider(*first);
+    return !(*first < *best_.pair);
   }
 
   /// Of the children that the last step found near, those that can.
@@ -444,7 +426,7 @@ private:
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
     ++steps_in_vain_;
-    ++decisions_in_vain_;
+    planes_.decidedInVain();
     if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
     if (best_.pair) {
       const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
@@ -457,8 +439,8 @@ private:
       }
     }
     best_.pair = candidate;
-    steps_in_vain_ = decisions_in_vain_ = 0, has_looked_round_ = false;
-    planes_.of = kInfinity, planes_.looked = 0;
+    steps_in_vain_ = 0, has_looked_round_ = false;
+    planes_.clear(), planes_of_ = kInfinity;
     best_lower_ = static_cast<double>(at_least_);
     const auto [low, high] = boundGap(posed);
     best_.low = low;
@@ -514,15 +496,9 @@ private:
   Others others_;
   Nearest best_;
 
-  /// Between the nearest places of the best pair: see isSettledByPlanes().
-  struct Planes {
-    double of = kInfinity; ///< Nearest::high of that pair
-    std::uint64_t looked = 0;
-    std::optional<BehindPlane> a, b;
-  };
-  Planes planes_;
-  std::uint64_t decisions_in_vain_ = 0; ///< since a nearer pair was found
-  std::uint64_t steps_in_vain_ = 0;     ///< likewise, with pairs of leaves
+  PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage}; ///< of the best pair; by its decisions
+  double planes_of_ = kInfinity;                                            ///< Nearest::high of the pair they are of
+  std::uint64_t steps_in_vain_ = 0; ///< since a nearer pair was found: decisions and pairs of leaves
   const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
   bool has_looked_round_ = false;
   bool none_nearer_ = false; ///< than the best below the pair that is visited

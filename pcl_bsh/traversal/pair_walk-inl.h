@@ -11,6 +11,7 @@
 #endif
 
 #include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/traversal/behind_plane.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
 #include <optional>
@@ -88,6 +89,8 @@ public:
   }
 
   const Node& nodeOf(const Spaces& side, const Lane& lane) const { return side.node(lane.space, lane.node); }
+
+  NodeChild child(const Spaces& side, const Lane& lane) const { return {lane.space, nodeOf(side, lane), lane.lane}; }
 
   bool isLeaf(const Spaces& side, const Lane& lane) const
   {

@@ -27,6 +27,21 @@ public:
                   : is_rough      ? std::ldexp(mantissa, exponent - largest)
                                   : std::numeric_limits<double>::quiet_NaN();
     }
+    length_ = std::sqrt(rough_[0] * rough_[0] + rough_[1] * rough_[1] + rough_[2] * rough_[2]);
+  }
+
+  /// Whether a finite place surely reaches beyond the plane by less than a length, as doubles tell; also of the plane
+  /// and the place under a pose, which may be off by as much as poses may.
+  bool isWithin(const Point3& place, double length) const
+  {
+    double sum = 0.0, terms = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double term = rough_[k] * (place[k] - at_[k]);
+      sum += term;
+      terms += std::abs(term);
+    }
+    constexpr double off = 1e-5; // of the normal's length: rounding, too
+    return length > 0x1p-900 && sum + kFewDoubleRoundings * terms < (1.0 - off) * length * length_;
   }
 
   /// Whether a finite place is on the side that the normal points to (1), on the other (-1), or in the plane (0).
@@ -52,7 +67,8 @@ public:
 private:
   Point3 at_;
   Vector3<Dyadic> normal_;
-  Point3 rough_; ///< the normal but for its length; NaN where that is out of range beside it
+  Point3 rough_;  ///< the normal but for its length; NaN where that is out of range beside it
+  double length_; ///< of rough_
 };
 
 } // namespace pcl_bsh
