@@ -8,10 +8,10 @@
 #define PCL_BSH_FLAGS_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/flags/axis_gap.h>
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/uncertain-inl.h>
 #include <pcl_bsh/flags/visit-inl.h>
+#include <pcl_bsh/traversal/beyond_reach.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -183,7 +183,7 @@ inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit&
   return firstBits(other.count) & ~far;
 }
 
-/// Calls compare(leaf, record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
+/// Calls compare(record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
 /// points of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those;
 /// until it returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's
 /// frame, at least; or zeros
@@ -210,7 +210,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
       const std::uint32_t record = other.record(j);
       const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
       squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
-      if (compare(other, record, triangle, squared, near)) return;
+      if (compare(record, triangle, squared, near)) return;
     }
   }
 }
@@ -220,7 +220,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
 template <class FacingOf>
 std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
                            const LeafPoints& points, const FlagQuery& query, FlatRecords& flat, Work& work,
-                           const FacingOf& facingOf)
+                           BeyondReach& beyond, const FacingOf& facingOf)
 {
   alignas(64) static constexpr float kNone[kLeafPoints] = {};
   const std::uint32_t open = visit.open_points[lane];
@@ -228,14 +228,17 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
   if (hit == open) return hit;
   eachTriangleNear(
       obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work, facingOf,
-      [&](const LeafRange&, std::uint32_t record, const FlatRecord& triangle, const float* squared,
-          std::uint32_t near) {
+      [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
         const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
         const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
           std::uint32_t decided = among & atMost(squared, band.hit);
           for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0; bits &= bits - 1) {
             const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-            if (pairs.collide({leaf.record(i), record}, work)) decided |= 1u << i;
+            const PointPair at{leaf.record(i), record};
+            if (pairs.collide(at, work))
+              decided |= 1u << i;
+            else if (&pairs == &query.pairs)
+              beyond.found(at);
           }
           return decided;
         };
@@ -249,9 +252,10 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
 
 /// The same of a's balls and triangles: by their middles, as far as these are near enough, and exactly where only their
 /// balls come near.
-inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
-                                    const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query,
-                                    FlatRecords& flat, Work& work)
+template <class FacingOf>
+std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
+                             const LeafPoints& points, const FlagQuery& query, FlatRecords& flat, Work& work,
+                             BeyondReach& beyond, const FacingOf& facingOf)
 {
   const LaneTag d;
   const std::uint32_t open = visit.open_points[lane];
@@ -268,7 +272,6 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
   Doubtful doubtful[kMost];
   const bool of_triangles = query.a.hierarchy().view().triangles != nullptr;
   CarriedTriangles own;
-  AxisGap<LeafRange> gap(query, leaf);
   bool is_carried = false;
   std::size_t count = 0;
   const auto decide = [&] { // once floats have found what they can
@@ -278,15 +281,15 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
         const PointPair at{leaf.record(i), pair->record};
         if (query.surePairs().collide(at, work))
           hit |= 1u << i;
-        else if (query.certain && (visit.perhaps[lane] >> i & 1) == 0 && query.pairs.collide(at, work))
+        else if (query.certain && ((visit.perhaps[lane] >> i & 1) != 0 || query.pairs.collide(at, work)))
           visit.perhaps[lane] |= 1u << i;
+        else
+          beyond.found(at);
       }
     count = 0;
   };
-  const auto any = [](const ObstacleSphere&) { return ~0u; };
-  eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work, any,
-                   [&](const LeafRange& other, std::uint32_t record, const FlatRecord& triangle, const float* squared,
-                       std::uint32_t near) {
+  eachTriangleNear(obstacle, visit, lane, hit, points, radii, query.b.hierarchy().view(), flat, work, facingOf,
+                   [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
                      if (surely > 0.0) hit |= near & atMost(squared, triangle.band(obstacle.frame, surely).hit);
                      if (hit == open) return true;
                      const LaneVector more = hn::Set(d, obstacle.reach + roundUp(triangle.error(obstacle.frame)));
@@ -308,7 +311,6 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
                        hit |= found.within;
                        near &= ~found.within & ~found.apart;
                        if (near == 0) return hit == open;
-                       if (gap.isBeyond(triangle.flat.rows + 6, other, work)) return false;
                      }
                      doubtful[count++] = {record, near};
                      if (count == kMost) decide();
@@ -322,7 +324,7 @@ inline std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& vi
 template <class FacingOf>
 inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                               const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work,
-                              const FacingOf& facingOf)
+                              BeyondReach& beyond, const FacingOf& facingOf)
 {
   const std::uint32_t open = visit.open_points[lane];
   std::uint32_t hit = 0;
@@ -335,9 +337,12 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
                        if (surely || query.surePairs().collide(obstacle.frame, squared, pair, work)) {
                          hit |= 1u << i;
                        }
-                       else if (query.certain && (visit.perhaps[lane] >> i & 1) == 0 &&
-                                query.pairs.collide(obstacle.frame, squared, pair, work)) {
+                       else if (query.certain && ((visit.perhaps[lane] >> i & 1) != 0 ||
+                                                  query.pairs.collide(obstacle.frame, squared, pair, work))) {
                          visit.perhaps[lane] |= 1u << i;
+                       }
+                       else {
+                         beyond.found(pair);
                        }
                        return hit == open;
                      });

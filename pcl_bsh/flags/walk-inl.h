@@ -15,6 +15,7 @@
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/runs-inl.h>
 #include <pcl_bsh/flags/slabs-inl.h>
+#include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -323,6 +324,7 @@ private:
     std::uint32_t near = lanes & (query_.certain ? uncertain_.near(visit, obstacle, candidate, lanes)
                                                  : spheresNear(spheres, ball, nullptr));
     if (near == 0) return;
+    if (HWY_UNLIKELY(beyond_.mayKnow()) && (near = notBeyond(visit, candidate, near)) == 0) return;
     if (visit.may_have_slabs) {
       if (!visit.has_slabs && pairs_.ofTriangles() && steps() > allowed_) slabs_.take(visit);
       if (visit.has_slabs && (near = slabs_.nearOf(visit, candidate, {ball.x, ball.y, ball.z}, radius, near)) == 0)
@@ -404,22 +406,41 @@ private:
   std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
+    const auto mayMatter = [&](const ObstacleSphere& candidate) {
+      return HWY_LIKELY(!beyond_.mayKnow()) || notBeyond(visit, candidate, 1u << lane) != 0;
+    };
+    if (b_.storage.view.triangles && a_.storage.view.radii)
+      return hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work, beyond_,
+                            [&](const ObstacleSphere& candidate) { return mayMatter(candidate) ? ~0u : 0; });
     if (b_.storage.view.triangles)
-      return a_.storage.view.radii
-                 ? hitByTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work)
-                 : hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work,
-                                [&](const ObstacleSphere& candidate) {
-                                  return visit.has_slabs ? slabs_.facingPoints(visit, points, candidate) : ~0u;
-                                });
+      return hitTriangles(obstacle, visit, lane, leaf, points, query_, flat_, found.work, beyond_,
+                          [&](const ObstacleSphere& candidate) -> std::uint32_t {
+                            if (!mayMatter(candidate)) return 0;
+                            return visit.has_slabs ? slabs_.facingPoints(visit, points, candidate) : ~0u;
+                          });
     if (pairs_.haveRadii())
-      return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work, [&](const ObstacleSphere& candidate) {
-        const LeafRange other = candidate.leaf(*obstacle.voxel);
-        return visit.has_slabs && slabs_.isLeafOfPoints(candidate) ? slabs_.facingLeaf(visit, lane, other)
-                                                                   : firstBits(other.count);
-      });
+      return hitBalls(obstacle, visit, lane, leaf, points, query_, found.work, beyond_,
+                      [&](const ObstacleSphere& candidate) -> std::uint32_t {
+                        if (!mayMatter(candidate)) return 0;
+                        const LeafRange other = candidate.leaf(*obstacle.voxel);
+                        return visit.has_slabs && slabs_.isLeafOfPoints(candidate)
+                                   ? slabs_.facingLeaf(visit, lane, other)
+                                   : firstBits(other.count);
+                      });
     if (!query_.certain) return hitPoints(obstacle, visit, lane, leaf, points, pairs_, found.work);
     return hitUncertainPoints(obstacle, uncertain_.reach(visit.obstacle), visit, lane, leaf, uncertain_.own(leaf),
                               points, query_, found.work);
+  }
+
+  /// Of the children in `near`, those that are not known to be beyond the reach from a sphere of b.
+  HWY_NOINLINE std::uint32_t notBeyond(const FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
+  {
+    const NodeChild other{reached_[visit.obstacle], *candidate.node, candidate.lane};
+    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (beyond_.knows({voxel_, *visit.node, lane}, other)) near &= ~(1u << lane);
+    }
+    return near;
   }
 
   void settleChild(FlagVisit& visit, std::uint32_t lane)
@@ -462,6 +483,7 @@ private:
   FlagSlabs slabs_;
   UncertainWalk uncertain_; ///< where points are
   const Separation separation_;
+  BeyondReach beyond_{pairs_, a_.storage, b_.storage};
 };
 
 } // namespace HWY_NAMESPACE

@@ -33,7 +33,8 @@ struct AnyResult {
 /// Does any pair of points collide? Where points have uncertainties (PointsView): is some pair within the clearance
 /// wherever its points truly are, can none be (free), or neither (undecided)? Stops at the first witness. Several
 /// threads share a search that takes longer than about 0.05 ms. Its work is that of one thread, but for what is built:
-/// other threads may have entered, and so built, voxels behind the witness. Accuracies that stop early take one thread.
+/// other threads may have entered, and so built, voxels behind the witness; and where hundreds of triangles are hardly
+/// farther apart than the clearance, which each thread has to find out. Accuracies that stop early take one thread.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
 ///   Cancelled.
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});

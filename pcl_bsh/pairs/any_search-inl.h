@@ -9,6 +9,7 @@
 #endif
 
 #include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
@@ -97,7 +98,8 @@ public:
   Next visit(const LanePair& pair)
   {
     stopped_ = observer_.stops(walk_, pair);
-    return stopped_ ? Next::stop : Next::go_on;
+    if (stopped_) return Next::stop;
+    return HWY_UNLIKELY(beyond_.mayKnow()) && isBeyond(pair) ? Next::prune : Next::go_on;
   }
 
   Next opened(const LanePair& pair, Opened opened, const PairWalk::Step& step)
@@ -117,7 +119,10 @@ public:
     if (leaves.near == 0) return Next::go_on;
     const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
       const PointPair candidate{leaves.a.record(i), leaves.b.record(j)};
-      if (surely || pairs_.collide(candidate, walk_.work)) witness_ = candidate;
+      if (surely || pairs_.collide(candidate, walk_.work))
+        witness_ = candidate;
+      else
+        beyond_.found(candidate);
       return witness_.has_value();
     };
     if (walk_.haveTriangles()) {
@@ -149,6 +154,11 @@ private:
     return witness_;
   }
 
+  HWY_NOINLINE bool isBeyond(const LanePair& pair)
+  {
+    return beyond_.knows(walk_.child(walk_.a, pair.a), walk_.child(walk_.b, pair.b));
+  }
+
   std::uint32_t firstRecord(const Spaces& side, const Lane& lane)
   {
     const std::uint32_t begin = walk_.nodeOf(side, lane).begin[lane.lane];
@@ -159,6 +169,7 @@ private:
   PairWalk walk_;
   const PointPairs pairs_;
   const Acceptance acceptance_;
+  BeyondReach beyond_{pairs_, walk_.a.storage, walk_.b.storage};
   Observer observer_;
   std::optional<PointPair> witness_;
   bool stopped_ = false;

@@ -14,7 +14,7 @@ namespace pcl_bsh {
 /// What became of a sphere during a walk; of several meetings, the furthest.
 enum class SphereFate : std::uint8_t {
   pruned,   ///< tested, and it or all children of what it was tested against out of reach
-  kept,     ///< within reach, but the walk was done before its turn came
+  kept,     ///< within reach as far as it was tested, but not opened before the walk was done
   opened,   ///< its children, or its voxel's, were tested
   compared, ///< a leaf whose points were compared
 };

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pairs of nodes beyond a reach, where thousands of pairs of triangles are hardly farther apart than it.
+#pragma once
+
+#include <pcl_bsh/traversal/planes_between.h>
+#include <pcl_bsh/traversal/point_pairs.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace pcl_bsh {
+
+/// What is no nearer than a pair that was found beyond the reach, or nearer by less than it is beyond, is beyond it,
+/// too. Knows nothing where each pair has a reach of its own.
+class BeyondReach {
+public:
+  BeyondReach(const PointPairs& pairs, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b)
+  : pairs_(pairs),
+    planes_(pairs.distance, a, b),
+    may_know_(pairs.ofTriangles() && !pairs.mayOverlap() && pairs.ofPairs().isOne())
+  {
+  }
+
+  /// Takes note of a pair that was decided to be beyond the reach. One in some is compared with the nearest of those
+  /// before, whose planes cut the least off.
+  void found(PointPair beyond)
+  {
+    if (!may_know_) return;
+    if (planes_.decisionsInVain() % kDecisionsBetweenCompared == 0) {
+      const RecordDistance::Enclosure gap = pairs_.distance.enclose(pairs_.posed(beyond));
+      if (!nearest_ || gap.high < least_) {
+        nearest_ = beyond, least_ = gap.low;
+        is_laid_ = false;
+        asked_in_vain_ = 0, next_asked_ = kDecisionsBeforeAsked;
+      }
+    }
+    planes_.decidedInVain();
+  }
+
+  /// Whether it is worth asking about nodes.
+  bool mayKnow() const { return planes_.decisionsInVain() >= next_asked_; }
+
+  /// Whether all below two children is known to be beyond the reach.
+  bool knows(const NodeChild& a, const NodeChild& b)
+  {
+    if (!is_laid_) lay();
+    const bool known = planes_.lowestTouching(a, b).has_value();
+    asked_in_vain_ = known ? 0 : asked_in_vain_ + 1;
+    if (asked_in_vain_ == kAskedInVain) {
+      asked_in_vain_ = 0;
+      next_asked_ = 2 * planes_.decisionsInVain();
+    }
+    return known;
+  }
+
+private:
+  void lay()
+  {
+    is_laid_ = true;
+    const double least = std::nextafter(pairs_.gap(*nearest_), 0.0);
+    const double more = least - pairs_.ofPairs().around(*nearest_).second; // than the reach
+    planes_.lay(*nearest_, more > 0.0 ? kShareOfEach * more : 0.0);
+  }
+
+  static constexpr double kShareOfEach = 0.499; ///< of two planes
+  static constexpr std::uint64_t kDecisionsBetweenCompared = 64;
+  static constexpr std::uint64_t kDecisionsBeforeAsked = 1024; ///< what planes cost is little beside these
+  static constexpr std::uint32_t kAskedInVain = 32; ///< one after the other, before as many decisions go without
+
+  const PointPairs& pairs_;
+  PlanesBetween planes_;
+  const bool may_know_;
+  std::optional<PointPair> nearest_; ///< of those that were compared
+  double least_ = 0.0;               ///< its gap, at least
+  bool is_laid_ = false;             ///< whether the planes are of it
+  std::uint32_t asked_in_vain_ = 0;
+  std::uint64_t next_asked_ = kDecisionsBeforeAsked; ///< after so many decisions
+};
+
+} // namespace pcl_bsh
