@@ -10,17 +10,12 @@
 #include <pcl_bsh/solid/triangle_labels.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include "support/off_mesh.h"
-#include "support/pcd_points.h"
+#include "support/hard_surfaces.h"
 #include "support/simd_target.h"
-
-#include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,31 +23,6 @@ namespace pcl_bsh {
 namespace {
 
 using Json = nlohmann::json;
-
-const std::string folder = PCL_BSH_SOURCE_DIR "/test/hard_cases/surfaces/";
-
-std::vector<Json> catalogue()
-{
-  std::ifstream file(folder + "cases.json");
-  const Json all = Json::parse(file);
-  return {all.at("cases").begin(), all.at("cases").end()};
-}
-
-/// Points or triangles.
-struct Input {
-  std::vector<Point3> points;
-  std::optional<test::OffMesh> mesh;
-
-  explicit Input(const Json& told)
-  {
-    if (told.contains("other"))
-      mesh = test::readOffMesh(folder + told.at("other").get<std::string>());
-    else
-      points = test::readPcdPoints(folder + told.at("points").get<std::string>()).points;
-  }
-
-  PointsView view() const { return mesh ? viewOf(mesh->view()) : viewOf(points.front().data(), points.size()); }
-};
 
 std::vector<std::uint32_t> recordsOf(const std::vector<Verdict>& flags)
 {
@@ -67,7 +37,7 @@ class HardSurfaces : public testing::TestWithParam<Json> {};
 TEST_P(HardSurfaces, EqualExactArithmetic)
 {
   const Json& told = GetParam();
-  const test::OffMesh mesh = test::readOffMesh(folder + told.at("mesh").get<std::string>());
+  const test::OffMesh mesh = test::meshOf(told);
   if (told.contains("open_edges")) {
     try {
       const Solid solid(mesh.view());
@@ -80,10 +50,8 @@ TEST_P(HardSurfaces, EqualExactArithmetic)
     }
     return;
   }
-  const Input input(told);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (told.contains("pose"))
-    for (Eigen::Index i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = told.at("pose").at(static_cast<std::size_t>(i));
+  const test::HardInput input(told);
+  const Eigen::Isometry3d pose = test::poseOf(told);
   const double clearance = told.at("clearance"), smallest = told.at("smallest_distance");
   const auto of_input = told.at("colliding").get<std::vector<std::uint32_t>>(),
              of_mesh = told.at("colliding_of_mesh").get<std::vector<std::uint32_t>>();
@@ -147,7 +115,7 @@ std::string nameOf(const testing::TestParamInfo<Json>& info)
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, HardSurfaces, testing::ValuesIn(catalogue()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Catalogue, HardSurfaces, testing::ValuesIn(test::hardSurfaces()), nameOf);
 
 } // namespace
 } // namespace pcl_bsh

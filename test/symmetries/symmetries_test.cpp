@@ -3,7 +3,7 @@
 #include "symmetries.h"
 
 #include "fuzz/random_input.h"
-#include "support/hard_cases.h"
+#include "hard_instances.h"
 #include "support/pcd_points.h"
 
 #include <gtest/gtest.h>
@@ -27,15 +27,6 @@ std::size_t expectSymmetric(const Instance& instance, Random& random)
   }
 }
 
-/// At most fifty, in their order.
-std::vector<Point3> someOf(const std::vector<Point3>& points)
-{
-  std::vector<Point3> some;
-  const std::size_t step = (points.size() + 49) / 50;
-  for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
-  return some;
-}
-
 TEST(Symmetries, OfRandomClouds)
 {
   std::size_t compared = 0;
@@ -52,18 +43,15 @@ TEST(Symmetries, OfRandomClouds)
 TEST(Symmetries, OfHardCases)
 {
   Random random(1);
-  for (const hard_cases::HardCase& c : hard_cases::catalogue()) {
-    Instance instance;
-    instance.name = c.name;
-    instance.a = {someOf(c.a), {}, {}, c.scalar, c.pose_a};
-    instance.b = {someOf(c.b), {}, {}, c.scalar, c.pose_b};
-    for (Body* body : {&instance.a, &instance.b}) roundTo(body->scalar, body->points);
-    instance.clearance = c.clearance;
-    instance.path = instance.relative = {c.pose_b, Eigen::Isometry3d::Identity()};
-    if (!c.b.empty()) instance.queries = {c.b.front(), c.b.back()};
-    instance.high = {c.clearance, c.clearance, c.clearance};
-    expectSymmetric(instance, random);
-  }
+  for (const hard_cases::HardCase& c : hard_cases::catalogue()) expectSymmetric(instanceOf(c), random);
+}
+
+TEST(Symmetries, OfHardSurfaces)
+{
+  Random random(4);
+  const std::vector<Instance> hard = instancesOfHardSurfaces();
+  EXPECT_GT(hard.size(), 30u);
+  for (const Instance& instance : hard) EXPECT_GT(expectSymmetric(instance, random), 5u) << instance.name;
 }
 
 /// A sampled robot, where it is there, and a coarser one that moves past it.

@@ -3,6 +3,7 @@
 #include "face_answers.h"
 #include "support/pcd_points.h"
 #include "support/temporary_folder.h"
+#include "symmetries/hard_instances.h"
 #include "symmetries/symmetries.h"
 
 #include <gtest/gtest.h>
@@ -89,6 +90,16 @@ protected:
     if (!robot.a.points.empty()) expectSymmetric(robot, random, ask);
   }
 
+  /// Each of so many of both catalogues.
+  void ofHardCases(std::size_t of, const Ask& ask)
+  {
+    std::vector<Instance> hard = instancesOfHardSurfaces();
+    for (const hard_cases::HardCase& c : hard_cases::catalogue())
+      if (!c.a.empty() && !c.b.empty()) hard.push_back(instanceOf(c));
+    Random random(5);
+    for (std::size_t i = 0; i < hard.size() && !HasFailure(); i += of) expectSymmetric(hard[i], random, ask);
+  }
+
   const files::TemporaryFolder folder_;
   const std::filesystem::path folder = folder_.path();
 };
@@ -96,25 +107,31 @@ protected:
 TEST_F(FaceSymmetries, OfFilters)
 {
   ofAll(60, askFilters);
+  ofHardCases(1, askFilters);
 }
 
 TEST_F(FaceSymmetries, OfPipelines)
 {
   ofAll(20, askPipelines);
+  ofHardCases(8, askPipelines);
 }
 
 /// Each is cut otherwise, too.
 TEST_F(FaceSymmetries, OfSites)
 {
   Random random(3);
-  ofAll(6, [&](const Instance& instance) {
+  const auto ask = [&](const Instance& instance) {
     return askSite(instance, folder, static_cast<std::uint64_t>(random.integer(4, 70)));
-  });
+  };
+  ofAll(6, ask);
+  ofHardCases(16, ask);
 }
 
 TEST_F(FaceSymmetries, OfPrograms)
 {
-  ofAll(2, [&](const Instance& instance) { return askProgram(instance, folder); });
+  const auto ask = [&](const Instance& instance) { return askProgram(instance, folder); };
+  ofAll(2, ask);
+  ofHardCases(60, ask);
 }
 
 } // namespace
