@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/large_buffer.h>
 #include <pcl_bsh/geometry/apart.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
@@ -93,8 +94,8 @@ inline constexpr double kOffMiddle = 2 * ((std::is_same_v<Coordinate, float> ? k
 template <class Coordinate>
 struct Balls {
   TrianglesView triangles;
-  std::unique_ptr<std::array<Coordinate, 3>[]> centers;
-  std::unique_ptr<float[]> radii;
+  LargeBuffer<std::array<Coordinate, 3>> centers;
+  LargeBuffer<float> radii;
 };
 
 /// One of them. @param largest raised to its largest coordinate
@@ -144,8 +145,8 @@ PointsView ballsOf(const TrianglesView& triangles, Scalar scalar)
 {
   auto balls = std::make_shared<Balls<Coordinate>>();
   balls->triangles = triangles;
-  balls->centers = std::make_unique_for_overwrite<std::array<Coordinate, 3>[]>(triangles.count);
-  balls->radii = std::make_unique_for_overwrite<float[]>(triangles.count);
+  balls->centers = makeBuffer<std::array<Coordinate, 3>>(triangles.count);
+  balls->radii = makeBuffer<float>(triangles.count);
   double largest = 0.0;
   std::size_t i = 0;
   for (; i + kBallsTogether <= triangles.count; i += kBallsTogether) eightBallsOf(*balls, i, largest);

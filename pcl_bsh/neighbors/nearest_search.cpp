@@ -358,9 +358,9 @@ private:
   const std::size_t k_;
   std::size_t wanted_; ///< candidates at which the bound is looked at again
   const double radius_;
-  ScratchArray<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
-  ScratchArray<float>& highs_;          ///< upper bounds of their squared distances, in units of the search
-  ScratchArray<const Voxel*>& voxels_;  ///< visited
+  LargeArray<std::uint32_t>& places_; ///< points that may be among the nearest, counted over all voxels
+  LargeArray<float>& highs_;          ///< upper bounds of their squared distances, in units of the search
+  LargeArray<const Voxel*>& voxels_;  ///< visited
   Work& work_;
   double unit_ = 1.0;          ///< of lengths in the search
   float bound_ = kInfinity;    ///< squared; points that are farther do not count

@@ -3,64 +3,25 @@
 #pragma once
 
 #include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/base/large_array.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
 #include <hwy/contrib/sort/vqsort.h>
 
-#include <type_traits>
-
 namespace pcl_bsh {
-
-/// A list that grows but never shrinks, and is not written before it is used. Large ones are kept for other uses when
-/// they end (LargeBuffer).
-template <class T>
-class ScratchArray {
-  static_assert(std::is_trivially_copyable_v<T>);
-
-public:
-  std::size_t size() const noexcept { return size_; }
-  void resize(std::size_t size) noexcept { size_ = size; } ///< @pre reserveMore() was called
-  void clear() noexcept { size_ = 0; }
-  T* data() noexcept { return items_.get(); }
-  T* end() noexcept { return items_.get() + size_; }
-  T& operator[](std::size_t i) noexcept { return items_[i]; }
-  std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }
-
-  /// Makes sure that `more` items fit behind the last one.
-  void reserveMore(std::size_t more)
-  {
-    if (size_ + more > capacity_) grow(size_ + more);
-  }
-
-  /// @pre reserveMore() was called
-  void push(const T& item) noexcept { items_[size_++] = item; }
-
-private:
-  void grow(std::size_t least)
-  {
-    const std::size_t capacity = std::max(2 * capacity_, least + 64);
-    LargeBuffer<T> larger = makeBuffer<T>(capacity);
-    std::copy_n(items_.get(), size_, larger.get());
-    items_ = std::move(larger);
-    capacity_ = capacity;
-  }
-
-  LargeBuffer<T> items_;
-  std::size_t size_ = 0, capacity_ = 0;
-};
 
 /// To be had by a ScratchLease.
 struct NeighborScratch {
-  ScratchArray<std::uint32_t> records; ///< what was found
-  ScratchArray<float> squared; ///< how far it is: perhaps an upper bound while searching, then the value of the answer
-  ScratchArray<const Voxel*> voxels; ///< where the candidates for the nearest are, in the order of those
+  LargeArray<std::uint32_t> records; ///< what was found
+  LargeArray<float> squared; ///< how far it is: perhaps an upper bound while searching, then the value of the answer
+  LargeArray<const Voxel*> voxels; ///< where the candidates for the nearest are, in the order of those
 
   // of sorting
-  ScratchArray<std::uint32_t> sorted_records;
-  ScratchArray<float> sorted_squared;
-  ScratchArray<std::uint64_t> keys, sorted_keys;
-  ScratchArray<std::uint32_t> steps;
+  LargeArray<std::uint32_t> sorted_records;
+  LargeArray<float> sorted_squared;
+  LargeArray<std::uint64_t> keys, sorted_keys;
+  LargeArray<std::uint32_t> steps;
 
   hwy::Sorter sorter;
 

@@ -73,8 +73,8 @@ private:
 
   const PointsView& view_;
   const Point3& query_;
-  ScratchArray<std::uint32_t>& records_;
-  ScratchArray<float>& squared_;
+  LargeArray<std::uint32_t>& records_;
+  LargeArray<float>& squared_;
 };
 
 /// A sink that ends the walk at the first point found.

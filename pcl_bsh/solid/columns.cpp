@@ -51,13 +51,6 @@ std::size_t withRoom(std::size_t size)
   return size + size / 8;
 }
 
-/// Gives back more memory than that.
-template <class T>
-void shrink(std::vector<T>& some)
-{
-  if (some.capacity() > withRoom(some.size())) some.shrink_to_fit();
-}
-
 /// The middle of most triangles, whatever lies far off: what is near it has the most precise boxes.
 Point3 middleOf(const TrianglesView& view)
 {
@@ -100,7 +93,7 @@ struct Columns::Shadows {
 
 Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(middleOf(triangles))
 {
-  boxes_.resize(view_.count);
+  boxes_.append(view_.count);
   Point3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
   std::array<Shadows, 3> shadows; // along each axis
   for (std::size_t i = 0; i < view_.count; ++i) {
@@ -140,22 +133,21 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   }
 
   cubes_ = Cubes(low_, high_);
-  std::vector<std::uint32_t> all;
+  LargeArray<std::uint32_t> all;
   all.reserve(view_.count);
   for (std::uint32_t i = 0; i < view_.count; ++i) {
     if (!(boxes_[i].low[0] <= boxes_[i].high[0])) continue;
-    all.push_back(i);
+    all.push(i);
     cubes_.mark(seenTriangle(i));
   }
-  makeGrid(low_, high_, all, shadows[axis], false);
+  makeGrid(low_, high_, {all.begin(), all.end()}, shadows[axis], false);
   refine();
-  shrink(cells_);
-  shrink(entries_);
+  cells_.shrink(withRoom(cells_.size()));
+  entries_.shrink(withRoom(entries_.size()));
 }
 
 /// Of triangles in a column.
-Columns::Shadows Columns::shadowsWithin(const Point3& low, const Point3& high,
-                                        const std::vector<std::uint32_t>& triangles) const
+Columns::Shadows Columns::shadowsWithin(const Point3& low, const Point3& high, const Range& triangles) const
 {
   Shadows shadows;
   for (const std::uint32_t i : triangles) {
@@ -170,8 +162,8 @@ Columns::Shadows Columns::shadowsWithin(const Point3& low, const Point3& high,
   return shadows;
 }
 
-bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles,
-                       const Shadows& shadows, bool finer)
+bool Columns::makeGrid(const Point3& low, const Point3& high, const Range& triangles, const Shadows& shadows,
+                       bool finer)
 {
   const double width = high[0] - low[0], height = high[1] - low[1], longest = std::max(width, height);
   const auto count = static_cast<double>(triangles.size());
@@ -195,14 +187,16 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
     if (makeStrips(triangles, 0.5 * shadows.entries(per) / cells)) return true;
   }
   Grid grid;
-  std::vector<std::uint32_t> ends;
+  LargeArray<std::uint32_t> ends;
   for (;; per *= 0.8) { // needles meet more columns than their shadows fill
     const double columns = along(width, per), rows = along(height, per);
     if (finer && shadows.entries(per) > 0.6 * count * columns * rows) return false;
     grid = {low[0], low[1], perUnit(columns, width), perUnit(rows, height), 0.0, 0, 0, 0};
     grid.columns = static_cast<std::uint32_t>(columns), grid.rows = static_cast<std::uint32_t>(rows);
     grid.pad = kCellPad * std::max(width / columns, height / rows);
-    ends.assign(std::size_t{grid.columns} * grid.rows + 1, 0);
+    ends.clear();
+    ends.append(std::size_t{grid.columns} * grid.rows + 1);
+    std::fill(ends.begin(), ends.end(), 0u);
     double entries = 0.0;
     for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { ++ends[cell], ++entries; });
     if (entries <= 1.25 * most_entries || ends.size() <= 2) break;
@@ -211,9 +205,11 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const std::vector<
   std::uint32_t begin = static_cast<std::uint32_t>(entries_.size()), sum = begin;
   for (std::uint32_t& n : ends) sum += std::exchange(n, sum);
   if (!finer) cells_.reserve(withRoom(ends.size())), entries_.reserve(withRoom(sum));
+  entries_.reserveMore(sum - begin);
   entries_.resize(sum);
   for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { entries_[ends[cell]++] = i; });
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) cells_.push_back({std::exchange(begin, ends[i]), ends[i]});
+  cells_.reserveMore(ends.size());
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) cells_.push({std::exchange(begin, ends[i]), ends[i]});
   grids_.push_back(grid);
   return true;
 }
@@ -228,10 +224,10 @@ Columns::Cell Columns::inStrips(std::uint32_t begin, std::uint32_t count)
 
 /// In place of the first grid: one column, in strips. @return false where a ray meets more than `most` of them on the
 /// mean, for they lie in all directions
-bool Columns::makeStrips(const std::vector<std::uint32_t>& triangles, double most)
+bool Columns::makeStrips(const Range& triangles, double most)
 {
   constexpr std::uint32_t kSamples = 8; // along each axis
-  entries_ = triangles;
+  std::copy(triangles.begin(), triangles.end(), entries_.append(triangles.size()));
   const Cell cell = inStrips(0, static_cast<std::uint32_t>(triangles.size()));
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < kSamples; ++i)
@@ -249,7 +245,7 @@ bool Columns::makeStrips(const std::vector<std::uint32_t>& triangles, double mos
   const double width = high_[0] - low_[0], height = high_[1] - low_[1];
   grids_.push_back(
       {low_[0], low_[1], perUnit(1.0, width), perUnit(1.0, height), kCellPad * std::max(width, height), 1, 1, 0});
-  cells_.push_back(cell);
+  *cells_.append(1) = cell;
   return true;
 }
 
@@ -318,7 +314,8 @@ void Columns::refine()
     // Finer than what double arithmetic tells apart at the largest coordinate is of no use.
     const bool is_wide = std::max(high[0] - low[0], high[1] - low[1]) * kCellPad * kCellPad > error_;
     some.assign(entries_.begin() + cells_[cell].begin, entries_.begin() + cells_[cell].end);
-    if (!has_room || !is_wide || !makeGrid(low, high, some, shadowsWithin(low, high, some), true)) {
+    const Range range{some.data(), some.data() + some.size()};
+    if (!has_room || !is_wide || !makeGrid(low, high, range, shadowsWithin(low, high, range), true)) {
       if (count > kTooCrowded) cells_[cell] = inStrips(cells_[cell].begin, count);
       continue;
     }
@@ -373,8 +370,8 @@ std::size_t Columns::bytes() const noexcept
 {
   std::size_t strips = stripped_.capacity() * sizeof(Stripped);
   for (const Stripped& of : stripped_) strips += of.strips.bytes();
-  return strips + boxes_.capacity() * sizeof(Box) + grids_.capacity() * sizeof(Grid) +
-         cells_.capacity() * sizeof(Cell) + entries_.capacity() * sizeof(std::uint32_t) + cubes_.bytes();
+  return strips + boxes_.bytes() + grids_.capacity() * sizeof(Grid) + cells_.bytes() + entries_.bytes() +
+         cubes_.bytes();
 }
 
 } // namespace pcl_bsh

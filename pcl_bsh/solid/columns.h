@@ -6,6 +6,7 @@
 // that tells where the surface surely is not.
 #pragma once
 
+#include <pcl_bsh/base/large_array.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/solid/cubes.h>
@@ -54,6 +55,7 @@ public:
     const std::uint32_t *first, *last;
     const std::uint32_t* begin() const noexcept { return first; }
     const std::uint32_t* end() const noexcept { return last; }
+    std::size_t size() const noexcept { return static_cast<std::size_t>(last - first); }
   };
 
   /// All triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps others.
@@ -96,14 +98,13 @@ private:
   };
 
   struct Shadows;
-  Shadows shadowsWithin(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles) const;
-  bool makeGrid(const Point3& low, const Point3& high, const std::vector<std::uint32_t>& triangles,
-                const Shadows& shadows, bool finer);
+  Shadows shadowsWithin(const Point3& low, const Point3& high, const Range& triangles) const;
+  bool makeGrid(const Point3& low, const Point3& high, const Range& triangles, const Shadows& shadows, bool finer);
   template <class Visit>
   void forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const;
   void refine();
   Cell inStrips(std::uint32_t begin, std::uint32_t count);
-  bool makeStrips(const std::vector<std::uint32_t>& triangles, double most);
+  bool makeStrips(const Range& triangles, double most);
   void collect(std::uint32_t grid, const Point3& at, double error, std::vector<std::uint32_t>& found) const;
 
   TrianglesView view_;
@@ -111,10 +112,10 @@ private:
   std::array<std::size_t, 3> axes_ = {0, 1, 2};
   double error_ = 0.0;
   Point3 low_, high_; ///< of all triangles, as seen, rounded outward
-  std::vector<Box> boxes_;
+  LargeArray<Box> boxes_;
   std::vector<Grid> grids_;
-  std::vector<Cell> cells_;
-  std::vector<std::uint32_t> entries_;
+  LargeArray<Cell> cells_;
+  LargeArray<std::uint32_t> entries_;
   std::vector<Stripped> stripped_;
   Cubes cubes_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "harness.h"
 
+#include <pcl_bsh/base/retained_memory.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,7 +72,8 @@ double quantile(std::vector<double> values, double fraction)
 
 MemoryPeak::MemoryPeak()
 {
-  malloc_trim(0);                              // what earlier measurements freed must not be lent to this one
+  releaseRetainedMemory(); // what earlier measurements freed must not be lent to this one
+  malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5; // sets the peak back to the present
   before_ = statusBytes("VmRSS");
 }
