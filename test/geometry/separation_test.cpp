@@ -111,7 +111,7 @@ TEST(MovingCorners, AreNoNearerThanIsSaidHoweverFarTheyBeginGoAndBend)
     if (distance == 0.0L) continue;
     Point3 direction;
     for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = static_cast<double>(apart[axis] / distance);
-    const double least = leastApart(direction, moving[0], moving[1], s, s);
+    const double least = MovingPair(moving[0], moving[1]).leastApart(direction, s, s);
     EXPECT_LE(least, distance) << i;
     EXPECT_GE(least, distance - 1e-9L) << i;
   }
@@ -124,7 +124,7 @@ TEST(MovingCorners, AreNoNearerThanTheDirectionSays)
     const MovingCorners a = anyMotion(random), b = anyMotion(random);
     const double begin = random.uniform(0, 0.9), end = random.uniform(begin, 1);
     const Separation middle = separationOf(a.at(0.5 * (begin + end)), b.at(0.5 * (begin + end)));
-    const double least = leastApart(middle.direction, a, b, begin, end);
+    const double least = MovingPair(a, b).leastApart(middle.direction, begin, end);
     for (int k = 0; k <= 20; ++k) {
       const double s = begin + (end - begin) * k / 20;
       ASSERT_LE(least, separationOf(a.at(s), b.at(s)).high) << i << " at " << s;

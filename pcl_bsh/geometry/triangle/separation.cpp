@@ -200,8 +200,9 @@ Separation separationOf(const Corners& a, const Corners& b, const Near& near)
   const Point3 between = apart.place_a - apart.place_b;
   BestDirection best(a, b);
   best.offer(between);
+  const double most = near.length * (1.0 - kFewDoubleRoundings) - near.error; // no direction holds them farther apart
   for (const Corners* corners : {&a, &b}) {
-    if (corners->count < 3) continue;
+    if (corners->count < 3 || best.gap >= most) continue;
     const Triangle3& t = corners->at;
     const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
     best.offer(dot(normal, between) < 0.0 ? -1.0 * normal : normal);
@@ -221,8 +222,7 @@ class ApproachSearch {
 public:
   ApproachSearch(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest,
                  double early_enough)
-  : a_(a),
-    b_(b),
+  : moving_(a, b),
     near_enough_(near_enough),
     resolution_(resolution),
     shortest_(resolution / (speedOf(a) + speedOf(b))),
@@ -234,7 +234,7 @@ public:
   Approach run()
   {
     const Point3 direction = look(0.0, 0.0);
-    if (nearest_ || !found_.contact) find(nearOf(a_.at(1.0), b_.at(1.0)), 1.0);
+    if (nearest_ || !found_.contact) find(nearOf(moving_.a.at(1.0), moving_.b.at(1.0)), 1.0);
     if (matters(direction, 0.0, 1.0)) halve(0.0, 1.0);
     return found_;
   }
@@ -243,7 +243,7 @@ private:
   /// @return the direction along which both are apart at this instant, if something from `begin` on can still matter
   Point3 look(double s, double begin)
   {
-    const Corners a = a_.at(s), b = b_.at(s);
+    const Corners a = moving_.a.at(s), b = moving_.b.at(s);
     const Near near = nearOf(a, b);
     find(near, s);
     return nearest_ || mayBeFirst(begin) ? separationOf(a, b, near).direction : Point3{0, 0, 0};
@@ -268,7 +268,7 @@ private:
   {
     const bool may_be_first = mayBeFirst(begin);
     if (!may_be_first && !nearest_) return false;
-    const double least = leastApart(direction, a_, b_, begin, end);
+    const double least = moving_.leastApart(direction, begin, end);
     if (least > near_enough_ - resolution_) return false; // so that each instant is of one kind or the other
     return may_be_first || least < found_.distance - resolution_;
   }
@@ -283,7 +283,7 @@ private:
     if (matters(direction, middle, end)) halve(middle, end);
   }
 
-  const MovingCorners &a_, &b_;
+  const MovingPair moving_;
   const double near_enough_, resolution_, shortest_;
   const bool nearest_;
   const double early_enough_;
@@ -320,17 +320,27 @@ Corners MovingCorners::at(double s) const
   return corners;
 }
 
-double leastApart(const Point3& direction, const MovingCorners& a, const MovingCorners& b, double begin, double end)
+MovingPair::MovingPair(const MovingCorners& moving_a, const MovingCorners& moving_b) : a(moving_a), b(moving_b)
 {
-  double low_a = kInfinitelyFar, high_b = -kInfinitelyFar, largest = 0.0;
-  for (std::size_t i = 0; i < a.count; ++i) low_a = std::min(low_a, along(direction, a, i).least(begin, end));
-  for (std::size_t j = 0; j < b.count; ++j) high_b = std::max(high_b, -along(-1.0 * direction, b, j).least(begin, end));
+  double largest = 0.0, way_of_b = 0.0;
   for (const MovingCorners* corners : {&a, &b})
     for (std::size_t i = 0; i < corners->count; ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        largest = std::max(largest, std::abs(corners->from[i][axis]) + std::abs(corners->way[i][axis]) +
-                                        std::abs(corners->bow[i][axis]));
-  return low_a - high_b - (kSeparationError * largest + kVanishing);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double way = std::abs(corners->way[i][axis]) + std::abs(corners->bow[i][axis]);
+        largest = std::max(largest, std::abs(corners->from[i][axis]) + way);
+        if (corners == &b) way_of_b = std::max(way_of_b, way);
+      }
+  b_rests_ = way_of_b == 0.0;
+  error_ = kSeparationError * largest + kVanishing;
+}
+
+double MovingPair::leastApart(const Point3& direction, double begin, double end) const
+{
+  double low_a = kInfinitelyFar, high_b = -kInfinitelyFar;
+  for (std::size_t i = 0; i < a.count; ++i) low_a = std::min(low_a, along(direction, a, i).least(begin, end));
+  for (std::size_t j = 0; j < b.count; ++j)
+    high_b = std::max(high_b, b_rests_ ? dot(direction, b.from[j]) : -along(-1.0 * direction, b, j).least(begin, end));
+  return low_a - high_b - error_;
 }
 
 Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough, double resolution, bool nearest,

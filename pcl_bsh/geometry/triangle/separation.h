@@ -46,9 +46,20 @@ struct MovingCorners {
   Corners at(double s) const;
 };
 
-/// No less than this are both apart between two instants, along a direction of length 1; may be negative.
-PCL_BSH_EXPORT_INTERNAL double leastApart(const Point3& direction, const MovingCorners& a, const MovingCorners& b,
-                                          double begin, double end);
+/// Two of them, in one frame and at the same time. Borrowed.
+class PCL_BSH_EXPORT_INTERNAL MovingPair {
+public:
+  MovingPair(const MovingCorners& a, const MovingCorners& b);
+
+  /// No less than this are both apart between two instants, along a direction of length 1; may be negative.
+  double leastApart(const Point3& direction, double begin, double end) const;
+
+  const MovingCorners &a, &b;
+
+private:
+  bool b_rests_;
+  double error_;
+};
 
 /// When two of them come near.
 struct Approach {

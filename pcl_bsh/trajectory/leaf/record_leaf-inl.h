@@ -57,7 +57,8 @@ public:
         if (most < 0.0) continue;
         const double radii = query_.scan.hierarchy().view().ownRadius(pair.a) + query_.model.view().ownRadius(pair.b);
         ++results_.work.leaf_pairs;
-        halve({leaf, motion, courseOf(leaf, i, motion), model, pair, i, radii, least, most},
+        const RecordCourse& course = courseOf(leaf, i, motion);
+        halve({leaf, motion, course, {course.arcs, model}, pair, i, radii, least, most},
               other.is_part ? motion.interval->first : ranges.first[i],
               other.is_part ? motion.interval->last : ranges.last[i]);
       }
@@ -84,7 +85,7 @@ public:
       if (leaf.own[i] < radius) continue;
       const RecordCourse& course = courseOf(leaf, i, motion);
       const Separation apart = separationOf(course.arcs.at(0.5), Corners::of(middle));
-      const double least = leastApart(apart.direction, course.arcs, restingAt(middle), 0.0, 1.0);
+      const double least = MovingPair(course.arcs, restingAt(middle)).leastApart(apart.direction, 0.0, 1.0);
       ++results_.work.node_pairs;
       if (least - radius - motion.stray > seenOf(query_.reach)) met &= ~(1u << i);
     }
@@ -97,7 +98,7 @@ private:
     LeafVisit& leaf;
     const VoxelMotion& motion;
     const RecordCourse& course;
-    const MovingCorners& model;
+    MovingPair moving; ///< the first on its arcs
     PointPair records;
     std::uint32_t i;           ///< of the scan's
     double radii, least, most; ///< their own; distances up to `least` collide, above `most` they do not
@@ -143,7 +144,7 @@ private:
     if (isSettled(pair, first, last)) return;
     const std::uint32_t middle = first + (last - first) / 2;
     ++results_.work.node_pairs;
-    const Separation apart = separationOf(pair.course.seenAt(query_.path.poses[middle]), pair.model.at(0.0));
+    const Separation apart = separationOf(pair.course.seenAt(query_.path.poses[middle]), pair.moving.b.at(0.0));
     if (apart.low <= seenOf(pair.most)) look(pair, middle, apart);
     if (middle > first && mayMatter(pair, apart.direction, first, middle - 1)) halve(pair, first, middle - 1);
     if (middle < last && mayMatter(pair, apart.direction, middle + 1, last)) halve(pair, middle + 1, last);
@@ -152,8 +153,7 @@ private:
   bool mayMatter(const Pair& pair, const Point3& direction, std::uint32_t first, std::uint32_t last) const
   {
     const double begin = pair.motion.interval->first, steps = pair.motion.interval->last - begin;
-    const double least =
-        leastApart(direction, pair.course.arcs, pair.model, (first - begin) / steps, (last - begin) / steps);
+    const double least = pair.moving.leastApart(direction, (first - begin) / steps, (last - begin) / steps);
     return least - pair.motion.stray <= seenOf(mattering(pair, first));
   }
 
