@@ -232,7 +232,7 @@ private:
       const std::uint32_t asked = isThin(visit, obstacle, held) ? 1 : leaf.count;
       boundByTriangles(visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
                        [&](std::uint32_t j) -> const FlatRecord& {
-                         return scratch_.flat.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
+                         return scratch_.flat.of(b_.storage.view, leaf, j);
                        });
       found.work.node_pairs += asked;
     }

@@ -64,7 +64,7 @@ public:
         for (std::size_t i = 0; i < leaf_.lanes; i += hn::Lanes(d))
           any = any || !hn::AllTrue(d, isBeyond(hn::Load(d, squared + i), hn::Load(d, reach + i), radius));
         if (!any) continue;
-        const FlatRecord& triangle = flat_.of(leaf_.view_b, obstacle.voxel->frame, other.record(j));
+        const FlatRecord& triangle = flat_.of(leaf_.view_b, other, j);
         MaybeNearest& entry = maybe_.emplace_back();
         entry.obstacle = candidate.sphere.obstacle;
         entry.point = other.begin + j;

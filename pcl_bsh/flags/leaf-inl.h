@@ -208,7 +208,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
         near &= ~(lanesBeyond(hn::Load(d, squared + i), hn::Add(hn::Set(d, within[j]), hn::Load(d, radii + i))) << i);
       if (near == 0) continue;
       const std::uint32_t record = other.record(j);
-      const FlatRecord& triangle = flat.of(view, obstacle.voxel->frame, record);
+      const FlatRecord& triangle = flat.of(view, other, j);
       squaredToTriangle(triangle.flat, points.x, points.y, points.z, kLeafPoints, squared);
       if (compare(record, triangle, squared, near)) return;
     }

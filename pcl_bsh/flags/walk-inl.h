@@ -173,9 +173,7 @@ private:
                    const float* r, std::uint32_t lanes, float sure_reach)
   {
     return trianglesNear(x, y, z, r, lanes, obstacle.frame, obstacle.reach, sure_reach, leaf.count,
-                         [&](std::uint32_t j) -> const FlatRecord& {
-                           return flat_.of(b_.storage.view, obstacle.voxel->frame, leaf.record(j));
-                         });
+                         [&](std::uint32_t j) -> const FlatRecord& { return flat_.of(b_.storage.view, leaf, j); });
   }
 
   /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
@@ -285,7 +283,9 @@ private:
         radius,         reach_};
     std::uint32_t apart = is_blunt ? separation_.asGiven(facing, near) : 0;
     if (has_large_leaf) apart |= separation_.byLeafPoints(facing, near & ~apart);
-    if (of_triangles) apart |= separation_.byTriangles(facing, near & ~apart & visit.leaves);
+    if (of_triangles)
+      apart |=
+          separation_.byTriangles(facing, near & ~apart & visit.leaves, [this]() -> FlatRecords& { return flat_; });
     if (!may_be_far || (near & ~apart) == 0) return apart;
     alignas(32) float gap[kLanes];
     spheresNear(children, {center.x, center.y, center.z, 0.0f, 0.0f}, gap);

@@ -73,6 +73,8 @@ public:
     return !(surely_near > 0.0f && squared < surely_near * surely_near);
   }
 
+  double unit() const noexcept { return unit_b_; } ///< b's, in the clouds' unit
+
   /// Bounds | |z| - |w| | / |w|, how far the poses are from rigid.
   double skew() const noexcept { return skew_; }
 

@@ -63,7 +63,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
     const std::uint32_t block = firstBits(hn::Lanes(d)) << i;
     if ((lanes & block) == 0) continue;
     LaneVector x[3], y[3], z[3];
-    LaneVector farthest = zero, low_z = zero, high_z = zero;
+    LaneVector farthest = zero;
     for (std::size_t k = 0; k < 3; ++k) {
       const LeafPoints& corner = leaf.corners[k];
       x[k] = hn::Sub(hn::Load(d, corner.x + i), spread(triangle.origin[0]));
@@ -87,34 +87,43 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
     const auto lowest = [&](LaneVector u, LaneVector v, LaneVector w)
                             HWY_ATTR { return hn::Min(hn::Min(dot(u, v, w, 0), dot(u, v, w, 1)), dot(u, v, w, 2)); };
 
-    // From the flat triangle to each corner, and across it.
+    // Across the flat triangle: that tells of most.
+    LaneVector on_z[3];
+    for (std::size_t k = 0; k < 3; ++k) on_z[k] = dot(spread(rows[6]), spread(rows[7]), spread(rows[8]), k);
+    consider(hn::Max(hn::Min(hn::Min(on_z[0], on_z[1]), on_z[2]), hn::Neg(hn::Max(hn::Max(on_z[0], on_z[1]), on_z[2]))),
+             spread(1.0f));
+    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
+    const auto bitsIn = [&](auto mask) HWY_ATTR { return bitsOf(d, mask) << i & block; };
+    std::uint32_t open = lanes & block & ~bitsIn(hn::And(apart, in_range));
+    if (open == 0) {
+      found.apart |= block;
+      continue;
+    }
+
+    // From it to each corner.
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = [&](std::size_t r) HWY_ATTR {
         return dot(spread(rows[3 * r]), spread(rows[3 * r + 1]), spread(rows[3 * r + 2]), k);
       };
-      const LaneVector on_x = row(0), on_y = row(1), on_z = row(2);
-      low_z = k == 0 ? on_z : hn::Min(low_z, on_z);
-      high_z = k == 0 ? on_z : hn::Max(high_z, on_z);
       LaneVector best = spread(std::numeric_limits<float>::infinity()), best_x = zero, best_y = zero;
-      beyondPlaces(triangle, spread, on_x, on_y, [&](LaneVector dx, LaneVector dy) HWY_ATTR {
+      beyondPlaces(triangle, spread, row(0), row(1), [&](LaneVector dx, LaneVector dy) HWY_ATTR {
         const LaneVector square = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
         const auto better = hn::Lt(square, best);
         best = hn::Min(best, square);
         best_x = hn::IfThenElse(better, dx, best_x);
         best_y = hn::IfThenElse(better, dy, best_y);
       });
-      const LaneVector square = hn::Add(best, hn::Mul(on_z, on_z));
+      const LaneVector square = hn::Add(best, hn::Mul(on_z[k], on_z[k]));
       within = hn::Or(within, hn::Le(square, spread(sure_square)));
       const auto back = [&](std::size_t axis) HWY_ATTR {
-        return turned(spread(rows[axis]), spread(rows[3 + axis]), spread(rows[6 + axis]), best_x, best_y, on_z);
+        return turned(spread(rows[axis]), spread(rows[3 + axis]), spread(rows[6 + axis]), best_x, best_y, on_z[k]);
       };
       const LaneVector far_side =
           hn::Max(hn::Max(zero, hn::Mul(best_x, length)), hn::Add(hn::Mul(best_x, apex_x), hn::Mul(best_y, apex_y)));
       consider(hn::Sub(lowest(back(0), back(1), back(2)), far_side), square);
     }
-    consider(hn::Max(low_z, hn::Neg(high_z)), spread(1.0f));
 
-    const std::uint32_t open = lanes & block & ~(bitsOf(d, apart) << i) & ~(bitsOf(d, within) << i);
+    open &= ~bitsIn(apart) & ~bitsIn(within);
     if (open != 0) {
       const auto considerBoth = [&](LaneVector ux, LaneVector uy, LaneVector uz) HWY_ATTR { // ways along it
         const LaneVector on_x = turned(spread(rows[0]), spread(rows[1]), spread(rows[2]), ux, uy, uz),
@@ -135,7 +144,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
       const LaneVector ux = hn::Sub(x[1], x[0]), uy = hn::Sub(y[1], y[0]), uz = hn::Sub(z[1], z[0]);
       const LaneVector vx = hn::Sub(x[2], x[0]), vy = hn::Sub(y[2], y[0]), vz = hn::Sub(z[2], z[0]);
       considerAcross(ux, uy, uz, vx, vy, vz);
-      if ((open & ~(bitsOf(d, apart) << i)) != 0) {
+      if ((open & ~bitsIn(apart)) != 0) {
         const LaneVector wx = hn::Sub(x[2], x[1]), wy = hn::Sub(y[2], y[1]), wz = hn::Sub(z[2], z[1]);
         const LaneVector u = squaredNorm(ux, uy, uz), v = squaredNorm(vx, vy, vz), w = squaredNorm(wx, wy, wz);
         const auto longest = [&](LaneVector of_u, LaneVector of_v, LaneVector of_w) HWY_ATTR {
@@ -145,9 +154,8 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
                        longest(uz, vz, wz));
       }
     }
-    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
-    found.apart |= bitsOf(d, hn::And(apart, in_range)) << i & block;
-    found.within |= bitsOf(d, within) << i & block;
+    found.apart |= bitsIn(hn::And(apart, in_range));
+    found.within |= bitsIn(within);
   }
   found.apart &= lanes;
   found.within &= lanes;

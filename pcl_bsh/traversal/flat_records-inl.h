@@ -59,7 +59,7 @@ struct FlatRecord {
   }
 };
 
-/// Those of one cloud that were asked for of late.
+/// Those of one cloud that were asked for of late, in the order of its leaves, so that those of a leaf lie together.
 class FlatRecords {
 public:
   /// Before a walk: forgets those of another cloud.
@@ -67,16 +67,16 @@ public:
   {
     if (!cloud.view.triangles || cloud.revision == revision_) return;
     slots_.assign(std::bit_ceil(std::clamp<std::size_t>(cloud.size, 2, kMostSlots)), FlatRecord());
-    shift_ = 32 - std::countr_zero(slots_.size());
     revision_ = cloud.revision;
   }
 
-  /// @param frame of the voxel that holds the record. Valid until the next call
-  const FlatRecord& of(const PointsView& view, const LocalFrame& frame, std::uint32_t record)
+  /// Record i of a leaf. Valid until the next call
+  const FlatRecord& of(const PointsView& view, const LeafRange& leaf, std::uint32_t i)
   {
-    FlatRecord& slot = slots_[record * 0x9e3779b1u >> shift_];
+    const std::uint32_t record = leaf.record(i);
+    FlatRecord& slot = slots_[(leaf.voxel->begin + leaf.begin + i) & (slots_.size() - 1)];
     if (slot.record == record) return slot;
-    return slot = FlatRecord::of(frame, record, view.triangles->triangle(record));
+    return slot = FlatRecord::of(leaf.voxel->frame, record, view.triangles->triangle(record));
   }
 
   std::size_t bytes() const noexcept { return slots_.capacity() * sizeof(FlatRecord); }
@@ -85,7 +85,6 @@ private:
   static constexpr std::size_t kMostSlots = 1u << 14;
 
   std::vector<FlatRecord> slots_; ///< a power of two of them
-  int shift_ = 0;                 ///< of a hash, to its slot
   std::uint64_t revision_ = 0;    ///< of the cloud; none has 0
 };
 
@@ -101,13 +100,14 @@ struct CarriedTriangles {
   void carry(const PointsView& view, const LeafRange& of_a, const RelativeFrame& frame)
   {
     const LocalFrame& from = of_a.voxel->frame;
+    const double inverse = 1.0 / from.unit;
     double reach = 0.0;
     LeafPoints stored[3];
     for (std::uint32_t i = 0; i < of_a.count; ++i) {
       const Triangle3 corners = view.triangles->triangle(of_a.record(i));
       for (std::size_t k = 0; k < 3; ++k) {
-        const double x = (corners[k][0] - from.origin[0]) / from.unit, y = (corners[k][1] - from.origin[1]) / from.unit,
-                     z = (corners[k][2] - from.origin[2]) / from.unit;
+        const double x = (corners[k][0] - from.origin[0]) * inverse, y = (corners[k][1] - from.origin[1]) * inverse,
+                     z = (corners[k][2] - from.origin[2]) * inverse;
         reach = std::max(reach, std::abs(x) + std::abs(y) + std::abs(z));
         stored[k].x[i] = roundToFloat(x), stored[k].y[i] = roundToFloat(y), stored[k].z[i] = roundToFloat(z);
       }
@@ -145,7 +145,7 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
       const Point3 at = view_b.point(record);
       point_of_b = FlatRecord::of(frame_b, record, {at, at, at});
     }
-    const FlatRecord& triangle = view_b.triangles ? flat.of(view_b, frame_b, record) : point_of_b;
+    const FlatRecord& triangle = view_b.triangles ? flat.of(view_b, leaves.b, j) : point_of_b;
     const double of_points =
         (view_a.triangles ? 0.0 : largest) + (view_b.triangles ? 0.0 : leaves.b.radius(j)); // beside what is measured
     const double within = reach() + of_points;

@@ -151,6 +151,7 @@ public:
     /// @param length in the clouds' unit; may be below 0
     std::uint32_t inside(double length) const
     {
+      if (!(length > 0.0)) return 0;
       const float most = frame->acceptReach(length) - radius * (1.0f + kSphereMargin);
       return spheresInside(children, {center.x, center.y, center.z, 0.0f, most}) & firstBits(count);
     }
@@ -494,7 +495,7 @@ private:
         out.near &= ~separation_.byExtent(facing, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
     }
     if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
-      out.near &= ~separation_.byTriangles(facing, out.near);
+      out.near &= ~separation_.byTriangles(facing, out.near, [this]() -> FlatRecords& { return flat(); });
   }
 
   /// Whether the other side of a pair is a leaf much larger than what was opened, and none of its points is near that.

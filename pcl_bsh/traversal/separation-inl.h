@@ -128,23 +128,22 @@ public:
   }
 
   /// Of leaves of triangles with balls larger than the other node: by the triangles.
-  HWY_NOINLINE std::uint32_t byTriangles(const Facing& facing, std::uint32_t near) const
+  /// @param flat b's triangles laid flat: returns FlatRecords&, called where they are needed
+  template <class Flat>
+  HWY_NOINLINE std::uint32_t byTriangles(const Facing& facing, std::uint32_t near, const Flat& flat) const
   {
-    const bool leaf_is_other = others(facing).storage.view.triangles && facing.otherIsLeaf();
-    const bool leaf_is_own = owners(facing).storage.view.triangles != nullptr;
     std::uint32_t apart = 0;
-    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
+    if (others(facing).storage.view.triangles && facing.otherIsLeaf())
+      apart =
+          apartFromTriangles(facing.otherLeaf(), !facing.of_a, facing.frame, facing.spheres, near, facing.reach, flat);
+    if (!owners(facing).storage.view.triangles) return apart;
+    alignas(32) float x[kLanes] = {facing.center.x}, y[kLanes] = {facing.center.y}, z[kLanes] = {facing.center.z},
+                      r[kLanes] = {facing.radius};
+    for (std::uint32_t bits = near & ~apart; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      bool is_apart =
-          leaf_is_other &&
-          areTrianglesApart(facing.otherLeaf(), !facing.of_a,
-                            storedSphere(frameOf(owners(facing), facing.voxel), facing.node, lane), facing.reach);
-      if (!is_apart && leaf_is_own && facing.isLeaf(lane))
-        is_apart = areTrianglesApart(
-            facing.leaf(lane), facing.of_a,
-            storedSphere(frameOf(others(facing), facing.other_voxel), facing.other_node, facing.other_lane),
-            facing.reach);
-      if (is_apart) apart |= 1u << lane;
+      if (facing.isLeaf(lane) && apartFromTriangles(facing.leaf(lane), facing.of_a, facing.frame, {x, y, z, r, 1.0f}, 1,
+                                                    facing.reach, flat) != 0)
+        apart |= 1u << lane;
     }
     return apart;
   }
@@ -164,24 +163,42 @@ public:
   }
 
 private:
-  static const LocalFrame& frameOf(const Spaces& side, const Voxel* voxel)
+  /// Those of some spheres of the other cloud that none of a leaf's triangles is near to, of those that are smaller
+  /// than its largest ball.
+  template <class Flat>
+  std::uint32_t apartFromTriangles(const LeafRange& leaf, bool leaf_is_a, const RelativeFrame& frame,
+                                   const SphereLanes& spheres, std::uint32_t lanes, double reach,
+                                   const Flat& flat) const
   {
-    return voxel ? voxel->frame : side.storage.frame;
-  }
-
-  /// Whether none of a leaf's triangles is near a sphere of the other cloud, which is smaller than their largest ball.
-  bool areTrianglesApart(const LeafRange& leaf, bool leaf_is_a, const GivenSphere& sphere, double reach) const
-  {
-    if (!(leaf.largestRadius() > kLargeBall * sphere.radius)) return false;
-    const double within = (sphere.radius * (1.0 + kPoseStretch) + reach) * (1.0 + kDoubleMargin);
-    for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t record = leaf.record(i);
-      ++work_.node_pairs;
-      const double low =
-          leaf_is_a ? distance_.enclose(record, sphere.center).low : distance_.enclose(sphere.center, record).low;
-      if (!(low > within)) return false;
+    const float within = frame.pruneReach(reach);
+    const auto most = static_cast<float>(leaf.largestRadius() / (kLargeBall * frame.unit()));
+    alignas(32) float r[kLanes] = {};
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      r[lane] = spheres.r[lane] * spheres.stretch;
+      if (!(r[lane] < most)) lanes &= ~(1u << lane);
     }
-    return true;
+    if (lanes == 0) return 0;
+    work_.node_pairs += leaf.count;
+    if (!leaf_is_a)
+      return lanes & ~trianglesNear(spheres.x, spheres.y, spheres.z, r, lanes, frame, within, -1.0f, leaf.count,
+                                    [&, &records = flat()](std::uint32_t j) -> const FlatRecord& {
+                                      return records.of(b_.storage.view, leaf, j);
+                                    })
+                          .near;
+    CarriedTriangles carried;
+    carried.carry(a_.storage.view, leaf, frame);
+    const float error = roundUp(carried.error);
+    const std::uint32_t all = firstBits(leaf.count);
+    std::uint32_t apart = 0;
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      FlatTriangle<float> center; // of no size
+      center.origin[0] = spheres.x[lane], center.origin[1] = spheres.y[lane], center.origin[2] = spheres.z[lane];
+      if (compareWithTriangle(center, carried.leaf, all, r[lane] + within + error, -1.0f).apart == all)
+        apart |= 1u << lane;
+    }
+    return apart;
   }
 
   const Spaces& owners(const Facing& facing) const { return facing.of_a ? a_ : b_; }
