@@ -230,10 +230,9 @@ private:
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
       const std::uint32_t asked = isThin(visit, obstacle, held) ? 1 : leaf.count;
-      boundByTriangles(visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
-                       [&](std::uint32_t j) -> const FlatRecord& {
-                         return scratch_.flat.of(b_.storage.view, leaf, j);
-                       });
+      boundByTriangles(
+          visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
+          [&](std::uint32_t j) -> const FlatRecord& { return scratch_.flat.of(b_.storage.view, leaf, j); });
       found.work.node_pairs += asked;
     }
     if (compares_slabs_) {

@@ -136,27 +136,6 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   return hit;
 }
 
-/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach.
-inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
-                                const LeafPoints& points)
-{
-  if (!(obstacle.sure_reach > 0.0f)) return 0;
-  const std::uint32_t open = visit.open_points[lane];
-  const float surely = obstacle.sure_reach * obstacle.sure_reach * (1.0f - kSphereMargin) - kVanishingSquare;
-  alignas(64) float squared[kLeafPoints];
-  std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
-  std::uint32_t hit = 0;
-  for (const ObstacleSphere& candidate : visit.near[lane]) {
-    const LeafRange other = candidate.leaf(*obstacle.voxel);
-    const std::uint32_t facing = facingPoints(obstacle, visit, lane, other);
-    if (facing == 0) continue;
-    nearestSquared(points, other.x(), other.y(), other.z(), facing, squared);
-    hit = open & atMost(squared, surely);
-    if (hit == open) break;
-  }
-  return hit;
-}
-
 /// Bits of squared distances that are beyond the sum of two radii and a pruneReach(), each rounded once.
 HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
 {
@@ -165,13 +144,51 @@ HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
   return bitsOf(d, hn::Gt(squared, hn::Add(limit, hn::Set(d, kVanishingSquare))));
 }
 
+/// Radii of b's balls, in the obstacle's units, for each of them as stored.
+inline double ballScale(const ObstacleVoxel& obstacle)
+{
+  return static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+}
+
+/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach. What is
+/// left of each candidate goes to visit.asked: the points that a ball of it may be near to. All are, where no point is
+/// looked at, for the clearance is less than rounding. @param radii of a's balls in the obstacle's frame, or zeros
+inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
+                                const LeafPoints& points, const float* radii)
+{
+  const LaneTag d;
+  const std::vector<ObstacleSphere>& candidates = visit.near[lane];
+  const std::uint32_t open = visit.open_points[lane];
+  visit.asked.assign(candidates.size(), open);
+  if (!(obstacle.sure_reach > 0.0f)) return 0;
+  const float surely = obstacle.sure_reach * obstacle.sure_reach * (1.0f - kSphereMargin) - kVanishingSquare;
+  alignas(64) float squared[kLeafPoints];
+  std::uint32_t hit = 0;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const LeafRange other = candidates[c].leaf(*obstacle.voxel);
+    const LaneVector within =
+        hn::Set(d, obstacle.reach + static_cast<float>(other.largestRadius() * ballScale(obstacle)));
+    leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
+    std::uint32_t far = 0;
+    for (std::size_t j = 0; j < kLeafPoints; j += hn::Lanes(d))
+      far |= lanesBeyond(hn::Load(d, squared + j), hn::Add(within, hn::Set(d, visit.r[lane]))) << j;
+    std::fill(std::begin(squared), std::end(squared), std::numeric_limits<float>::infinity());
+    nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count) & ~far, squared);
+    hit |= open & atMost(squared, surely);
+    if (hit == open) break;
+    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+      visit.asked[c] &= ~(lanesBeyond(hn::Load(d, squared + i), hn::Add(within, hn::Load(d, radii + i))) << i);
+  }
+  return hit;
+}
+
 /// Which balls of a leaf of b are not proven to be farther than the reach from all of a child. @param within gets how
 /// far what matters may be from the middle of each
 inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                                  const LeafRange& other, float* within)
 {
   const LaneTag d;
-  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
+  const double stretched = ballScale(obstacle);
   alignas(64) float squared[kLeafPoints];
   leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
   std::fill_n(within, kLeafPoints, 0.0f);
@@ -184,9 +201,9 @@ inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit&
 }
 
 /// Calls compare(record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
-/// points of the leaf, or to their balls, with the distances of the points from the triangle and the bits of those;
-/// until it returns true. @param hit of points that need not be asked for. @param radii of a's balls in the obstacle's
-/// frame, at least; or zeros
+/// points of the leaf, or to their balls, as hitMiddles() left them, with the distances of the points from the triangle
+/// and the bits of those; until it returns true. @param hit of points that need not be asked for. @param radii of a's
+/// balls in the obstacle's frame, at least; or zeros
 template <class FacingOf, class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                       const std::uint32_t& hit, const LeafPoints& points, const float* radii, const PointsView& view,
@@ -194,8 +211,9 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
 {
   const LaneTag d;
   alignas(64) float squared[kLeafPoints], within[kLeafPoints];
-  for (const ObstacleSphere& candidate : visit.near[lane]) {
-    std::uint32_t open = visit.open_points[lane] & ~hit;
+  for (std::size_t c = 0; c < visit.near[lane].size(); ++c) {
+    const ObstacleSphere& candidate = visit.near[lane][c];
+    std::uint32_t open = visit.asked[c] & ~hit;
     if (open != 0) open &= facingOf(candidate);
     if (open == 0) continue;
     ++work.leaf_pairs;
@@ -224,7 +242,7 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
 {
   alignas(64) static constexpr float kNone[kLeafPoints] = {};
   const std::uint32_t open = visit.open_points[lane];
-  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points);
+  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points, kNone);
   if (hit == open) return hit;
   eachTriangleNear(
       obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work, facingOf,
@@ -259,12 +277,11 @@ std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, st
 {
   const LaneTag d;
   const std::uint32_t open = visit.open_points[lane];
-  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points);
-  if (hit == open) return hit;
-  const double stretched = static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
   const double surely = query.surePairs().reach.least - query.a.hierarchy().view().off_middle;
   alignas(64) float radii[kLeafPoints] = {}, limits[kLeafPoints];
-  for (std::uint32_t i = 0; i < leaf.count; ++i) radii[i] = roundUp(leaf.radius(i) * stretched);
+  for (std::uint32_t i = 0; i < leaf.count; ++i) radii[i] = roundUp(leaf.radius(i) * ballScale(obstacle));
+  std::uint32_t hit = hitMiddles(obstacle, visit, lane, points, radii);
+  if (hit == open) return hit;
   struct Doubtful {
     std::uint32_t record, near;
   };

@@ -60,6 +60,7 @@ struct FlagVisit {
   QueryBall ball;                           ///< likewise, in the obstacle voxel's frame
   std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
 
+  std::vector<std::uint32_t> asked; ///< of each of near[lane], bits of points, while a leaf is compared with triangles
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
   std::uint32_t perhaps[kLanes] = {};     ///< likewise, of the points that may collide, but were not found to
   std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; what is open is if they do
@@ -143,8 +144,10 @@ struct FlagScratch {
     std::size_t sum = visits.size() * sizeof(FlagVisit) + obstacles.capacity() * sizeof(ObstacleVoxel) +
                       spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t) +
                       uncertain.capacity() * sizeof(UncertainReach) + flat.bytes();
-    for (const FlagVisit& visit : visits)
+    for (const FlagVisit& visit : visits) {
       for (const auto& list : visit.near) sum += list.capacity() * sizeof(ObstacleSphere);
+      sum += visit.asked.capacity() * sizeof(std::uint32_t);
+    }
     return sum;
   }
 };

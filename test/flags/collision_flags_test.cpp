@@ -171,8 +171,8 @@ TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
   EXPECT_LT(hits, all - all / 5);
 }
 
-/// The middle of some triangle is near each point: no triangle is compared.
-TEST(CollisionFlags, MiddlesOfTrianglesSettleThePointsOfLeaves)
+/// Of points between two heights above a floor of small triangles, whose balls have a radius of 0.028.
+FlagsResult flagsAboveFloor(double low, double high, double clearance)
 {
   Random random(52);
   constexpr std::uint32_t side = 100;
@@ -184,13 +184,27 @@ TEST(CollisionFlags, MiddlesOfTrianglesSettleThePointsOfLeaves)
       mesh.add({x, y, 0}, {x + edge, y, 0}, {x, y + edge, 0});
     }
   std::vector<Point3> points(300);
-  for (Point3& p : points) p = {random.uniform(0.1, 3.9), random.uniform(0.1, 3.9), 0.05};
+  for (Point3& p : points) p = {random.uniform(0.1, 3.9), random.uniform(0.1, 3.9), random.uniform(low, high)};
   Cloud floor(mesh.vertices);
   floor.setTriangles(mesh.corners);
   const Cloud cloud(points);
   const SphereHierarchy a(cloud.view()), b(floor.view());
-  const FlagsResult found = collisionFlags({a}, {b}, within(0.1));
-  EXPECT_EQ(found.colliding_a, points.size());
+  return collisionFlags({a}, {b}, within(clearance));
+}
+
+/// The middle of some triangle is near each point: no triangle is compared.
+TEST(CollisionFlags, MiddlesOfTrianglesSettleThePointsOfLeaves)
+{
+  const FlagsResult found = flagsAboveFloor(0.05, 0.05, 0.1);
+  EXPECT_EQ(found.colliding_a, 300u);
+  EXPECT_EQ(found.work.leaf_pairs, 0u);
+}
+
+/// Leaves reach down to the floor, but the middle of no triangle is as near to a point as its ball might matter.
+TEST(CollisionFlags, MiddlesOfTrianglesSparePointsThatNoBallReaches)
+{
+  const FlagsResult found = flagsAboveFloor(0.14, 0.6, 0.1);
+  EXPECT_EQ(found.colliding_a, 0u);
   EXPECT_EQ(found.work.leaf_pairs, 0u);
 }
 
