@@ -152,7 +152,8 @@ inline double ballScale(const ObstacleVoxel& obstacle)
 
 /// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach. What is
 /// left of each candidate goes to visit.asked: the points that a ball of it may be near to. All are, where no point is
-/// looked at, for the clearance is less than rounding. @param radii of a's balls in the obstacle's frame, or zeros
+/// looked at, for the clearance is less than rounding, and where balls are larger than the reach, for they are near to
+/// most. @param radii of a's balls in the obstacle's frame, or zeros
 inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                                 const LeafPoints& points, const float* radii)
 {
@@ -166,8 +167,9 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit,
   std::uint32_t hit = 0;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const LeafRange other = candidates[c].leaf(*obstacle.voxel);
-    const LaneVector within =
-        hn::Set(d, obstacle.reach + static_cast<float>(other.largestRadius() * ballScale(obstacle)));
+    const auto largest = static_cast<float>(other.largestRadius() * ballScale(obstacle));
+    const bool are_small = largest <= obstacle.reach;
+    const LaneVector within = hn::Set(d, obstacle.reach + (are_small ? largest : 0.0f));
     leafSquaredDistances(other.x(), other.y(), other.z(), visit.x[lane], visit.y[lane], visit.z[lane], squared);
     std::uint32_t far = 0;
     for (std::size_t j = 0; j < kLeafPoints; j += hn::Lanes(d))
@@ -176,7 +178,7 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit,
     nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count) & ~far, squared);
     hit |= open & atMost(squared, surely);
     if (hit == open) break;
-    for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
+    for (std::size_t i = 0; i < kLeafPoints && are_small; i += hn::Lanes(d))
       visit.asked[c] &= ~(lanesBeyond(hn::Load(d, squared + i), hn::Add(within, hn::Load(d, radii + i))) << i);
   }
   return hit;
