@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kernels over lanes, one lane at a time in double arithmetic: what they leave out is out of reach, and little else is.
+#include <pcl_bsh/geometry/triangle/flat_triangle.h>
+#include <pcl_bsh/geometry/triangle/separation.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+
 #include "support/attack.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +20,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <pcl_bsh/simd/crossed_lanes-inl.h>
 #include <pcl_bsh/simd/point_lanes-inl.h>
 #include <pcl_bsh/simd/rank_sort-inl.h>
 #include <pcl_bsh/simd/segment_lanes-inl.h>
+#include <pcl_bsh/simd/triangle_pair_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -219,6 +225,121 @@ std::string wrongNearestTwo(Random& random)
   return "";
 }
 
+/// What is in eight spheres and in two slabs each, beside one such, and a leaf's points beside that one.
+std::string wrongCrossedSlabs(Random& random)
+{
+  using Vector = Eigen::Vector3d;
+  const Spheres spheres(random);
+  alignas(32) float normals[3][kLanes], crosses[3][kLanes], h[kLanes], cross_h[kLanes];
+  const auto takeAxes = [&random](Vector& normal, Vector& cross) {
+    const Eigen::Matrix3d axes = random.rotation().toRotationMatrix();
+    normal = axes.col(0).cast<float>().cast<double>(), cross = axes.col(1).cast<float>().cast<double>();
+  };
+  Vector normal[kLanes + 1], cross[kLanes + 1]; // the last is the other's
+  for (std::size_t i = 0; i <= kLanes; ++i) takeAxes(normal[i], cross[i]);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      normals[k][i] = static_cast<float>(normal[i][axis]), crosses[k][i] = static_cast<float>(cross[i][axis]);
+    }
+    h[i] = anyFloat(random, 0, 1), cross_h[i] = anyFloat(random, 0, 1);
+  }
+  const Vector &n = normal[kLanes], &c = cross[kLanes];
+  const auto pointOf = [](const Vector& v) { return Point{float(v[0]), float(v[1]), float(v[2])}; };
+  const Vector center = Vector(anyFloat(random, -4, 4), anyFloat(random, -4, 4), anyFloat(random, -4, 4));
+  const CrossedSlabs other{
+      pointOf(n), pointOf(c), anyFloat(random, 0, 1), anyFloat(random, 0, 1), pointOf(center), anyFloat(random, 0, 4)};
+  const float reach = anyFloat(random, 0, 3);
+  const std::uint32_t apart = crossedSlabsApart(spheres.lanes(), {normals[0], normals[1], normals[2], h},
+                                                {crosses[0], crosses[1], crosses[2], cross_h}, other, reach);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const auto support = [](const Vector& u, const Vector& along, const Vector& across, float of_n, float of_c,
+                            double radius) {
+      const double on_n = u.dot(along), on_c = u.dot(across);
+      return std::abs(on_n) * of_n + std::abs(on_c) * of_c + (u - on_n * along - on_c * across).norm() * radius;
+    };
+    const Vector between = Vector(spheres.x[i], spheres.y[i], spheres.z[i]) - center;
+    const Vector longest = normal[i].cross(cross[i]).cross(n.cross(c));
+    double gap = -std::numeric_limits<double>::infinity();
+    for (const Vector& u : {n, c, normal[i], cross[i], longest.normalized().eval()})
+      gap =
+          std::max(gap, std::abs(u.dot(between)) -
+                            support(u, normal[i], cross[i], h[i], cross_h[i], double{spheres.r[i]} * spheres.stretch) -
+                            support(u, n, c, other.h, other.cross_h, other.radius));
+    if (std::abs(gap - reach) > 1e-3 && (apart >> i & 1) != (gap > reach ? 1u : 0u)) return "crossed slabs";
+  }
+  alignas(64) float x[kLeafPoints], y[kLeafPoints], z[kLeafPoints];
+  for (float* const axis : {x, y, z})
+    for (std::size_t i = 0; i < kLeafPoints; ++i) axis[i] = anyFloat(random, -4, 4);
+  const std::uint32_t near = pointsNearSlabs(x, y, z, kLeafPoints, other, reach);
+  for (std::size_t i = 0; i < kLeafPoints; ++i) {
+    const Vector way = Vector(x[i], y[i], z[i]) - center;
+    const double distance =
+        std::hypot(std::max(std::abs(n.dot(way)) - other.h, 0.0), std::max(std::abs(c.dot(way)) - other.cross_h, 0.0));
+    if (std::abs(distance - reach) > 1e-3 && (near >> i & 1) != (distance < reach ? 1u : 0u))
+      return "points near slabs";
+  }
+  return "";
+}
+
+/// Sixteen triangles and one: which are surely apart along a direction that is tried, and which have a corner within.
+std::string wrongTrianglePairs(Random& random)
+{
+  const auto any = [&random](double low, double high) { return static_cast<double>(anyFloat(random, low, high)); };
+  const auto longestOf = [](const Triangle3& t) {
+    Point3 longest = {0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const Point3 side = t[(k + 1) % 3] - t[k]; dot(side, side) > dot(longest, longest)) longest = side;
+    return longest;
+  };
+  const auto normalOf = [](const Triangle3& t) { return cross(t[1] - t[0], t[2] - t[0]); };
+  Triangle3 laid;
+  for (Point3& corner : laid) corner = random.point([&] { return any(-1, 1); });
+  Triangle3 others[kLeafPoints];
+  LeafCorners leaf;
+  const std::uint32_t out_of_range = 1u << random.integer(0, 31);
+  for (std::size_t i = 0; i < kLeafPoints; ++i) {
+    const double far = (out_of_range >> i & 1) != 0 ? 0x1p44 : 1.0;
+    const Point3 middle = far * random.point([&] { return any(-3, 3); });
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point3 p = middle + random.point([&] { return any(-1, 1); });
+      leaf.corners[k].x[i] = static_cast<float>(p[0]);
+      leaf.corners[k].y[i] = static_cast<float>(p[1]);
+      leaf.corners[k].z[i] = static_cast<float>(p[2]);
+      others[i][k] = {double{leaf.corners[k].x[i]}, double{leaf.corners[k].y[i]}, double{leaf.corners[k].z[i]}};
+    }
+  }
+  const float reach = anyFloat(random, 0, 2);
+  constexpr std::uint32_t some[] = {0xffff, 0x00ff, 0xff00, 0x1248};
+  const std::uint32_t lanes = random.pick(some);
+  const LanesVerdict found = compareWithTriangle(flatten<float>(laid), leaf, lanes, reach, reach * reach);
+  if (((found.apart | found.within) & ~lanes) != 0) return "triangles nobody asks for";
+  if ((found.apart & out_of_range) != 0) return "triangles out of range";
+  for (std::size_t i = 0; i < kLeafPoints; ++i) {
+    if ((lanes & ~out_of_range & 1u << i) == 0) continue;
+    double of_corners = std::numeric_limits<double>::infinity(), gap = -of_corners;
+    const auto tell = [&](const Point3& u) {
+      double low[2], high[2];
+      for (const Triangle3* t : {&laid, &others[i]}) {
+        const auto [least, most] = std::minmax({dot(u, (*t)[0]), dot(u, (*t)[1]), dot(u, (*t)[2])});
+        low[t != &laid] = least, high[t != &laid] = most;
+      }
+      gap = std::max(gap, std::max(low[0] - high[1], low[1] - high[0]) / std::sqrt(dot(u, u)));
+    };
+    for (const Point3& corner : others[i]) {
+      const Separation of_corner = separationOf(Corners::of(corner), Corners::of(laid));
+      of_corners = std::min(of_corners, of_corner.high);
+      tell(of_corner.place_a - of_corner.place_b);
+    }
+    for (const Point3& u : {normalOf(laid), normalOf(others[i]), cross(longestOf(laid), longestOf(others[i]))}) tell(u);
+    if ((found.apart >> i & 1) != 0 ? separationOf(Corners::of(laid), Corners::of(others[i])).high < reach
+                                    : gap > reach + 1e-4)
+      return "triangles apart";
+    if ((found.within >> i & 1) != 0 ? of_corners > reach + 1e-4 : of_corners < reach - 1e-4) return "triangles within";
+  }
+  return "";
+}
+
 std::string wrongExtremes(Random& random)
 {
   std::vector<float> values(static_cast<std::size_t>(random.integer(1, 40)));
@@ -234,6 +355,9 @@ std::string wrongLanesOnTarget()
   for (int i = 0; i < 3000; ++i)
     for (const auto& look : {wrongSmallestLanes, wrongSorting, wrongSpheres, wrongBoxes, wrongNearestTwo<false>,
                              wrongNearestTwo<true>, wrongExtremes})
+      if (const std::string wrong = look(random); !wrong.empty()) return wrong;
+  for (int i = 0; i < 500; ++i)
+    for (const auto& look : {wrongCrossedSlabs, wrongTrianglePairs})
       if (const std::string wrong = look(random); !wrong.empty()) return wrong;
   return "none";
 }
