@@ -3,12 +3,14 @@
 #include <pcl_bsh/solid/columns.h>
 
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
+#include <pcl_bsh/solid/cells_along.h>
 
 #include "meshes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace pcl_bsh {
@@ -166,6 +168,26 @@ TEST(Columns, AreClearAwayFromTheSurface)
 {
   EXPECT_GT(look(test::bumpyMesh(24, 0.2), 0.0, 5).clear, 0.99);
   EXPECT_GT(look(test::boxMesh(), 0.0, 6).clear, 0.99);
+}
+
+/// A place may be off by as much as triangles are put into cells that they miss.
+TEST(Columns, ListWhatIsHardlyBeyondARow)
+{
+  std::vector<std::uint32_t> several;
+  for (int power = 1; power < 25; ++power) { // what the grid may have
+    const double rows = std::ceil(std::pow(1.2, power)), pad = kCellPad / rows;
+    for (double row = 1; row < rows; ++row)
+      for (const double side : {-pad, pad}) {
+        const double y = row / rows;
+        test::ClosedMesh mesh;
+        mesh.triangle(mesh.vertex(0, 0, 0), mesh.vertex(1, 0, 0), mesh.vertex(1, 1, 0));
+        mesh.triangle(mesh.vertex(0, y + 0.4 * side, 0), mesh.vertex(1, y + 0.4 * side, 0),
+                      mesh.vertex(0.5, y + 0.6 * side, 0));
+        const Columns columns(mesh.view());
+        const Columns::Range listed = columns.above(columns.seen({0.47, y - 0.2 * side, -1}), 0.9 * pad, several);
+        ASSERT_NE(std::find(listed.begin(), listed.end(), 1u), listed.end()) << row << " of " << rows;
+      }
+  }
 }
 
 } // namespace
