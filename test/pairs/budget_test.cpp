@@ -136,6 +136,28 @@ TEST(Budget, BothSidesShareIt)
   EXPECT_EQ(timed.colliding_b, exact.colliding_b);
 }
 
+/// It is the gap that counts, not how far middles are apart.
+TEST(Budget, DecidesBallsByTheirGap)
+{
+  Random random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Point3> points(80);
+    std::vector<float> radii(points.size());
+    for (Point3& p : points) p = random.point([&] { return random.uniform(-1, 1); });
+    for (float& radius : radii) radius = static_cast<float>(random.uniform(0.1, 0.4));
+    const Cloud cloud(points, {Scalar::float64, 0, 0});
+    PointsView view = cloud.view();
+    view.radii = radii.data();
+    const SphereHierarchy balls(view);
+    const Placed a{balls}, b{balls, Eigen::Isometry3d(Eigen::Translation3d(4, 0, 0))};
+    const double gap = closestPair(a, b).distance;
+    for (const Accuracy& accuracy : {Accuracy::nodePairs(1000000), Accuracy::level(30)}) {
+      EXPECT_EQ(anyCollision(a, b, asking(accuracy, gap + 0.01)).verdict, Verdict::colliding);
+      EXPECT_EQ(anyCollision(a, b, asking(accuracy, gap - 0.01)).verdict, Verdict::free);
+    }
+  }
+}
+
 /// One point takes next to nothing of what both sides have.
 TEST(Budget, WhatASmallCloudLeavesIsTheOthers)
 {
