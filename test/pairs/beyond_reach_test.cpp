@@ -99,6 +99,24 @@ TEST(BeyondReach, AnyFindsWhatCollidesAmongTies)
     }
 }
 
+/// Once planes are asked, they decide neither too little nor too much.
+TEST(BeyondReach, AnyTakesLittleWorkAndFindsWhatCollides)
+{
+  const Eigen::Isometry3d pose = Random(1).pose(3);
+  for (const Tied& tied : test::tied()) {
+    SCOPED_TRACE(tied.name);
+    TiedPair pair = tied.make(600);
+    const SphereHierarchy a(viewOf(pair.a.trianglesView())), all(viewOf(pair.b.trianglesView()));
+    const AnyResult found = anyCollision({a, pose}, {all, pose}, 0.3 * (1 - 1e-9));
+    EXPECT_EQ(found.verdict, Verdict::free);
+    EXPECT_LE(found.work.exact_decisions, 20 * (pair.a.triangles.size() + pair.b.triangles.size()));
+    const double height = 0.3 * (1 - 1e-8);
+    pair.b.add({-0.1, -0.1, height}, {0.7, -0.1, height}, {0.2, 0.3, height});
+    const SphereHierarchy nearer(viewOf(pair.b.trianglesView()));
+    EXPECT_EQ(anyCollision({a, pose}, {nearer, pose}, 0.3 * (1 - 1e-9)).verdict, Verdict::colliding);
+  }
+}
+
 /// All pairs would be n / 2 decisions a triangle, and more.
 TEST(BeyondReach, AnyTakesWorkInProportion)
 {

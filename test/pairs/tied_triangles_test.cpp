@@ -87,5 +87,20 @@ TEST(TiedTriangles, TakeWorkInProportion)
       }
 }
 
+/// It is found by what is nearer to one of the best pair, among all of the other cloud.
+TEST(TiedTriangles, TakeLittleWorkWhereOneIsNearer)
+{
+  TiedPair pair = test::tied()[1].make(600);
+  const double height = 0.3 * (1 - 1e-8);
+  pair.b.add({0, 0, height}, {0.1, 0, 0.8}, {0, 0.1, 0.8});
+  const SphereHierarchy a(viewOf(pair.a.trianglesView())), b(viewOf(pair.b.trianglesView()));
+  for (const Eigen::Isometry3d& pose : {identity, Random(1).pose(3)})
+    for (const bool turned : {false, true}) {
+      const Placed discs[2] = {{a, pose}, {b, pose}};
+      const std::uint64_t decisions = closestPair(discs[turned], discs[!turned]).work.exact_decisions;
+      EXPECT_LE(decisions, 10 * (pair.a.triangles.size() + pair.b.triangles.size())) << turned;
+    }
+}
+
 } // namespace
 } // namespace pcl_bsh
