@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the tests by what they notice of small changes of the sources.
 
-    mutate.py make WORK [--rooms flags,pairs] [--count 40] [--seed 1] [--favour OPERATOR] [--unseen FILE] [--again FILE]
-                        [--release build/release] [--jobs 2]
+    mutate.py make WORK [--rooms flags,pairs] [--files REGEX] [--count 40] [--seed 1] [--favour OPERATOR] [--unseen FILE]
+                        [--again FILE] [--release build/release] [--jobs 2]
     mutate.py run WORK [--rooms flags,pairs] [--only ID] [--seconds 10]
     mutate.py report WORK [--csv FILE]
 
 WORK is a folder for a copy of the sources, its build and the results. `make` chooses mutants (COUNT of each room,
-spread over its files, none of them in the stored report --unseen, in half of the files those of the operator --favour
+spread over its --files, none of them in the stored report --unseen, in half of the files those of the operator --favour
 first; beside them those of the report --again that are still there), writes all of them into the copy behind a switch,
 and builds copy and tests once. `run` runs the tests of each room once to see which mutants each reaches, then, for each
 mutant, the tests that reach it until one fails: a second of quick ones of its own room, then those of all its rooms,
@@ -192,7 +192,8 @@ def make(options):
     chosen, number = {}, 0
     for room in options.rooms:
         rng = random.Random(f"{options.seed} {room}")
-        ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room]
+        ours = [name for name in names if name.endswith((".cpp", ".h", ".hpp")) and room_of(name) == room
+                and options.files.search(name)]
         for mutant in choose(ours, options.count, rng, options.favour, again, seen):
             number += 1
             chosen[number] = mutant
@@ -377,6 +378,7 @@ def main():
     parser.add_argument("what", choices=["make", "run", "report"])
     parser.add_argument("work", type=pathlib.Path)
     parser.add_argument("--rooms", default=",".join(ROOMS))
+    parser.add_argument("--files", type=re.compile, default="")
     parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--favour")
