@@ -133,14 +133,14 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   }
 
   cubes_ = Cubes(low_, high_);
-  LargeArray<std::uint32_t> all;
+  std::vector<std::uint32_t> all;
   all.reserve(view_.count);
   for (std::uint32_t i = 0; i < view_.count; ++i) {
     if (!(boxes_[i].low[0] <= boxes_[i].high[0])) continue;
-    all.push(i);
+    all.push_back(i);
     cubes_.mark(seenTriangle(i));
   }
-  makeGrid(low_, high_, {all.begin(), all.end()}, shadows[axis], false);
+  makeGrid(low_, high_, {all.data(), all.data() + all.size()}, shadows[axis], false);
   refine();
   cells_.shrink(withRoom(cells_.size()));
   entries_.shrink(withRoom(entries_.size()));
@@ -187,16 +187,14 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const Range& trian
     if (makeStrips(triangles, 0.5 * shadows.entries(per) / cells)) return true;
   }
   Grid grid;
-  LargeArray<std::uint32_t> ends;
+  std::vector<std::uint32_t> ends;
   for (;; per *= 0.8) { // needles meet more columns than their shadows fill
     const double columns = along(width, per), rows = along(height, per);
     if (finer && shadows.entries(per) > 0.6 * count * columns * rows) return false;
     grid = {low[0], low[1], perUnit(columns, width), perUnit(rows, height), 0.0, 0, 0, 0};
     grid.columns = static_cast<std::uint32_t>(columns), grid.rows = static_cast<std::uint32_t>(rows);
     grid.pad = kCellPad * std::max(width / columns, height / rows);
-    ends.clear();
-    ends.append(std::size_t{grid.columns} * grid.rows + 1);
-    std::fill(ends.begin(), ends.end(), 0u);
+    ends.assign(std::size_t{grid.columns} * grid.rows + 1, 0);
     double entries = 0.0;
     for (const std::uint32_t i : triangles) forEachCell(grid, i, [&](std::size_t cell) { ++ends[cell], ++entries; });
     if (entries <= 1.25 * most_entries || ends.size() <= 2) break;

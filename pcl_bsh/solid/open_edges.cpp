@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/solid/open_edges.h>
 
-#include <pcl_bsh/base/large_array.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 
 #include <algorithm>
@@ -69,7 +68,6 @@ public:
   template <class CornersOf>
   EdgesLeft(std::size_t triangles, std::size_t numbers, const CornersOf& corners_of) : ends_(numbers)
   {
-    std::fill(ends_.begin(), ends_.end(), 0);
     const auto each_edge = [&](const auto& take) {
       for (std::size_t i = 0; i < triangles; ++i) {
         const std::array<Id, 3> corners = corners_of(i);
@@ -80,7 +78,7 @@ public:
     each_edge([&](Id from, Id to) { ++ends_[std::min(from, to)]; });
     Id sum = 0;
     for (Id& n : ends_) sum += std::exchange(n, sum);
-    edges_.append(sum);
+    edges_.resize(sum);
     each_edge([&](Id from, Id to) { edges_[ends_[std::min(from, to)]++] = keyOf(from, to); });
     for (std::size_t low = 0; low < numbers; ++low) cancel(low);
   }
@@ -118,8 +116,8 @@ private:
     std::fill(left, end, kNone);
   }
 
-  LargeArray<Id> edges_;  ///< by their lower numbers: twice the higher one, and 1 more where the edge comes from there
-  LargeArray<Id> ends_;   ///< of those of each lower number
+  std::vector<Id> edges_; ///< by their lower numbers: twice the higher one, and 1 more where the edge comes from there
+  std::vector<Id> ends_;  ///< of those of each lower number
   std::vector<Id> taken_; ///< of the edges that are alike, at the first one
   std::uint64_t count_ = 0;
 };
