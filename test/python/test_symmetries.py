@@ -111,7 +111,7 @@ def expect_no_change(rng, a, b, pose, clearance):
             np.testing.assert_array_equal(halves[first]["a"][name], np.asarray(old)[first::2], err_msg=name)
     assert expected["all"]["any"] == (halves[0]["all"]["any"] or halves[1]["all"]["any"])
     assert expected["all"]["closest"] == min(half["all"]["closest"] for half in halves)
-    np.testing.assert_array_equal(np.fmin(halves[0]["b"]["distance"], halves[1]["b"]["distance"]),
+    np.testing.assert_array_equal(np.minimum(halves[0]["b"]["distance"], halves[1]["b"]["distance"]),
                                   expected["b"]["distance"])
 
 
