@@ -18,11 +18,6 @@ class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-  LargeArray() = default;
-
-  /// Uninitialised. @throws std::bad_alloc
-  explicit LargeArray(std::size_t size) { append(size); }
-
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
   std::size_t bytes() const noexcept { return capacity_ * sizeof(T); }

@@ -13,7 +13,8 @@ namespace {
 
 LargeArray<std::uint32_t> upTo(std::uint32_t count)
 {
-  LargeArray<std::uint32_t> items(count);
+  LargeArray<std::uint32_t> items;
+  items.append(count);
   std::iota(items.begin(), items.end(), 0u);
   return items;
 }
