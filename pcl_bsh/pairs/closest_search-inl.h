@@ -383,6 +383,8 @@ private:
     each(walk_.b, [&](std::uint32_t j) { consider({of_a, j}); });
     const std::uint32_t of_b = best_.pair->b;
     each(walk_.a, [&](std::uint32_t i) { consider({i, of_b}); });
+    looked_round_ = of_b;
+    planes_of_ = kInfinity;
   }
 
   /// Whether nothing below a pair is nearer than the best, as planes between that one's nearest places tell exactly
@@ -392,15 +394,26 @@ private:
   {
     if (best_.high < planes_of_) {
       planes_of_ = best_.high;
-      planes_.lay(*best_.pair);
+      planes_.lay(*best_.pair, 0.0, looked_round_);
     }
-    const auto first = planes_.lowestTouching(walk_.child(walk_.a, pair.a), walk_.child(walk_.b, pair.b));
-    none_nearer_ = first.has_value();
+    const auto touching = planes_.touching(walk_.child(walk_.a, pair.a), walk_.child(walk_.b, pair.b));
+    none_nearer_ = touching.has_value();
     if (!none_nearer_) return false;
-    if (goal_.tolerance > 0.0 || first->a == BehindPlane::kNoRecord || first->b == BehindPlane::kNoRecord) return true;
+    const PointPair first = firstAmong(*touching);
+    if (goal_.tolerance > 0.0 || first.a == BehindPlane::kNoRecord || first.b == BehindPlane::kNoRecord) return true;
     at_least_ = std::max(pair.key, lowest_key_);
-    if (*first < *best_.pair) consider(*first);
-    return !(*first < *best_.pair);
+    if (first < *best_.pair) consider(first);
+    return !(first < *best_.pair);
+  }
+
+  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. What touches b's
+  /// only where the record does that was looked at beside all of a is as near as that one at most, and so no better.
+  PointPair firstAmong(const PlanesBetween::Touching& touching) const
+  {
+    const auto& [of_a, of_b] = touching;
+    if (of_a.lowest >= best_.pair->a) return {of_a.lowest, of_b.lowest};
+    if (of_b.elsewhere != BehindPlane::kNoRecord) return {of_a.lowest, of_b.elsewhere};
+    return {best_.pair->a, of_b.lowest};
   }
 
   /// Of the children that the last step found near, those that can.
@@ -501,7 +514,8 @@ private:
   std::uint64_t steps_in_vain_ = 0; ///< since a nearer pair was found: decisions and pairs of leaves
   const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
   bool has_looked_round_ = false;
-  bool none_nearer_ = false; ///< than the best below the pair that is visited
+  std::uint32_t looked_round_ = BehindPlane::kNoRecord; ///< of b: the best is no later than it beside all of a
+  bool none_nearer_ = false;                            ///< than the best below the pair that is visited
 };
 
 } // namespace HWY_NAMESPACE

@@ -26,7 +26,7 @@ Range pointsBelow(const SphereHierarchy::Storage& cloud, const NodeChild& child)
 
 } // namespace
 
-std::optional<std::uint32_t> BehindPlane::lowestTouching(const NodeChild& child, std::uint64_t& looks)
+std::optional<BehindPlane::Touching> BehindPlane::touching(const NodeChild& child, std::uint64_t& looks)
 {
   const Range below = pointsBelow(cloud_, child);
   const std::uint64_t key = std::uint64_t{below.begin} << 32 | below.end;
@@ -35,7 +35,6 @@ std::optional<std::uint32_t> BehindPlane::lowestTouching(const NodeChild& child,
     if (below.end - below.begin > looks) return std::nullopt;
     found = found_.emplace(key, look(child, looks)).first;
   }
-  if (found->second == kBeyond) return std::nullopt;
   return found->second;
 }
 
@@ -47,23 +46,39 @@ int BehindPlane::sideOf(std::uint32_t record) const
   return side;
 }
 
-std::uint32_t BehindPlane::look(const NodeChild& child, std::uint64_t& looks) const
+/// @pre none of it is beyond the plane. What touches it are corners, and what is between them.
+bool BehindPlane::touchesElsewhere(std::uint32_t record) const
+{
+  if (known_ == kNoRecord || !cloud_.view.triangles) return true;
+  const auto known = cloud_.view.triangles->triangle(known_);
+  const auto corners = cloud_.view.triangles->triangle(record);
+  return std::any_of(corners.begin(), corners.end(), [&](const Point3& corner) {
+    return std::find(known.begin(), known.end(), corner) == known.end() && sideOf(corner) == 0;
+  });
+}
+
+std::optional<BehindPlane::Touching> BehindPlane::look(const NodeChild& child, std::uint64_t& looks) const
 {
   const std::uint32_t begin = child.node.begin[child.lane], end = child.node.begin[child.lane + 1];
-  std::uint32_t lowest = kNoRecord;
+  Touching touching;
+  bool is_behind = true;
   const auto visit = [&](std::uint32_t record) {
-    if (lowest == kBeyond) return;
+    if (!is_behind) return;
     --looks;
     const int side = sideOf(record);
-    if (side >= 0) lowest = side > 0 ? kBeyond : std::min(lowest, record);
+    is_behind = side <= 0;
+    if (side != 0) return;
+    touching.lowest = std::min(touching.lowest, record);
+    if (record < touching.elsewhere && touchesElsewhere(record)) touching.elsewhere = record;
   };
   if (child.space == kAboveVoxels) {
-    for (std::uint32_t voxel = begin; voxel < end && lowest != kBeyond; ++voxel) cloud_.forEachRecord(voxel, visit);
-    return lowest;
+    for (std::uint32_t voxel = begin; voxel < end && is_behind; ++voxel) cloud_.forEachRecord(voxel, visit);
   }
-  const Voxel& voxel = cloud_.voxels[child.space];
-  for (std::uint32_t i = begin; i < end; ++i) visit(voxel.records()[i]);
-  return lowest;
+  else {
+    const Voxel& voxel = cloud_.voxels[child.space];
+    for (std::uint32_t i = begin; i < end; ++i) visit(voxel.records()[i]);
+  }
+  return is_behind ? std::optional(touching) : std::nullopt;
 }
 
 } // namespace pcl_bsh

@@ -23,30 +23,37 @@ class BehindPlane {
 public:
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
+  /// The smallest records that touch the plane, each kNoRecord if there is none.
+  struct Touching {
+    std::uint32_t lowest = kNoRecord;
+    std::uint32_t elsewhere = kNoRecord; ///< of those which touch it with a place that `known` does not touch it with
+  };
+
   /// @param plane behind it is where its normal points away from @param allowed what surely reaches beyond it by less
-  /// than this counts as behind
-  BehindPlane(const SphereHierarchy::Storage& cloud, const ExactPlane& plane, double allowed)
+  /// than this counts as behind @param known a record, or kNoRecord
+  BehindPlane(const SphereHierarchy::Storage& cloud, const ExactPlane& plane, double allowed, std::uint32_t known)
   : cloud_(cloud),
     plane_(plane),
-    allowed_(allowed)
+    allowed_(allowed),
+    known_(known)
   {
   }
 
-  /// If nothing below a child is beyond the plane: the smallest record that touches it, or kNoRecord. Nothing, too,
-  /// where more records would have to be looked at than `looks`, which those that are looked at are taken from.
-  std::optional<std::uint32_t> lowestTouching(const NodeChild& child, std::uint64_t& looks);
+  /// What touches the plane below a child, if nothing there is beyond it. Nothing, too, where more records would have
+  /// to be looked at than `looks`, which those that are looked at are taken from.
+  std::optional<Touching> touching(const NodeChild& child, std::uint64_t& looks);
 
 private:
-  static constexpr std::uint32_t kBeyond = kNoRecord - 1;
-
   int sideOf(const Point3& place) const { return plane_.isWithin(place, allowed_) ? -1 : plane_.side(place); }
   int sideOf(std::uint32_t record) const; ///< of what of it reaches farthest
-  std::uint32_t look(const NodeChild& child, std::uint64_t& looks) const;
+  bool touchesElsewhere(std::uint32_t record) const;
+  std::optional<Touching> look(const NodeChild& child, std::uint64_t& looks) const;
 
   const SphereHierarchy::Storage& cloud_;
   const ExactPlane plane_;
   const double allowed_;
-  std::unordered_map<std::uint64_t, std::uint32_t> found_; ///< by the first and the last of the points below
+  const std::uint32_t known_;
+  std::unordered_map<std::uint64_t, std::optional<Touching>> found_; ///< by the first and the last of the points below
 };
 
 } // namespace pcl_bsh

@@ -45,7 +45,7 @@ public:
   bool knows(const NodeChild& a, const NodeChild& b)
   {
     if (!is_laid_) lay();
-    const bool known = planes_.lowestTouching(a, b).has_value();
+    const bool known = planes_.touching(a, b).has_value();
     asked_in_vain_ = known ? 0 : asked_in_vain_ + 1;
     if (asked_in_vain_ == kAskedInVain) {
       asked_in_vain_ = 0;

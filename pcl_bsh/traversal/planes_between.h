@@ -38,28 +38,33 @@ public:
   }
 
   /// Between the nearest places of another pair. There may be none. @param allowed what surely reaches beyond its plane
-  /// by less counts as behind, and as no nearer
-  void lay(PointPair pair, double allowed = 0.0)
+  /// by less counts as behind, and as no nearer @param known_of_b as BehindPlane has it
+  void lay(PointPair pair, double allowed = 0.0, std::uint32_t known_of_b = BehindPlane::kNoRecord)
   {
     behind_a_.reset(), behind_b_.reset();
     if (const auto planes = distance_.planesBetween(pair)) {
-      behind_a_.emplace(storage_a_, (*planes)[0], allowed);
-      behind_b_.emplace(storage_b_, (*planes)[1], allowed);
+      behind_a_.emplace(storage_a_, (*planes)[0], allowed, BehindPlane::kNoRecord);
+      behind_b_.emplace(storage_b_, (*planes)[1], allowed, known_of_b);
     }
   }
 
-  /// If nothing below two children is surely nearer than the pair: the smallest records of each that touch a plane, so
-  /// that they may be as near, or kNoRecord. Nothing, too, where not enough decisions have paid for looking.
-  std::optional<PointPair> lowestTouching(const NodeChild& a, const NodeChild& b)
+  /// What of two children touches the planes.
+  struct Touching {
+    BehindPlane::Touching a, b;
+  };
+
+  /// If nothing below two children is surely nearer than the pair: what touches a plane, so that it may be as near.
+  /// Nothing, too, where not enough decisions have paid for looking.
+  std::optional<Touching> touching(const NodeChild& a, const NodeChild& b)
   {
     const std::uint64_t allowed = kLooksForDecision * decisions_;
     if (!behind_a_ || looked_ >= allowed) return std::nullopt;
     std::uint64_t looks = allowed - looked_;
-    const auto of_a = behind_a_->lowestTouching(a, looks);
-    const auto of_b = of_a ? behind_b_->lowestTouching(b, looks) : std::nullopt;
+    const auto of_a = behind_a_->touching(a, looks);
+    const auto of_b = of_a ? behind_b_->touching(b, looks) : std::nullopt;
     looked_ = allowed - looks;
     if (!of_b) return std::nullopt;
-    return PointPair{*of_a, *of_b};
+    return Touching{*of_a, *of_b};
   }
 
 private:

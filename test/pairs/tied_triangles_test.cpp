@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -77,14 +79,49 @@ TEST(TiedTriangles, TakeWorkInProportion)
   const Eigen::Isometry3d turned = Random(1).pose(3);
   for (const Tied& tied : test::tied())
     for (const Eigen::Isometry3d& pose : {identity, turned})
-      for (const std::uint32_t n : {1000u, 4000u, 16000u}) {
-        const TiedPair pair = tied.make(n);
-        const SphereHierarchy a(viewOf(pair.a.trianglesView())), b(viewOf(pair.b.trianglesView()));
-        const Work work = closestPair({a, pose}, {b, pose}).work;
-        const std::size_t triangles = pair.a.triangles.size() + pair.b.triangles.size();
-        EXPECT_LE(work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions, 40 * triangles)
-            << tied.name << ", " << n;
+      for (const std::uint32_t n : {1000u, 4000u})
+        for (const bool swapped : {false, true}) {
+          const TiedPair pair = tied.make(n);
+          const SphereHierarchy a(viewOf(pair.a.trianglesView())), b(viewOf(pair.b.trianglesView()));
+          const Placed both[2] = {{a, pose}, {b, pose}};
+          const Work work = closestPair(both[swapped], both[!swapped]).work;
+          const std::size_t triangles = pair.a.triangles.size() + pair.b.triangles.size();
+          EXPECT_LE(work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions, 40 * triangles)
+              << tied.name << ", " << n << ", " << swapped;
+        }
+}
+
+/// There are many triangles before the one that the other's tip is near, and all of the other share that tip.
+TEST(TiedTriangles, TakeWorkInProportionBesideOneTip)
+{
+  for (const std::uint32_t n : {1000u, 4000u})
+    for (const double turn : {2.0, 6.2}) {
+      const test::TestMesh disc = test::cone(n, 1, 0, {0, 0, 0}),
+                           cone = test::cone(n, 1, 1, {0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.3});
+      const SphereHierarchy a(viewOf(disc.trianglesView())), b(viewOf(cone.trianglesView()));
+      for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+        const Work work = closestPair({*one}, {*other}).work;
+        EXPECT_LE(work.node_pairs + 16 * work.leaf_pairs + work.exact_decisions, 80 * n) << n << ", " << turn;
       }
+    }
+}
+
+/// What one tip tells of a disc's triangles says nothing of another tip, which is as near to those with smaller
+/// numbers.
+TEST(TiedTriangles, AnswerAsBruteForceBesideTwoTips)
+{
+  const auto tip = [](std::uint32_t sides, double turn) {
+    return test::cone(sides, 0.1, 0.1, {0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.25});
+  };
+  for (const std::uint32_t few : {3u, 10u, 60u})
+    for (double turn = 0.3; turn < 6; turn += 0.7) {
+      const test::TestMesh disc = test::cone(60, 1, 0, {0, 0, 0});
+      test::TestMesh tips = tip(60, turn);
+      test::append(tips, tip(few, turn / 3));
+      const SphereHierarchy a(viewOf(disc.trianglesView())), b(viewOf(tips.trianglesView()));
+      expectAsBruteForce({a}, {b});
+      expectAsBruteForce({b}, {a});
+    }
 }
 
 /// It is found by what is nearer to one of the best pair, among all of the other cloud.
