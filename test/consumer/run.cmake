@@ -9,13 +9,8 @@ endfunction()
 file(REMOVE_RECURSE "${WORK}")
 run(${CMAKE_COMMAND} --install "${PCL_BSH_BUILD}" --prefix "${WORK}/prefix")
 
-set(readme_example "${WORK}/readme_example.cpp")
-file(READ "${CMAKE_CURRENT_LIST_DIR}/../../README.md" readme)
-string(REGEX MATCH "```cpp\n(#include[^`]*)```" found "${readme}")
-file(WRITE "${readme_example}" "${CMAKE_MATCH_1}")
-
 run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/build" -G Ninja -D CMAKE_BUILD_TYPE=Release -D
-    "CMAKE_PREFIX_PATH=${WORK}/prefix" -D "README_EXAMPLE=${readme_example}")
+    "CMAKE_PREFIX_PATH=${WORK}/prefix")
 execute_process(COMMAND ${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/refused" -G Ninja -D
                         "CMAKE_PREFIX_PATH=${WORK}/prefix" -D PCL_BSH_COMPONENTS=tree RESULT_VARIABLE status
                 OUTPUT_QUIET ERROR_VARIABLE text)
