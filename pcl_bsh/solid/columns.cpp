@@ -98,7 +98,7 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   std::array<Shadows, 3> shadows; // along each axis
   for (std::size_t i = 0; i < view_.count; ++i) {
     const Triangle3 t = seenTriangle(static_cast<std::uint32_t>(i));
-    Box& box = boxes_[i];
+    FloatBox& box = boxes_[i];
     if (!isFinite(view_.triangle(static_cast<std::uint32_t>(i)))) {
       std::fill(box.low, box.low + 3, std::numeric_limits<float>::infinity());
       std::fill(box.high, box.high + 3, -std::numeric_limits<float>::infinity());
@@ -127,8 +127,8 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   }
   axes_ = {(axis + 1) % 3, (axis + 2) % 3, axis};
   for (std::size_t k = 0; k < 3; ++k) low_[k] = low[axes_[k]], high_[k] = high[axes_[k]];
-  for (Box& box : boxes_) {
-    const Box before = box;
+  for (FloatBox& box : boxes_) {
+    const FloatBox before = box;
     for (std::size_t k = 0; k < 3; ++k) box.low[k] = before.low[axes_[k]], box.high[k] = before.high[axes_[k]];
   }
 
@@ -252,7 +252,7 @@ bool Columns::makeStrips(const Range& triangles, double most)
 template <class Visit>
 void Columns::forEachCell(const Grid& grid, std::uint32_t triangle, const Visit& visit) const
 {
-  const Box& box = boxes_[triangle];
+  const FloatBox& box = boxes_[triangle];
   const auto column = [&](double x) { return cellAlong(x, grid.x, grid.per_x, grid.columns); };
   const auto row = [&](double y) { return cellAlong(y, grid.y, grid.per_y, grid.rows); };
   const double low_x = static_cast<double>(box.low[0]) - grid.pad, high_x = static_cast<double>(box.high[0]) + grid.pad;

@@ -11,6 +11,7 @@
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/solid/cubes.h>
 #include <pcl_bsh/solid/strips.h>
+#include <pcl_bsh/solid/upward_ray.h>
 
 #include <array>
 #include <cstddef>
@@ -39,10 +40,7 @@ public:
   }
 
   /// A triangle's box, as seen, rounded outward. Its place above decides many crossings.
-  struct Box {
-    float low[3], high[3];
-  };
-  const Box& box(std::uint32_t triangle) const noexcept { return boxes_[triangle]; }
+  const FloatBox& box(std::uint32_t triangle) const noexcept { return boxes_[triangle]; }
 
   Triangle3 seenTriangle(std::uint32_t triangle) const noexcept
   {
@@ -112,7 +110,7 @@ private:
   std::array<std::size_t, 3> axes_ = {0, 1, 2};
   double error_ = 0.0;
   Point3 low_, high_; ///< of all triangles, as seen, rounded outward
-  LargeArray<Box> boxes_;
+  LargeArray<FloatBox> boxes_;
   std::vector<Grid> grids_;
   LargeArray<Cell> cells_;
   LargeArray<std::uint32_t> entries_;

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/geometry/exact/long_number.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/solid/upward_ray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -102,19 +103,15 @@ template <class Decide>
 std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const Decide& decide)
 {
   if (columns_.isBeyond(at, error)) return 0;
-  const Point3 low = {at[0] - error, at[1] - error, at[2] - error},
-               high = {at[0] + error, at[1] + error, at[2] + error};
+  const UpwardRay ray(at, error);
   int turns = 0;
   for (const std::uint32_t i : columns_.above(at, error, several_)) {
-    const Columns::Box& box = columns_.box(i);
-    if (high[0] < static_cast<double>(box.low[0]) || low[0] > static_cast<double>(box.high[0]) ||
-        high[1] < static_cast<double>(box.low[1]) || low[1] > static_cast<double>(box.high[1]) ||
-        low[2] > static_cast<double>(box.high[2]))
-      continue;
+    const FloatBox& box = columns_.box(i);
+    if (ray.misses(box)) continue;
     Triangle3 t = columns_.seenTriangle(i);
     for (Point3& corner : t)
       for (std::size_t k = 0; k < 3; ++k) corner[k] -= at[k];
-    const Crossing met = meet(t, error, static_cast<double>(box.low[2]) > high[2]);
+    const Crossing met = meet(t, error, ray.beginsBelow(box));
     if (met == Crossing::unknown) {
       const std::optional<int> decided = decide(i);
       if (!decided) return std::nullopt;
