@@ -5,7 +5,8 @@
 #include <pcl_bsh/simd/roundings.h>
 
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <cstring>
 
 #ifdef __FAST_MATH__
 #error "pcl_bsh decides collisions exactly and cannot be compiled with -ffast-math"
@@ -33,18 +34,30 @@ inline float roundToFloat(double x) noexcept
   return rounded;
 }
 
+/// The float that is so many floats farther from 0 than x, or nearer. @pre there is one of the same sign
+inline float stepAwayFromZero(float x, std::int32_t steps) noexcept
+{
+  std::int32_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  bits += steps;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
 /// The smallest float that is not below x.
 inline float roundUp(double x) noexcept
 {
   const float rounded = roundToFloat(x);
-  return static_cast<double>(rounded) < x ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+  const std::int32_t is_below = static_cast<double>(rounded) < x; // half of all are: no branch, and no nextafter()
+  return stepAwayFromZero(rounded, std::signbit(rounded) ? -is_below : is_below);
 }
 
 /// The largest float that is not above x.
 inline float roundDown(double x) noexcept
 {
   const float rounded = roundToFloat(x);
-  return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
+  const std::int32_t is_above = static_cast<double>(rounded) > x;
+  return stepAwayFromZero(rounded, std::signbit(rounded) ? is_above : -is_above);
 }
 
 /// Of a distance enclosed in double arithmetic, relative to the absolute sum of all terms: ExactDistance::enclose().

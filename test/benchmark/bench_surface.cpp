@@ -4,16 +4,19 @@
 #include "harness.h"
 #include "peer/surface_peer.h"
 #include "program.h"
+#include "workload/path_scene.h"
 #include "workload/surfaces.h"
 
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/solid/solid.h>
+#include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
 #include <cmath>
@@ -250,6 +253,34 @@ void askCorner(const Rows& rows, std::size_t triangles)
       [&](const SphereHierarchy& surface) { collisionFlags({points}, {surface}, FlagsRequest(0.05)); });
 }
 
+/// The box of a wagon along its way through a tunnel, as its 12 triangles, and as points on them.
+void askWay(const Rows& rows, double scale)
+{
+  const PathScene tunnel = pathScene("tunnel", scale);
+  Bounds bounds;
+  for (const Point& p : tunnel.model) bounds.add({p.x, p.y, p.z});
+  Point3 size;
+  for (std::size_t k = 0; k < 3; ++k) size[k] = bounds.high[k] - bounds.low[k];
+  Mesh box{"wagon", test::boxMesh(size[0], size[1], size[2])};
+  box.mesh.move(Eigen::Isometry3d(Eigen::Translation3d(bounds.low[0], bounds.low[1], bounds.low[2])));
+  const std::vector<double> on_it = scanOf(box.mesh, 2 * tunnel.model.size(), 0.0, 7);
+  std::vector<double> points; // every other one is on the surface
+  for (std::size_t i = 0; i < on_it.size(); i += 6) points.insert(points.end(), &on_it[i], &on_it[i] + 3);
+  const SphereHierarchy scan(viewOf(&tunnel.scan.data()->x, tunnel.scan.size()));
+  scan.buildAll(1);
+  TrajectoryRequest request;
+  request.clearance = tunnel.clearance;
+  for (const std::string question : {"at each pose", "swept by 1 cm"}) {
+    const auto along = [&](const SphereHierarchy& model) { collideAlong({scan}, model, tunnel.poses, request); };
+    rows.ours(
+        question, box, [&] { return SphereHierarchy(viewOf(box.mesh.trianglesView())); }, along);
+    rows.ours(
+        question + ", as " + std::to_string(points.size() / 3) + " points", box,
+        [&] { return SphereHierarchy(viewOf(points.data(), points.size() / 3)); }, along);
+    request.swept = 0.01;
+  }
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -265,7 +296,8 @@ int main(int argc, char** argv)
   app.add_option("--scan", options.scan, "points of the scan")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--corner", options.corner, "triangles of the large mesh; 0: none")->capture_default_str();
   app.add_option("--budget", options.budget, "seconds that a library is asked for, at each row")->capture_default_str();
-  app.add_option("--mesh", options.only, "only these: box, part, bumpy, tubes, statue, rod, knot")->delimiter(',');
+  app.add_option("--mesh", options.only, "only these: box, part, bumpy, tubes, statue, rod, knot, wagon")
+      ->delimiter(',');
   app.add_flag("!--no-peers", options.peers, "ours alone");
   Table table({"question", "mesh", "triangles", "racer", "build [s]", "query [s]", "both [s]", "again [s]", "asked",
                "bytes / triangle", "wrong"});
@@ -297,6 +329,7 @@ int main(int argc, char** argv)
     if (wanted("statue")) askItself(rows, {"statue", statueMesh()});
     if (wanted("rod")) askItself(rows, {"rod", connectingRod()});
     if (wanted("knot")) askItself(rows, {"knot", knottedTube()});
+    if (wanted("wagon")) askWay(rows, 0.1);
     if (options.corner > 0 && options.only.empty()) askCorner(rows, options.corner);
     return true;
   });

@@ -48,6 +48,16 @@ TEST(Rounding, OutwardAndNoFarther)
   EXPECT_EQ(roundUp(1e39), INFINITY);
   EXPECT_EQ(roundDown(1e39), std::numeric_limits<float>::max());
   EXPECT_EQ(roundUp(1e-60), std::numeric_limits<float>::denorm_min());
+  EXPECT_EQ(roundDown(1e-60), 0.0f);
+  EXPECT_EQ(roundDown(-1e39), -INFINITY);
+  EXPECT_EQ(roundUp(-1e39), -std::numeric_limits<float>::max());
+  EXPECT_EQ(roundDown(-1e-60), -std::numeric_limits<float>::denorm_min());
+  EXPECT_EQ(roundUp(-1e-60), 0.0f);
+  for (const double same : {0.0, -0.0, 1.0, -0x1p-149, double{INFINITY}, -double{INFINITY}}) {
+    EXPECT_EQ(roundUp(same), same);
+    EXPECT_EQ(roundDown(same), same);
+  }
+  EXPECT_TRUE(std::isnan(roundUp(NAN)) && std::isnan(roundDown(NAN)));
 }
 
 /// Of a number between two, as sums of doubles are, it is that at the smaller one.

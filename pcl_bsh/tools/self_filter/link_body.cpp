@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "link_body.h"
 
+#include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/io/files/file_error.h>
 
 #include <algorithm>
@@ -13,13 +14,6 @@
 namespace pcl_bsh::self_filter {
 
 namespace {
-
-/// The least float that is not smaller.
-float roundedUp(double length)
-{
-  const auto nearest = static_cast<float>(length);
-  return nearest < length ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
-}
 
 void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_link_solid)
 {
@@ -36,7 +30,7 @@ void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_lin
     const Eigen::Vector3d center =
         T_link_solid * (((2 * i + 1) / count - 1) * rod.half_length * Eigen::Vector3d::Unit(rod.axis));
     body.enclosing.centers.push_back({center.x(), center.y(), center.z()});
-    body.enclosing.radii.push_back(roundedUp(radius));
+    body.enclosing.radii.push_back(roundUp(radius));
   }
 }
 
