@@ -151,6 +151,15 @@ def bodies(rows):
                f"{short(float(row['again [s]']), ' s')} | {row['bytes / triangle']} | " + " | ".join(others) + " |").replace("|  |", "| |").replace("|  |", "| |")
 
 
+def wagon(rows):
+    yield "| the box | at each pose | swept by 1 cm |"
+    yield "|---|---|---|"
+    of = rows.where(mesh="wagon")
+    for title, end in (("12 triangles", ""), ("250,000 points on them", ", as 250000 points")):
+        cells = [short(of.one("both [s]", question=question + end), " s") for question in ("at each pose", "swept by 1 cm")]
+        yield f"| {title} | " + " | ".join(cells) + " |"
+
+
 def seen(rows):
     yield "| scans | ranges | | making | asking | memory | truly visible | of these seen | seen in all | wrongly |"
     yield "|---|---|---|---|---|---|---|---|---|---|"
@@ -360,5 +369,5 @@ def dial(rows):
 
 
 TABLES = [flags, uneven, cold, rigid, many, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
-          surfaces, bodies, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, sites]
+          surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, sites]
 TABLES = {table.__name__: table for table in TABLES}
