@@ -246,27 +246,29 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
   const std::uint32_t open = visit.open_points[lane];
   std::uint32_t hit = hitMiddles(obstacle, visit, lane, points, kNone);
   if (hit == open) return hit;
-  eachTriangleNear(
-      obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work, facingOf,
-      [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
-        const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
-        const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
-          std::uint32_t decided = among & atMost(squared, band.hit);
-          for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0; bits &= bits - 1) {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-            const PointPair at{leaf.record(i), record};
-            if (pairs.collide(at, work))
-              decided |= 1u << i;
-            else if (&pairs == &query.pairs)
-              beyond.found(at);
-          }
-          return decided;
-        };
-        hit |= decide(query.surely.band(bandOf), query.surePairs(), near);
-        if (query.certain)
-          visit.perhaps[lane] |= decide(query.acceptance.band(bandOf), query.pairs, near & ~hit & ~visit.perhaps[lane]);
-        return hit == open;
-      });
+  eachTriangleNear(obstacle, visit, lane, hit, points, kNone, query.b.hierarchy().view(), flat, work, facingOf,
+                   [&](std::uint32_t record, const FlatRecord& triangle, const float* squared, std::uint32_t near) {
+                     const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
+                     const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
+                       std::uint32_t decided = among & atMost(squared, band.hit);
+                       for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0;
+                            bits &= bits - 1) {
+                         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+                         const PointPair at{leaf.record(i), record};
+                         if (pairs.collide(at, work))
+                           decided |= 1u << i;
+                         else if (&pairs == &query.pairs)
+                           beyond.found(at);
+                       }
+                       return decided;
+                     };
+                     const bool is_usual = triangle.isUsual(obstacle.frame);
+                     hit |= decide(is_usual ? obstacle.flat : query.surely.band(bandOf), query.surePairs(), near);
+                     if (query.certain)
+                       visit.perhaps[lane] |= decide(is_usual ? obstacle.possibly_flat : query.acceptance.band(bandOf),
+                                                     query.pairs, near & ~hit & ~visit.perhaps[lane]);
+                     return hit == open;
+                   });
   return hit;
 }
 

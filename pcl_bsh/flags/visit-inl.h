@@ -33,6 +33,7 @@ struct ObstacleVoxel {
   float blunt_radius;
   DistanceBand band;                  ///< of what collides, where points are uncertain: for certain
   DistanceBand possible;              ///< of what may collide
+  DistanceBand flat, possibly_flat;   ///< of these, of triangles for which FlatRecord::isUsual()
   const Slabs* slabs = nullptr;       ///< of its nodes, once asked for
   const Slabs* cross_slabs = nullptr; ///< likewise, where triangles are long
   bool has_long_triangles = false;    ///< about as long as the voxel is wide: balls of nodes say little about them

@@ -60,6 +60,7 @@ public:
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
+      const auto flat = [&](double length) { return FlatRecord::usualBand(frame, length); };
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
@@ -67,7 +68,8 @@ public:
           {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
            frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), nullptr, nullptr, b_.storage.hasLongTriangles(other)});
+           query_.acceptance.band(frame), query_.surely.band(flat), query_.acceptance.band(flat), nullptr, nullptr,
+           b_.storage.hasLongTriangles(other)});
     }
     allowed_ = steps() + kStepsOfVoxel;
     if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);

@@ -52,6 +52,15 @@ struct FlatRecord {
   /// not hold where poses turn what is beyond.
   double error(const RelativeFrame& frame) const { return double{flat.error} + 2 * frame.skew() * reach; }
 
+  /// Whether that is no more than what points are off by.
+  bool isUsual(const RelativeFrame& frame) const { return error(frame) <= frame.error; }
+
+  /// What squared distances of usual ones tell of a length: a little less than band() of each, but once for all.
+  static DistanceBand usualBand(const RelativeFrame& frame, double length)
+  {
+    return frame.band(length, frame.error, kFlatShare);
+  }
+
   /// What its squared distances tell of a length, in the clouds' unit.
   DistanceBand band(const RelativeFrame& frame, double length) const
   {

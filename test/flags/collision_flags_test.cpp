@@ -128,6 +128,35 @@ TEST(CollisionFlags, SameAsBruteForceOfTriangles)
 }
 
 /// Floats decide next to the clearance: of points, and of nodes as small as they are, beside triangles much larger.
+/// Floats know less of such triangles than of points about their middles.
+TEST(CollisionFlags, PointsAtTheClearanceOfFarLargerTriangles)
+{
+  Random random(62);
+  std::size_t hits = 0, all = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double clearance = std::pow(10.0, random.uniform(-3, 0)), size = 1000.0;
+    test::Mesh mesh;
+    mesh.add({-size, -0.3 * size, 0.1 * size}, {size, 0.3 * size, -0.1 * size}, {0.2 * size, 0.7 * size, 0.5 * size});
+    const Eigen::Vector3d along = Eigen::Vector3d(1, 0.3, -0.1).normalized();
+    const Eigen::Vector3d normal = along.cross(Eigen::Vector3d(0.2, 0.7, 0.5)).normalized();
+    std::vector<Point3> near;
+    for (int k = 0; k < 100; ++k) {
+      const Eigen::Vector3d p = clearance * random.uniform(0, 2) * along.cross(normal) * (k % 2 == 0 ? -1 : 0) +
+                                clearance * random.uniform(-2, 2) * along +
+                                (clearance + 1e-4 * random.uniform(-1, 1)) * normal;
+      near.push_back({p.x(), p.y(), p.z()});
+    }
+    Cloud triangles(mesh.vertices), points(near, {Scalar::float64});
+    triangles.setTriangles(mesh.corners);
+    const SphereHierarchy a(points.view()), b(triangles.view());
+    const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance));
+    ASSERT_EQ(collisionFlags({a}, {b}, within(clearance)).a, expected.a) << i;
+    hits += ones(expected.a), all += expected.a.size();
+  }
+  EXPECT_GT(hits, all / 5);
+  EXPECT_LT(hits, all - all / 5);
+}
+
 TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
 {
   Random random(61);
