@@ -60,7 +60,9 @@ public:
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
-      const auto flat = [&](double length) { return FlatRecord::usualBand(frame, length); };
+      const auto flat = [&](double length) {
+        return b_.storage.view.triangles ? FlatRecord::usualBand(frame, length) : DistanceBand();
+      };
       const Node& root = b_.voxel(other, found.work).nodes[0];
       for (std::uint32_t lane = 0; lane < root.count; ++lane)
         spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
