@@ -124,6 +124,28 @@ TEST(TiedTriangles, AnswerAsBruteForceBesideTwoTips)
     }
 }
 
+/// The pair with the smallest numbers is at one end of an edge, and nearly all else is at the other.
+TEST(TiedTriangles, AnswerAsBruteForceBesideAnEdge)
+{
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const auto some = [&](int most) { return static_cast<std::uint32_t>(random.integer(3, most)); };
+    const double apart = random.pick({0.1, 1.0, 4.0});
+    test::TestMesh below;
+    below.add({apart - 0.3, -0.3, 0}, {apart + 0.3, -0.3, 0}, {apart, 0.3, 0});
+    test::append(below, test::cone(some(30), 0.4 * apart, 0, {0, 0, 0}, random.uniform(0, 1)));
+    test::TestMesh above;
+    above.add({apart, 0, 0.25}, {apart + 0.1, 0, 0.5}, {apart, 0.1, 0.5});
+    above.add({0, 0, 0.25}, {apart, 0, 0.25}, {0, 0.2, 0.5});
+    test::append(above, test::cone(some(30), 0.1, 0.1, {0, 0, 0.25}));
+    test::append(above, test::cone(some(10), 0.1, 0.1, {random.uniform(0, 1.2) * apart, random.uniform(-1, 1), 0.25}));
+    const SphereHierarchy a(viewOf(below.trianglesView())), b(viewOf(above.trianglesView()));
+    expectAsBruteForce({a}, {b});
+    expectAsBruteForce({b}, {a});
+  }
+}
+
 /// It is found by what is nearer to one of the best pair, among all of the other cloud.
 TEST(TiedTriangles, TakeLittleWorkWhereOneIsNearer)
 {
