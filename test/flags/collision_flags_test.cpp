@@ -127,7 +127,6 @@ TEST(CollisionFlags, SameAsBruteForceOfTriangles)
   for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
 }
 
-/// Floats decide next to the clearance: of points, and of nodes as small as they are, beside triangles much larger.
 /// Floats know less of such triangles than of points about their middles.
 TEST(CollisionFlags, PointsAtTheClearanceOfFarLargerTriangles)
 {
@@ -157,6 +156,7 @@ TEST(CollisionFlags, PointsAtTheClearanceOfFarLargerTriangles)
   EXPECT_LT(hits, all - all / 5);
 }
 
+/// Floats decide next to the clearance: of points, and of nodes as small as they are, beside triangles much larger.
 TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
 {
   Random random(61);
