@@ -327,6 +327,23 @@ TEST(TriangleDistance, TakesBallsAndSumsAsTheDefinitionDoes)
   EXPECT_GT(below, 50);
 }
 
+TEST(TriangleDistance, RoundsGapsOfBallsBesideDistancesBeyondAllDoubles)
+{
+  constexpr double far = 0x1.8p1023;
+  const TriangleDistance distance(identity, identity);
+  const Triangle3 wall = {{{far, 0, 0}, {far, 1, 0}, {far, 0, 1}}};
+  const auto gap = [&](double x, double radius) {
+    return distance.gap(TriangleDistance::PointPair{{x, 0, 0}, wall, radius});
+  };
+  EXPECT_EQ(gap(-far, 1.0), infinity);
+  EXPECT_EQ(gap(-far, far), far);
+  EXPECT_EQ(gap(-far, 0x1p1023), infinity); // 2^1024
+  EXPECT_EQ(gap(-far, std::nextafter(0x1p1023, infinity)), std::numeric_limits<double>::max());
+  EXPECT_EQ(gap(far, far), -far);
+  const double beside = std::nextafter(far, 0.0);
+  EXPECT_EQ(gap(beside, far), -beside);
+}
+
 /// What a mesh and a scan near it ask: clearances that have nothing to do with the distances.
 TEST(TriangleDistance, DoublesDecideOrdinaryPairs)
 {

@@ -59,17 +59,19 @@ double roughRoot(const Fraction<Dyadic>& squared)
   return std::ldexp(std::sqrt(std::ldexp(n.mantissa / d.mantissa, odd)), (exponent - odd) / 2);
 }
 
-/// The same less a length. @pre they differ
+/// The same less a length, which doubles may have where they have no such root. @pre they differ
 double roughRootLess(const Fraction<Dyadic>& squared, double length)
 {
   if (length == 0.0) return roughRoot(squared);
-  // As a quotient, so that the only cancellation happens in exact arithmetic: both over the denominator's root.
-  const Dyadic square = Dyadic(length) * Dyadic(length);
+  // As a quotient, so that the only cancellation happens in exact arithmetic: both over the denominator's root, in a
+  // unit so large that doubles have the distance of any two places.
+  constexpr double unit = 0x1p8;
+  const Dyadic square = Dyadic(length) * Dyadic(length), larger = squared.denominator * Dyadic(unit * unit);
   const Dyadic left = squared.numerator - squared.denominator * square;
   const bool is_less = left.sign() < 0;
-  const double root = roughRoot({is_less ? -left : left, squared.denominator});
-  const double sum = roughRoot(squared) + length;
-  return (is_less ? -root : root) / sum * root;
+  const double root = roughRoot({is_less ? -left : left, larger});
+  const double sum = roughRoot({squared.numerator, larger}) + length / unit;
+  return (is_less ? -root : root) / sum * root * unit;
 }
 
 /// Sign of sqrt(x) + shift - sqrt(y).
