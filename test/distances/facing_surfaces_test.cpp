@@ -54,7 +54,7 @@ TEST(PointDistances, OfSurfacesThatFaceEachOther)
     };
     const SphereHierarchy ha = hierarchyOf(first, seed % 4 != 0, {}), hb = hierarchyOf(second, seed % 4 != 1, radii);
     const double apart = random.pick({0.1, 0.7, 1.5, 3.0, 20.0, 300.0});
-    Eigen::Isometry3d facing(Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), apart));
+    Eigen::Isometry3d facing(Eigen::Translation3d{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), apart});
     if (random.chance(0.5)) facing.rotate(Eigen::AngleAxisd(random.uniform(0, 6), Eigen::Vector3d::UnitZ()));
     if (random.chance(0.5)) facing.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
     if (random.chance(0.3)) facing.rotate(Eigen::AngleAxisd(random.uniform(0, 0.2), Eigen::Vector3d::UnitY()));

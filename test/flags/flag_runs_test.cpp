@@ -96,7 +96,7 @@ TEST(FlagRuns, AnswersAreThoseOfBruteForce)
     const Cloud a(points, {round % 2 == 0 ? Scalar::float32 : Scalar::float64}), b(others, {Scalar::float64});
     const Eigen::Isometry3d pose_a = round % 3 == 1 ? random.pose(3.0) : Eigen::Isometry3d::Identity();
     Eigen::Isometry3d pose_b = pose_a;
-    if (!tie) pose_b.translate(Eigen::Vector3d(random.uniform(-20, 20), random.uniform(-20, 20), 0));
+    if (!tie) pose_b.translate(Eigen::Vector3d{random.uniform(-20, 20), random.uniform(-20, 20), 0});
     without_tree +=
         expectFlags(a, b, pose_a, pose_b, clearance, withEdge(round % 2 == 0 ? 24 : 16), std::to_string(round));
   }
@@ -132,7 +132,7 @@ struct Rows {
   {
     for (std::size_t row = 0; row < count; ++row) {
       const Eigen::Vector3d along =
-          Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+          Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}.normalized();
       const Eigen::Vector3d from(60.0 * static_cast<double>(row % 8), 60.0 * static_cast<double>(row / 8), 0.0);
       const auto at = [&](double k) {
         const Eigen::Vector3d place = scale * (from + k * along);
@@ -163,7 +163,7 @@ TEST(FlagRuns, ReachBeyondTheEndsOfRows)
 /// More obstacles than are tested at once, which cover one voxel of a.
 TEST(FlagRuns, AmongManyObstacles)
 {
-  Random random(77);
+  Random random(78);
   const Rows rows(64, 4.0, 1.0, random);
   const Cloud a(rows.points), b(rows.beyond);
   const SphereHierarchy ha(a.view(), withEdge(1000)), hb(b.view(), withEdge(1));

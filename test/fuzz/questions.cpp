@@ -375,7 +375,7 @@ void Questions::askAlong(const Placed& a, const Placed& b, double unit, Random& 
   Eigen::Isometry3d pose = b.pose;
   for (int k = random.integer(0, 5); k > 0; --k) {
     poses.push_back(pose);
-    pose.pretranslate(Eigen::Vector3d(unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0));
+    pose.pretranslate(Eigen::Vector3d{unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0});
     if (random.chance(0.2)) pose.linear() = random.rotation().toRotationMatrix();
   }
   TrajectoryRequest request;

@@ -200,7 +200,7 @@ void askSolid(const Placed& a, const Placed& b, double unit, Random& random)
     for (std::size_t i = 0; i < first_pose.size(); ++i)
       if (held(there.labels[i])) first_pose[i] = std::min(first_pose[i], k);
     poses.push_back(pose);
-    pose.pretranslate(Eigen::Vector3d(unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0));
+    pose.pretranslate(Eigen::Vector3d{unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0});
     if (random.chance(0.2)) pose.linear() = random.rotation().toRotationMatrix();
   }
   require(findPosesInside(a, *solid, poses, threads).first == first_pose, "poses inside: differ");

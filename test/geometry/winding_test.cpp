@@ -159,7 +159,7 @@ TEST(Winding, NextToTheSurface)
   const Soup box = boxOf({0, 0, 0}, {1, 1, 1});
   for (int i = 0; i < 60; ++i) {
     const Isometry3d pose = random.pose(10.0);
-    const Eigen::Vector3d on = pose * Eigen::Vector3d(random.uniform(0, 1), random.uniform(0, 1), 1.0);
+    const Eigen::Vector3d on = pose * Eigen::Vector3d{random.uniform(0, 1), random.uniform(0, 1), 1.0};
     Point3 p = {on(0), on(1), on(2)};
     std::vector<Point3> points = {p};
     for (std::size_t k = 0; k < 3; ++k)

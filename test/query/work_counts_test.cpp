@@ -526,13 +526,13 @@ TEST(WorkCounts, OfScenes)
                            ? cloudOf(wavyMesh(5, 0.0, random), false)
                            : cloudOf(test::makePoints(test::Shape::uniform, 150, 0.5, random), i % 2 != 0, 0.0));
       Eigen::Isometry3d pose = random.pose(0.0);
-      pose.translation() = Eigen::Vector3d(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-1, 1));
+      pose.translation() = Eigen::Vector3d{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-1, 1)};
       SceneObject made =
           object("object " + std::to_string(i), std::make_shared<SphereHierarchy>(clouds.back().view()), pose);
       made.fixed = i % 4 == 3;
       if (!made.fixed) {
         VelocityMotion motion;
-        motion.linear = Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.25);
+        motion.linear = Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), 0.25};
         if (i % 2 == 0) motion.angular = Eigen::Vector3d(0, 0, 0.5);
         made.motion = motion;
       }

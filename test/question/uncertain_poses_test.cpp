@@ -219,7 +219,7 @@ TEST_F(UncertainPoses, OfListsOfMotionsContradictNoVerdict)
   std::vector<PoseMotion> motions;
   for (std::uint32_t k = 0; k < 200; ++k) {
     poses.push_back(random.pose(3.0));
-    poses.push_back(poses.back() * Eigen::Translation3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0) *
+    poses.push_back(poses.back() * Eigen::Translation3d{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0} *
                     Eigen::AngleAxisd(random.uniform(-0.5, 0.5), Eigen::Vector3d::UnitZ()));
     motions.push_back({2 * k, 2 * k + 1});
   }

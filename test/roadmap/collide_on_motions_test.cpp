@@ -431,7 +431,7 @@ TEST(OnMotions, GrazesAreRightInBatches)
     const RigidMotion motion = motionBetween(poses[motions[m].from], poses[motions[m].to], request.pivot);
     const Point3 q = body_points[static_cast<std::size_t>(random.integer(0, 59))];
     const Eigen::Vector3d at = motion.at(random.uniform(0, 1)) * Eigen::Vector3d(q[0], q[1], q[2]);
-    const Eigen::Vector3d away = Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.2).normalized();
+    const Eigen::Vector3d away = Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), 0.2}.normalized();
     const Eigen::Vector3d post = at + 0.00999 * away;
     const Cloud scan_cloud({{post[0], post[1], post[2]}}, {Scalar::float64, 0, 0});
     const SphereHierarchy scan(scan_cloud.view());

@@ -450,12 +450,12 @@ TEST(ObjectMotion, NoPointIsFasterThanItsSpeed)
 {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Eigen::Vector3d axis{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     Leg leg;
     leg.turn = random.uniform(0, 8) * axis.normalized();
     leg.to.linear() = Eigen::AngleAxisd(leg.turn.norm(), leg.turn.normalized()).toRotationMatrix();
     leg.center = Eigen::Vector3d(random.uniform(-1, 1), 0, 0);
-    leg.to.translation() = Eigen::Vector3d(random.uniform(-3, 3), random.uniform(-3, 3), 0);
+    leg.to.translation() = Eigen::Vector3d{random.uniform(-3, 3), random.uniform(-3, 3), 0};
     const Box3 box{{-1, -2, -3}, {1, 2, 3}};
     const ObjectMotion motion(leg, box);
     double fastest = 0.0;

@@ -16,7 +16,7 @@ TEST(FacePlace, IsWhereTheDirectionMeetsTheCube)
 {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    Eigen::Vector3d direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    Eigen::Vector3d direction{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     if (i % 3 == 0) direction[random.integer(0, 2)] = 0.0;
     const FacePlace place = facePlaceOf(direction);
     EXPECT_LT(place.face, kCubeFaces);

@@ -120,7 +120,7 @@ TEST(MarkUnseen, AgreesWithBruteForce)
     if (seed % 3 == 0) test::makeUncertain(cloud, 0.05, random);
     const SphereHierarchy model(cloud.view());
     Eigen::Isometry3d pose(Eigen::Quaterniond::UnitRandom());
-    pose.translation() = Eigen::Vector3d(random.uniform(2, 18), random.uniform(2, 10), random.uniform(1, 3));
+    pose.translation() = Eigen::Vector3d{random.uniform(2, 18), random.uniform(2, 10), random.uniform(1, 3)};
     const double clearance = seed % 6 == 5 ? 0.0 : random.uniform(0.01, 0.3);
     const Verdicts truth = bruteForce(scans, angle, {model, pose}, clearance);
     const SeenSpace space = spaceOf(scans, angle);
@@ -248,7 +248,7 @@ TEST_F(UnseenTriangles, AreUnseenWhereOneOfTheirPlacesIs)
   std::size_t seen = 0, unseen = 0;
   std::vector<float> corners;
   for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector3d at(random.uniform(0.5, 7.5), random.uniform(0.5, 5.5), random.uniform(0.5, 2.5));
+    const Eigen::Vector3d at{random.uniform(0.5, 7.5), random.uniform(0.5, 5.5), random.uniform(0.5, 2.5)};
     for (int c = 0; c < 3; ++c)
       for (Eigen::Index k = 0; k < 3; ++k) corners.push_back(static_cast<float>(at[k] + random.uniform(-0.5, 0.5)));
   }

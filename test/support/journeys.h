@@ -72,7 +72,7 @@ inline Poses anyPath(const Eigen::Isometry3d& start, const Point3& center, doubl
 {
   const Eigen::Vector3d middle(center[0], center[1], center[2]);
   const auto direction = [&] {
-    return Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    return Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}.normalized();
   };
   const int kind = random.integer(0, 6);
   const Eigen::Vector3d along = direction(), axis = direction();

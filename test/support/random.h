@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers, points and poses that are the same on every run.
+// Numbers, points and poses that are the same on every run; with every compiler, too, where no two of them are
+// arguments of one call, which are evaluated in any order. What stands in braces is evaluated from left to right.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>

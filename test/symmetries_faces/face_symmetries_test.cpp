@@ -36,7 +36,7 @@ Instance anyFaceInstance(std::uint32_t seed, std::size_t most = 60)
     if (random.chance(0.5)) {
       pose = Eigen::Isometry3d::Identity();
       pose.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-      pose.translation() = Eigen::Vector3d(1.0, random.integer(-4, 4) / 8.0, random.integer(-4, 4) / 8.0);
+      pose.translation() = Eigen::Vector3d{1.0, random.integer(-4, 4) / 8.0, random.integer(-4, 4) / 8.0};
     }
     made.relative.push_back(pose);
   }

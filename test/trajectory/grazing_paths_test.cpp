@@ -39,7 +39,7 @@ PointsView viewOf(const Cloud& cloud)
 
 Eigen::Vector3d noise(Random& random)
 {
-  return kNoise * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  return kNoise * Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
 /// The shortest turn of x into an axis. (Eigen's FromTwoVectors() takes a compiler six seconds.)
@@ -71,7 +71,7 @@ Cloud wallBeside(const Poses& poses, const Eigen::Vector3d& axis, Random& random
     const Eigen::Isometry3d& pose =
         poses[static_cast<std::size_t>(random.integer(0, static_cast<int>(poses.size()) - 1))];
     const double gap = kClearance + random.uniform(-0.02, 0.03);
-    wall.push_back(pose * (turn * Eigen::Vector3d(random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1))) +
+    wall.push_back(pose * (turn * Eigen::Vector3d{random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1)}) +
                    noise(random));
   }
   return wall;

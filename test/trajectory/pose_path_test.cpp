@@ -277,9 +277,9 @@ TEST(PosePath, NoPointStraysFartherInWholeIntervals)
       const PathInterval& interval =
           path.intervals[static_cast<std::size_t>(random.integer(0, static_cast<int>(path.intervals.size()) - 1))];
       if (interval.last == interval.first) continue;
-      const Vector point(scale * random.uniform(-2, 2), scale * random.uniform(-2, 2), scale * random.uniform(-2, 2));
+      const Vector point{scale * random.uniform(-2, 2), scale * random.uniform(-2, 2), scale * random.uniform(-2, 2)};
       const Eigen::Vector3d of_model =
-          radius * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+          radius * Eigen::Vector3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}.normalized();
       // From a point of the model to the point, seen by the model, at a pose of the path.
       const auto apart = [&](std::uint32_t k) -> Vector {
         const PathPose& pose = path.poses[k];

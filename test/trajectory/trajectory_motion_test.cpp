@@ -251,7 +251,7 @@ Run grazingRun(double bend, double step, double tolerance, std::uint64_t seed)
   for (int i = 0; i < 90; ++i) {
     const double gap = clearance + tolerance * random.uniform(-1, 2);
     const Eigen::Vector3d at = onBend(random.uniform(0, step * (count - 1))) *
-                               Eigen::Vector3d(random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1));
+                               Eigen::Vector3d{random.uniform(-4, 4), gap, random.uniform(-0.2, 0.1)};
     wall.push_back({at.x(), at.y(), at.z()});
   }
   return {Cloud(wall), Cloud(body),        identity,

@@ -371,14 +371,14 @@ struct Room {
   {
     Random random(5);
     for (std::size_t i = 0; i < points; ++i) {
-      Eigen::Vector3d p(random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-1, 1));
+      Eigen::Vector3d p{random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-1, 1)};
       const auto side = static_cast<Eigen::Index>(i % 3);
       p[side] = std::copysign(3.0 - static_cast<double>(side), p[side]);
       walls.push_back(p.cast<float>());
     }
     for (std::size_t i = 0; i < model_points; ++i)
       model.push_back(
-          Eigen::Vector3d(0.2 * random.uniform(-1, 1), 0.2 * random.uniform(-1, 1), 0.4 * random.uniform(-1, 1))
+          Eigen::Vector3d{0.2 * random.uniform(-1, 1), 0.2 * random.uniform(-1, 1), 0.4 * random.uniform(-1, 1)}
               .cast<float>());
   }
 
