@@ -18,6 +18,14 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
+/// Of eight lanes, the one that is looked at; the others hold something else.
+constexpr std::size_t kLane = 5;
+
+void setLane(float* lanes, float value)
+{
+  for (std::size_t i = 0; i < 8; ++i) lanes[i] = i == kLane ? value : value + 1.0f + static_cast<float>(i);
+}
+
 void carryOnTarget(const float* m, const float* g, const float* x, const float* y, const float* z, test::Carried& out)
 {
   carry(m, g, x, y, z, 8, out.x, out.y, out.z);
@@ -35,14 +43,14 @@ test::Near testOnTarget(const float* center, const float* radius_stretch, const 
                         const float* reaches)
 {
   alignas(32) float x[8], y[8], z[8], r[8];
-  std::fill(x, x + 8, center[0]);
-  std::fill(y, y + 8, center[1]);
-  std::fill(z, z + 8, center[2]);
-  std::fill(r, r + 8, radius_stretch[0]);
+  setLane(x, center[0]);
+  setLane(y, center[1]);
+  setLane(z, center[2]);
+  setLane(r, radius_stretch[0]);
   const SphereLanes spheres{x, y, z, r, radius_stretch[1]};
   const QueryBall held{ball[0], ball[1], ball[2], ball_radius + reaches[0],
                        reaches[1] - ball_radius * (1.0f + kSphereMargin)};
-  return {(spheresNear(spheres, held, nullptr) & 1) != 0, (spheresInside(spheres, held) & 1) != 0};
+  return {(spheresNear(spheres, held, nullptr) >> kLane & 1) != 0, (spheresInside(spheres, held) >> kLane & 1) != 0};
 }
 
 bool slabsApartOnTarget(const test::TestSlab& slab, float stretch, const test::TestSlab& other, float reach)
@@ -50,12 +58,14 @@ bool slabsApartOnTarget(const test::TestSlab& slab, float stretch, const test::T
   alignas(32) float at[8][8];
   const float values[8] = {slab.center[0], slab.center[1], slab.center[2], slab.radius,
                            slab.normal[0], slab.normal[1], slab.normal[2], slab.h};
-  for (std::size_t k = 0; k < 8; ++k) std::fill(at[k], at[k] + 8, values[k]);
+  for (std::size_t k = 0; k < 8; ++k) setLane(at[k], values[k]);
   const Slab held{{other.normal[0], other.normal[1], other.normal[2]},
                   other.h,
                   {other.center[0], other.center[1], other.center[2]},
                   other.radius};
-  return (slabsApart({at[0], at[1], at[2], at[3], stretch}, {at[4], at[5], at[6], at[7]}, held, reach) & 1) != 0;
+  const std::uint32_t apart =
+      slabsApart({at[0], at[1], at[2], at[3], stretch}, {at[4], at[5], at[6], at[7]}, held, reach);
+  return (apart >> kLane & 1) != 0;
 }
 
 test::Gaps gapsOnTarget(const test::TestSlab& slab, const test::TestSlab& cross, float stretch,
@@ -65,7 +75,7 @@ test::Gaps gapsOnTarget(const test::TestSlab& slab, const test::TestSlab& cross,
   const float values[12] = {slab.center[0],  slab.center[1],  slab.center[2],  slab.radius,
                             slab.normal[0],  slab.normal[1],  slab.normal[2],  slab.h,
                             cross.normal[0], cross.normal[1], cross.normal[2], cross.h};
-  for (std::size_t k = 0; k < 12; ++k) std::fill(at[k], at[k] + 16, values[k]);
+  for (std::size_t k = 0; k < 12; ++k) setLane(at[k], values[k]);
   const auto pointOf = [](const float(&v)[3]) { return Point{v[0], v[1], v[2]}; };
   const SphereLanes spheres{at[0], at[1], at[2], at[3], stretch};
   const SlabLanes slabs{at[4], at[5], at[6], at[7]}, crossed{at[8], at[9], at[10], at[11]};
@@ -78,7 +88,7 @@ test::Gaps gapsOnTarget(const test::TestSlab& slab, const test::TestSlab& cross,
   for (std::size_t k = 0; k < 3; ++k) std::fill(at[k], at[k] + 16, other.center[k]);
   const float to_points =
       pointsGap(at[0], at[1], at[2], 11, {pointOf(slab.normal), slab.h, pointOf(slab.center), slab.radius * stretch});
-  return {by_slabs[0], by_supports[0], to_points};
+  return {by_slabs[kLane], by_supports[kLane], to_points};
 }
 
 test::Stay segmentInBoxOnTarget(const float* start, const float* end, const float* bow, float smallest, float reach,
@@ -86,16 +96,16 @@ test::Stay segmentInBoxOnTarget(const float* start, const float* end, const floa
 {
   alignas(64) float from[3][8], to[3][8], bows[3][8];
   for (std::size_t k = 0; k < 3; ++k) {
-    std::fill(bows[k], bows[k] + 8, bow[k]);
-    std::fill(from[k], from[k] + 8, start[k]);
-    std::fill(to[k], to[k] + 8, end[k]);
+    setLane(bows[k], bow[k]);
+    setLane(from[k], start[k]);
+    setLane(to[k], end[k]);
   }
   Segments<8> segments;
   segments.set(from, to, bows, smallest);
   std::fill(segments.reach[0], segments.reach[0] + 8, reach);
   ClippedSegments<8> clipped;
-  const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &clipped) & 1) != 0;
-  return {in_box, clipped.from[0], clipped.to[0]};
+  const bool in_box = (segmentsInBox(segments, low, high, 0.0f, &clipped) >> kLane & 1) != 0;
+  return {in_box, clipped.from[kLane], clipped.to[kLane]};
 }
 
 void toTriangleOnTarget(const FlatTriangle<float>& triangle, const float* x, const float* y, const float* z,

@@ -56,6 +56,8 @@ TEST(Progress, TellsOfManySmallPiecesNowAndThen)
   EXPECT_THROW(progress.tick(many), OutOfTime);
   progress.limit(nullptr);
   progress.tick(many);
+  told.most = 0;
+  EXPECT_THROW(progress.tick(many), Cancelled);
 }
 
 TEST(Progress, EndsWhereTheCallerHasEnough)
