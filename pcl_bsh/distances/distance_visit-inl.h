@@ -29,7 +29,8 @@ namespace HWY_NAMESPACE {
 
 /// A space of b, as seen from a voxel of a.
 struct DistanceObstacle {
-  const Voxel* voxel; ///< null: the tree above the voxels
+  const Voxel* voxel;                 ///< null: the tree above the voxels
+  std::uint32_t space = kAboveVoxels; ///< the voxel's number, where the walk has entered it
   RelativeFrame frame;
   float slack;                        ///< pruneReach(0): what floats may err by
   float blunt_radius;                 ///< as the frame has it
@@ -42,8 +43,7 @@ struct DistanceObstacle {
   const Slabs* cross_slabs = nullptr; ///< likewise, where they are long
 
   /// @param unit of the walk, in the clouds' unit @param unit_a of a's voxel
-  DistanceObstacle(const Voxel* entered, const LocalFrame& space, const RelativeFrame& from_a, double unit,
-                   double unit_a)
+  DistanceObstacle(const Voxel* entered, const LocalFrame& in, const RelativeFrame& from_a, double unit, double unit_a)
   : voxel(entered),
     frame(from_a),
     slack(frame.pruneReach(0.0)),
@@ -51,11 +51,11 @@ struct DistanceObstacle {
     error(roundUp(frame.error))
   {
     constexpr double smallest = 0x1p-60, largest = 0x1p60; // factors beyond are given up: no bound is as good
-    const double ratio = space.unit / unit, margin = 2 * frame.skew() + kDoubleMargin;
+    const double ratio = in.unit / unit, margin = 2 * frame.skew() + kDoubleMargin;
     least = ratio < smallest ? 0.0f : roundDown(std::min(ratio, largest) * (1.0 - margin));
     most = roundUp(std::max(ratio, smallest) * (1.0 + margin));
     at_most_inside = roundUp(std::max(1.0 / ratio, smallest) * (1.0 + margin));
-    const double from_unit_a = space.unit / unit_a; // a power of 2; normals of 0 tell nothing
+    const double from_unit_a = in.unit / unit_a; // a power of 2; normals of 0 tell nothing
     normal_scale = from_unit_a > smallest && from_unit_a < largest ? static_cast<float>(from_unit_a) : 0.0f;
     is_plain = ratio == 1.0 && frame.error < std::numeric_limits<double>::infinity();
   }
@@ -407,7 +407,6 @@ struct DistanceScratch {
   std::vector<NearSphere> roots;           ///< what the walk begins with
   std::vector<CarriedLeaf> leaves;         ///< by obstacle
   std::vector<std::uint32_t> obstacle_of;  ///< by voxel of b: its obstacle, 0 where it has none yet
-  std::vector<std::uint32_t> entered;      ///< the voxels that have one
   FlatRecords flat;                        ///< where b is of triangles
   std::vector<MaybeNearest> maybe_nearest; ///< likewise
   GatheredSpheres gathered;
@@ -418,7 +417,7 @@ struct DistanceScratch {
   {
     std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
                       roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
-                      (obstacle_of.capacity() + entered.capacity()) * sizeof(std::uint32_t) + flat.bytes() +
+                      obstacle_of.capacity() * sizeof(std::uint32_t) + flat.bytes() +
                       maybe_nearest.capacity() * sizeof(MaybeNearest) + near_leaves.capacity() * sizeof(NearLeaf) +
                       long_triangles.bytes() + gathered.bytes();
     for (const DistanceVisit& visit : visits) {

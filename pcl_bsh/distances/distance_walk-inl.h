@@ -354,7 +354,6 @@ private:
     const std::uint32_t voxel = node.begin[sphere.lane];
     if (scratch_.obstacle_of[voxel] == 0) {
       const Voxel* const entered = &b_.voxel(voxel, found.work);
-      scratch_.entered.push_back(voxel);
       addObstacle(voxel, entered);
       scratch_.obstacle_of[voxel] = static_cast<std::uint32_t>(obstacles_.size() - 1);
     }
@@ -366,6 +365,7 @@ private:
   {
     const RelativeFrame frame(a_.frame(voxel_), a_.pose, b_.frame(space), b_.pose, query_.rotation);
     obstacles_.emplace_back(voxel, b_.frame(space), frame, unit_, a_.frame(voxel_).unit);
+    obstacles_.back().space = space;
     if (voxel && b_.storage.view.triangles) {
       Voxel& entered = b_.storage.voxels[space];
       obstacles_.back().slabs = entered.slabs.of(*voxel, b_.storage.view, found.work);
@@ -406,17 +406,18 @@ private:
   /// Of a sphere below a voxel. @param radius of it, stretched
   Slab slabOfSphere(const ObstacleSphere& sphere, float radius)
   {
-    const Voxel& voxel = *obstacles_[sphere.obstacle].voxel;
+    const DistanceObstacle& obstacle = obstacles_[sphere.obstacle];
+    const Voxel& voxel = *obstacle.voxel;
     const Node& node = *sphere.node;
-    LazySlabs& slabs = b_.storage.voxels[scratch_.entered[sphere.obstacle - 1]].slabs;
+    LazySlabs& slabs = b_.storage.voxels[obstacle.space].slabs;
     return slabOf(slabs.of(voxel, b_.storage.view, found.work)[&node - voxel.nodes.data()], sphere.lane,
                   {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius);
   }
 
   void forgetObstacles() noexcept
   {
-    for (const std::uint32_t voxel : scratch_.entered) scratch_.obstacle_of[voxel] = 0;
-    scratch_.entered.clear();
+    for (const DistanceObstacle& obstacle : obstacles_)
+      if (obstacle.space != kAboveVoxels) scratch_.obstacle_of[obstacle.space] = 0;
     obstacles_.clear();
   }
 

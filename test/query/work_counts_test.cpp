@@ -454,8 +454,8 @@ TEST(WorkCounts, OfSolids)
   Random random(6);
   test::TestMesh mesh = test::boxMesh(1.0, 0.75, 0.5);
   for (int i = 0; i < 30; ++i) { // boxes beside each other, and in each other
-    test::TestMesh box =
-        test::boxMesh(random.integer(1, 4) / 8.0, random.integer(1, 4) / 8.0, random.integer(1, 4) / 8.0);
+    const Point3 half = random.point([&] { return random.integer(1, 4) / 8.0; });
+    const test::TestMesh box = test::boxMesh(half[0], half[1], half[2]);
     const Point3 at = random.point([&] { return random.integer(-16, 16) / 16.0; });
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Point3& p : box.vertices) mesh.vertices.push_back({p[0] + at[0], p[1] + at[1], p[2] + at[2]});

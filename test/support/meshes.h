@@ -60,6 +60,7 @@ inline Mesh makeMesh(MeshKind kind, std::size_t count, double scale, Random& ran
       }
     return mesh;
   }
+  const auto put = [&mesh](const Triangle3& t) { mesh.add(t[0], t[1], t[2]); };
   const Point3 middle = anywhere(), first = on_lattice();
   for (std::size_t i = 0; i < count; ++i) {
     const double turn = 6.283185307179586 * static_cast<double>(i / (1 + i % 2)) / static_cast<double>(count);
@@ -67,14 +68,14 @@ inline Mesh makeMesh(MeshKind kind, std::size_t count, double scale, Random& ran
     switch (kind) {
     case MeshKind::soup: {
       const double size = scale * std::pow(10.0, random.uniform(-3, 0));
-      mesh.add(beside(p, size), beside(p, size), beside(p, size));
+      put({beside(p, size), beside(p, size), beside(p, size)});
       break;
     }
     case MeshKind::lattice:
-      mesh.add(on_lattice(), on_lattice(), on_lattice());
+      put({on_lattice(), on_lattice(), on_lattice()});
       break;
     case MeshKind::needles:
-      mesh.add(p, beside(p, 1e-6 * scale), anywhere());
+      put({p, beside(p, 1e-6 * scale), anywhere()});
       break;
     case MeshKind::degenerate: {
       const Point3 q = on_lattice(), r = on_lattice();
