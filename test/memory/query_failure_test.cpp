@@ -10,10 +10,12 @@
 #include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
+#include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "clouds.h"
 #include "support/every_allocation.h"
+#include "support/made_meshes.h"
 #include "support/question.h"
 #include "support/verdicts.h"
 
@@ -118,6 +120,36 @@ TEST(AllocationFailure, OfFlagsLeavesAUsableResult)
                        }
                        return answerOf(subject.result) == answerOf(right);
                      });
+}
+
+TEST(AllocationFailure, OfLabelsLeavesAnEmptyResult)
+{
+  const TestMesh box = boxMesh(1.0, 0.75, 0.5);
+  const Solid solid(box.trianglesView());
+  struct Subject {
+    std::unique_ptr<FreshPair> pair = freshPair();
+    LabelsResult result;
+  };
+  const auto make = [] {
+    Subject subject;
+    subject.result.labels = {1, 2};
+    subject.result.inside = subject.result.on_surface = 1;
+    return subject;
+  };
+  EXPECT_GT(failEachAllocation(make,
+                               [&](Subject& subject) {
+                                 LabelsResult& result = subject.result;
+                                 try {
+                                   labelPoints(subject.pair->placedA(), solid, result);
+                                 }
+                                 catch (const std::bad_alloc&) {
+                                   EXPECT_TRUE(result.labels.empty());
+                                   EXPECT_EQ(result.inside + result.on_surface, 0u);
+                                   throw;
+                                 }
+                                 return std::tuple(result.labels, result.inside, result.on_surface);
+                               }),
+            1u);
 }
 
 TEST(AllocationFailure, OfCollidingIndices)

@@ -155,6 +155,23 @@ TEST(PoseUncertainty, MovesPointsByItsBound)
   EXPECT_NEAR(moved, 0.35 + 4 * std::sin(0.5), 1e-6);
 }
 
+TEST(PoseUncertainty, RefusesNumbersThatAreNone)
+{
+  Uncertainty good(0.25);
+  good.pose = {0.1, 1.0, {1, 2, 3}};
+  EXPECT_NO_THROW(checkUncertainty("cloud", good));
+  const std::vector<std::function<double&(Uncertainty&)>> numbers = {
+      [](Uncertainty& u) -> double& { return u.length; }, [](Uncertainty& u) -> double& { return u.sigmas; },
+      [](Uncertainty& u) -> double& { return u.pose.length; }, [](Uncertainty& u) -> double& { return u.pose.angle; }};
+  for (const auto& number : numbers)
+    for (const double value :
+         {-0x1p-1074, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+      Uncertainty bad = good;
+      number(bad) = value;
+      EXPECT_THROW(checkUncertainty("cloud", bad), std::invalid_argument) << value;
+    }
+}
+
 TEST(PoseUncertainty, AddsToWhatPointsHave)
 {
   const float place[] = {1, 2, 5}, own[] = {0.5f};

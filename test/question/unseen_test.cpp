@@ -115,6 +115,20 @@ TEST_F(Unseen, OneScannerThatSeesItSuffices)
   EXPECT_EQ(found.unseen.angles.size(), 2u);
 }
 
+TEST_F(Unseen, CanBeCancelledAtEachReport)
+{
+  question.path.emplace(2, Eigen::Isometry3d::Identity());
+  std::size_t reports = 0, last = 1000;
+  question.progress = [&](double) { return ++reports < last; };
+  asked(first_);
+  const std::size_t all = reports;
+  EXPECT_GT(all, 2u);
+  for (last = 1; last <= all; ++last) {
+    reports = 0;
+    EXPECT_THROW(asked(first_), Cancelled) << last << " of " << all;
+  }
+}
+
 /// It saw nothing: above all not what the other one did.
 TEST_F(Unseen, AScannerWithoutPointsSeesNothing)
 {

@@ -96,6 +96,22 @@ TEST(Strays, OfBallsThatReachTheOthers)
              brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
 }
 
+/// What is far out for a small scan is in the midst of a large model.
+TEST(Strays, OfAScanThatTheModelReachesBeyond)
+{
+  Points large = cubeWith({}, 2);
+  for (Point3& p : large)
+    for (double& x : p) x *= 1e6;
+  large[11] = {1e5, 0.25, 0};
+  const test::Cloud scan(cubeWith({{1e5, 0, 0}}, 1)), model(large);
+  HierarchyOptions one_voxel;
+  one_voxel.voxel_edge = 1e8;
+  const SphereHierarchy of_scan(scan.view()), of_model(model.view(), one_voxel);
+  const Poses poses = {Eigen::Isometry3d::Identity()};
+  EXPECT_FALSE(findStrays(of_scan, of_model, poses, 0.5).has_value());
+  EXPECT_EQ(collideAlong(of_scan, of_model, poses, flagsOnly(0.5)).flags[7], Verdict::colliding);
+}
+
 /// A clearance so large that ordinary points meet a stray.
 TEST(Strays, OfAClearanceThatExceedsTheirDistance)
 {

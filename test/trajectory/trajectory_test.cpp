@@ -505,6 +505,31 @@ TEST(Trajectory, GeoreferencedAndTied)
   }
 }
 
+/// A turn by little moves what is far from the pivot by much: also by what it strays from an even motion.
+TEST(Trajectory, FarFromThePivotOfAJerkyTurn)
+{
+  Random random(21);
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE(round);
+    const auto around = [&] {
+      std::vector<Point3> points(40);
+      for (Point3& p : points) {
+        const double angle = random.uniform(0, 0.5), away = random.uniform(99, 101);
+        p = {away * std::cos(angle), away * std::sin(angle), random.uniform(-1, 1)};
+      }
+      return points;
+    };
+    const Cloud scan_cloud(around()), model_cloud(around());
+    Poses poses(24, identity);
+    for (Eigen::Isometry3d& pose : poses)
+      pose.rotate(Eigen::AngleAxisd(random.uniform(-0.05, 0.05), Eigen::Vector3d::UnitZ()));
+    const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+    const TrajectoryResult expected = brute_force::collideAlong({scan}, model, poses, everything(0.3));
+    expectSame(collideAlong({scan}, model, poses, everything(0.3)), expected);
+    EXPECT_EQ(collideAlong({scan}, model, poses, flagsOnly(0.3)).flags, expected.flags);
+  }
+}
+
 TEST(Trajectory, ExtremeMagnitudes) // H8, H9
 {
   for (const double scale : {1e-300, 1e-40, 1e-20, 1e20, 1e30, 1e150, 1e300}) {
