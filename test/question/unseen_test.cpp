@@ -115,18 +115,21 @@ TEST_F(Unseen, OneScannerThatSeesItSuffices)
   EXPECT_EQ(found.unseen.angles.size(), 2u);
 }
 
-TEST_F(Unseen, CanBeCancelledAtEachReport)
+TEST_F(Unseen, ReportsAtEachPoseAndCanBeCancelledThere)
 {
-  question.path.emplace(2, Eigen::Isometry3d::Identity());
+  question.path.emplace(8, Eigen::Isometry3d::Identity());
   std::size_t reports = 0, last = 1000;
   question.progress = [&](double) { return ++reports < last; };
-  asked(first_);
-  const std::size_t all = reports;
-  EXPECT_GT(all, 2u);
-  for (last = 1; last <= all; ++last) {
+  const auto reportsOf = [&](bool seen) {
     reports = 0;
-    EXPECT_THROW(asked(first_), Cancelled) << last << " of " << all;
-  }
+    question.seen = seen;
+    question.origin = seen ? ScanOrigins::of({1, 3, 1.5}) : ScanOrigins();
+    asked(first_);
+    return reports;
+  };
+  const std::size_t of_collisions = reportsOf(false), all = reportsOf(true);
+  EXPECT_GE(all, of_collisions + 8);
+  for (last = 1; last <= all; ++last) EXPECT_THROW(reportsOf(true), Cancelled) << last << " of " << all;
 }
 
 /// It saw nothing: above all not what the other one did.

@@ -96,18 +96,18 @@ TEST(Strays, OfBallsThatReachTheOthers)
              brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
 }
 
-/// What is far out for a small scan is in the midst of a large model.
+/// What is far out for a small scan is in the midst of a large model, which is all in one voxel.
 TEST(Strays, OfAScanThatTheModelReachesBeyond)
 {
-  Points large = cubeWith({}, 2);
+  Points large = cubeWith({{0.1, 0x1p-22, 0}}, 2);
   for (Point3& p : large)
-    for (double& x : p) x *= 1e6;
-  large[11] = {1e5, 0.25, 0};
+    for (double& x : p) x = 1e6 * (x + 1.0);
   const test::Cloud scan(cubeWith({{1e5, 0, 0}}, 1)), model(large);
   HierarchyOptions one_voxel;
   one_voxel.voxel_edge = 1e8;
   const SphereHierarchy of_scan(scan.view()), of_model(model.view(), one_voxel);
-  const Poses poses = {Eigen::Isometry3d::Identity()};
+  ASSERT_EQ(of_model.statistics().voxels, 1u);
+  const Poses poses = {Eigen::Isometry3d(Eigen::Translation3d(-1e6, -1e6, -1e6))};
   EXPECT_FALSE(findStrays(of_scan, of_model, poses, 0.5).has_value());
   EXPECT_EQ(collideAlong(of_scan, of_model, poses, flagsOnly(0.5)).flags[7], Verdict::colliding);
 }

@@ -511,15 +511,15 @@ TEST(Trajectory, FarFromThePivotOfAJerkyTurn)
   Random random(21);
   for (int round = 0; round < 12; ++round) {
     SCOPED_TRACE(round);
-    const auto around = [&] {
-      std::vector<Point3> points(40);
+    const auto around = [&](std::size_t count, double most) {
+      std::vector<Point3> points(count);
       for (Point3& p : points) {
-        const double angle = random.uniform(0, 0.5), away = random.uniform(99, 101);
+        const double angle = random.uniform(0, most), away = random.uniform(99, 101);
         p = {away * std::cos(angle), away * std::sin(angle), random.uniform(-1, 1)};
       }
       return points;
     };
-    const Cloud scan_cloud(around()), model_cloud(around());
+    const Cloud scan_cloud(around(40, 0.5)), model_cloud(around(400, 6.28));
     Poses poses(24, identity);
     for (Eigen::Isometry3d& pose : poses)
       pose.rotate(Eigen::AngleAxisd(random.uniform(-0.05, 0.05), Eigen::Vector3d::UnitZ()));
