@@ -33,9 +33,9 @@ struct CollisionTrace {
   AnyResult result;               ///< what anyCollision() returns
 };
 
-/// Answers as anyCollision() does, with the work of one thread, and tells how. Where points have uncertainties, both searches
-/// are told together: the one for what may collide and the one for what does for certain. The request's accuracy must
-/// be exact or a tolerance: those that search depth first.
+/// Answers as anyCollision() does, with the work of one thread, and tells how. Where points have uncertainties, both
+/// searches are told together: the one for what may collide and the one for what does for certain. The request's
+/// accuracy must be exact or a tolerance: those that search depth first.
 /// @throws std::invalid_argument as anyCollision() does, and for an accuracy that stops early
 CollisionTrace traceCollision(const Placed& a, const Placed& b, const AnyRequest& request);
 
