@@ -53,7 +53,7 @@ void JsonReader::requireKeys(const std::vector<std::string>& valid) const
 
 JsonReader JsonReader::at(const char* key) const
 {
-  if (!json_->is_object() || !has(key)) fail(std::string("'") + key + "' is missing", "add it");
+  if (!has(key)) fail(std::string("'") + key + "' is missing", "add it");
   return child(json_->at(key), key);
 }
 
