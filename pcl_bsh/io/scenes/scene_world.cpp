@@ -125,13 +125,13 @@ PointsView uncertainView(const PointsView& view, const std::vector<pcl::PCLPoint
   }
 }
 
-/// Points of a cloud that have moved, as uncertain as they were.
+/// Points of a cloud that have moved, as uncertain as they were: the cloud's own hierarchy keeps its uncertainties
+/// alive.
 PointsView movedView(const std::vector<double>& now, const PointsView& measured)
 {
   PointsView view = viewOf(now.data(), now.size() / 3);
   view.uncertainty = measured.uncertainty;
   view.uncertainties = measured.uncertainties;
-  view.owner = measured.owner;
   return view;
 }
 
