@@ -14,7 +14,7 @@ std::vector<Bounds> placedParts(const CloudBoxes& boxes, const Eigen::Isometry3d
   return parts;
 }
 
-Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
+double straying(const Tile& tile, const Uncertainty& uncertainty)
 {
   double length = uncertainty.length;
   if (!uncertainty.field.empty()) {
@@ -24,7 +24,12 @@ Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
   }
   // A point of the tile turns no farther than a ball that holds all of them.
   const BoxBall ball = ballAboutBox(tile.bounds->low, tile.bounds->high);
-  length += (uncertainty.pose.length + uncertainty.pose.turned(ball.center, ball.radius)) * (1.0 + 1e-6);
+  return length + (uncertainty.pose.length + uncertainty.pose.turned(ball.center, ball.radius)) * (1.0 + 1e-6);
+}
+
+Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty)
+{
+  const double length = straying(tile, uncertainty);
   return length == 0.0 ? *tile.bounds : moved(*tile.bounds, Eigen::Isometry3d::Identity(), length);
 }
 

@@ -18,6 +18,9 @@ namespace pcl_bsh::site {
 ///   does not say how large its values are
 void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 
+/// How far from where it was measured a point of a tile may truly be, at most. @pre the tile has a box
+double straying(const Tile& tile, const Uncertainty& uncertainty);
+
 /// The box about wherever the points of a tile may truly be. @pre it has one
 Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty);
 

@@ -9,20 +9,6 @@
 
 namespace pcl_bsh::site {
 
-namespace {
-
-/// How far outside its box a tile's points may truly be, at most.
-double straying(const Tile& tile, const Uncertainty& uncertainty)
-{
-  const Bounds grown = trueBounds(tile, uncertainty);
-  double most = 0.0;
-  for (std::size_t k = 0; k < 3; ++k)
-    most = std::max({most, tile.bounds->low[k] - grown.low[k], grown.high[k] - tile.bounds->high[k]});
-  return most;
-}
-
-} // namespace
-
 ObstacleTiles::ObstacleTiles(const PlacedSite& site, std::uint64_t memory) : site_(site)
 {
   const TileVisitor largest(site.site, memory);
