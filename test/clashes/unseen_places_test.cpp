@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -60,6 +61,21 @@ TEST_F(UnseenPlaces, LieTogetherInCellsThatTouch)
   EXPECT_EQ(places(1.5).size(), 1u) << "cells of 2 m";
   stop(-3.0, {true, false, false});
   EXPECT_EQ(places().size(), 1u) << "the cell between";
+}
+
+TEST_F(UnseenPlaces, LieTogetherInAllDirections)
+{
+  dots.resize(6); // one in the cell of the origin, and one in each of its neighbours in turn
+  view = viewOf(dots.data(), 2);
+  stop(0, {true, true});
+  for (const double x : {-0.5, 0.5, 1.5}) {
+    for (const double y : {-0.5, 0.5, 1.5}) {
+      for (const double z : {-0.5, 0.5, 1.5}) {
+        std::copy_n(std::array{x, y, z}.begin(), 3, dots.begin() + 3);
+        EXPECT_EQ(places().size(), 1u) << x << ' ' << y << ' ' << z;
+      }
+    }
+  }
 }
 
 TEST_F(UnseenPlaces, OfATriangleAreOnePlace)
