@@ -88,6 +88,7 @@ TEST(JsonSchema, AlternativesMayBeLists)
   EXPECT_NE(faultOf(schema, "[]"), "");
   EXPECT_NE(faultOf(schema, "[1, 2, 3, 4]"), "");
   EXPECT_EQ(faultOf(schema, "\"a\""), "d.json: \"a\" is no valid value: give another");
+  EXPECT_EQ(faultOf(R"({"oneOf": [{"minItems": 2}]})", "\"a\""), "") << "a text has no items";
 }
 
 TEST(JsonSchema, RefusesKeywordsThatItWouldNotCheck)

@@ -58,6 +58,14 @@ TEST(TextCursor, TakesOneSeparatorAndNoOther)
   for (const char* word : {"1", "", "3", "4"}) EXPECT_EQ(tabs.word(), word);
 }
 
+TEST(TextCursor, TakesQuotesOffInPairs)
+{
+  TextCursor text("\"1\",\"2,3\",\"\n");
+  text.separateBy(',');
+  ASSERT_TRUE(text.nextLine());
+  for (const char* word : {"1", "\"2", "3\"", "\""}) EXPECT_EQ(text.word(), word);
+}
+
 TEST(TextCursor, TakesEmptyWordsAlone)
 {
   TextCursor text("1,,\"\",4,\n5\n6,\n");
