@@ -4,12 +4,14 @@
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/pose_text.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -148,6 +150,21 @@ TEST_F(PoseFile, PrintedMatricesStandForTheirNearestRotations)
   EXPECT_THAT(warnings, testing::IsEmpty()) << "rigid as they are";
   EXPECT_EQ(parsePoses(printed(5, 6)).size(), 5U) << "nobody asks for warnings";
   EXPECT_THROW(read(printed(50, 3)), files::FileError);
+}
+
+TEST(NearestRigid, LeavesWhatNoRotationCanMendAsItIs)
+{
+  Eigen::Isometry3d printed = Eigen::Isometry3d::Identity();
+  printed.linear()(0, 1) = 1e-5;
+  EXPECT_GT(nearestRigid(printed).deviation, 0.0);
+  Eigen::Isometry3d endless = printed, scaled = printed;
+  endless.translation().x() = std::numeric_limits<double>::infinity();
+  scaled.matrix()(3, 3) = 2.0;
+  for (const Eigen::Isometry3d& given : {endless, scaled}) {
+    const RigidPose left = nearestRigid(given);
+    EXPECT_EQ(left.deviation, 0.0);
+    EXPECT_EQ(left.pose.matrix(), given.matrix());
+  }
 }
 
 TEST_F(PoseFile, MayBeginWithTheMarkOfUtf8)
