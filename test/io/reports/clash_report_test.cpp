@@ -339,6 +339,7 @@ TEST_F(ClashReports, ManyClashesAreAllInTheTable)
   EXPECT_EQ(occurrences(page, "<tr>"), 251U);
   EXPECT_EQ(occurrences(page, "<section class=\"card\""), 200U);
   EXPECT_TRUE(has(page, "The 200 most severe have pictures"));
+  EXPECT_EQ(occurrences(page, "<a href=\"#C"), 200U) << "of those alone";
   for (const Clash& clash : list.clashes) EXPECT_TRUE(has(page, ">" + clash.id + "<"));
 }
 
@@ -573,7 +574,9 @@ TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
   EXPECT_EQ(json["unit"], "m");
   EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
   EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N,\n"));
-  for (const char* wrong : {"yesterday", "", "-1", "1e99", "999999999999"}) {
+  setenv("SOURCE_DATE_EPOCH", "253402300799", 1);
+  EXPECT_TRUE(has(clashPage(list), " on 9999-12-31.")) << "the last second";
+  for (const char* wrong : {"yesterday", "", "-1", "1e99", "253402300800", "999999999999"}) {
     setenv("SOURCE_DATE_EPOCH", wrong, 1);
     EXPECT_THROW(clashPage(list), std::runtime_error) << wrong;
   }
