@@ -306,6 +306,7 @@ TEST(ReplaceFile, RefusesFoldersBeforeWriting)
   EXPECT_THROW(replaceFile(folder / "", never), FileError);
   fs::create_directory(folder / "sub");
   EXPECT_THROW(replaceFile(folder / "sub", never), FileError);
+  EXPECT_THROW(replaceFile("", never), FileError);
   EXPECT_NO_THROW(requireWritable(folder / "new"));
   EXPECT_FALSE(fs::exists(folder / "new"));
 }
