@@ -245,6 +245,9 @@ TEST(Stages, VoxelGridRefusesCellsBeyondCounting)
   EXPECT_THAT(error({{0, 0, 0}, {1e9, 1e9, 1e9}}, "0.001"),
               EndsWith("/1/leaf_size: a grid of 1000000000001 x 1000000000001 x 1000000000001 cells is too large to be "
                        "numbered: give larger cells"));
+  const Points most = {{0.5, 0.5, 0.5}, {1999999.5, 1999999.5, 2299999.5}}; // 9.2e18 cells
+  EXPECT_EQ(outputOf(cloudOf<double>(most), R"({"type": "filters.voxel_grid", "leaf_size": 1})")->cloud.width, 2U);
+  EXPECT_THAT(error({most[0], most[1] + Eigen::Vector3d(0, 0, 1)}, "1"), HasSubstr("2300001 cells is too large"));
   EXPECT_THAT(error({{0, 0, 0}, {1e300, 0, 0}}, "0.001"),
               HasSubstr("/1/leaf_size: cells of this size cannot be counted"));
 }
