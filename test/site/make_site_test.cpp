@@ -227,6 +227,8 @@ TEST(MakeSite, Refuses)
   Cloud own = unevenCloud(10, 2);
   own.fields[3].name = "record";
   writeBinary(folder / "own.pcd", own);
+  folder.write("two.pcd", "FIELDS x y z intensity intensity\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 1\n"
+                          "HEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3 4 5\n");
   folder.write("short.pcd", files::contentOf(folder / "a.pcd").substr(0, 3000));
   const auto refuse = [&](const char* words, const std::vector<fs::path>& clouds, const fs::path& place,
                           const MakeOptions& options = {}) {
@@ -235,6 +237,7 @@ TEST(MakeSite, Refuses)
   refuse("no such file", {folder / "none.pcd"}, folder / "site");
   refuse("its field 'intensity' has another type", {folder / "a.pcd", folder / "other.pcd"}, folder / "site");
   refuse("has a field named 'record'", {folder / "own.pcd"}, folder / "site");
+  refuse("has two fields named 'intensity'", {folder / "two.pcd"}, folder / "site");
   refuse("truncated", {folder / "short.pcd"}, folder / "site");
   refuse("name one", {}, folder / "site");
   refuse("is not empty", {folder / "a.pcd"}, folder.path());
@@ -348,6 +351,18 @@ TEST(DensityTree, LimitsTilesWhateverTheDensity)
         EXPECT_LE(counts.size(), 2.5 * static_cast<double>(points.size()) / static_cast<double>(most));
       }
     }
+  }
+}
+
+/// Only a cell whose points are all at one place may have more than a tile: one of them elsewhere is not.
+TEST(DensityTree, DividesCellsOfTwoPlaces)
+{
+  const Point3 near = {0.1, 0.1, 0.1}, far = {0.9, 0.9, 0.9};
+  for (const auto& [often, once] : {std::pair{near, far}, std::pair{far, near}}) {
+    std::vector<Point3> points(129, often);
+    points[1] = once;
+    const std::vector<std::uint64_t> counts = tilesFor(points, 128);
+    EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 128U);
   }
 }
 

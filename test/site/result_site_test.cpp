@@ -36,7 +36,7 @@ namespace pcl_bsh::site {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr, testing::Not;
+using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::Not;
 using Cloud = pcl::PCLPointCloud2;
 
 class SiteResults : public testing::Test {
@@ -93,6 +93,21 @@ protected:
   Site site;
   std::string err;
 };
+
+TEST(StaleFields, AreThoseOfAnEarlierQuestionThatThisOneDoesNotAnswer)
+{
+  Site asked;
+  asked.sources.resize(2);
+  for (const char* name : {collision_field_name, distance_field_name, "intensity"}) {
+    asked.sources[1].fields.emplace_back();
+    asked.sources[1].fields.back().name = name;
+  }
+  const ResultField collision{collision_field_name, io::Field::UINT8},
+      distance{distance_field_name, io::Field::FLOAT32};
+  EXPECT_THAT(staleFields(asked, {}), ElementsAre(collision_field_name, distance_field_name));
+  EXPECT_THAT(staleFields(asked, {collision}), ElementsAre(distance_field_name));
+  EXPECT_THAT(staleFields(asked, {collision, distance}), IsEmpty());
+}
 
 TEST_F(SiteResults, AreThoseOfMemory)
 {
