@@ -111,5 +111,22 @@ TEST_F(ChartPicture, JoinsASeriesAndTellsHollowFromFilled)
   EXPECT_GT(blotOf(distinctColor(0)).count, apart + 1000);
 }
 
+TEST_F(ChartPicture, DrawsASpreadWithBothItsEnds)
+{
+  const auto blotWith = [&](const std::array<double, 2>& spread) {
+    chart.series = {seriesAt(0, 1e-4, 0.1)};
+    chart.series[0].points[0].spread = spread;
+    draw({chart});
+    return blotOf(distinctColor(0));
+  };
+  const Blot mark = blotWith({}), bar = blotWith({1e-5, 1e-3}), end = blotWith({1e-3, 1e-3});
+  EXPECT_GT(bar.count, mark.count + 400);
+  EXPECT_NEAR(bar.x, mark.x, 1.0) << "as far to the left as to the right";
+  EXPECT_NEAR(bar.y, mark.y, 1.0);
+  EXPECT_GT(end.count, mark.count + 16) << "an end is higher than the bar";
+  EXPECT_GT(end.x, mark.x + 5.0);
+  EXPECT_NEAR(end.y, mark.y, 1.0) << "as far up as down";
+}
+
 } // namespace
 } // namespace pcl_bsh::vtk

@@ -638,6 +638,9 @@ TEST(CollisionFilter, AnOptionWithoutAValueIsLeftOut)
     filter->SetOption("density", nothing);
     EXPECT_FALSE(isSet());
   }
+  const vtkMTimeType before = filter->GetMTime();
+  for (const char* const nameless : {"", static_cast<const char*>(nullptr)}) filter->SetOption(nameless, "true");
+  EXPECT_EQ(filter->GetMTime(), before) << "without a name it is none";
 }
 
 /// An input that is taken away leaves no answer of before.
@@ -864,6 +867,11 @@ TEST_P(Filters, DataThatProcessesShareIsRefused)
   filter->SetInputData(cloud);
   filter->SetObstacleData(obstacle);
   expectFailure(*filter, "2 processes share the data");
+  vtkNew<vtkDummyController> alone;
+  vtkMultiProcessController::SetGlobalController(alone);
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 900) << "one process";
   vtkMultiProcessController::SetGlobalController(nullptr);
   filter->Modified();
   filter->Update();
@@ -885,6 +893,10 @@ TEST_P(Filters, SpheresOfALevelHoldAllPoints)
     EXPECT_EQ(points, 900.0);
     EXPECT_EQ(source->GetHierarchiesBuilt(), 1);
   }
+  std::ostringstream text;
+  source->Print(text);
+  for (const std::string& line : {"Level: " + std::to_string(deepest), std::string("HierarchiesBuilt: 1")})
+    EXPECT_NE(text.str().find(' ' + line + '\n'), std::string::npos) << text.str();
   const vtkIdType spheres = source->GetOutput()->GetNumberOfPoints();
   source->GenerateGlyphsOn();
   source->Update();
