@@ -142,6 +142,15 @@ TEST_F(FarPlaces, AreClustersOfFarPoints)
   EXPECT_EQ(places[1].closest_point, 63u);
 }
 
+TEST_F(FarPlaces, RefuseLengthsThatAreNone)
+{
+  for (const double length : {0.0, -1.0, infinity, nan})
+    EXPECT_THROW(findFarPlaces(view(), distances(), 0.15, length), std::invalid_argument) << length;
+  for (const double beyond : {-1.0, nan})
+    EXPECT_THROW(findFarPlaces(view(), distances(), beyond, 0.15), std::invalid_argument) << beyond;
+  EXPECT_TRUE(findFarPlaces(view(), distances(), infinity, 0.15).empty());
+}
+
 TEST_F(FarPlaces, HoldPointsWithoutADistance)
 {
   const std::vector<FarPlace> places = findFarPlaces(view(), distances(0.45), 0.15, 0.15);

@@ -66,7 +66,7 @@ ROOMS = {
     "pcl_bsh/search": ["search", "templates"],
     "pcl_bsh/vtk": ["vtk"],
     "pcl_bsh/vtk_filters": ["vtk"],
-    "filters": ["filters", "templates", "pipeline"],
+    "filters": ["filters", "templates", "pipeline", "memory_pcl"],
 }
 ROOMS["filters/pipeline"] = ["pipeline"]
 

@@ -69,6 +69,7 @@ TEST(AnyCollision, LearnsWhichSideOfTheClearanceTheDistanceIs)
                  far = anyCollision({a}, {b}, within(0.5)).interval;
   EXPECT_EQ(near.lower, -infinity);
   EXPECT_EQ(near.upper, 0.75);
+  EXPECT_EQ(anyCollision({a}, {b}, {0.75, Accuracy::level(8)}).interval.upper, 0.75);
   EXPECT_EQ(far.lower, 0.5);
   EXPECT_EQ(far.upper, infinity);
 }

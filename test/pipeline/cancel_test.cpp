@@ -110,6 +110,22 @@ TEST_P(Cancel, TheCallbackMayCancel)
   expectRight(made);
 }
 
+TEST_P(Cancel, NoStageIsSaidToBeginAfterIt)
+{
+  Pipeline made = branches();
+  bool is_cancelled = false;
+  made.setProgress([&](const StageProgress& stage) {
+    EXPECT_FALSE(is_cancelled) << stage.tag;
+    if (stage.tag == "in" && stage.done) {
+      made.cancel();
+      is_cancelled = true;
+    }
+  });
+  EXPECT_THROW(made.run(), Cancelled);
+  EXPECT_TRUE(is_cancelled);
+  expectRight(made);
+}
+
 TEST_P(Cancel, AnotherThreadMayCancelWhileStagesWork)
 {
   Pipeline made = pipeline(R"({"type": "filters.test_endless", "tag": "a", "inputs": ["in"]},

@@ -162,6 +162,23 @@ TEST(SceneResponse, SlideStopsInACorner)
   EXPECT_FALSE(collides(scene, 0, id));
 }
 
+/// What the straight way would not have come near.
+TEST(SceneResponse, SlideStopsAtWhatLiesBesideTheStraightWay)
+{
+  Shelf shelf;
+  Scene scene(responding(Response::slide, 0.1));
+  scene.add(fixedObject("slope", shelf.add(sheet({-1, -1, -0.5}, {0.01, 0.01, 0}, {0, 0, 0.02}, 201, 51))));
+  const ObjectId post = scene.add(fixedObject("post", shelf.add({{0.2, 0.2 + 0.1 * std::sqrt(2.0), 0}})));
+  SceneObject ball = object("ball", shelf.add({{0, 0, 0}}), at(-1, 0, 0));
+  ball.motion = VelocityMotion{{2, 0, 0}};
+  const ObjectId id = scene.add(ball);
+  const SceneResult result = scene.step(1); // up the slope, into the post
+  EXPECT_NEAR(distance(scene, post, id), 0.1, 0.005);
+  EXPECT_FALSE(collides(scene, post, id));
+  EXPECT_LT(place(scene, id).y(), 0.3);
+  EXPECT_TRUE(result.outcomes[0].touched);
+}
+
 TEST(SceneResponse, SlideNeverPenetrates)
 {
   double travelled = 0.0, wanted = 0.0;

@@ -529,6 +529,21 @@ TEST(Trajectory, FarFromThePivotOfAJerkyTurn)
   }
 }
 
+/// Poses as far from rigid as they may be: the model sees a clearance longer or shorter than it is.
+TEST(Trajectory, TiesUnderPosesThatStretch)
+{
+  constexpr double clearance = 1024.0;
+  for (const double stretch : {1.0 - 2.8e-7, 1.0, 1.0 + 2.8e-7})
+    for (const double away : {clearance, std::nextafter(clearance, 2.0 * clearance)}) {
+      SCOPED_TRACE(std::to_string(stretch) + (away > clearance ? ", beyond" : ""));
+      const Cloud scan_cloud({{away, 0, 0}}, {Scalar::float64, 0, 0}), model_cloud({{0, 0, 0}});
+      Poses poses(3, identity);
+      for (Eigen::Isometry3d& pose : poses) pose.linear() *= stretch;
+      const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+      EXPECT_EQ(collideAlong({scan}, model, poses, flagsOnly(clearance)).colliding, away > clearance ? 0u : 1u);
+    }
+}
+
 TEST(Trajectory, ExtremeMagnitudes) // H8, H9
 {
   for (const double scale : {1e-300, 1e-40, 1e-20, 1e20, 1e30, 1e150, 1e300}) {

@@ -410,6 +410,11 @@ TEST_P(Filters, OptionsHaveTheirNamesInTheTable)
   filter->SetOption("solid", "");
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
+  filter->SetOption("solid", "true");
+  filter->Update();
+  filter->ClearOptions();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
   filter->SetOption("clearances", "1");
   expectFailure(*filter, "clearances");
   filter->ClearOptions();
@@ -529,6 +534,22 @@ TEST_P(Filters, CellsOfAllKindsCount)
   wrong->InsertNextCell({0, 1, 77});
   things->SetPolys(wrong);
   expectFailure(*filter, "cell 2: names point 77 of 12");
+}
+
+/// Not what they would enclose.
+TEST_P(Filters, LinesOfSeveralPointsAreTheirSegments)
+{
+  const auto bent = dataOf({{0, 0, 0}, {8, 0, 0}, {8, 8, 0}}, GetParam());
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({0, 1, 2});
+  bent->SetLines(lines);
+  const auto probes = dataOf({{4, 0.1, 0}, {7.9, 4, 0}, {6, 2, 0.1}}, GetParam());
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(probes);
+  filter->SetObstacleData(bent);
+  filter->SetClearance(0.2);
+  filter->Update();
+  expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 0});
 }
 
 TEST_P(Filters, EmptyInputs)

@@ -289,6 +289,22 @@ TEST(Las, ExtraBytesByTheirDescriptions)
   EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
 }
 
+/// Coordinates are rounded to the file's steps, other fields not.
+TEST(Las, ValuesBetweenTheStepsOfExtraBytesAreKept)
+{
+  Las las = readText(fullSample().text());
+  const auto& fields = las.cloud.fields;
+  const auto width = std::find_if(fields.begin(), fields.end(), [](const Field& f) { return f.name == "echo_width"; });
+  ASSERT_NE(width, fields.end());
+  ASSERT_EQ(width->datatype, Field::FLOAT64);
+  for (const double value : {0.2, 0.1234}) {
+    std::memcpy(&las.cloud.data[3 * las.cloud.point_step + width->offset], &value, sizeof value);
+    const pcl::PCLPointCloud2 again = readText(written(las.cloud, &las.header)).cloud;
+    EXPECT_EQ(valueOf(again, 3, "echo_width"), value);
+    EXPECT_EQ(valueOf(again, 4, "echo_width"), valueOf(las.cloud, 4, "echo_width"));
+  }
+}
+
 TEST(Las, EveryTypeOfExtraBytesIsKept)
 {
   for (const std::uint8_t options : std::initializer_list<std::uint8_t>{0, 1, 8, 16, 25}) {

@@ -234,8 +234,8 @@ TEST_F(PoseFile, TellsTheWorstOfItsMatrices)
 TEST_F(PoseFile, ColumnsOfOtherMeaningsAreLeftOut)
 {
   const std::string half = "0.70710678118654752";
-  expectQuarterTurn(
-      read("w tx ty tz qx qy qz qw pw speed_x\n9 0 0 0 0 0 0 1 9 9\n9 1 2 3 0 0 " + half + " " + half + " 9 9\n"));
+  expectQuarterTurn(read("w tx ty tz qx qy qz qw pw speed_x (m)\n9 0 0 0 0 0 0 1 9 9 9\n9 1 2 3 0 0 " + half + " " +
+                         half + " 9 9 9\n"));
 }
 
 TEST_F(PoseFile, RowsOfAMatrixAreAlike)

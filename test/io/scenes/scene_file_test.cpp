@@ -199,6 +199,37 @@ TEST(SceneFile, RefusesWhatIsNoScene)
               HasSubstr("nests deeper than 100 levels: flatten it"));
 }
 
+TEST(SceneFile, CloudsAreOfAFileOrOfAShape)
+{
+  const auto scene = [](const std::string& cloud) {
+    return R"({"clouds": {"a": {)" + cloud +
+           R"(}}, "objects": [{"name": "A", "cloud": "a"}], "effects": {"any": true}})";
+  };
+  const std::string ball = R"("sphere": {"radius": 1})", crate = R"("box": {"size": [1, 1, 1]})";
+  EXPECT_THAT(errorOf(scene("")), HasSubstr("clouds.a: is neither or both of a file and a shape"));
+  EXPECT_THAT(errorOf(scene(ball + R"(, "file": "a.pcd")")), HasSubstr("clouds.a: is neither or both"));
+  EXPECT_THAT(errorOf(scene(ball + ", " + crate)), HasSubstr("clouds.a: is both a sphere and a box"));
+}
+
+/// As far as the scene goes.
+TEST(SceneWorld, WarnsOfWhatMovesIntoAHollowMesh)
+{
+  const TemporaryFolder folder;
+  folder.write("box.off", "OFF\n8 6 0\n-9 -9 -9\n9 -9 -9\n9 9 -9\n-9 9 -9\n-9 -9 9\n9 -9 9\n9 9 9\n-9 9 9\n"
+                          "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  const auto warnings = [&folder](const std::string& dt) {
+    const auto scene = folder.write("scene.json", R"({
+      "clouds": {"box": {"file": "box.off"}, "grain": {"sphere": {"radius": 0.1}, "spacing": 0.05}},
+      "objects": [{"name": "vessel", "cloud": "box", "fixed": true},
+                  {"name": "probe", "cloud": "grain", "pose": [25, 0, 0], "motion": {"velocity": {"linear": [-2.5, 0, 0]}}}],
+      "effects": {"any": true}, "clearance": 0.1, "steps": 10, "dt": )" +
+                                                      dt + "}");
+    return SceneWorld(readSceneFile(scene)).warnings();
+  };
+  EXPECT_THAT(warnings("0.1"), testing::IsEmpty());
+  EXPECT_THAT(warnings("1"), testing::ElementsAre(HasSubstr("vessel")));
+}
+
 TEST(SceneFile, FindsCloudsBesideItself)
 {
   const TemporaryFolder folder;
