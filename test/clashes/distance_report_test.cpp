@@ -4,7 +4,7 @@
 
 #include <pcl_bsh/distances/brute_force_distances.h>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +145,8 @@ TEST_F(FarPlaces, AreClustersOfFarPoints)
 TEST_F(FarPlaces, RefuseLengthsThatAreNone)
 {
   for (const double length : {0.0, -1.0, infinity, nan})
-    EXPECT_THROW(findFarPlaces(view(), distances(), 0.15, length), std::invalid_argument) << length;
+    EXPECT_THAT([&] { findFarPlaces(view(), distances(), 0.15, length); },
+                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("give a finite length > 0")));
   for (const double beyond : {-1.0, nan})
     EXPECT_THROW(findFarPlaces(view(), distances(), beyond, 0.15), std::invalid_argument) << beyond;
   EXPECT_TRUE(findFarPlaces(view(), distances(), infinity, 0.15).empty());

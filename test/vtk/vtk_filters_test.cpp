@@ -410,8 +410,10 @@ TEST_P(Filters, OptionsHaveTheirNamesInTheTable)
   filter->SetOption("solid", "");
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
+  filter->SetOption("vertices_only", "");
   filter->SetOption("solid", "true");
   filter->Update();
+  EXPECT_GT(filter->GetNumberOfCollidingPoints(), 60);
   filter->ClearOptions();
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfCollidingPoints(), 0);
