@@ -167,7 +167,7 @@ struct World {
       scans.back().returns.uncertainty = 3.0 * options.noise;
     }
     for (std::size_t i = 0; i < options.points; ++i) { // the surface of a box
-      Eigen::Vector3d p{random.uniform(-0.8, 0.8), random.uniform(-0.5, 0.5), random.uniform(0.0, 1.4)};
+      Eigen::Vector3d p(random.uniform(-0.8, 0.8), random.uniform(-0.5, 0.5), random.uniform(0.0, 1.4));
       const auto axis = static_cast<Eigen::Index>(random.integer(0, 2));
       const double low[] = {-0.8, -0.5, 0.0}, high[] = {0.8, 0.5, 1.4};
       p[axis] = random.chance(0.5) ? low[axis] : high[axis];
