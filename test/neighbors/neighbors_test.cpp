@@ -385,6 +385,26 @@ TEST(Neighbors, VoxelsAreBuiltWhereQueriesGo)
   EXPECT_LE(statistics.voxels_built, 2u);
 }
 
+TEST(Neighbors, OfTrianglesAreRefused)
+{
+  test::Cloud mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  mesh.setTriangles({0, 1, 2});
+  const SphereHierarchy cloud(mesh.view());
+  const test::Cloud points({{0, 0, 0}});
+  const PointsView queries = points.view();
+  Neighbors one;
+  NeighborLists lists;
+  std::vector<std::uint8_t> flags;
+  const Point3 at{0, 0, 0};
+  EXPECT_THROW(radiusSearch(cloud, at, 1.0, one), std::invalid_argument);
+  EXPECT_THROW(nearestKSearch(cloud, at, 1, one), std::invalid_argument);
+  EXPECT_THROW(anyInRadius(cloud, at, 1.0), std::invalid_argument);
+  EXPECT_THROW(radiusSearch(cloud, queries, 1.0, lists), std::invalid_argument);
+  EXPECT_THROW(nearestKSearch(cloud, queries, 1, lists), std::invalid_argument);
+  EXPECT_THROW(flagAnyInRadius(cloud, queries, 1.0, flags), std::invalid_argument);
+  EXPECT_THROW(anyInBalls(cloud, queries, flags), std::invalid_argument);
+}
+
 TEST(Neighbors, BatchAsOneByOneForAnyThreads)
 {
   for (const std::uint64_t seed : {3u, 17u, 2000u}) {
