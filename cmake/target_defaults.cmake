@@ -8,7 +8,7 @@ function(pcl_bsh_target_defaults target)
   # A multiplication fused into an addition rounds once instead of twice: the same input would give other bits on
   # another instruction set.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off)
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
     target_compile_options(${target} PRIVATE -U__ARM_FEATURE_FMA) # by which Eigen fuses them itself
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -7,6 +7,7 @@
 #include <pcl_bsh/geometry/exact/dyadic.h>
 #include <pcl_bsh/geometry/exact/expansion.h>
 #include <pcl_bsh/geometry/exact/nearest_double.h>
+#include <pcl_bsh/geometry/exact/rough_root_less.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 
 #include <limits>
@@ -58,21 +59,6 @@ int compareShiftedRoots(const Dyadic& x, const Dyadic& shift, const Dyadic& y)
   const Dyadic rational = x + square(shift) - y;
   const Dyadic irrational_squared = Dyadic(4.0) * square(shift) * x;
   return rational.sign() >= 0 ? (rational + irrational_squared).sign() : (irrational_squared - square(rational)).sign();
-}
-
-/// sqrt(squared) - length within a few units in the last place.
-double approximateDifference(const Dyadic& squared, const Dyadic& length)
-{
-  // As a quotient, so that the only cancellation happens in exact arithmetic.
-  const auto numerator = (squared - square(length)).scaled();
-  auto root = squared.scaled();
-  const int parity = root.exponent & 1;
-  root = {std::sqrt(std::ldexp(root.mantissa, parity)), (root.exponent - parity) / 2};
-  const auto shorter = length.scaled();
-  const int exponent = std::max(root.exponent, shorter.exponent);
-  const double denominator =
-      std::ldexp(root.mantissa, root.exponent - exponent) + std::ldexp(shorter.mantissa, shorter.exponent - exponent);
-  return std::ldexp(numerator.mantissa / denominator, numerator.exponent - exponent);
 }
 
 } // namespace
@@ -161,7 +147,7 @@ double ExactDistance::gap(const Pair& pair) const
   const Dyadic radii = Dyadic(pair.radius_p) + Dyadic(pair.radius_q);
   if (compareRoot(squared, radii) == 0) return 0.0;
 
-  return nearestDouble(approximateDifference(squared, radii),
+  return nearestDouble(roughRootLess(squared, Dyadic(1.0), radii),
                        [&](const Dyadic& x) { return compareRoot(squared, radii + x); });
 }
 

@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/geometry/exact/exact_plane.h>
 #include <pcl_bsh/geometry/exact/nearest_double.h>
+#include <pcl_bsh/geometry/exact/rough_root_less.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/double_distance.h>
 #include <pcl_bsh/geometry/triangle/facing.h>
@@ -48,30 +49,6 @@ double nearestRoot(const Fraction<LongNumber>& squared)
   const double correction = (left.value() + left.tail()) / d.value();
   const double error = 2.0 * left.error() / d.value() + 8 * kDoubleUnit * std::abs(correction);
   return roundedRoot(quotient, correction, error);
-}
-
-/// The same to within a few units of the last place; infinite or 0 where doubles have no such number.
-double roughRoot(const Fraction<Dyadic>& squared)
-{
-  const auto n = squared.numerator.scaled(), d = squared.denominator.scaled();
-  if (n.mantissa == 0.0) return 0.0;
-  const int exponent = n.exponent - d.exponent, odd = exponent & 1;
-  return std::ldexp(std::sqrt(std::ldexp(n.mantissa / d.mantissa, odd)), (exponent - odd) / 2);
-}
-
-/// The same less a length, which doubles may have where they have no such root. @pre they differ
-double roughRootLess(const Fraction<Dyadic>& squared, double length)
-{
-  if (length == 0.0) return roughRoot(squared);
-  // As a quotient, so that the only cancellation happens in exact arithmetic: both over the denominator's root, in a
-  // unit so large that doubles have the distance of any two places.
-  constexpr double unit = 0x1p8;
-  const Dyadic square = Dyadic(length) * Dyadic(length), larger = squared.denominator * Dyadic(unit * unit);
-  const Dyadic left = squared.numerator - squared.denominator * square;
-  const bool is_less = left.sign() < 0;
-  const double root = roughRoot({is_less ? -left : left, larger});
-  const double sum = roughRoot({squared.numerator, larger}) + length / unit;
-  return (is_less ? -root : root) / sum * root * unit;
 }
 
 /// Sign of sqrt(x) + shift - sqrt(y).
@@ -384,7 +361,7 @@ double TriangleDistance::rounded(const Pair& pair, Stages& stages) const
   const Dyadic radius(pair.radius);
   bool always = true;
   if (compareRoot(exact, radius, always) == 0) return 0.0;
-  return nearestDouble(roughRootLess(exact, pair.radius),
+  return nearestDouble(roughRootLess(exact.numerator, exact.denominator, radius),
                        [&](const Dyadic& x) { return compareRoot(exact, radius + x, always); });
 }
 
