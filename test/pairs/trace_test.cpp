@@ -47,6 +47,8 @@ TEST(Trace, AnswersAsAnyCollisionDoesWithTheSameWork)
       EXPECT_EQ(trace.result.verdict, expected.verdict);
       EXPECT_EQ(trace.result.pair, expected.pair);
       EXPECT_EQ(test::countsOf(trace.result.work), test::countsOf(expected.work));
+      for (const std::vector<TracedSphere>& spheres : {trace.a, trace.b})
+        EXPECT_EQ(countOf(spheres, SphereFate::compared) > 0, expected.work.leaf_pairs > 0);
     }
   }
 }
