@@ -113,7 +113,6 @@ public:
   }
 
   /// As VoxelPasses has them.
-  bool done() const { return voxels_.done(); }
   std::uint64_t spent() const { return voxels_.spent(); }
   void passes(const StopRule& rule, std::uint64_t tests)
   {

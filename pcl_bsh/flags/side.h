@@ -43,7 +43,6 @@ public:
   }
 
   /// As VoxelPasses has them.
-  bool done() const { return voxels_.done(); }
   std::size_t steps(const StopRule& rule) const { return voxels_.steps(rule); }
   std::uint64_t spent() const { return voxels_.spent(); }
   void passes(const StopRule& rule, std::uint64_t tests)

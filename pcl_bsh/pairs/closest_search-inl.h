@@ -400,9 +400,9 @@ private:
     none_nearer_ = touching.has_value();
     if (!none_nearer_) return false;
     const PointPair first = firstAmong(*touching);
-    if (goal_.tolerance > 0.0 || first.a == BehindPlane::kNoRecord || first.b == BehindPlane::kNoRecord) return true;
+    if (goal_.tolerance > 0.0 || !(first < *best_.pair)) return true;
     at_least_ = std::max(pair.key, lowest_key_);
-    if (first < *best_.pair) consider(first);
+    consider(first);
     return !(first < *best_.pair);
   }
 

@@ -39,9 +39,6 @@ public:
   /// How many walks all passes of a rule take at most, for the progress.
   std::size_t steps(const StopRule& rule) const { return places.size() * (rule.mayStop() ? rule.passes().size() : 1); }
 
-  /// Whether everything is decided.
-  bool done() const { return places.empty(); }
-
   /// Sphere tests of all passes so far.
   std::uint64_t spent() const { return spent_; }
 
@@ -103,16 +100,16 @@ public:
 };
 
 /// Both clouds share the budget: each has half of it, and what one leaves is the other's.
-/// @tparam Side has done(), spent() and passes(rule, tests), as VoxelPasses
+/// @tparam Side has spent() and passes(rule, tests), as VoxelPasses
 template <class Side>
 void passBothWithin(Side& a, Side& b, const StopRule& rule)
 {
   const StopRule half = rule.part(0.5);
   a.passes(half, half.node_pairs);
-  // Of a count of tests, b gets more than half only when a is done: then a is done with any larger count as well, and
-  // whatever a count decides, a larger one decides.
+  // Of a count of tests, b gets more than half (and one) only when a is done, for else a has spent its half: then a is
+  // done with any larger count as well, and whatever a count decides, a larger one decides.
   const std::uint64_t left = rule.node_pairs - std::min(rule.node_pairs, a.spent());
-  b.passes(rule, rule.node_pairs == StopRule::kNever || !a.done() ? half.node_pairs : std::max(half.node_pairs, left));
+  b.passes(rule, std::max(half.node_pairs, left));
   if (rule.isTimed()) a.passes(rule, StopRule::kNever);
 }
 

@@ -452,6 +452,11 @@ TEST(CollisionFlags, PrunesMostOfTheWork)
   const Work apart = collisionFlags({ha}, {hb, Eigen::Isometry3d(Eigen::Translation3d(5, 0, 0))}, within(0.5)).work;
   EXPECT_LT(apart.node_pairs, 100u);
   EXPECT_EQ(apart.leaf_pairs, 0u);
+  // Points so far apart that their leaves' balls hold much of the other cloud: they are compared one by one.
+  const Cloud dense(test::makePoints(Shape::sphere, 400000, 1, random)),
+      sparse(test::makePoints(Shape::sphere, 300, 1, random));
+  const SphereHierarchy of_dense(dense.view()), of_sparse(sparse.view());
+  EXPECT_LT(collisionFlags({of_dense}, {of_sparse}, within(0.001)).work.leaf_pairs, 11000u);
 }
 
 TEST(CollisionFlags, BuildsOnlyWhatItVisits)
