@@ -22,8 +22,8 @@ namespace {
 
 using test::Random;
 
-/// Of many kinds: any shape; on a lattice, where places lie above edges and corners; far from the origin of the world;
-/// tiny and huge; thin.
+/// Of many kinds: any shape; on a lattice, where places lie above edges and corners; far from the origin of the world,
+/// or so far that long numbers tell little of a triangle that is small beside its distance; tiny and huge; thin.
 struct Case {
   Point3 p;
   Triangle3 t;
@@ -50,6 +50,12 @@ Case randomCase(Random& random)
   if (random.chance(0.3)) c.b = random.pose(2.0);
   if (random.chance(0.3)) c.a = random.pose(2.0);
   if (random.chance(0.2)) c.a.linear() = c.b.linear() = Eigen::Matrix3d::Identity();
+  if (random.chance(0.05)) {
+    const Eigen::Vector3d off(std::ldexp(size, random.integer(40, 110)), 0, 0);
+    c.a.pretranslate(off);
+    c.b.pretranslate(off);
+    for (double& x : c.p) x *= random.pick({1.0, 0x1p12});
+  }
   return c;
 }
 

@@ -46,7 +46,9 @@ TEST(SquaredDistance, HalfwayGoesToEven)
   // 2^24 + 1 lies halfway between floats; so does 2^24 + 3.
   EXPECT_EQ(squaredDistanceAsFloat({4096, 1, 0}, {0, 0, 0}), 0x1p24f);
   EXPECT_EQ(squaredDistanceAsFloat({4096, 1, 1}, {0, 0, 0}), 0x1p24f + 2);
-  EXPECT_EQ(squaredDistanceAsFloat({4096, 1, std::sqrt(2.0)}, {0, 0, 0}), 0x1p24f + 4); // a little above 2^24 + 3
+  const double root = std::sqrt(2.0); // a little above that of 2
+  EXPECT_EQ(squaredDistanceAsFloat({4096, 1, root}, {0, 0, 0}), 0x1p24f + 4);
+  EXPECT_EQ(squaredDistanceAsFloat({4096, 1, std::nextafter(root, 0.0)}, {0, 0, 0}), 0x1p24f + 2) << "odd, but nearer";
 }
 
 TEST(SquaredDistance, TinyAndHuge)

@@ -224,6 +224,9 @@ TEST_P(Efforts, ReportHowFarTheyAre)
   ASSERT_GE(told.size(), 2U);
   EXPECT_GE(told.front(), 0.0);
   EXPECT_LT(told.front(), 1.0) << "while there is still something to do";
+  if (GetParam().threads == 1 && GetParam().accuracy.mode == Accuracy::Mode::exact) {
+    EXPECT_GT(told[told.size() - 2], 0.5) << "before the end";
+  }
   EXPECT_EQ(told.back(), 1.0);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_EQ(ask({}), answer);

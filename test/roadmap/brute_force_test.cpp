@@ -76,6 +76,7 @@ TEST_F(BruteForce, ClosestPairIsTheSmallestOfEquals)
   const DistanceResult result = brute_force::closestPair({hierarchy}, {target});
   EXPECT_EQ(result.distance, 1.0);
   EXPECT_EQ(result.pair, (PointPair{1, 1}));
+  EXPECT_EQ(result.work.exact_decisions, 9u);
 }
 
 TEST_F(BruteForce, RadiiAddToTheClearanceAndShortenTheDistance)

@@ -106,6 +106,30 @@ TEST_F(SceneOfSolids, AnyFlagsAndDistancesOfRandomBodies)
   EXPECT_GT(free, 3);
 }
 
+/// Not one more, where nothing is inside: each has its own.
+TEST_F(SceneOfSolids, FlagsOfWhatIsOutsideAreThoseOfTheSurface)
+{
+  Random random(12);
+  const auto tank = keep(test::bumpyMesh(5, 0.15));
+  int some = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto probe = shelf.add(std::vector<Point3>{random.point([&] { return random.uniform(-0.2, 1.2); })});
+    const FlagsResult expected = collisionFlags({*tank}, {*probe}, {0.1, Side::both});
+    if (expected.colliding_a == 0 || isHeld(probe->view(), at(0, 0, 0), 0, at(0, 0, 0))) continue;
+    some += expected.colliding_a < expected.a.size();
+    options = SceneOptions();
+    options.clearance = 0.1;
+    options.effects.flags = true;
+    Scene scene(options);
+    const ObjectId of_tank = scene.add(objectOf("tank", tank, true));
+    scene.add(objectOf("probe", probe, false));
+    const SceneResult found = scene.query();
+    ASSERT_EQ(found.flags.size(), 2u);
+    for (const FlaggedPart& part : found.flags) EXPECT_EQ(part.flags, part.object == of_tank ? expected.a : expected.b);
+  }
+  EXPECT_GT(some, 10);
+}
+
 /// Each holds some of the other, to depths that differ.
 TEST_F(SceneOfSolids, TheDeeperOfTwoCountsInEitherOrder)
 {

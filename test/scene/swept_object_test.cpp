@@ -421,7 +421,7 @@ TEST(SweptObject, TurnsAsItsResponseLedIt)
   }
 }
 
-/// More pairs than are told apart: both sides are flagged all the same.
+/// More pairs than are told apart, which come no nearer than within the clearance: both sides are flagged all the same.
 TEST(SweptObject, ACrowdThatPassesACrowdIsFlaggedOnBothSides)
 {
   std::vector<Point3> moving(300, Point3{0, 0, 0}), fixed = moving;
@@ -433,7 +433,7 @@ TEST(SweptObject, ACrowdThatPassesACrowdIsFlaggedOnBothSides)
   options.clearance = 0.5;
   options.tolerance = 0.05;
   Scene scene(options);
-  SceneObject swarm = object("swarm", std::make_shared<SphereHierarchy>(a.view()), at(-3, 0, 0));
+  SceneObject swarm = object("swarm", std::make_shared<SphereHierarchy>(a.view()), at(-3, 0.4, 0));
   swarm.motion = VelocityMotion{{6, 0, 0}};
   scene.add(swarm);
   scene.add(fixedObject("still", std::make_shared<SphereHierarchy>(b.view())));

@@ -345,6 +345,23 @@ TEST(PosePath, RefusesTooLongAPathBeforeItTakesMemory)
   EXPECT_LT(test::allocations() - before, 60u) << "of messages alone: no pose of the path is made";
 }
 
+/// The longer a part, the coarser a double tells where on it something happens; one of the motions is short.
+TEST(PosePath, RefusesPartsInWhichADoubleTellsNoInstant)
+{
+  Poses poses;
+  for (int k = 0; k < 50; ++k) poses.push_back(identity * Eigen::Translation3d(k < 49 ? 1e6 * k : 48e6 + 1.0, 0, 0));
+  PosePath::Sweep sweep{{0, 0, 0}, 1.0, 1.0, 1.0, 1e-3, 1e-7};
+  EXPECT_EQ(pathOf(poses, &sweep).poses.size(), 50u) << "2^-52 of 50 parts of 1e6 is 1e-8";
+  sweep.rounding = 1e-9;
+  try {
+    pathOf(poses, &sweep);
+    ADD_FAILURE();
+  }
+  catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("tells an instant among 50 parts of the motion"));
+  }
+}
+
 /// Visits the leaves below a node of boxes, each with all boxes around it.
 void forEachLeaf(const std::vector<BoxNode>& boxes, std::uint32_t node,
                  std::vector<std::pair<const BoxNode*, std::uint32_t>>& around,
