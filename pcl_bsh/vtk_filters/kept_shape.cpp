@@ -96,7 +96,6 @@ CellTriangles trianglesOf(vtkPolyData& data, const PointsView& view)
 
 PointsView viewOf(vtkPolyData& data, bool& copied)
 {
-  copied = false;
   vtkPoints* const points = data.GetPoints();
   const auto count = static_cast<std::size_t>(points ? points->GetNumberOfPoints() : 0);
   if (count == 0) return {};

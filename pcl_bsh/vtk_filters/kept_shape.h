@@ -16,7 +16,7 @@
 namespace pcl_bsh::vtk {
 
 /// Points as an array of records. Float and double arrays are seen in place, and kept alive; others are copied to
-/// doubles, which `copied` tells.
+/// doubles, and `copied` becomes true.
 PointsView viewOf(vtkPolyData& data, bool& copied);
 
 /// Whether the data has lines, polygons or strips.

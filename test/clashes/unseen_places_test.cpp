@@ -72,7 +72,10 @@ TEST_F(UnseenPlaces, LieTogetherInAllDirections)
     for (const double y : {-0.5, 0.5, 1.5}) {
       for (const double z : {-0.5, 0.5, 1.5}) {
         std::copy_n(std::array{x, y, z}.begin(), 3, dots.begin() + 3);
-        EXPECT_EQ(places().size(), 1u) << x << ' ' << y << ' ' << z;
+        const std::vector<Clash> found = places();
+        ASSERT_EQ(found.size(), 1u) << x << ' ' << y << ' ' << z;
+        EXPECT_EQ(found[0].low, (Point3{std::min(x, 0.5), std::min(y, 0.5), std::min(z, 0.5)}));
+        EXPECT_EQ(found[0].high, (Point3{std::max(x, 0.5), std::max(y, 0.5), std::max(z, 0.5)}));
       }
     }
   }
@@ -145,6 +148,34 @@ TEST_F(UnseenPlaces, AreNoPlacesWhereAClashIsResolved)
   EXPECT_EQ(clashes[1].status, ClashStatus::unseen) << "touching counts";
   EXPECT_EQ(clashes[2].status, ClashStatus::not_scanned);
   EXPECT_FALSE(clashes[0].wasNoClash());
+}
+
+TEST_F(UnseenPlaces, OfATriangleReachToAllItsCorners)
+{
+  const std::vector<float> corners = {0, 0, 0, 9, 0, 0, 0, 9, 0};
+  const std::array<std::uint32_t, 3> face = {0, 1, 2};
+  TrianglesView triangles;
+  triangles.vertices = viewOf(corners.data(), 3);
+  triangles.corners = face.data();
+  triangles.count = 1;
+  view = viewOf(triangles);
+  stop(0, {true});
+  std::vector<Clash> clashes(3);
+  for (std::size_t i = 0; i < clashes.size(); ++i) {
+    clashes[i].status = ClashStatus::resolved;
+    clashes[i].distance = 0.0;
+  }
+  clashes[0].place = {9, 0, 0}, clashes[1].place = {0, 9, 0}, clashes[2].place = {0, 11, 0};
+  for (Clash& clash : clashes) clash.low = clash.high = clash.place;
+  FormerPlaces former(clashes, 0.5, 1.0);
+  TrajectoryRequest motion;
+  former.visit(SphereHierarchy(view), poses, motion);
+  former.scan(PointsView());
+  tellUnseen(former, along());
+  former.judge();
+  EXPECT_EQ(clashes[0].status, ClashStatus::unseen);
+  EXPECT_EQ(clashes[1].status, ClashStatus::unseen);
+  EXPECT_NE(clashes[2].status, ClashStatus::unseen);
 }
 
 } // namespace

@@ -52,20 +52,20 @@ TEST(GatheredResult, HasTheFirstPosesThatThereAre)
 TEST(GatheredResult, HasTheSmallestDistanceWithItsPoseAndPoint)
 {
   TrajectoryResult found;
-  found.flags = {hit, hit, hit, none, hit};
-  found.distance = {0.5f, 0.25f, 0.25f, nan, 0.0f};
-  found.closest_pose = {1, 7, 6, -1, 9};
-  found.closest_point = {10, 11, 12, kNothing, 14};
-  TrajectoryResult result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}});
+  found.flags = {hit, hit, hit, none, hit, hit};
+  found.distance = {0.5f, 0.25f, 0.25f, nan, 0.0f, 1.0f};
+  found.closest_pose = {1, 7, 6, -1, 9, 8};
+  found.closest_point = {10, 11, 12, kNothing, 14, 15};
+  TrajectoryResult result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}, {2}});
   EXPECT_THAT(result.distance, ElementsAre(0.25f, 0.25f, 0.0f));
   EXPECT_THAT(result.closest_pose, ElementsAre(6, 6, 9)) << "of the same distance, the first pose";
   EXPECT_THAT(result.closest_point, ElementsAre(12u, 12u, 14u));
   found.closest_pose.clear();
-  result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}});
+  result = gathered(found, 3, {{0}, {0}, {0, 1}, {0, 1}, {2}, {2}});
   EXPECT_THAT(result.closest_point, ElementsAre(11u, 12u, 14u)) << "without poses, the first triangle";
   EXPECT_THAT(result.closest_pose, IsEmpty());
   found.flags.clear();
-  result = gathered(found, 4, {{0}, {0}, {0}, {1}, {2}});
+  result = gathered(found, 4, {{0}, {0}, {0}, {1}, {2}, {2}});
   EXPECT_EQ(result.distance[0], 0.25f) << "distances alone";
   EXPECT_TRUE(std::isnan(result.distance[1]));
   EXPECT_TRUE(std::isnan(result.distance[3]));

@@ -198,6 +198,7 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
     }
   }
   pcl::toPCLPointCloud2(corners, mesh->cloud);
+  mesh->header.frame_id = "map";
   MeshCollisionFilter filter;
   filter.setInputMesh(mesh);
   filter.setObstacleSurface(crate());
@@ -229,6 +230,7 @@ TEST(MeshFilter, FlagsPolygonsAndKeepsThem)
     pcl::PolygonMesh kept;
     filter.filter(kept);
     ASSERT_EQ(kept.polygons.size(), negative ? colliding : 300 - colliding);
+    EXPECT_EQ(kept.header.frame_id, "map");
     EXPECT_EQ(kept.cloud.width, 4 * kept.polygons.size());
     Points left;
     pcl::fromPCLPointCloud2(kept.cloud, left);

@@ -315,8 +315,10 @@ def with_mutants(text, chosen, header):
     for site in sorted(by_site, key=lambda site: -site.begin):
         original = text[site.begin:site.end]
         if site.kind in ("condition", "value"):
-            choice = "".join(f"pcl_bsh_mutant({n}) ? ({m.after}) : " for n, m in by_site[site])
-            changed = f" {choice}({original})"
+            # What two alternatives have in common may always be true: of an optional and a bool it is an optional.
+            cast = "static_cast<bool>" if site.kind == "condition" else ""
+            choice = "".join(f"pcl_bsh_mutant({n}) ? {cast}({m.after}) : " for n, m in by_site[site])
+            changed = f" {choice}{cast}({original})"
         else:
             choice = "".join(f"if (pcl_bsh_mutant({n})) {{ {m.after}; }} else " for n, m in by_site[site])
             changed = f"{{ {choice}{{ {original}; }} }}"

@@ -385,6 +385,26 @@ TEST(Neighbors, VoxelsAreBuiltWhereQueriesGo)
   EXPECT_LE(statistics.voxels_built, 2u);
 }
 
+/// Many points near the query, and one at the edge of the radius that is found first, second, ... or last.
+TEST(Neighbors, AreSortedWhereverTheFarthestIsFound)
+{
+  test::Random random(9);
+  std::vector<Point3> near;
+  for (int i = 0; i < 300; ++i) near.push_back(random.point([&] { return 0.01 * random.uniform(-1, 1); }));
+  for (const Point3 far :
+       {Point3{0.99, 0, 0}, {-0.99, 0, 0}, {0, 0.99, 0}, {0, -0.99, 0}, {0, 0, 0.99}, {0, 0, -0.99}}) {
+    std::vector<Point3> points = near;
+    points.insert(points.begin() + 7, far);
+    const test::Cloud cloud(points, {Scalar::float64, 0, 0});
+    const SphereHierarchy hierarchy(cloud.view());
+    Neighbors found, expected;
+    EXPECT_EQ(radiusSearch(hierarchy, {0, 0, 0}, 1.0, found), 301u);
+    brute_force::radiusSearch(hierarchy, {0, 0, 0}, 1.0, expected);
+    expectEqual(found, expected);
+    EXPECT_EQ(found.indices.back(), 7);
+  }
+}
+
 TEST(Neighbors, OfTrianglesAreRefused)
 {
   test::Cloud mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});

@@ -62,6 +62,22 @@ TEST(Budget, TimedAnySearchesAsExactDoes)
   }
 }
 
+/// Nothing is built yet, and time enough to build all of it.
+TEST(Budget, TimeEnoughBuildsWhatAnySearchNeeds)
+{
+  for (std::uint64_t seed = 4200; seed < 4220; ++seed) {
+    const Scene scene = test::anyScene(seed, 500);
+    SCOPED_TRACE(scene.name);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view()), timed_a(scene.a.view()), timed_b(scene.b.view());
+    const AnyResult exact =
+        anyCollision({a, scene.pose_a}, {b, scene.pose_b}, asking(Accuracy::exact(), scene.clearance));
+    const AnyResult timed =
+        anyCollision({timed_a, scene.pose_a}, {timed_b, scene.pose_b}, asking(Accuracy::time(3600), scene.clearance));
+    EXPECT_EQ(timed.verdict, exact.verdict);
+    EXPECT_EQ(timed.pair, exact.pair);
+  }
+}
+
 /// What is built already takes time as well.
 TEST(Budget, NoTimeEndsASearchAtOnce)
 {

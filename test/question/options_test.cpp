@@ -217,6 +217,9 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
               HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
   EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
   EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.obstacle_flags = true; }), HasSubstr("path: has no"));
+  for (bool Wanted::*const list : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_indices})
+    EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.*list = true; }),
+                HasSubstr("path: is given, and lists of what collides are asked for at one pose"));
   EXPECT_THAT(refusal([](Question& q) { q.limits = {2, 1}; }), HasSubstr("filter_limits: from 2 to 1: give"));
   EXPECT_THAT(refusal([](Question& q) {
                 q.limits = {infinity, infinity};

@@ -93,6 +93,18 @@ SceneObject bar(Shelf& shelf, const Motion& motion)
 
 const double bar_contact = std::asin((1 + 0.81 - 0.04) / 1.8); // radians
 
+TEST(SceneMotion, ACircleBeginsWhereTheObjectStandsAndTurnsItIfItIsToBe)
+{
+  const CircularMotion circle{{1, 0, 0}, {0, 0, 2}, 0.5 * pi, false}; // a quarter of a turn in a second
+  const Eigen::Isometry3d start = at(3, 0, 5);
+  EXPECT_TRUE(poseAt(circle, start, 0).isApprox(start, 1e-14));
+  EXPECT_TRUE(poseAt(circle, start, 1).isApprox(at(1, 2, 5), 1e-14));
+  CircularMotion turning = circle;
+  turning.turning = true;
+  const Eigen::Isometry3d turned = at(1, 2, 5) * Eigen::AngleAxisd(0.5 * pi, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(poseAt(turning, start, 1).isApprox(turned, 1e-14));
+}
+
 TEST(SceneMotion, TurnsByAnyAngleWithinAStep)
 {
   for (const double speed : {3.0, 3.5, pi, 2 * pi, 7.0, 4 * pi, 20.0, 200 * pi, -3.5, -2 * pi, -9.0}) {

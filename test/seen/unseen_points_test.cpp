@@ -164,6 +164,32 @@ void expectSeenByOne(const std::vector<ScanBeams>& scans, double angle, const Ei
   EXPECT_TRUE(seen_by_one) << center.transpose() << ", radius " << radius;
 }
 
+/// Beams so near each other that what they leave out is told in cells of cells of tiles.
+TEST(MarkUnseen, BeamsOfAFineScanLeaveOutAHole)
+{
+  constexpr double kStep = 0.001, kAngle = 0.002;
+  std::vector<double> ends;
+  for (int i = -40; i <= 40; ++i)
+    for (int j = -40; j <= 40; ++j)
+      if (std::hypot(i - 5, j) > 10)
+        for (const double x : {10.0, 10 * kStep * i, 10 * kStep * j}) ends.push_back(x);
+  const SeenSpace space = spaceOf({scanOf(ends)}, kAngle);
+  Random random(31);
+  int seen = 0, unseen = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double i = random.uniform(-36, 36), j = random.uniform(-36, 36), from_hole = std::hypot(i - 5, j) - 10,
+                 range = random.uniform(2, 9);
+    if (std::abs(from_hole) < 4) continue;
+    const Point3 place = {range, range * kStep * i, range * kStep * j};
+    const SphereHierarchy model(viewOf(place.data(), 1));
+    const bool is_seen = verdictsOf(space, {model}, 1e-4)[0] != kUnseen;
+    ASSERT_EQ(is_seen, from_hole > 0) << i << ' ' << j << ' ' << range;
+    ++(is_seen ? seen : unseen);
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_GT(unseen, 20);
+}
+
 TEST(MarkUnseen, KeepsItsPromiseInARoomOfPillars)
 {
   const MadeRoom room = hallOfPillars();

@@ -159,6 +159,23 @@ TEST(Columns, ListWhatIsAboveAPlaceAndLittleElse)
   EXPECT_LT(fan.listed, 60) << "of 1200";
 }
 
+/// A small mesh of many triangles in a large box of few: all of them lie in one column of a grid over both.
+TEST(Columns, ListLittleWhereTrianglesCrowd)
+{
+  test::ClosedMesh mesh;
+  mesh.add(test::boxMesh(), 1.0);
+  mesh.add(test::bumpyMesh(40, 0.1), 0.001, {0.5, 0.5, 0.5});
+  const Columns columns(mesh.view());
+  Random random(7);
+  std::vector<std::uint32_t> several;
+  double listed = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const Point3 at = random.point([&] { return 0.5 + 0.001 * random.uniform(0, 1); });
+    listed += static_cast<double>(columns.above(columns.seen(at), 0.0, several).size()) / 500;
+  }
+  EXPECT_LT(listed, 340) << "of 6252 triangles";
+}
+
 TEST(Columns, ListWhatIsAboveAnyOfSeveralPlaces)
 {
   EXPECT_LT(look(test::bumpyMesh(24, 0.2), 0.01, 4).listed, 40);

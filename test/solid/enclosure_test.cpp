@@ -163,6 +163,29 @@ TEST(Enclosure, AHollowHoldsNothing)
   expectExact(tank, viewOf(points.data(), 4));
 }
 
+/// Triangles that lie farther apart in memory than their corners take.
+TEST(Enclosure, BodiesOfTrianglesWithOtherNumbersBetweenThem)
+{
+  Mesh two;
+  two.add(test::boxMesh(), 1.0);
+  two.add(test::boxMesh(), 1.0, {3, 0, 0});
+  TrianglesView view = two.view();
+  struct Spaced {
+    Triangle corners;
+    std::uint32_t other = 0xffffffff;
+  };
+  std::vector<Spaced> spaced;
+  for (std::uint32_t i = 0; i < view.count; ++i) spaced.push_back({view.cornersOf(i)});
+  view.corners = spaced.front().corners.data();
+  view.stride = sizeof(Spaced);
+  const Solid solid(view);
+  const SolidBodies bodies(solid);
+  ASSERT_EQ(bodies.all().size(), 2u);
+  const std::vector<double> point = {3.5, 0.5, 0.5};
+  const SphereHierarchy cloud(viewOf(point.data(), 1));
+  EXPECT_EQ(holdersOf(bodies, identity, Content(cloud), identity, Records{0}), bodies.all()[1].triangles);
+}
+
 TEST(Enclosure, SoupOfTrianglesIsOfBodiesByItsPlaces)
 {
   const Mesh box = test::boxMesh();

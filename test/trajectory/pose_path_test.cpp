@@ -345,6 +345,13 @@ TEST(PosePath, RefusesTooLongAPathBeforeItTakesMemory)
   EXPECT_LT(test::allocations() - before, 60u) << "of messages alone: no pose of the path is made";
 }
 
+TEST(PosePath, KnowsHowFarFromTheOriginItLeads)
+{
+  Poses poses(3, identity);
+  poses[1].translation() = Eigen::Vector3d(3, -7, 5);
+  EXPECT_EQ(pathOf(poses).far, 7.0);
+}
+
 /// The longer a part, the coarser a double tells where on it something happens; one of the motions is short.
 TEST(PosePath, RefusesPartsInWhichADoubleTellsNoInstant)
 {

@@ -10,6 +10,7 @@
 #include <vtkPNGReader.h>
 
 #include <cstdlib>
+#include <map>
 
 namespace pcl_bsh::vtk {
 namespace {
@@ -109,6 +110,42 @@ TEST_F(ChartPicture, JoinsASeriesAndTellsHollowFromFilled)
   chart.series[0].joined = true;
   draw({chart});
   EXPECT_GT(blotOf(distinctColor(0)).count, apart + 1000);
+}
+
+/// By how many pixels each has: a circle more than a diamond, which is a square that stands on a corner.
+TEST_F(ChartPicture, MarksHaveTheirShapes)
+{
+  std::map<Mark, double> area;
+  for (const Mark mark : {Mark::circle, Mark::square, Mark::triangle, Mark::diamond}) {
+    chart.series = {seriesAt(0, 1e-4, 0.1)};
+    chart.series[0].mark = mark;
+    draw({chart});
+    area[mark] = static_cast<double>(blotOf(distinctColor(0)).count);
+  }
+  const double radius_squared = area[Mark::square] / (2 * 1.25 * 1.25);
+  EXPECT_NEAR(area[Mark::circle] / radius_squared, 3.14, 0.3);
+  EXPECT_NEAR(area[Mark::diamond], area[Mark::square], 0.1 * area[Mark::square]);
+  EXPECT_NEAR(area[Mark::triangle] / radius_squared, 1.35 * 1.35 * 1.30, 0.3);
+}
+
+/// Where there is room for its text.
+TEST_F(ChartPicture, DrawsASpanBetweenItsEnds)
+{
+  const auto ink = [&](const std::vector<Span>& spans) {
+    chart.series = {seriesAt(0, 1e-4, 0.1)};
+    chart.spans = spans;
+    draw({chart});
+    std::size_t dark = 0;
+    const int* const size = image->GetDimensions();
+    for (int y = 0; y < size[1]; ++y)
+      for (int x = 0; x < size[0]; ++x)
+        dark += static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0))[0] < 128;
+    return dark;
+  };
+  const std::size_t none = ink({}), little = ink({{1e-4, 1.5e-4, "1.5 times"}}),
+                    much = ink({{1e-5, 1e-3, "100 times"}});
+  EXPECT_EQ(little, none) << "no room";
+  EXPECT_GT(much, none + 800);
 }
 
 TEST_F(ChartPicture, DrawsASpreadWithBothItsEnds)

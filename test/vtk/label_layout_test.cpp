@@ -36,6 +36,21 @@ TEST(LabelLayout, TurnsToTheOtherSideAtTheEdge)
   EXPECT_LT(places[0]->right, 395.0);
 }
 
+TEST(LabelLayout, MayBeHalfAGapFromWhatIsTaken)
+{
+  const PixelBox first = *placeLabels({{{200, 150}, 60, 20}}, emptySpace())[0];
+  const double gap = 0.5 * emptySpace().gap, left = first.left - gap, right = first.right + gap,
+               bottom = first.bottom - gap, top = first.top + gap;
+  for (const PixelBox& beside : {PixelBox{left, top, right, top + 9}, PixelBox{left, bottom - 9, right, bottom},
+                                 PixelBox{right, bottom, right + 9, top}, PixelBox{left - 9, bottom, left, top}}) {
+    LabelSpace space = emptySpace();
+    space.taken = {beside};
+    const PixelBox now = *placeLabels({{{200, 150}, 60, 20}}, space)[0];
+    EXPECT_EQ(now.left, first.left);
+    EXPECT_EQ(now.bottom, first.bottom);
+  }
+}
+
 TEST(LabelLayout, StandsAsideOfALineThroughTheMark)
 {
   LabelSpace space = emptySpace();

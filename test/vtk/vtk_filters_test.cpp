@@ -554,6 +554,22 @@ TEST_P(Filters, LinesOfSeveralPointsAreTheirSegments)
   expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 0});
 }
 
+TEST_P(Filters, PolygonsOfTwoPointsAreSegmentsAndOfOnePoint)
+{
+  const auto things = dataOf({{0, 0, 0}, {8, 0, 0}, {20, 0, 0}}, GetParam());
+  vtkNew<vtkCellArray> polygons;
+  polygons->InsertNextCell({0, 1});
+  polygons->InsertNextCell({2});
+  things->SetPolys(polygons);
+  const auto probes = dataOf({{4, 0.1, 0}, {20, 0.1, 0}, {14, 0, 0}}, GetParam());
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(probes);
+  filter->SetObstacleData(things);
+  filter->SetClearance(0.2);
+  filter->Update();
+  expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 0});
+}
+
 TEST_P(Filters, EmptyInputs)
 {
   vtkNew<vtkPolyData> nothing; // not even vtkPoints

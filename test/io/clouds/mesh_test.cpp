@@ -211,6 +211,11 @@ TEST(MeshFile, RefusesFilesThatLie)
   EXPECT_THAT(failureOf(folder.write("a.ply", "ply\nformat ascii 1.0\n" + square_ply +
                                                   "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 4\n")),
               HasSubstr("names vertex 4"));
+  EXPECT_THAT(failureOf(folder.write("u.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                              "property float y\nproperty float z\nelement face 1\n"
+                                              "property list uchar uint vertex_indices\nend_header\n"
+                                              "0 0 0\n3 0 0 4294967295\n")),
+              HasSubstr("names vertex 4294967295"));
   EXPECT_THAT(failureOf(folder.write("b.ply", "ply\nformat ascii 1.0\n" + square_ply +
                                                   "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 -1\n")),
               HasSubstr("vertex -1"));

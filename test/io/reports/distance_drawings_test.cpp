@@ -174,6 +174,15 @@ TEST_F(DistanceDrawings, SomeOfManyPointsAreShown)
   EXPECT_GT(dots.back().first, 1050);
 }
 
+TEST_F(DistanceDrawings, APlaceIsAsLargeAsItsLongestSide)
+{
+  for (int i = 0; i < 400; ++i) add(0.5 * i, 0, i < 5 ? 9.0 : 0.125);
+  question.beyond = 1;
+  const std::string whole = page(), table = whole.substr(whole.find("<table><tr><th>place"));
+  EXPECT_TRUE(
+      testing::Value(table, HasSubstr("<tr><td>1</td><td>0.000, 0.000, 9.000</td><td>9</td><td>5</td><td>2</td>")));
+}
+
 /// Of 23 places twenty are in the table, and ten in the drawing.
 TEST_F(DistanceDrawings, TwentyPlacesAreListed)
 {

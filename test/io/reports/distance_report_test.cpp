@@ -172,6 +172,8 @@ TEST_F(DistanceReports, PageStandsAlone)
   EXPECT_THAT(text, HasSubstr("All lengths in m."));
   EXPECT_THAT(text, HasSubstr("Hausdorff distance [m]"));
   EXPECT_THAT(text, HasSubstr("greatest distance [m]"));
+  for (const char* row : {"mean", "RMS", "median", "percentile 95", "maximum"})
+    EXPECT_THAT(text, HasSubstr(std::string(row) + "</td><td>m</td><td>"));
   EXPECT_THAT(text, HasSubstr("percentile 95</td><td>m</td><td>0.125"));
   for (const char* outside : {"http", "src=", "url(", "@import", "<script", "href="})
     EXPECT_THAT(text, Not(HasSubstr(outside)));

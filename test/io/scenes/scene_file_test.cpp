@@ -65,7 +65,10 @@ TEST(SceneFile, ListsTheFilesThatItIsMadeOf)
 TEST(SceneFile, ReadsEverything)
 {
   const SceneFile file = parseScene(whole, "scene.json");
-  EXPECT_EQ(file.clouds.size(), 3u);
+  ASSERT_EQ(file.clouds.size(), 3u);
+  EXPECT_EQ(file.clouds[0].size, Eigen::Vector3d(0.5, 0.5, 0.5)) << "a radius";
+  EXPECT_EQ(file.clouds[1].size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(file.clouds[2].size, Eigen::Vector3d(1, 2, 1)) << "radius, height, open";
   ASSERT_EQ(file.objects.size(), 9u);
   EXPECT_EQ(file.steps, 20u);
   EXPECT_EQ(file.dt, 0.5);

@@ -164,6 +164,11 @@ TEST(TextCursor, LinesOfNumbersAreReadAsTheirWordsAre)
   ASSERT_TRUE(text.nextLine());
   EXPECT_EQ(text.line(), "x");
   EXPECT_EQ(defectOf([&] { text.number<int>(); }).find("line 3"), 0U);
+  TextCursor begun("a b\n1 2 3\n");
+  ASSERT_TRUE(begun.nextLine());
+  EXPECT_EQ(begun.word(), "a");
+  ASSERT_TRUE(begun.nextNumbers(values));
+  EXPECT_EQ(begun.line(), "") << "what was left of the line before is gone";
 }
 
 TEST(TextCursor, ErrorsNameTheLine)
