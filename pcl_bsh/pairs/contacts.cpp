@@ -101,16 +101,14 @@ private:
     return node.isCoincident(lane.lane) ? node.points(lane.lane) : 1;
   }
 
-  /// All pairs of two ranges of points; records ascend where a range has several.
+  /// All pairs of two ranges of points, each of one place and one radius; records ascend where a range has several.
   bool addAll(const LeafRange& a, const LeafRange& b)
   {
     for (std::uint32_t i = 0; i < a.count; ++i)
       for (std::uint32_t j = 0; j < b.count; ++j) {
         const Added added = sink_.add({a.record(i), b.record(j)}, walk_.work);
         if (added == Added::stop) return false;
-        if (added == Added::kept) continue;
-        if (j == 0) return true; // of pairs at one distance, those that follow are larger still
-        break;
+        if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
       }
     return true;
   }
