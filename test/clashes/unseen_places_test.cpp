@@ -81,6 +81,19 @@ TEST_F(UnseenPlaces, LieTogetherInAllDirections)
   }
 }
 
+/// Which would be written as -0.
+TEST_F(UnseenPlaces, HaveNoNegativeZeros)
+{
+  dots = {-0.0, -0.0, -0.0};
+  view = viewOf(dots.data(), 1);
+  poses.emplace_back(Eigen::Isometry3d::Identity());
+  poses.back().translation() = Eigen::Vector3d(-0.0, -0.0, -0.0);
+  unseen.push_back({true});
+  const std::vector<Clash> found = places();
+  ASSERT_EQ(found.size(), 1u);
+  for (const double x : found[0].low) EXPECT_FALSE(std::signbit(x));
+}
+
 TEST_F(UnseenPlaces, OfATriangleAreOnePlace)
 {
   const std::vector<float> corners = {0, 0, 0, 9, 0, 0, 0, 9, 0};

@@ -100,6 +100,22 @@ TEST(Contacts, CrowdedPlacesCountEveryPoint)
   expectSameAsOracle({crowd, other, identity, identity, 0.5, "two crowded places"});
 }
 
+TEST(Contacts, CrowdedPlacesOfBallsOfSeveralSizes)
+{
+  Random random(8);
+  for (int i = 0; i < 40; ++i) {
+    Cloud crowd(std::vector<Point3>(40, Point3{1, 2, 3})), other(std::vector<Point3>(30, Point3{1, 2, 3.5}));
+    const auto radii = [&](std::size_t count) {
+      std::vector<float> all(count);
+      for (float& radius : all) radius = 0.0625f * static_cast<float>(random.integer(0, i % 4));
+      return all;
+    };
+    crowd.setRadii(radii(40));
+    other.setRadii(radii(30));
+    expectSameAsOracle({crowd, other, identity, identity, 0.375, "two crowded places of balls"});
+  }
+}
+
 /// Of pairs at one distance those of larger records are not asked for, once there are enough.
 TEST(Contacts, CrowdedPlacesAreComparedAsFarAsTheyAreAskedFor)
 {

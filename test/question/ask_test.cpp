@@ -176,6 +176,7 @@ TEST_F(Ask, AlongAPath)
     EXPECT_EQ(found.collisions.first_pose, expected.first_pose);
     EXPECT_EQ(found.collisions.closest_pose, expected.closest_pose);
     EXPECT_EQ(found.collisions.closest_point, expected.closest_point);
+    EXPECT_EQ(found.work.node_pairs, expected.work.node_pairs);
     EXPECT_EQ(found.collisions.poses.size(), swept == 0.0 ? 3u : 0u);
     ASSERT_TRUE(found.closest.pair);
     const std::uint32_t nearest = found.closest.pair->a;

@@ -104,6 +104,19 @@ TEST(Shape, OfTrianglesIsWatchedToo)
   EXPECT_THAT([&] { shape.hierarchy({}, 1); }, ThrowsMessage<InvalidInput>(HasSubstr("plate: has changed")));
 }
 
+TEST(Shape, HasNoUncertaintiesOfFieldsThatThereAreNot)
+{
+  const std::vector<Record> points(2, Record{0, 0, 0, 0.1f});
+  const PointsView view = viewOf(&points[0].x, points.size(), sizeof(Record));
+  const auto ask = [](Shape shape) { shape.hierarchy(Uncertainty("sigma", 1.0), 1); };
+  EXPECT_THAT([&] { ask(Shape("a", view)); }, ThrowsMessage<InvalidInput>(HasSubstr("field 'sigma'")));
+  EXPECT_THAT(
+      [&] {
+        ask(Shape("a", view, {{"sigma", sizeof(Record) - 1, 7, 1}}));
+      },
+      ThrowsMessage<InvalidInput>(HasSubstr("field 'sigma' reaches beyond its record")));
+}
+
 TEST(Shape, ThatIsNothing)
 {
   Shape nothing;

@@ -34,6 +34,7 @@ void expectExact(const Mesh& mesh, const std::vector<double>& points, const Isom
   const Placed a(cloud, pose_a);
   const PlacedSolid b(solid, pose_b);
   const LabelsResult expected = brute_force::labelPoints(a, b);
+  EXPECT_EQ(expected.work.exact_decisions, expected.labels.size() * mesh.view().count);
   std::optional<std::uint32_t> first;
   for (std::uint32_t i = 0; i < expected.labels.size() && !first; ++i)
     if (expected.labels[i] != labelOf(Label::outside)) first = i;

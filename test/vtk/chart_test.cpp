@@ -128,6 +128,51 @@ TEST_F(ChartPicture, MarksHaveTheirShapes)
   EXPECT_NEAR(area[Mark::triangle] / radius_squared, 1.35 * 1.35 * 1.30, 0.3);
 }
 
+/// Those that find no room are left out.
+TEST_F(ChartPicture, DrawsAsManyLabelsAsThereIsRoomFor)
+{
+  const auto inkOf = [&](std::size_t labels) {
+    chart.series = {seriesAt(0, 1e-4, 0.1)};
+    chart.series[0].points.assign(labels, {1e-4, 0.1, "label"});
+    draw({chart});
+    return blotOf(distinctColor(0)).count;
+  };
+  const std::size_t some = inkOf(30), more = inkOf(60);
+  EXPECT_GT(some, inkOf(1));
+  EXPECT_EQ(more, some);
+}
+
+/// One beside the other, as far apart as the first one's name is long.
+TEST_F(ChartPicture, TheLegendNamesEachSeriesOnce)
+{
+  const auto apart = [&](const std::string& name) {
+    chart.series = {seriesAt(0, 1e-9, 0.1), seriesAt(1, 1e-9, 1.0), seriesAt(0, 1e-9, 0.01)};
+    for (Series& series : chart.series) series.points.clear(); // the legend alone
+    chart.series[0].name = chart.series[2].name = name;
+    chart.series[1].name = "other";
+    draw({chart});
+    return blotOf(distinctColor(1)).x - blotOf(distinctColor(0)).x;
+  };
+  const double little = apart("i"), more = apart("a name that is much longer");
+  EXPECT_GT(little, 30.0);
+  EXPECT_GT(more, little + 100.0);
+}
+
+/// The left chart's as well, at the picture's edge.
+TEST_F(ChartPicture, TitlesOfYAreWhole)
+{
+  draw({chart, chart});
+  const auto inkBetween = [&](int first, int last) {
+    std::size_t dark = 0;
+    for (int y = 0; y < image->GetDimensions()[1]; ++y)
+      for (int x = first; x < last; ++x)
+        dark += static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0))[0] < 128;
+    return dark;
+  };
+  EXPECT_GT(inkBetween(0, 60), 50u);
+  EXPECT_EQ(inkBetween(0, 60), inkBetween(385, 460)) << "nothing of the right one's is left of it";
+}
+
 /// Where there is room for its text.
 TEST_F(ChartPicture, DrawsASpanBetweenItsEnds)
 {

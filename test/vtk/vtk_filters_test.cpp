@@ -570,6 +570,22 @@ TEST_P(Filters, PolygonsOfTwoPointsAreSegmentsAndOfOnePoint)
   expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 0});
 }
 
+/// Of an obstacle that comes in pieces, too, whichever piece of the cloud is asked for.
+TEST_P(Filters, ObstaclesAreWholeForEachPiece)
+{
+  vtkNew<vtkSphereSource> ball; // halves, when asked for two pieces
+  ball->SetRadius(0.6);
+  ball->SetThetaResolution(24);
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetInputData(cloud);
+  filter->SetObstacleConnection(ball->GetOutputPort());
+  filter->SetClearance(0.1);
+  filter->Update();
+  const std::vector<double> whole = values(*filter->GetOutput(), "collision");
+  filter->UpdatePiece(1, 2, 0);
+  EXPECT_EQ(values(*filter->GetOutput(), "collision"), whole);
+}
+
 TEST_P(Filters, EmptyInputs)
 {
   vtkNew<vtkPolyData> nothing; // not even vtkPoints

@@ -372,6 +372,7 @@ TEST(Las, ResultsAreExtraBytesWithDescriptions)
   for (const bool described : {false, true}) {
     LasSample sample(2, 3, 3);
     if (described) sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "first"))};
+    sample.records.push_back(LasSample::record("Somebody", 4, "something else"));
     sample.records.push_back(LasSample::record("LASF_Projection", 34735, "geo"));
     sample.addPoints(20);
     const Las las = readText(sample.text());
@@ -382,6 +383,7 @@ TEST(Las, ResultsAreExtraBytesWithDescriptions)
     const std::string file = written(cloud, &las.header);
     EXPECT_NE(file.find("1 collides, 2 undecided, 0 free"), std::string::npos);
     EXPECT_NE(file.find("geo"), std::string::npos);
+    EXPECT_NE(file.find("something else"), std::string::npos) << "of the same number, but of another user";
     const Las again = readText(file);
     EXPECT_EQ(namesOf(again.cloud), namesOf(cloud));
     for (std::size_t i = 0; i < 20; ++i) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -98,6 +99,23 @@ TEST(ScatteredMotions, AreThoseOfTheirSeed)
     const Place at = motions.next(left)->poses[0].translation();
     EXPECT_EQ(at, same.next(left)->poses[0].translation());
     EXPECT_NE(at, others.next(left)->poses[0].translation());
+  }
+}
+
+/// Of the C++ standard's engine, by six numbers each: a scene is the same with any library and compiler.
+TEST(ScatteredMotions, AreTheSameEverywhere)
+{
+  ScatteredMotions motions(kBox, 5);
+  std::mt19937_64 engine(5);
+  const auto uniform = [&] { return std::ldexp(static_cast<double>(engine() >> 11), -53); };
+  std::size_t left = 100000;
+  for (int i = 0; i < 20; ++i) {
+    const WaypointMotion motion = *motions.next(left);
+    const Place way = motion.poses[1].translation() - motion.poses[0].translation();
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(motion.poses[0].translation()[k], kBox.low[k] + uniform() * (kBox.high[k] - kBox.low[k]));
+      EXPECT_NEAR(way[k] / motion.times[1], kBox.speed * (2.0 * uniform() - 1.0), 1e-9 + 1e-12 / motion.times[1]);
+    }
   }
 }
 

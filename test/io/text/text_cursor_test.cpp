@@ -66,6 +66,17 @@ TEST(TextCursor, TakesQuotesOffInPairs)
   for (const char* word : {"1", "\"2", "3\"", "\""}) EXPECT_EQ(text.word(), word);
 }
 
+TEST(TextCursor, ALineIsFromItsFirstWordToItsLast)
+{
+  TextCursor text("  a b \t \r\n \t\n c #d", '#');
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.line(), "a b");
+  EXPECT_EQ(text.word(), "a");
+  EXPECT_EQ(text.line(), "b");
+  ASSERT_TRUE(text.nextLine());
+  EXPECT_EQ(text.line(), "c");
+}
+
 TEST(TextCursor, TakesEmptyWordsAlone)
 {
   TextCursor text("1,,\"\",4,\n5\n6,\n");
