@@ -41,13 +41,20 @@ double areaOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::V
   return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
 }
 
+/// Positive where it is walked anticlockwise.
+double areaOf(const Outline& outline)
+{
+  double area = 0.0;
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    area += areaOf(Eigen::Vector2d::Zero(), outline[i], outline[(i + 1) % outline.size()]);
+  return area;
+}
+
 /// Walked anticlockwise, a simple polygon is covered once: all of its triangles are walked likewise, and have its area
 /// together. Begun at any corner, and walked the other way.
 void expectCovered(const Outline& given, std::size_t starts)
 {
-  double area = 0.0;
-  for (std::size_t i = 0; i < given.size(); ++i)
-    area += areaOf(Eigen::Vector2d::Zero(), given[i], given[(i + 1) % given.size()]);
+  const double area = areaOf(given);
   for (std::size_t start = 0; start < starts; ++start) {
     for (const bool backward : {false, true}) {
       Outline outline;
@@ -74,10 +81,7 @@ TEST(PolygonTriangles, CoverAPolygonThatIsNotConvexOnce)
     comb.emplace_back(tooth + 0.3, tooth % 3 == 0 ? 4.0 : 1.0);
     comb.emplace_back(tooth + 0.6, 0.0);
   }
-  double area = 0.0;
-  for (std::size_t i = 0; i < comb.size(); ++i)
-    area += areaOf(Eigen::Vector2d::Zero(), comb[i], comb[(i + 1) % comb.size()]);
-  if (area < 0) std::reverse(comb.begin(), comb.end());
+  if (areaOf(comb) < 0) std::reverse(comb.begin(), comb.end());
   expectCovered(comb, comb.size());
 }
 
