@@ -21,6 +21,18 @@ protected:
     unseen.push_back(std::move(what));
   }
 
+  /// The model.
+  void beOneTriangle()
+  {
+    static constexpr float corners[] = {0, 0, 0, 9, 0, 0, 0, 9, 0};
+    static constexpr Triangle face = {0, 1, 2};
+    TrianglesView triangles;
+    triangles.vertices = viewOf(corners, 3);
+    triangles.corners = face.data();
+    triangles.count = 1;
+    view = viewOf(triangles);
+  }
+
   std::vector<Clash> places(double distance = 1.0) const { return findUnseenPlaces(along(), distance); }
   UnseenAlong along() const { return {view, poses, unseen}; }
 
@@ -96,13 +108,7 @@ TEST_F(UnseenPlaces, HaveNoNegativeZeros)
 
 TEST_F(UnseenPlaces, OfATriangleAreOnePlace)
 {
-  const std::vector<float> corners = {0, 0, 0, 9, 0, 0, 0, 9, 0};
-  const std::array<std::uint32_t, 3> face = {0, 1, 2};
-  TrianglesView triangles;
-  triangles.vertices = viewOf(corners.data(), 3);
-  triangles.corners = face.data();
-  triangles.count = 1;
-  view = viewOf(triangles);
+  beOneTriangle();
   stop(1, {true});
   const std::vector<Clash> found = places();
   ASSERT_EQ(found.size(), 1u);
@@ -165,13 +171,7 @@ TEST_F(UnseenPlaces, AreNoPlacesWhereAClashIsResolved)
 
 TEST_F(UnseenPlaces, OfATriangleReachToAllItsCorners)
 {
-  const std::vector<float> corners = {0, 0, 0, 9, 0, 0, 0, 9, 0};
-  const std::array<std::uint32_t, 3> face = {0, 1, 2};
-  TrianglesView triangles;
-  triangles.vertices = viewOf(corners.data(), 3);
-  triangles.corners = face.data();
-  triangles.count = 1;
-  view = viewOf(triangles);
+  beOneTriangle();
   stop(0, {true});
   std::vector<Clash> clashes(3);
   for (std::size_t i = 0; i < clashes.size(); ++i) {
