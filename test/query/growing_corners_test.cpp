@@ -152,7 +152,10 @@ Points octaves(std::size_t n, double count, std::uint64_t seed)
 {
   Random random(seed);
   Points points(n);
-  for (Point3& p : points) p = scaled(direction(random), std::exp2(-count * random.uniform(0, 1)));
+  for (Point3& p : points) {
+    const double size = std::exp2(-count * random.uniform(0, 1)); // drawn before the direction by any compiler
+    p = scaled(direction(random), size);
+  }
   return points;
 }
 
