@@ -30,17 +30,6 @@ Points circle(std::size_t n)
   return helix(n, 1.0, 0.0);
 }
 
-Points octaves(std::size_t n, double count, std::uint64_t seed)
-{
-  test::Random random(seed);
-  Points points(n);
-  for (Point3& p : points) {
-    const double size = std::exp2(-count * random.uniform(0, 1)); // drawn before the direction by any compiler
-    p = scaled(direction(random), size);
-  }
-  return points;
-}
-
 Points strayed(Points points)
 {
   constexpr double far = std::numeric_limits<float>::max();

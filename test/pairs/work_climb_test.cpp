@@ -71,13 +71,7 @@ std::vector<Point3> cloudOf(Form form, std::size_t n, const Recipe& recipe, std:
   case Form::octaves:
     break;
   }
-  Random random(seed);
-  std::vector<Point3> points(n);
-  for (Point3& p : points) {
-    const double size = std::exp2(-recipe.octaves * random.uniform(0, 1)); // drawn before the direction by any compiler
-    p = scaled(direction(random), size);
-  }
-  return points;
+  return octaves(n, recipe.octaves, seed);
 }
 
 HardPair pairOf(const Recipe& recipe, std::size_t n)

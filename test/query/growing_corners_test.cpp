@@ -148,17 +148,6 @@ Points unitSheet(std::size_t n, double aside, double height)
   return points;
 }
 
-Points octaves(std::size_t n, double count, std::uint64_t seed)
-{
-  Random random(seed);
-  Points points(n);
-  for (Point3& p : points) {
-    const double size = std::exp2(-count * random.uniform(0, 1)); // drawn before the direction by any compiler
-    p = scaled(direction(random), size);
-  }
-  return points;
-}
-
 Points moved(Points points, const Point3& by)
 {
   for (Point3& p : points)

@@ -85,6 +85,18 @@ inline std::vector<Point3> axis(std::size_t n, double length)
   return points;
 }
 
+/// About the origin, as many in each of so many powers of two of the distance.
+inline std::vector<Point3> octaves(std::size_t n, double count, std::uint64_t seed)
+{
+  Random random(seed);
+  std::vector<Point3> points(n);
+  for (Point3& p : points) {
+    const double size = std::exp2(-count * random.uniform(0, 1)); // drawn before the direction by any compiler
+    p = scaled(direction(random), size);
+  }
+  return points;
+}
+
 /// About the z axis, `turns` times around and `rise` along it each time.
 inline std::vector<Point3> helix(std::size_t n, double turns, double rise, double phase = 0.0, double radius = 1.0)
 {
