@@ -26,13 +26,12 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-/// A polygon's corners in the plane of its vector area, to its left when walked round.
+/// A polygon's corners in the plane of its vector area, to its left when walked round; NaN where it has no area.
 std::vector<Vector2d> flattened(const std::vector<Vector3d>& corners)
 {
   Vector3d area = Vector3d::Zero();
   for (std::size_t i = 2; i < corners.size(); ++i) area += (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]);
-  Vector3d normal = area.stableNormalized();
-  if (!(normal.squaredNorm() > 0.5)) normal = Vector3d::UnitZ();
+  const Vector3d normal = area.stableNormalized();
   const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
   std::vector<Vector2d> flat;
   flat.reserve(corners.size());
@@ -40,7 +39,7 @@ std::vector<Vector2d> flattened(const std::vector<Vector3d>& corners)
   return flat;
 }
 
-/// Each corner turns left, and all turns together are one round.
+/// Each corner turns left, and all turns together are one round; or there is no area, and so no plane.
 bool isConvex(const std::vector<Vector2d>& flat)
 {
   const std::size_t count = flat.size();

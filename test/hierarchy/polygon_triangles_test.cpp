@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -105,6 +106,34 @@ TEST(PolygonTriangles, CoverAllOfAPolygonThatCrossesItself)
   double covered = 0.0;
   for (const Triangle& t : cut(crossed)) covered += std::abs(areaOf(crossed[t[0]], crossed[t[1]], crossed[t[2]]));
   EXPECT_GE(covered, 0.5);
+}
+
+bool operator==(const Triangle& t, const std::array<std::uint32_t, 3>& corners)
+{
+  return t[0] == corners[0] && t[1] == corners[1] && t[2] == corners[2];
+}
+
+void expectFan(const std::vector<Triangle>& triangles, std::size_t corners)
+{
+  ASSERT_EQ(triangles.size(), corners - 2);
+  for (std::uint32_t i = 2; i < corners; ++i)
+    EXPECT_TRUE((triangles[i - 2] == std::array<std::uint32_t, 3>{0, i - 1, i})) << i;
+}
+
+TEST(PolygonTriangles, AreAFanWhereNoEarIsLeft)
+{
+  expectFan(cut({{0, 4}, {2, 1}, {0, 0}, {1, 1}, {3, 2}}), 5);
+  expectFan(cut({{3, 4}, {3, 3}, {0, 3}, {0, 0}, {1, 1}, {1, 4}}), 6);
+}
+
+TEST(PolygonTriangles, AreAFanWhereThereIsNoArea)
+{
+  expectFan(cut({{2, 1}, {2, 1}, {2, 1}, {2, 1}, {2, 1}}), 5);
+  const std::vector<float> line = {0, 0, 0, 3, 0, 0, 1, 0, 0, 4, 0, 0, 2, 0, 0, 5, 0, 0}; // to and fro
+  const std::vector<std::uint32_t> all = {0, 1, 2, 3, 4, 5};
+  std::vector<Triangle> triangles;
+  addTriangles(viewOf(line.data(), 6), all.data(), all.size(), triangles);
+  expectFan(triangles, 6);
 }
 
 TEST(PolygonTriangles, OfOneOrTwoCornersAreNone)

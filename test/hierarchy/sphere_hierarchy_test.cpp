@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/storage.h>
 
 #include "support/random_clouds.h"
 
@@ -283,6 +284,29 @@ TEST(SphereHierarchy, HoldsWhatItPromisesPerPoint)
 }
 
 /// Containment alone would be satisfied by any large sphere: these must be near the smallest.
+TEST(SphereHierarchy, CountsWhatQueriesMadeOfIt)
+{
+  Random random(4);
+  Cloud cloud(test::makePoints(Shape::uniform, 3000, 1.0, random));
+  cloud.setUncertainties(0.0, std::vector<float>(3000, 0.01f));
+  const SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll(1);
+  const SphereHierarchy::Storage& storage = hierarchy.storage();
+  const std::size_t before = hierarchy.statistics().bytes;
+  const std::size_t nodes = hierarchy.statistics().nodes - storage.top.size();
+  for (std::size_t v = 0; v < storage.voxel_count; ++v)
+    storage.voxels[v].own_uncertainties.of(storage.voxels[v], storage.view);
+  const std::size_t own = storage.voxel_count * (sizeof(OwnUncertainties) + kMaxLeafPoints * sizeof(float)) +
+                          nodes * sizeof(UncertaintyLanes) + 3000 * sizeof(float);
+  EXPECT_EQ(hierarchy.statistics().bytes, before + own);
+  BuildWork unasked;
+  for (std::size_t v = 0; v < storage.voxel_count; ++v) {
+    storage.voxels[v].slabs.of(storage.voxels[v], storage.view, unasked);
+    storage.voxels[v].cross_slabs.of(storage.voxels[v], storage.view, unasked);
+  }
+  EXPECT_EQ(hierarchy.statistics().bytes, before + own + 2 * nodes * sizeof(Slabs));
+}
+
 TEST(SphereHierarchy, SpheresAreTight)
 {
   Random random(8);

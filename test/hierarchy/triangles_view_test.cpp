@@ -199,6 +199,20 @@ TEST(TrianglesView, RefusesWhatCannotBeRead)
   const float radius[3] = {0, 0, 0};
   view.vertices.radii = radius;
   EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
+  view = trianglesOf(xyz, two);
+  view.vertices.uncertainties = radius;
+  EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
+  view = trianglesOf(xyz, two);
+  const std::int32_t all[3] = {0, 1, 2};
+  view.vertices.indices = all;
+  view.vertices.index_count = 3;
+  EXPECT_NE(messageOf(view).find("give all of them, without"), std::string::npos);
+  view = trianglesOf(xyz, two);
+  view.corners = nullptr; // none of these is looked at
+  view.count = std::size_t{1} << 31;
+  EXPECT_EQ(messageOf(view), "triangles: 2147483648 triangles are more than an index can name");
+  --view.count;
+  EXPECT_EQ(messageOf(view), "triangles: corners are null, of 2147483647 triangles");
   for (const double size : {1e300, 1.7e308}) { // sides of the second are beyond all doubles
     const std::vector<double> huge = {-size, 0, 0, -size, 0, 0, size, 0, 0};
     EXPECT_NE(messageOf(trianglesOf(huge, two)).find("triangle 0 is too large for a float32 radius"),

@@ -7,6 +7,7 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/roadmap/brute_force.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -18,6 +19,7 @@ namespace {
 
 using test::Random;
 using test::Shape;
+using testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -429,6 +431,112 @@ TEST(HierarchyRefit, RebuildsWhatHasGrownLoose)
   hierarchy.buildAll();
   EXPECT_TRUE(shake(2, 1.5).sorted_anew);
   expectSound(hierarchy);
+}
+
+/// What a call says of what it is given; empty where it takes it.
+template <class Call>
+std::string complaintOf(const Call& call)
+{
+  try {
+    call();
+    return {};
+  }
+  catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(HierarchyRefit, SaysInWhatAViewDiffers)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 2, 0, 0}, radii = {1, 1, 1};
+  const std::vector<double> doubles(xyz.begin(), xyz.end());
+  const std::vector<std::int32_t> all = {0, 1, 2};
+  PointsView subset = viewOf(xyz.data(), 3), balls = subset;
+  subset.indices = all.data();
+  subset.index_count = 3;
+  balls.radii = radii.data();
+  SphereHierarchy hierarchy(viewOf(xyz.data(), 3)), of_subset(subset), of_balls(balls);
+  const auto says = [](SphereHierarchy& refitted, const PointsView& view) {
+    return complaintOf([&] { refitted.refit(view); });
+  };
+  const auto other_type = HasSubstr("SphereHierarchy::refit: the view has coordinates of another type");
+  EXPECT_THAT(says(hierarchy, viewOf(doubles.data(), 3)), other_type);
+  const auto other_subset = HasSubstr("SphereHierarchy::refit: the view is of another subset");
+  EXPECT_THAT(says(hierarchy, subset), other_subset);
+  EXPECT_THAT(says(of_subset, viewOf(xyz.data(), 3)), other_subset);
+  const auto no_radii = HasSubstr("the view has radii and the one before none, or the other way round");
+  EXPECT_THAT(says(hierarchy, balls), no_radii);
+  EXPECT_THAT(says(of_balls, viewOf(xyz.data(), 3)), no_radii);
+  EXPECT_EQ(says(hierarchy, viewOf(xyz.data(), 3)), "");
+  EXPECT_EQ(says(of_balls, balls), "");
+}
+
+TEST(HierarchyRefit, OfACrowdAtOnePlaceWhosePointsPart)
+{
+  Random random(9);
+  std::vector<Point3> points(200, Point3{0.25, 0.25, 0.25});
+  for (const double x : {-1.0, 1.0}) points.push_back({x, x, x}); // so that the voxel stays as large as it is
+  ChangingCloud<float> cloud(points, false, random);
+  SphereHierarchy hierarchy(cloud.view());
+  hierarchy.buildAll();
+  cloud.set(7, {0.75, 0.25, 0.25}); // one point stood for all of them
+  const RefitReport report = hierarchy.refit(cloud.view(), 1e9);
+  EXPECT_FALSE(report.sorted_anew);
+  EXPECT_EQ(report.voxels_dropped, 1u);
+  expectSound(hierarchy);
+  expectAsNew(hierarchy, cloud.view(), random);
+}
+
+TEST(HierarchyUpdate, OfAnEmptyHierarchyBuildsItAnew)
+{
+  Random random(10);
+  ChangingCloud<float> cloud({}, false, random);
+  SphereHierarchy hierarchy(cloud.view());
+  const std::vector<std::int32_t> records = {0, 1, 2};
+  HierarchyUpdate update(hierarchy, records.data(), records.size());
+  for (const double x : {0.0, 1.0, 2.0}) cloud.append({x, 0, 0}, random);
+  const UpdateReport report = update.commit(cloud.view());
+  EXPECT_TRUE(report.sorted_anew);
+  EXPECT_EQ(report.points_read, 3u);
+  EXPECT_EQ(hierarchy.size(), 3u);
+  expectSound(hierarchy);
+  expectAsNew(hierarchy, cloud.view(), random);
+}
+
+TEST(HierarchyUpdate, OfPointsThatARefitTookOutOfTheirVoxels)
+{
+  // A refit leaves points in their voxels, wherever they go: their coordinates do not tell which voxel holds them.
+  Random random(11);
+  std::vector<Point3> points;
+  for (int i = 0; i < 400; ++i) points.push_back({0.01 * i + 0.005, 0.5, 0.5});
+  ChangingCloud<float> cloud(points, false, random);
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  SphereHierarchy hierarchy(cloud.view(), options);
+  cloud.set(50, {1.005, 0.5, 0.5});  // from the first voxel into the second
+  cloud.set(150, {0.505, 0.5, 0.5}); // and the other way: both hold as many as before
+  ASSERT_FALSE(hierarchy.refit(cloud.view()).sorted_anew);
+  const std::int32_t record = 50;
+  HierarchyUpdate update(hierarchy, &record, 1);
+  cloud.set(50, {1.105, 0.5, 0.5});
+  EXPECT_TRUE(update.commit(cloud.view()).sorted_anew);
+  expectSound(hierarchy);
+  expectAsNew(hierarchy, cloud.view(), random);
+}
+
+TEST(HierarchyUpdate, SaysInWhatAViewDiffers)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 2, 0, 0}, radii = {1, 1, 1};
+  PointsView balls = viewOf(xyz.data(), 3);
+  balls.radii = radii.data();
+  SphereHierarchy hierarchy(viewOf(xyz.data(), 3)), of_balls(balls);
+  const auto says = [](SphereHierarchy& updated, const PointsView& view) {
+    return complaintOf([&] { HierarchyUpdate(updated, nullptr, 0).commit(view); });
+  };
+  const auto no_radii = HasSubstr("the new view has radii and the old one none, or the other way round");
+  EXPECT_THAT(says(hierarchy, balls), no_radii);
+  EXPECT_THAT(says(of_balls, viewOf(xyz.data(), 3)), no_radii);
+  EXPECT_EQ(says(of_balls, balls), "");
 }
 
 TEST(HierarchyRefit, RefusesWhatDoesNotFit)

@@ -67,6 +67,25 @@ TEST(ViewCheck, EachCoordinateMayHaveItsOwnArray)
   EXPECT_EQ(found.squared_distances[0], 0.0f);
   view.count = 11;
   EXPECT_THAT(complaint(view), HasSubstr("x and y"));
+  view = viewOf(xyz.data(), 2);
+  view.offset = {0, 4, 22}; // of which only the third record's x lies over the first one's z
+  EXPECT_EQ(complaint(view), "");
+  view.count = 3;
+  EXPECT_THAT(complaint(view), HasSubstr("x and z at bytes 0 and 22"));
+}
+
+TEST(ViewCheck, RecordsAreNamedByNumbersBelow2To31)
+{
+  const float xyz[3] = {0, 0, 0};
+  const std::int32_t index = 0;
+  PointsView view = viewOf(xyz, std::size_t{1} << 31);
+  EXPECT_THAT(complaint(view), HasSubstr("2147483648 points are more than an index can name (2147483647)"));
+  --view.count;
+  EXPECT_EQ(complaint(view), "");
+  view.count = 1;
+  view.indices = &index;
+  view.index_count = std::size_t{1} << 31;
+  EXPECT_THAT(complaint(view), HasSubstr("2147483648 indices are more than the limit of 2^31 - 1"));
 }
 
 TEST(ViewCheck, WhoeverTakesAViewLooksAtIt)
