@@ -61,9 +61,10 @@ std::string Accuracy::text() const
     std::array<char, 32> digits;
     char *const begin = digits.data(), *const room = begin + digits.size();
     const bool whole = isWhole(mode) && value < 0x1p63; // without an exponent, as people write counts
-    const auto [end, error] =
-        whole ? std::to_chars(begin, room, static_cast<std::uint64_t>(value)) : std::to_chars(begin, room, value);
-    return std::string(known.name) + "=" + std::string(digits.data(), error == std::errc() ? end : digits.data());
+    char* const end = // every number has room
+        whole ? std::to_chars(begin, room, static_cast<std::uint64_t>(value)).ptr
+              : std::to_chars(begin, room, value).ptr;
+    return std::string(known.name) + "=" + std::string(begin, end);
   }
   return {};
 }

@@ -68,16 +68,6 @@ double RecordDistance::gapOfTriangles(PointPair records) const
   return withTriangles(records, [&](const auto& pair) { return distanceOfPair().gap(pair); });
 }
 
-RecordDistance::Enclosure RecordDistance::enclose(const Point3& place_of_a, std::uint32_t triangle_of_b) const
-{
-  return to_b_->enclose(place_of_a, b_->triangles->triangle(triangle_of_b));
-}
-
-RecordDistance::Enclosure RecordDistance::enclose(std::uint32_t triangle_of_a, const Point3& place_of_b) const
-{
-  return to_a_->enclose(place_of_b, a_->triangles->triangle(triangle_of_a));
-}
-
 Eigen::Vector3d RecordDistance::between(PointPair records) const
 {
   if (!ofTriangles()) {

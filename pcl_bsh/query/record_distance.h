@@ -94,10 +94,6 @@ public:
     return encloseTriangles(pair.records, reach).low > reach;
   }
 
-  /// The same of a place of one cloud and a triangle of the other.
-  Enclosure enclose(const Point3& place_of_a, std::uint32_t triangle_of_b) const;
-  Enclosure enclose(std::uint32_t triangle_of_a, const Point3& place_of_b) const;
-
   /// From b's nearest place to a's, in the world, within rounding; 0 where they meet. Of balls, between their centres.
   Eigen::Vector3d between(PointPair records) const;
 

@@ -50,9 +50,6 @@ public:
 
   double gap(PointPair pair) const { return distance.gap(posed(pair)); }
 
-  /// Whether the gap of a pair is less than this.
-  bool isNearer(PointPair pair, double gap) const { return distance.compare(pair, gap) < 0; }
-
   /// Whether the trees are of balls, in place of points.
   bool haveRadii() const { return a_.radii || b_.radii; }
 

@@ -80,6 +80,22 @@ TEST(HausdorffDistance, OfEqualOnesOfTheOtherCloudIsTheSmallestPair)
   EXPECT_EQ(hausdorffDistance(a, b).distance, 3.0);
 }
 
+/// Both clouds have the greatest distance: the smaller pair (a, b) names it, whichever cloud it is of.
+TEST(HausdorffDistance, OfEqualOnesOfBothCloudsIsTheSmallestPair)
+{
+  const Cloud other({{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}}, {Scalar::float64, 0, 0});
+  const SphereHierarchy b(other.view());
+  const Cloud late({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, {Scalar::float64, 0, 0});  // of a (2, 1), of b (0, 2)
+  const Cloud early({{20, 0, 0}, {0, 0, 0}, {10, 0, 0}}, {Scalar::float64, 0, 0}); // of a (0, 1), of b (1, 2)
+  for (const auto& [cloud, pair] : {std::pair(&late, PointPair{0, 2}), std::pair(&early, PointPair{0, 1})}) {
+    const SphereHierarchy a(cloud->view());
+    const SymmetricDistances both = symmetricDistances(a, b);
+    EXPECT_EQ(both.a.greatest, both.b.greatest);
+    EXPECT_EQ(both.hausdorff_pair, pair);
+    EXPECT_EQ(hausdorffDistance(a, b).pair, pair);
+  }
+}
+
 /// A lattice beside itself: all distances are equal, or differ by less than a float tells.
 TEST(HausdorffDistance, OfManyEqualOnesIsTheSmallestPair)
 {

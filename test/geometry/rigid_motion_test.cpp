@@ -194,6 +194,15 @@ TEST(RigidMotion, TheTurnNearestToWhatWasAskedForArrives)
   }
 }
 
+TEST(RigidMotion, FullTurnsAreKeptWhereTheBodyArrivesAsItWas)
+{
+  const Eigen::Matrix3d same = Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, -2) / 3.0;
+  for (const double turns : {0.4, 0.6, 1.4, 1.6, 3.2}) // something else turned the rest of it back
+    EXPECT_LT((turnNearestTo(2 * pi * turns * axis, same, same) - 2 * pi * std::round(turns) * axis).norm(), 1e-12)
+        << turns;
+}
+
 TEST(PolarDecomposition, IsRightToRoundingAsFarFromRigidAsFourDigitsLeaveAMatrix)
 {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {

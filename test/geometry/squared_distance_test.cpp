@@ -51,6 +51,30 @@ TEST(SquaredDistance, HalfwayGoesToEven)
   EXPECT_EQ(squaredDistanceAsFloat({4096, 1, std::nextafter(root, 0.0)}, {0, 0, 0}), 0x1p24f + 2) << "odd, but nearer";
 }
 
+TEST(SquaredDistance, IsSettledFromWhateverIsGuessed)
+{
+  test::Random random(2);
+  for (int i = 0; i < 200; ++i) {
+    const Point3 p = random.point([&] { return random.uniform(-1, 1); });
+    const Point3 q = random.point([&] { return random.uniform(-1, 1); });
+    const float nearest = squaredDistanceAsFloat(p, q);
+    float low = nearest, high = nearest;
+    for (int steps = 0; steps < 4; ++steps) {
+      EXPECT_EQ(settleSquaredDistance(p, q, low), nearest);
+      EXPECT_EQ(settleSquaredDistance(p, q, high), nearest);
+      low = std::nextafter(low, 0.0f);
+      high = std::nextafter(high, kInfinity);
+    }
+  }
+  constexpr float largest = std::numeric_limits<float>::max();
+  const double root = std::sqrt(static_cast<double>(largest)); // half a step above it is infinite
+  const double beyond = std::sqrt(static_cast<double>(largest) + 0x1p103);
+  EXPECT_EQ(settleSquaredDistance({root, 0, 0}, {0, 0, 0}, 0.999999 * static_cast<double>(largest)), largest);
+  EXPECT_EQ(settleSquaredDistance({root, 0, 0}, {0, 0, 0}, kInfinity), largest);
+  EXPECT_EQ(settleSquaredDistance({beyond * (1 - 1e-15), 0, 0}, {0, 0, 0}, largest), largest);
+  EXPECT_EQ(settleSquaredDistance({beyond * (1 + 1e-15), 0, 0}, {0, 0, 0}, largest), kInfinity);
+}
+
 TEST(SquaredDistance, TinyAndHuge)
 {
   EXPECT_EQ(squaredDistanceAsFloat({1e-300, 0, 0}, {0, 0, 0}), 0.0f);

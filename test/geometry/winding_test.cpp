@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -130,6 +131,24 @@ TEST(Winding, OfTrianglesWithoutArea)
   box.push_back({a, a, b});
   box.push_back({b, b, b});
   expectNumbers(box, latticeOf(-1, 5), identity, identity, random);
+}
+
+TEST(Winding, LeavesOutTrianglesThatAreNotFinite)
+{
+  constexpr double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
+  for (const double x : bad)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      Soup box = boxOf({0, 0, 0}, {2, 2, 2});
+      Triangle3 odd = box.front();
+      odd[corner][corner] = x;
+      box.insert(box.begin() + 3, odd);
+      const auto number = [&](const Point3& p) {
+        return Winding(identity, identity).number(p, box.size(), [&](std::size_t i) { return box[i]; });
+      };
+      EXPECT_EQ(number({1, 1, 0.5}), 1);
+      EXPECT_EQ(number({3, 1, 0.5}), 0);
+      EXPECT_EQ(number({0, 1, 1}), std::nullopt);
+    }
 }
 
 TEST(Winding, UnderPoses)

@@ -346,6 +346,9 @@ TEST(Neighbors, QueriesThatAreNotFinite)
     EXPECT_EQ(radiusSearch(cloud, q, kInfinity, found), 0u);
     EXPECT_EQ(nearestKSearch(cloud, q, 1, found), 0u);
     EXPECT_FALSE(anyInRadius(cloud, q, kInfinity));
+    EXPECT_EQ(brute_force::radiusSearch(cloud, q, kInfinity, found), 0u);
+    EXPECT_EQ(brute_force::nearestKSearch(cloud, q, 1, found), 0u);
+    EXPECT_FALSE(brute_force::anyInRadius(cloud, q, kInfinity));
   }
   found.indices = {1};
   EXPECT_EQ(nearestKSearch(empty, {0, 0, 0}, 1, found), 0u);
@@ -362,7 +365,12 @@ TEST(Neighbors, SaysWhatIsWrong)
   const auto refused = [](const char* text) { return ThrowsMessage<std::invalid_argument>(HasSubstr(text)); };
   EXPECT_THAT([&] { radiusSearch(cloud, {0, 0, 0}, -1.0, found); }, refused("radius: -1"));
   EXPECT_THAT([&] { anyInRadius(cloud, {0, 0, 0}, kNan); }, refused("radius: "));
-  EXPECT_THAT([&] { boxSearch(cloud, {kNan, 0, 0}, {1, 1, 1}, indices); }, refused("a bound is NaN"));
+  for (std::size_t k = 0; k < 3; ++k) {
+    Point3 low{0, 0, 0}, high{1, 1, 1}, odd{0, 0, 0};
+    odd[k] = kNan;
+    EXPECT_THAT([&] { boxSearch(cloud, odd, high, indices); }, refused("a bound is NaN"));
+    EXPECT_THAT([&] { boxSearch(cloud, low, odd, indices); }, refused("a bound is NaN"));
+  }
   EXPECT_THAT([&] { anyInBalls(cloud, viewOf(xyz, 1)); }, refused("no radii"));
   const PointsView none = viewOf(static_cast<const float*>(nullptr), 2);
   std::vector<std::uint8_t> flags;

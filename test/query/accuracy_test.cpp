@@ -121,8 +121,8 @@ std::vector<Accuracy> budgets()
 
 TEST(Accuracy, ReadsWhatItWrites)
 {
-  for (const char* text :
-       {"exact", "tolerance=0.01", "level=3", "pairs=65536", "pairs=1000000", "time=0.001", "tolerance=0"}) {
+  for (const char* text : {"exact", "tolerance=0.01", "level=3", "pairs=65536", "pairs=1000000", "time=0.001",
+                           "tolerance=0", "pairs=9223372036854774784", "pairs=9223372036854775808"}) {
     EXPECT_EQ(Accuracy::parse(text).text(), text);
   }
   EXPECT_EQ(Accuracy::parse("time=0.25").value, 0.25);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/query/uncertain.h>
 
 #include <gmock/gmock.h>
 
@@ -39,6 +40,21 @@ TEST(StopRule, OfSphereTestsIsSpentAtTheirNumber)
   EXPECT_TRUE(check.isOver());
   tested = 0;
   EXPECT_TRUE(check.isOver()) << "once over, always over";
+}
+
+TEST(StopRule, OfMoreThanCanBeCountedNeverStops)
+{
+  EXPECT_EQ(StopRule(Accuracy::parse("pairs=9223372036854774784")).node_pairs, 0x7ffffffffffffc00u); // below 2^63
+  EXPECT_EQ(StopRule(Accuracy::parse("pairs=9223372036854775808")).node_pairs, kNever);
+  EXPECT_EQ(StopRule(Accuracy::parse("level=1e300")).deepest, kNever);
+}
+
+TEST(StopRule, TwoSearchesHaveHalfOfABudgetEach)
+{
+  EXPECT_EQ(halfOf(Accuracy::nodePairs(10)).value, 5.0);
+  EXPECT_EQ(halfOf(Accuracy::time(3.0)).value, 1.5);
+  EXPECT_EQ(halfOf(Accuracy::level(4)).value, 4.0);
+  EXPECT_EQ(halfOf(Accuracy::tolerance(0.5)).value, 0.5);
 }
 
 TEST(StopRule, ChecksOfTimeEndAfterIt)

@@ -531,6 +531,9 @@ TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
   EXPECT_EQ(refusal({{0, 0}, {2, 3000}}, good),
             "motion 1, from pose 2 to pose 3000: the list has 3000 poses: name poses by their indices in the list, "
             "from 0");
+  EXPECT_EQ(refusal({{0, 0}, {3000, 2}}, good),
+            "motion 1, from pose 3000 to pose 2: the list has 3000 poses: name poses by their indices in the list, "
+            "from 0");
   EXPECT_EQ(refusal({{0, 2}, {0, 1}, {1, 0}}, good),
             "motion 1, from pose 0 to pose 1: half a turn, both directions are as short: give a pose between them");
   EXPECT_EQ(refusal(Motions(5000, {0, 2}), good), "");

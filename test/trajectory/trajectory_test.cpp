@@ -621,6 +621,26 @@ std::string refusal(const Poses& poses, const TrajectoryRequest& request)
   return "nothing";
 }
 
+TEST(Trajectory, BruteForceAnswersWhatIsAskedAtPoses)
+{
+  const test::Cloud of_scan({{10, 0, 0}, {0, 0, 0}, {3, 4, 0}}), of_model({{0, 0, -5}, {3, 4, 0}});
+  const SphereHierarchy scan(of_scan.view()), model(of_model.view());
+  const Poses poses(2, identity);
+  TrajectoryRequest request;
+  request.clearance = 5;
+  request.flags = request.first_poses = request.distances = request.closest_poses = request.pose_summaries = false;
+  const TrajectoryResult nothing = brute_force::collideAlong({scan}, model, poses, request);
+  EXPECT_TRUE(nothing.flags.empty() && nothing.poses.empty() && nothing.first_pose.empty());
+  EXPECT_EQ(nothing.colliding, 0u);
+  EXPECT_EQ(nothing.work.exact_decisions, 0u);
+  request.first_poses = true;
+  const TrajectoryResult first = brute_force::collideAlong({scan}, model, poses, request);
+  EXPECT_TRUE(first.flags.empty());
+  EXPECT_EQ(first.first_pose, (std::vector<std::int32_t>{-1, 0, 0}));
+  request.swept = 0.1;
+  EXPECT_THROW(brute_force::collideAlong({scan}, model, poses, request), std::invalid_argument);
+}
+
 TEST(Trajectory, RefusesWhatMakesNoSense)
 {
   using testing::HasSubstr;
