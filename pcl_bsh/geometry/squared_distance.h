@@ -16,10 +16,10 @@ float settleSquaredDistance(const Point3& p, const Point3& q, double approximate
 inline float squaredDistanceAsFloat(const Point3& p, const Point3& q)
 {
   const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-  const double squared = x * x + y * y + z * z; // rounded five times, unless it is tiny
+  const double squared = x * x + y * y + z * z; // rounded five times, unless it is so tiny that it counts as 0
   const float below = roundToFloat(squared * (1.0 - kFewDoubleRoundings));
   const float above = roundToFloat(squared * (1.0 + kFewDoubleRoundings));
-  if (below == above && squared > 0x1p-900) return below;
+  if (below == above) return below;
   return settleSquaredDistance(p, q, squared);
 }
 

@@ -290,10 +290,12 @@ TEST(SphereHierarchy, CountsWhatQueriesMadeOfIt)
   Cloud cloud(test::makePoints(Shape::uniform, 3000, 1.0, random));
   cloud.setUncertainties(0.0, std::vector<float>(3000, 0.01f));
   const SphereHierarchy hierarchy(cloud.view());
+  const std::size_t sorted = hierarchy.statistics().bytes;
   hierarchy.buildAll(1);
   const SphereHierarchy::Storage& storage = hierarchy.storage();
   const std::size_t before = hierarchy.statistics().bytes;
   const std::size_t nodes = hierarchy.statistics().nodes - storage.top.size();
+  EXPECT_GE(before, sorted + nodes * sizeof(Node));
   for (std::size_t v = 0; v < storage.voxel_count; ++v)
     storage.voxels[v].own_uncertainties.of(storage.voxels[v], storage.view);
   const std::size_t own = storage.voxel_count * (sizeof(OwnUncertainties) + kMaxLeafPoints * sizeof(float)) +

@@ -276,6 +276,60 @@ TEST(Trajectory, SameForAnyNumberOfThreads)
   }
 }
 
+/// The corridor, the cart and its poses with all lengths by a power of two: frames have units of their own there.
+TEST(Trajectory, IsTheSameAtAnyScale)
+{
+  Random random(4712);
+  const std::vector<Point3> walls = corridor(12, random), cart = shell({-1, -0.5, 0.2}, {1, 0.5, 1.6}, 0.05);
+  const auto answersAt = [&](double scale, bool swept) {
+    const auto scaled = [&](std::vector<Point3> points) {
+      for (Point3& p : points)
+        for (double& x : p) x = static_cast<double>(static_cast<float>(x)) * scale;
+      return Cloud(points, {Scalar::float64, 0, 0});
+    };
+    const Cloud scan_cloud = scaled(walls), model_cloud = scaled(cart);
+    const SphereHierarchy scan(scan_cloud.view()), model(model_cloud.view());
+    Poses poses = alongCorridor(2, 10, 60);
+    for (Eigen::Isometry3d& pose : poses) pose.translation() *= scale;
+    TrajectoryRequest request = flagsOnly(0.1 * scale);
+    request.first_poses = true;
+    if (swept) request.swept = 0.01 * scale;
+    return collideAlong({scan}, model, poses, request);
+  };
+  for (const bool swept : {false, true}) {
+    const TrajectoryResult expected = answersAt(1.0, swept);
+    EXPECT_GT(expected.colliding, 0u);
+    for (const double scale : {0x1p-70, 0x1p70}) {
+      SCOPED_TRACE(testing::Message() << scale << (swept ? " swept" : ""));
+      const TrajectoryResult found = answersAt(scale, swept);
+      EXPECT_EQ(found.flags, expected.flags);
+      EXPECT_EQ(found.first_pose, expected.first_pose);
+    }
+  }
+}
+
+/// The model is so small that its frame has a unit of its own, the scan's has not.
+TEST(Trajectory, OfAModelOfAnotherUnitThanTheScans)
+{
+  Random random(4713);
+  for (const double size : {0x1p-90, 0x1p-30}) {
+    SCOPED_TRACE(size);
+    const Cloud wall(test::makePoints(test::Shape::uniform, 500, 1.0, random));
+    const Cloud grain(test::makePoints(test::Shape::sphere, 100, size, random));
+    const SphereHierarchy scan(wall.view()), model(grain.view());
+    Poses poses;
+    for (int k = 0; k < 30; ++k) {
+      poses.push_back(identity);
+      poses.back().translation() = Eigen::Vector3d(0.05 * k - 0.7, 0.1, 0.2);
+    }
+    for (const double clearance : {0.05, 0.3}) {
+      const TrajectoryResult expected = brute_force::collideAlong({scan}, model, poses, flagsOnly(clearance));
+      EXPECT_GT(expected.colliding, 0u);
+      EXPECT_EQ(collideAlong({scan}, model, poses, flagsOnly(clearance)).flags, expected.flags);
+    }
+  }
+}
+
 TEST(Trajectory, BuildsOnlyVoxelsThatThePathNears)
 {
   const Corridor corridor;
