@@ -63,7 +63,6 @@ void parseShape(const JsonReader& reader, CloudSource& cloud)
   }
   else if (cloud.shape == "box") {
     cloud.size = shape.at("size").vector();
-    if (!(cloud.size.array() > 0).all()) shape.at("size").fail("has an edge that is not > 0", "give three lengths");
   }
   else {
     bool open = false;

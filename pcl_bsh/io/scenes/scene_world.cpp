@@ -36,9 +36,10 @@ Point3 placed(const Point3& p, const CloudSource& source)
   return at;
 }
 
+/// @param p finite
 bool fitsFloat(const Point3& p)
 {
-  const auto fits = [](double x) { return std::isnan(x) || static_cast<double>(roundToFloat(x)) == x; };
+  const auto fits = [](double x) { return static_cast<double>(roundToFloat(x)) == x; };
   return fits(p[0]) && fits(p[1]) && fits(p[2]);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -141,6 +142,21 @@ TEST(ScatteredMotions, StopWhereNoReflectionIsLeft)
   EXPECT_EQ(left, 0u);
   --needed;
   EXPECT_FALSE(ScatteredMotions(kBox, 3).next(needed));
+}
+
+/// A speed so small that velocities are 0: there is no way to any side.
+TEST(ScatteredMotions, OfHardlyAnySpeedStay)
+{
+  ScatterBox box = kBox;
+  box.speed = std::numeric_limits<double>::denorm_min();
+  std::size_t left = 0;
+  ScatteredMotions motions(box, 1);
+  for (int i = 0; i < 10; ++i) {
+    const auto motion = motions.next(left);
+    ASSERT_TRUE(motion);
+    EXPECT_EQ(motion->times, (std::vector<double>{0, box.duration}));
+    EXPECT_EQ(motion->poses[0].translation(), motion->poses[1].translation());
+  }
 }
 
 /// Sides that touch would reflect without end.

@@ -480,5 +480,161 @@ TEST(SceneFile, PrintedMatricesStandForTheirRotations)
   EXPECT_THAT(parseScene(whole, "scene.json").warnings, testing::IsEmpty());
 }
 
+/// Its keys one by one, each with a value that is not its default.
+TEST(SceneFile, EffectsAreThoseThatItLists)
+{
+  const auto effectsOf = [](const std::string& effects) {
+    return parseScene(R"({"clouds": {"a": {"sphere": {"radius": 1}}}, "objects": [{"name": "A", "cloud": "a"}],
+                          "effects": {)" +
+                          effects + "}}",
+                      "scene.json")
+        .options.effects;
+  };
+  EXPECT_TRUE(effectsOf("").none());
+  for (const auto& [key, effect] : {std::pair{R"("any": true)", Effect::any},
+                                    {R"("flags": true)", Effect::flags},
+                                    {R"("distance": 2.5)", Effect::distance},
+                                    {R"("contacts": 7)", Effect::contacts},
+                                    {R"("first_contact": true)", Effect::first_contact},
+                                    {R"("swept": true)", Effect::swept},
+                                    {R"("self": true)", Effect::self},
+                                    {R"("response": "stop")", Effect::stop},
+                                    {R"("response": "slide")", Effect::slide},
+                                    {R"("gravity": {})", Effect::gravity},
+                                    {R"("deform": 1.5)", Effect::deform}}) {
+    const Effects effects = effectsOf(key);
+    for (std::size_t e = 0; e < kEffects; ++e)
+      EXPECT_EQ(effects.has(static_cast<Effect>(e)), static_cast<Effect>(e) == effect) << key;
+  }
+  EXPECT_EQ(effectsOf(R"("distance": 2.5)").distance, 2.5);
+  EXPECT_EQ(effectsOf(R"("contacts": 7)").contacts, 7u);
+  EXPECT_EQ(effectsOf(R"("deform": 1.5)").deform, 1.5);
+  EXPECT_EQ(effectsOf(R"("response": "none")").response, Response::none);
+  EXPECT_EQ(effectsOf(R"("gravity": {})").gravity->down, Eigen::Vector3d(0, 0, -1));
+  EXPECT_EQ(effectsOf(R"("gravity": {})").gravity->step_height, 0.3);
+  const Effects falls = effectsOf(R"("gravity": {"down": [0, 2, 0], "step_height": 0.5})");
+  EXPECT_EQ(falls.gravity->down, Eigen::Vector3d(0, 2, 0));
+  EXPECT_EQ(falls.gravity->step_height, 0.5);
+  EXPECT_THAT([&] { effectsOf(R"("gravity": {"down": [0, 0, 0]})"); },
+              testing::ThrowsMessage<JsonError>(HasSubstr("effects.gravity.down: has length 0: give a direction")));
+}
+
+TEST(SceneFile, MotionsAreWhatItSays)
+{
+  const auto motionOf = [](const std::string& motion) {
+    const SceneFile file = parseScene(
+        R"({"clouds": {"a": {"sphere": {"radius": 1}}}, "objects": [{"name": "A", "cloud": "a", "motion": {)" + motion +
+            "}}]}",
+        "scene.json");
+    return file.objects.at(0).motion;
+  };
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), linear(1, 2, 3), angular(0, 0.5, 0);
+  const auto plain = std::get<VelocityMotion>(motionOf(R"("velocity": [1, 2, 3])"));
+  EXPECT_EQ(plain.linear, linear);
+  EXPECT_EQ(plain.angular, zero);
+  const auto both = std::get<VelocityMotion>(motionOf(R"("velocity": {"linear": [1, 2, 3], "angular": [0, 0.5, 0]})"));
+  EXPECT_EQ(both.linear, linear);
+  EXPECT_EQ(both.angular, angular);
+  const auto about_z = std::get<CircularMotion>(motionOf(R"("circular": {"center": [1, 2, 3], "speed": 4})"));
+  EXPECT_EQ(about_z.center, linear);
+  EXPECT_EQ(about_z.axis, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(about_z.speed, 4);
+  EXPECT_TRUE(about_z.turning);
+  const auto about_y = std::get<CircularMotion>(
+      motionOf(R"("circular": {"center": [0, 0, 0], "speed": -4, "axis": [0, 0.5, 0], "turning": false})"));
+  EXPECT_EQ(about_y.axis, angular);
+  EXPECT_EQ(about_y.speed, -4);
+  EXPECT_FALSE(about_y.turning);
+  const auto ways = std::get<WaypointMotion>(
+      motionOf(R"("waypoints": [{"time": -1, "pose": [1, 2, 3]}, {"time": 0.5, "pose": [0, 0, 0]}])"));
+  EXPECT_EQ(ways.times, (std::vector<double>{-1, 0.5}));
+  EXPECT_EQ(ways.poses[0].translation(), linear);
+  EXPECT_EQ(ways.poses[1].translation(), zero);
+}
+
+TEST(SceneFile, OptionsAreWhatItSays)
+{
+  const auto parsed = [](const std::string& more) {
+    return parseScene(R"({"clouds": {"can": {"cylinder": {"radius": 1, "height": 2}}},
+                          "objects": [{"name": "A", "cloud": "can", "solid": false}])" +
+                          more + "}",
+                      "scene.json");
+  };
+  const SceneFile plain = parsed("");
+  EXPECT_EQ(plain.clouds[0].size, Eigen::Vector3d(1, 2, 0)) << "closed";
+  EXPECT_EQ(plain.clouds[0].spacing, 0.1);
+  EXPECT_EQ(plain.options.threads, 0u) << "all of the machine's";
+  EXPECT_EQ(plain.options.clearance, 0);
+  EXPECT_EQ(plain.options.tolerance, 1e-4);
+  EXPECT_EQ(plain.options.voxel_edge, 0);
+  EXPECT_TRUE(plain.options.test_pairs);
+  EXPECT_EQ(plain.steps, 1u);
+  EXPECT_EQ(plain.dt, 0.1);
+  EXPECT_EQ(plain.cloud_output, CloudOutput::none);
+  EXPECT_FALSE(plain.objects[0].fixed);
+  EXPECT_FALSE(plain.objects[0].solid);
+  EXPECT_EQ(plain.objects[0].place, "objects[0]");
+  const SceneFile other = parsed(R"(, "threads": 3, "tolerance": 0.5, "voxel_edge": 4, "steps": 0, "dt": 2,
+      "pairs": {"default": "ignored"}, "effects": {"flags": true}, "outputs": {"clouds": "every"},
+      "scatter": [{"name": "dust", "cloud": "can", "count": 1, "low": [0, 0, 0], "high": [9, 9, 9], "group": "dirt",
+                   "speed": 1}])");
+  EXPECT_EQ(other.options.threads, 3u);
+  EXPECT_EQ(other.options.tolerance, 0.5);
+  EXPECT_EQ(other.options.voxel_edge, 4);
+  EXPECT_FALSE(other.options.test_pairs);
+  EXPECT_EQ(other.steps, 0u);
+  EXPECT_EQ(other.dt, 2);
+  EXPECT_EQ(other.cloud_output, CloudOutput::every);
+  EXPECT_EQ(other.objects[1].group, "dirt");
+  EXPECT_TRUE(std::holds_alternative<WaypointMotion>(other.objects[1].motion));
+}
+
+/// Each with what it is about.
+TEST(SceneFile, NamesThatMissOrMeetAreRefused)
+{
+  const auto expect = [](const std::string& rest, const std::string& message) {
+    EXPECT_EQ(errorOf(R"({"clouds": {"a": {"sphere": {"radius": 1}}}, "objects": [)" + rest + "}"),
+              "scene.json: " + message)
+        << rest;
+  };
+  const std::string object = R"({"name": "A", "cloud": "a"})";
+  EXPECT_EQ(errorOf(R"({"clouds": {}, "objects": [)" + object + "]}"),
+            "scene.json: objects[0].cloud: no cloud is called 'a': add it to 'clouds'");
+  expect(R"({"name": "A", "parts": [{"name": "p", "cloud": "a"}, {"name": "q", "cloud": "a"},
+                                    {"name": "p", "cloud": "a"}]}])",
+         "objects[0].parts[2].name: 'p' is taken: give another name");
+  const auto scatter = [](const std::string& count) {
+    return R"({"name": "dust 1", "cloud": "a"}],
+      "scatter": [{"name": "dust", "cloud": "a", "low": [0, 0, 0], "high": [9, 9, 9], "count": )" +
+           count + "}]";
+  };
+  expect(scatter("2"), "scatter[0].name: 'dust 1' is taken: give another name");
+  EXPECT_EQ(errorOf(R"({"clouds": {"a": {"sphere": {"radius": 1}}}, "objects": [)" + scatter("1") + "}"), "none");
+  expect(object + R"(], "pairs": {"rules": [{"groups": ["g", "g"], "tested": true}]})",
+         "pairs.rules[0].groups: no object has a group: give objects a 'group'");
+  expect(object + R"(], "pairs": {"rules": [{"groups": ["g", "g"], "objects": ["A", "A"], "tested": true}]})",
+         "pairs.rules[0]: has both or none of 'objects' and 'groups': give one");
+}
+
+TEST(SceneFile, ColumnsOfACloudMayBeNamed)
+{
+  const TemporaryFolder folder;
+  folder.write("a.xyz", "1 2 3 4\n5 6 7 8\n");
+  const auto scene = [&](const std::string& cloud) {
+    return folder.write("scene.json",
+                        R"({"clouds": {"a": )" + cloud + R"(}, "objects": [{"name": "A", "cloud": "a"}]})");
+  };
+  const SceneFile file = readSceneFile(scene(R"({"file": "a.xyz", "columns": "z, _,x,y"})"));
+  EXPECT_EQ(file.clouds[0].columns, (ColumnNames{"z", "_", "x", "y"}));
+  EXPECT_EQ(SceneWorld(file).scene()[0].parts[0].hierarchy->view().point(1), (Point3{7, 8, 5}));
+  EXPECT_THAT([&] { readSceneFile(scene(R"({"file": "a.xyz", "columns": "x,,z"})")); },
+              testing::ThrowsMessage<JsonError>(
+                  HasSubstr("clouds.a.columns: has a column without a name: give one name for each column")));
+  std::filesystem::create_directory(folder / "sub");
+  EXPECT_THAT([&] { readSceneFile(scene(R"("sub")")); },
+              testing::ThrowsMessage<JsonError>(
+                  HasSubstr("clouds.a: " + (folder / "sub").string() + " is a folder: name a file")));
+}
+
 } // namespace
 } // namespace pcl_bsh::io

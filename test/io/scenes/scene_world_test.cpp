@@ -179,5 +179,87 @@ TEST(SceneWorld, TrajectoriesOfFiles)
   EXPECT_TRUE(based.poses[2].translation().isApprox(Eigen::Vector3d(10 - 3, 20 + 2, 30), 1e-12));
 }
 
+/// Where one axis alone needs them, too.
+TEST(SceneWorld, CoordinatesBecomeWideForAnyAxis)
+{
+  const TemporaryFolder folder;
+  writeCloud(folder / "a.pcd", randomCloud<float>(2, 1, {}));
+  const auto scalarOf = [&](const std::string& shift) {
+    const auto scene = folder.write("scene.json", R"({"clouds": {"a": {"file": "a.pcd", "scale": 0.5, "shift": )" +
+                                                      shift + R"(}}, "objects": [{"name": "a", "cloud": "a"}]})");
+    const SceneWorld world(readSceneFile(scene));
+    return viewOf(world.cloud("a")).scalar;
+  };
+  EXPECT_EQ(scalarOf("[0, 0, 0]"), Scalar::float32);
+  for (const char* shift : {"[1e9, 0, 0]", "[0, 1e9, 0]", "[0, 0, 1e9]"})
+    EXPECT_EQ(scalarOf(shift), Scalar::float64) << shift;
+}
+
+TEST(SceneWorld, CloudsOfNoObjectAreNotRead)
+{
+  const TemporaryFolder folder;
+  folder.write("broken.ply", "no cloud");
+  folder.write("a.xyz", "1 2 3\n4 5 6\n");
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": "a.xyz", "b": "broken.ply"},
+      "objects": [{"name": "a", "cloud": "a"}]})");
+  std::vector<std::string> read;
+  const SceneWorld world(readSceneFile(scene), [&](const CloudSource& cloud) { read.push_back(cloud.name); });
+  EXPECT_EQ(read, std::vector<std::string>{"a"});
+  EXPECT_EQ(world.points(), 2u);
+}
+
+/// A tetrahedron, without its last face where it is open.
+std::string tetrahedron(bool open)
+{
+  return std::string("OFF\n4 ") + (open ? "3" : "4") + " 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n" +
+         (open ? "" : "3 1 2 3\n");
+}
+
+TEST(SceneWorld, SolidsAreMeshesThatClose)
+{
+  const TemporaryFolder folder;
+  folder.write("closed.off", tetrahedron(false));
+  folder.write("open.off", tetrahedron(true));
+  folder.write("points.xyz", "0 0 0\n1 2 3\n");
+  folder.write("inside.xyz", "0.5 0.5 0.5\n");
+  const auto worldOf = [&](const std::string& file, const std::string& solid) {
+    const auto scene = folder.write("scene.json", R"({"clouds": {"in": "inside.xyz", "b": ")" + file +
+                                                      R"("}, "objects": [{"name": "in", "cloud": "in"},
+        {"name": "B", "cloud": "b", "solid": )" + solid +
+                                                      R"(}], "effects": {"any": true}})");
+    return SceneWorld(readSceneFile(scene));
+  };
+  EXPECT_EQ(worldOf("closed.off", "true").scene().query().any.size(), 1u) << "what is inside collides";
+  EXPECT_EQ(worldOf("closed.off", "false").scene().query().any.size(), 0u) << "it is hollow";
+  EXPECT_EQ(worldOf("open.off", "false").scene().query().any.size(), 0u);
+  EXPECT_THAT([&] { worldOf("open.off", "true"); },
+              ThrowsMessage<JsonError>(HasSubstr("scene.json: objects[1].solid: 3 edges are open")));
+  EXPECT_THAT([&] { worldOf("points.xyz", "true"); },
+              ThrowsMessage<JsonError>(HasSubstr("scene.json: objects[1].solid: cloud 'b' has no faces: give a mesh "
+                                                 "that closes, or leave it out")));
+}
+
+TEST(SceneWorld, NamesTheCloudOfWhatIsNoSurface)
+{
+  const TemporaryFolder folder;
+  folder.write("vast.off", "OFF\n3 1 0\n0 0 0\n1e300 0 0\n0 1e300 0\n3 0 1 2\n");
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": "vast.off"},
+      "objects": [{"name": "a", "cloud": "a"}]})");
+  EXPECT_THAT([&] { SceneWorld(readSceneFile(scene)); },
+              ThrowsMessage<JsonError>(HasSubstr("scene.json: clouds.a: triangle 0 is too large")));
+}
+
+/// What its reader took for granted is told with the file's name.
+TEST(SceneWorld, TellsWhatIsToBeKnownOfAFile)
+{
+  const TemporaryFolder folder;
+  folder.write("a.xyz", "1 5 7 9\n2 6 8 0\n3 1 1 1\n");
+  const auto scene = folder.write("scene.json", R"({"clouds": {"a": "a.xyz"},
+      "objects": [{"name": "a", "cloud": "a"}]})");
+  const std::vector<std::string> warnings = SceneWorld(readSceneFile(scene)).warnings();
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_THAT(warnings[0], testing::StartsWith((folder / "a.xyz").string() + ": its first column counts up by one"));
+}
+
 } // namespace
 } // namespace pcl_bsh::io
