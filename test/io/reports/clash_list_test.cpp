@@ -255,4 +255,43 @@ TEST(ClashLists, ReadWhatOnlyLaterVersionsWrite)
   EXPECT_EQ(read.clashes[2].first_pose, 2147483647);
 }
 
+TEST(ClashLists, WarnOfSweptMotionOnEitherSide)
+{
+  ClashList earlier;
+  earlier.question.clearance = 0.3;
+  earlier.question.swept = 0.01;
+  earlier.survey.emplace();
+  ClashQuestion now = earlier.question;
+  now.swept = 0.02;
+  EXPECT_THAT(requireComparable("old.json", earlier, now), testing::IsEmpty()) << "of another step";
+  now.swept = 0.0;
+  EXPECT_THAT(requireComparable("old.json", earlier, now),
+              ElementsAre("old.json: lists clashes of swept motion, now poses alone are asked: clashes between poses "
+                          "seem resolved"));
+  std::swap(earlier.question.swept, now.swept);
+  EXPECT_THAT(requireComparable("old.json", earlier, now),
+              ElementsAre("old.json: lists clashes at poses alone, now swept motion is asked: clashes between poses "
+                          "seem new"));
+}
+
+/// It is the one option that they tell.
+TEST(ClashLists, OfEarlierVersionsHaveTheirClearance)
+{
+  const ClashList list = parseClashes(old_list, "old.json");
+  ClashQuestion now = list.question;
+  now.clearance = 0.5;
+  EXPECT_THROW(requireComparable("old.json", list, now), files::FileError);
+  const std::string path = R"("path": {"poses": 2, "checksum": "ab", "box": null})";
+  EXPECT_FALSE(parseClashes(oldListWith(path), "old.json").survey) << "without a scan";
+}
+
+TEST(ClashLists, TellUncertaintiesInWords)
+{
+  EXPECT_EQ(uncertaintyText(0.25), "0.25");
+  Uncertainty of_field("sigma", 2);
+  EXPECT_EQ(uncertaintyText(of_field), "2 x field sigma");
+  of_field.pose = {0.01, 0.002, {1, 2, 3}};
+  EXPECT_EQ(uncertaintyText(of_field), "2 x field sigma and of poses 0.01,0.002,1,2,3");
+}
+
 } // namespace pcl_bsh::io

@@ -583,4 +583,88 @@ TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
   unsetenv("SOURCE_DATE_EPOCH");
 }
 
+/// Nothing is divided by a clearance of 0: what touches is as near as can be.
+TEST_F(ClashReports, OfAClearanceOfZero)
+{
+  follow(41, 0.25, {{2, 0}, {4, 5}});
+  scan_ = scan();
+  model_ = model();
+  ClashReport list = report();
+  list.question.clearance = 0.0;
+  ASSERT_EQ(list.clashes.at(0).distance, 0.0);
+  const std::string page = clashPage(list);
+  EXPECT_EQ(faultOfMarkup(page), "");
+  EXPECT_FALSE(has(page, "nan"));
+  EXPECT_TRUE(has(page, "height=\"130.000\"")) << "the whole bar";
+  EXPECT_TRUE(has(page, "rgb(150,10,40)")) << "deep red";
+  EXPECT_FALSE(has(page, "rgb(245,190,66)"));
+}
+
+TEST_F(ClashReports, WithoutAClashHaveNoPictures)
+{
+  follow(3, 0.25, {{0, 5}});
+  scan_ = scan();
+  model_ = model();
+  const std::string nothing = clashPage(report());
+  EXPECT_EQ(faultOfMarkup(nothing), "");
+  EXPECT_TRUE(has(nothing, "<h1>0 clashes</h1>"));
+  EXPECT_FALSE(has(nothing, "One by one"));
+  row.clear(), poses.clear();
+  EXPECT_TRUE(has(clashPage(twoClashes()), "One by one"));
+  ClashReport gone = report();
+  for (Clash& clash : gone.clashes) clash.status = ClashStatus::resolved;
+  EXPECT_FALSE(has(clashPage(gone), "One by one")) << "they are there no more";
+}
+
+TEST_F(ClashReports, TellWhatASurfaceIs)
+{
+  const TemporaryFolder folder;
+  const Obstacle surface = readObstacle(folder.write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), {});
+  ClashReport list = twoClashes();
+  EXPECT_FALSE(has(clashPage(list), ">Here the obstacle is a "));
+  EXPECT_EQ(Json::parse(clashJson(list))["surface"], Json());
+  model_ = surface.view();
+  list.surface = &surface;
+  EXPECT_TRUE(has(clashPage(list), ">Here the obstacle is a surface of 1 triangle: what it encloses is no part of it "
+                                   "without `solid`.<"));
+  EXPECT_TRUE(has(clashPage(list), "and triangle 0 of the obstacle"));
+  list.question.solid = true;
+  EXPECT_TRUE(has(clashPage(list), ">Here the obstacle is a solid of 1 triangle: what it encloses is part of it.<"));
+  const Json json = Json::parse(clashJson(list));
+  EXPECT_EQ(json["surface"]["triangles"], 1);
+  EXPECT_EQ(json["surface"]["promise"], promiseOf(surface, true));
+  EXPECT_EQ(json["clashes"][0]["closest_pair"]["obstacle"]["triangle"], 0);
+  EXPECT_THAT(clashCsv(list), HasSubstr(",obstacle_triangle,"));
+}
+
+/// Whatever there is none of is null.
+TEST_F(ClashReports, TellWhereNothingWas)
+{
+  ClashReport list = twoClashes();
+  list.survey = Survey({}, std::nullopt);
+  const std::string text = clashJson(list);
+  EXPECT_TRUE(Json::parse(text)["path"]["box"].is_null());
+  EXPECT_TRUE(Json::parse(text)["scan"]["box"].is_null());
+  EXPECT_FALSE(parseClashes(text, "list.json").survey->scan);
+
+  Answer::Unseen unseen;
+  unseen.count = 3;
+  unseen.at_poses = {0, 2, 3};
+  unseen.angles = {0.25, 0.5};
+  EXPECT_EQ(unseenJson(unseen).dump(), R"({"obstacle_points":3,"at_poses":[0,2,3],"first_pose":null,)"
+                                       R"("angles_of_scans":[0.25,0.5],"inside":null})");
+  unseen.first_pose = 1;
+  unseen.inside = {0.5};
+  EXPECT_EQ(unseenJson(unseen)["first_pose"], 1);
+  EXPECT_EQ(unseenJson(unseen)["inside"], Json{0.5});
+}
+
+/// HTML has none of them, the last of ASCII included.
+TEST_F(ClashReports, PagesHaveNoControlCharacters)
+{
+  twoClashes();
+  const std::string page = clashPage(report("a\x1f \x7f~.ply"));
+  EXPECT_TRUE(has(page, "a\xef\xbf\xbd \xef\xbf\xbd~.ply"));
+}
+
 } // namespace pcl_bsh::io

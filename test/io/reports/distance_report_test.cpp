@@ -217,5 +217,30 @@ TEST_F(DistanceReports, AppearCompleteOrNotAtAll)
   EXPECT_THROW(requireDistanceFormat("a.txt"), files::FileError);
 }
 
+/// Its records are triangles, and what their numbers mean is told.
+TEST_F(DistanceReports, TellThatTheObstacleIsASurface)
+{
+  const TemporaryFolder folder;
+  const Obstacle surface =
+      readObstacle(folder.write("a.off", "OFF\n4 2 0\n0 0 0\n5 0 0\n5 5 0\n0 5 0\n3 0 1 2\n3 0 2 3\n"), {});
+  EXPECT_EQ(json()["surface"], Json());
+  EXPECT_THAT(page(), HasSubstr("<td>points</td>"));
+  const SphereHierarchy a(viewOf(high.data(), high.size() / 3)), b(surface.view());
+  const SymmetricDistances found = symmetricDistances({a}, {b}, question.request);
+  question.surface = &surface;
+  for (const bool solid : {false, true}) {
+    question.solid = solid;
+    const DistanceReport report = reportOf(question, {a}, {b}, found);
+    const std::string promise = promiseOf(surface, solid) + "; the distance of a triangle is that of its nearest point";
+    EXPECT_THAT(distancePage(report), HasSubstr(">Here " + promise + ".<"));
+    EXPECT_THAT(distancePage(report), HasSubstr("<td>points, triangles</td>"));
+    const Json told = distanceJson(report);
+    EXPECT_EQ(told["surface"]["triangles"], 2);
+    EXPECT_EQ(told["surface"]["promise"], promise);
+    EXPECT_EQ(told["input_to_obstacle"]["points"], 100);
+    EXPECT_EQ(told["obstacle_to_input"]["points"], 2);
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh::io
