@@ -30,6 +30,11 @@ bool passes(const std::string& call)
   DiskCalls& now = *recording;
   ++now.made;
   if (now.calls.empty() || now.calls.back() != call) now.calls.push_back(call);
+  if (const auto once = now.failing_once.find(call); once != now.failing_once.end()) {
+    errno = once->second;
+    now.failing_once.erase(once);
+    return false;
+  }
   const auto failing = now.failing.find(call);
   if (failing == now.failing.end()) return true;
   errno = failing->second;

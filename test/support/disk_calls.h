@@ -19,9 +19,10 @@ public:
   DiskCalls(const DiskCalls&) = delete;
   DiskCalls& operator=(const DiskCalls&) = delete;
 
-  std::vector<std::string> calls;     ///< of the same ones in a row, the first
-  std::size_t made = 0;               ///< all of them
-  std::map<std::string, int> failing; ///< calls that are not made, and the errno that they fail with
+  std::vector<std::string> calls;          ///< of the same ones in a row, the first
+  std::size_t made = 0;                    ///< all of them
+  std::map<std::string, int> failing;      ///< calls that are not made, and the errno that they fail with
+  std::map<std::string, int> failing_once; ///< the same of the next one alone
 };
 
 } // namespace pcl_bsh::test

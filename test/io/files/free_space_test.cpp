@@ -78,4 +78,24 @@ TEST_F(FreeSpace, KnowsWhatAFolderTakes)
   EXPECT_EQ(spaceTaken(folder.path()), of_files) << "folders and links are no files";
 }
 
+/// Of sums beyond all numbers, too; and told in whole mebibytes.
+TEST_F(FreeSpace, CountsWithoutOverflow)
+{
+  constexpr auto most = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_NE(refusalOf({{folder / "a", 1000}, {folder / "b", most}}), "");
+  EXPECT_NE(refusalOf({{folder / "a", 1}, {folder / "b", most - 1}}), "");
+  const std::uint64_t mebibytes = (2 * free >> 20) + 1024;
+  for (const std::uint64_t less : {0U, 1U, (1U << 20) - 1}) {
+    const std::string refusal = refusalOf({{folder / "a", (mebibytes << 20) - less}});
+    EXPECT_NE(refusal.find("a: needs " + std::to_string(mebibytes) + " MiB, and"), std::string::npos) << refusal;
+  }
+}
+
+/// Who cannot look there will hear of it when something is written.
+TEST_F(FreeSpace, RefusesNothingWhereItCannotLook)
+{
+  fs::create_symlink("loop", folder / "loop");
+  EXPECT_EQ(refusalOf({{folder / "loop/file", std::numeric_limits<std::uint64_t>::max()}}), "");
+}
+
 } // namespace pcl_bsh::files

@@ -128,4 +128,30 @@ TEST(OneLine, HasNoCharacterThatSteersATerminal)
   EXPECT_EQ(oneLine("\xc3\xa4"), "\xc3\xa4");
 }
 
+TEST(NewFile, SaysThatItMayNotBeCut)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "longer");
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(file, fs::perms::owner_read | fs::perms::others_read);
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr uid_t nobody = 65534;
+    if (geteuid() == 0 && (setgid(nobody) != 0 || setuid(nobody) != 0)) _exit(1);
+    try {
+      const NewFile again(file, 4);
+    }
+    catch (const FileError& error) {
+      _exit(std::string(error.what()).find("file: cannot be written (Permission denied): ") != std::string::npos ? 3
+                                                                                                                 : 4);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_EQ(contentOf(file), "longer");
+}
+
 } // namespace pcl_bsh::files

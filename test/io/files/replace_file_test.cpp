@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <functional>
 #include <set>
 #include <thread>
@@ -395,6 +396,39 @@ TEST(ReplaceFile, IsNotInherited)
     EXPECT_NE(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, 0);
   }
   EXPECT_EQ(found, 1U);
+}
+
+TEST(ReplaceFile, SaysWhatIsWrongWithStandardOutput)
+{
+  std::fflush(stdout);
+  const int before = dup(STDOUT_FILENO), full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+  dup2(full, STDOUT_FILENO);
+  std::string wrong;
+  try {
+    replaceFile("-", [](std::ostream& out) { out << "text"; });
+  }
+  catch (const FileError& error) {
+    wrong = error.what();
+  }
+  dup2(before, STDOUT_FILENO);
+  close(before);
+  close(full);
+  EXPECT_EQ(wrong, "standard output: cannot be written (No space left on device): choose a folder with room that you "
+                   "may write to");
+}
+
+/// It cannot be opened to be brought to the disk.
+TEST(ReplaceFile, AFolderMayBeWrittenToButNotRead)
+{
+  const TemporaryFolder folder;
+  ASSERT_EQ(chmod(folder.path().c_str(), 0733), 0);
+  EXPECT_EQ(exitCodeOf([&] {
+              if (geteuid() == 0 && (setgid(nobody) != 0 || setuid(nobody) != 0)) return 1;
+              replaceFile(folder / "out", [](std::ostream& out) { out << "new"; });
+              return 0;
+            }),
+            0);
+  EXPECT_EQ(contentOf(folder / "out"), "new");
 }
 
 } // namespace pcl_bsh::files

@@ -5,6 +5,7 @@
 #include "support/temporary_folder.h"
 
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/new_file.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
 #include <gmock/gmock.h>
@@ -82,6 +83,41 @@ TEST_F(ReplacedOnDisk, OnFileSystemsThatCannotSyncFolders)
     disk.failing[fsync_folder] = error;
     EXPECT_NO_THROW(replace());
   }
+}
+
+/// As by a signal that the program handles.
+TEST_F(ReplacedOnDisk, WritesAgainWhatWasInterrupted)
+{
+  test::DiskCalls disk;
+  disk.failing_once["write out.part0"] = EINTR;
+  replace();
+  EXPECT_EQ(contentOf(file), "new");
+  NewFile other(folder / "other");
+  disk.failing_once["write other"] = EINTR;
+  other.append("abc");
+  EXPECT_TRUE(disk.failing_once.empty());
+  EXPECT_EQ(contentOf(folder / "other"), "abc");
+}
+
+/// Whoever writes may stop at once.
+TEST_F(ReplacedOnDisk, TellsTheWriterThatWritingFails)
+{
+  test::DiskCalls disk;
+  disk.failing["write out.part0"] = ENOSPC;
+  const auto writing = [&](const auto& write) {
+    EXPECT_THROW(replaceFile(file,
+                             [&](std::ostream& out) {
+                               write(out);
+                               EXPECT_TRUE(out.bad());
+                             }),
+                 FileError);
+    EXPECT_EQ(contentOf(file), "old");
+  };
+  writing([](std::ostream& out) {
+    for (int i = 0; i <= 1 << 16; ++i) out.put('x'); // one more than the buffer holds
+  });
+  writing([](std::ostream& out) { out << std::string((1 << 16) + 1, 'x'); });
+  writing([](std::ostream& out) { out << 'x' << std::flush; });
 }
 
 } // namespace

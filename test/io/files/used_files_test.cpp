@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace pcl_bsh::files {
 
@@ -92,6 +94,46 @@ TEST(UsedFiles, PipesCanBeReadOnceAndDevicesTakeAnything)
             "B: is the pipe of A, and can be read only once: save it to a file first");
   EXPECT_NE(clashOf({out("A", pipe), out("B", pipe)}), "");
   EXPECT_EQ(clashOf({in("A", "/dev/null"), out("B", "/dev/null"), out("C", "/dev/null")}), "");
+}
+
+TEST(UsedFiles, APipeIsNotWrittenToByItsReader)
+{
+  const TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(clashOf({in("A", pipe), out("B", pipe)}), "B: is the file of A, which is read: choose another name");
+  EXPECT_EQ(clashOf({out("B", pipe), in("A", pipe)}), "B: is the file of A, which is read: choose another name");
+}
+
+/// Of which nothing is known but its name.
+TEST(UsedFiles, FoldersThatLeadBackToThemselvesAreTwoWhereTheyHaveTwoNames)
+{
+  const TemporaryFolder folder;
+  for (const char* loop : {"loop", "round"}) fs::create_symlink(loop, folder / loop);
+  EXPECT_EQ(clashOf({out("A", folder / "loop/file"), out("B", folder / "round/file")}), "");
+  EXPECT_NE(clashOf({out("A", folder / "loop/file"), out("B", folder / "loop/file")}), "");
+}
+
+/// They may be led to a file, which has a name of its own.
+TEST(UsedFiles, StandardStreamsAreWhatTheyAreLedTo)
+{
+  const TemporaryFolder folder;
+  const fs::path a = folder.write("a", "x"), b = folder.write("b", "x");
+  const auto clashWith = [](int stream, const fs::path& led_to, const std::vector<UsedFile>& files) {
+    const int before = dup(stream), file = open(led_to.c_str(), O_RDWR | O_CLOEXEC);
+    dup2(file, stream);
+    const std::string clash = clashOf(files);
+    dup2(before, stream);
+    close(before);
+    close(file);
+    return clash;
+  };
+  const std::string read = "B: is the file of A, which is read: choose another name";
+  EXPECT_EQ(clashWith(STDIN_FILENO, a, {in("A", "-"), out("B", a)}), read);
+  EXPECT_EQ(clashWith(STDIN_FILENO, a, {in("A", "-"), out("B", b)}), "");
+  EXPECT_EQ(clashWith(STDOUT_FILENO, a, {in("A", a), out("B", "-")}), read);
+  EXPECT_EQ(clashWith(STDOUT_FILENO, a, {in("A", b), out("B", "-")}), "");
+  EXPECT_EQ(clashWith(STDOUT_FILENO, a, {in("A", "-"), out("B", "-")}), "") << "input and output are two";
 }
 
 } // namespace pcl_bsh::files
