@@ -50,5 +50,20 @@ TEST(ColumnChoice, OneForAllAndOneForAFile)
   EXPECT_THAT(defectOf([&] { all.requireUsed({"a.las", "b.ply"}); }), HasSubstr("no .xyz, .txt or .csv file is read"));
 }
 
+TEST(ColumnNames, AreOfThreeKindsOfFiles)
+{
+  for (const char* extension : {".xyz", ".txt", ".csv"}) {
+    EXPECT_TRUE(isColumnText(extension)) << extension;
+    ColumnChoice all;
+    all.add("x,y,z");
+    EXPECT_NO_THROW(all.requireUsed({"a.las", std::string("a") + extension})) << extension;
+    EXPECT_EQ(all.of(std::string("a") + extension).size(), 3U) << extension;
+  }
+  for (const char* other : {"", ".ply", "xyz", ".xyzw", ".pts"}) EXPECT_FALSE(isColumnText(other)) << other;
+  ColumnChoice all;
+  all.add("x,y,z");
+  EXPECT_NO_THROW(all.requireUsed({"-"})) << "a pipe may be of columns";
+}
+
 } // namespace
 } // namespace pcl_bsh::io

@@ -7,8 +7,12 @@
 
 #include <gmock/gmock.h>
 
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -124,6 +128,75 @@ TEST(FileBytes, KnowWhatIsAPipe)
   EXPECT_TRUE(isPipe("-"));
   EXPECT_FALSE(isPipe(folder.write("file", "a")));
   EXPECT_FALSE(isPipe(folder / "none"));
+}
+
+namespace {
+
+/// Standard input is that descriptor, which is closed, as long as it lives.
+class AsInput {
+public:
+  explicit AsInput(int descriptor) : before_(dup(STDIN_FILENO))
+  {
+    dup2(descriptor, STDIN_FILENO);
+    close(descriptor);
+  }
+  ~AsInput()
+  {
+    dup2(before_, STDIN_FILENO);
+    close(before_);
+  }
+  AsInput(const AsInput&) = delete;
+  AsInput& operator=(const AsInput&) = delete;
+
+private:
+  int before_;
+};
+
+} // namespace
+
+/// It may be a file, a pipe or a socket, and stays open.
+TEST(FileBytes, OfStandardInput)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "from a file");
+  {
+    const AsInput input(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    EXPECT_EQ(FileBytes("-").view(), "from a file");
+    EXPECT_NE(fcntl(STDIN_FILENO, F_GETFD), -1);
+  }
+  int ends[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  ASSERT_EQ(write(ends[0], "from a socket", 13), 13);
+  close(ends[0]);
+  const AsInput input(ends[1]);
+  EXPECT_EQ(FileBytes("-").view(), "from a socket");
+}
+
+/// Which ends where its user says so.
+TEST(FileBytes, OfATerminal)
+{
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0) GTEST_SKIP() << "no terminals here";
+  const fs::path terminal = ptsname(master);
+  const int held = open(terminal.c_str(), O_RDWR | O_NOCTTY); // or what is typed before it is opened is lost
+  ASSERT_EQ(write(master, "1 2 3\n\x04", 7), 7);
+  EXPECT_EQ(FileBytes(terminal).view(), "1 2 3\n");
+  close(held);
+  close(master);
+}
+
+TEST(FileBytes, TellWhatTheSystemSays)
+{
+  const TemporaryFolder folder;
+  fs::create_symlink("loop", folder / "loop");
+  const std::string wrong =
+      "loop: cannot be opened (Too many levels of symbolic links): check its permissions and its disk";
+  EXPECT_THAT([&] { FileBytes(folder / "loop"); }, testing::ThrowsMessage<files::FileError>(testing::HasSubstr(wrong)));
+  EXPECT_THAT([&] { openBytes(folder / "loop"); }, testing::ThrowsMessage<files::FileError>(testing::HasSubstr(wrong)));
+  const AsInput input(open(folder.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  close(STDIN_FILENO);
+  EXPECT_THAT([] { FileBytes("-"); },
+              testing::ThrowsMessage<files::FileError>(testing::HasSubstr("-: cannot be read (Bad file descriptor)")));
 }
 
 } // namespace pcl_bsh::io

@@ -111,4 +111,14 @@ TEST(ParseNumber, EachDigitLooksLikeANumber)
   for (const char* word : {"/1", ":1", "-", "+.", "-x1"}) EXPECT_FALSE(looksLikeNumber(word)) << word;
 }
 
+TEST(ParseNumber, KnowsWhatIsBelowOne)
+{
+  for (const char* below : {"0", "0.0", "000", "0e9", ".0e99999999999999999999", "-0.5", "0.999", ".9", "0.1e0", "1e-1",
+                            "10e-2", "99.9e-3", "0.0001e3", "-9e-99999999999999999999", "1E-1"})
+    EXPECT_TRUE(isBelowOne(below)) << below;
+  for (const char* above :
+       {"1", "-1.0", "0.1e1", "1e0", "10e-1", "100.5e-2", "0.0001e4", "1e+0", "0.1e+99999999999999999999", "1E1", "01"})
+    EXPECT_FALSE(isBelowOne(above)) << above;
+}
+
 } // namespace pcl_bsh::io
