@@ -135,7 +135,7 @@ void JsonSchema::checkObject(const JsonReader& value, const Json& schema) const
   for (const auto& [key, member] : value.members()) {
     if (properties.contains(key))
       check(member, properties[key]);
-    else if (schema.contains("additionalProperties") && !closed)
+    else if (schema.contains("additionalProperties")) // of a closed one there are no others
       check(member, schema["additionalProperties"]);
   }
 }

@@ -67,6 +67,7 @@ TEST(JsonSchema, DefinitionsNameWhatTheyAre)
       {"pair": {"title": "pair", "description": "two names", "type": "array", "minItems": 2, "maxItems": 2}}})";
   EXPECT_EQ(faultOf(schema, R"([["a", "b"], ["c"]])"), "d.json: [1]: [\"c\"] is no pair: give two names");
   EXPECT_EQ(faultOf(schema, "[7]"), "d.json: [0]: 7 is no pair: give two names");
+  EXPECT_EQ(faultOf(schema, "[[]]"), "d.json: [0]: [] is no pair: give two names");
   EXPECT_EQ(faultOf(schema, "[]"), "");
 }
 
