@@ -251,7 +251,7 @@ Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const Column
   Faces faces;
   Mesh mesh{read(path, facts, columns, threads, &faces), std::move(faces.triangles)};
   naming(path, [&] {
-    const std::vector<Triangle> cut = trianglesOf(faces.polygons, viewOf(mesh.vertices), &mesh.face_values);
+    const std::vector<Triangle> cut = trianglesOf(faces.polygons, viewOf(mesh.vertices), mesh.face_values);
     mesh.triangles.insert(mesh.triangles.end(), cut.begin(), cut.end());
   });
   return mesh;

@@ -131,7 +131,6 @@ void addExtraBytes(std::vector<LasField>& fields, std::string_view descriptors, 
 
 std::string newDescriptor(const std::string& name, std::uint8_t datatype, const std::string& description)
 {
-  if (datatype == Type::BOOL) datatype = Type::UINT8;
   const auto type = std::find(types.begin(), types.end(), datatype);
   std::string descriptor(las_descriptor_bytes, '\0');
   descriptor[type_at] = static_cast<char>(type - types.begin() + 1);

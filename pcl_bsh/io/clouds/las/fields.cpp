@@ -317,7 +317,7 @@ bool encodeLas(const LasField& field, const std::uint8_t* in, std::uint8_t datat
     using Value = decltype(cloud_zero);
     withFieldType(field.stored, [&](auto stored_zero) {
       using Stored = decltype(stored_zero);
-      const bool coordinate = field.at < 12 && field.kind == LasField::Kind::scaled;
+      const bool coordinate = field.at < 12;
       const bool as_float = field.datatype == Type::FLOAT32;
       const auto read = [&](double value) { return as_float ? static_cast<double>(static_cast<float>(value)) : value; };
       forEachValue(field, points, [&](std::size_t i, std::uint32_t k) {

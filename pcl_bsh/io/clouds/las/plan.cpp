@@ -63,7 +63,7 @@ void chooseScale(const LasPoints& points, LasPlan& plan)
   for (std::size_t k = 0; k < 3; ++k) {
     const double middle = points.size() == 0 ? 0 : points.least(k) / 2 + points.greatest(k) / 2;
     const double step = 1000 * plan.scale[k]; // a round offset
-    plan.offset[k] = std::isfinite(step) ? std::nearbyint(middle / step) * step : 0;
+    plan.offset[k] = std::nearbyint(middle / step) * step;
     if (!hasPlaces(points, k, plan.scale[k], plan.offset[k])) {
       throw FormatError("its coordinates " + std::string(axes[k]) + " are too far apart for LAS",
                         "write a .pcd instead");

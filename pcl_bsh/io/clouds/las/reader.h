@@ -33,7 +33,6 @@ public:
   std::uint64_t size() const noexcept { return block_.points; }
 
   const LasBlock& block() const noexcept { return block_; }
-  const std::vector<LasField>& fields() const noexcept { return fields_; }
 
   /// The fields of the clouds that read() gives (lasFields(), addExtraBytes()), without points.
   const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }

@@ -138,7 +138,7 @@ void setCounts(std::string& block, const LasPlan& plan, std::uint64_t points, co
 void moveBehind(std::string& block, std::size_t at, std::uint64_t old_end, std::uint64_t new_end)
 {
   const auto place = lasNumber<std::uint64_t>(block, at);
-  if (place >= old_end && place != 0) setLasNumber(block, at, place - old_end + new_end);
+  if (place >= old_end) setLasNumber(block, at, place - old_end + new_end);
 }
 
 } // namespace

@@ -45,7 +45,7 @@ Words defaultNames(std::size_t columns)
 /// A line without anything like a number is no point: it names the columns. Blanks within a name become '_'.
 bool namesColumns(Words& words)
 {
-  if (words.empty() || std::any_of(words.begin(), words.end(), looksLikeNumber)) return false;
+  if (std::any_of(words.begin(), words.end(), looksLikeNumber)) return false;
   for (std::string& word : words)
     std::replace_if(
         word.begin(), word.end(), [](char c) { return c == ' ' || c == '\t'; }, '_');

@@ -54,7 +54,6 @@ public:
       if (field.name == "x" || field.name == "y" || field.name == "z") coordinates_.insert(field.offset);
   }
 
-  const Fields& values() const { return values_; }
   std::size_t size() const { return cloud_.data.size() / cloud_.point_step; }
   void reserve(std::size_t points) { cloud_.data.reserve(points * cloud_.point_step); }
   /// Room for as many rows as a text has lines, but no more than it can hold rows.

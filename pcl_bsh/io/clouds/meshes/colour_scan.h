@@ -29,7 +29,6 @@ public:
       std::uint8_t byte = 0;
       const auto [at, error] = std::from_chars(word.data(), end, byte);
       if (error != std::errc() || at != end) bytes_ = false;
-      if (byte > 1) above_one_ = true;
       constexpr double three_digits = 0.15; // how far a 255th written with three digits is from a whole one
       if (!(value >= 0 && value <= 1 && std::abs(value * 255 - std::round(value * 255)) <= three_digits))
         shares_ = false;
@@ -40,7 +39,7 @@ public:
 
   Kind kind() const
   {
-    if (shares_ && !(bytes_ && above_one_)) return Kind::shares;
+    if (shares_) return Kind::shares;
     return bytes_ ? Kind::bytes : Kind::as_given;
   }
 
@@ -48,7 +47,6 @@ private:
   std::size_t channels_ = 0;
   bool bytes_ = true;
   bool shares_ = true;
-  bool above_one_ = false;
 };
 
 } // namespace pcl_bsh::io

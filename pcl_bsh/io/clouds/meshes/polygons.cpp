@@ -9,10 +9,9 @@
 
 namespace pcl_bsh::io {
 
-std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices, std::vector<FaceValues>* values)
+std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices, std::vector<FaceValues>& values)
 {
-  if (values)
-    for (const FaceValues& known : polygons.values()) values->push_back({known.name, {}});
+  for (const FaceValues& known : polygons.values()) values.push_back({known.name, {}});
   std::vector<Triangle> triangles;
   triangles.reserve(polygons.size());
   std::vector<std::uint32_t> corners;
@@ -31,10 +30,9 @@ std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& ve
     catch (const InvalidInput& error) {
       throw FormatError(error.wrong(), error.remedy());
     }
-    for (std::size_t k = 0; values && k < values->size(); ++k) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
       const std::vector<double>& known = polygons.values()[k].values;
-      (*values)[k].values.resize(triangles.size(),
-                                 i < known.size() ? known[i] : std::numeric_limits<double>::quiet_NaN());
+      values[k].values.resize(triangles.size(), i < known.size() ? known[i] : std::numeric_limits<double>::quiet_NaN());
     }
   }
   return triangles;

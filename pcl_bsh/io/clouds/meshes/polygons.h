@@ -36,9 +36,9 @@ private:
 };
 
 /// Those of addTriangles().
-/// @param values if not null, gets what is known of the polygons, for each of their triangles
+/// @param values gets what is known of the polygons, for each of their triangles
 /// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices,
-                                  std::vector<FaceValues>* values = nullptr);
+                                  std::vector<FaceValues>& values);
 
 } // namespace pcl_bsh::io

@@ -76,8 +76,7 @@ std::string keyword(TextCursor& text)
 std::string_view withoutEndMarks(std::string_view text)
 {
   constexpr std::string_view marks("\0\x1a", 2);
-  const std::size_t last = text.find_last_not_of(marks);
-  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+  return text.substr(0, text.find_last_not_of(marks) + 1);
 }
 
 bool isText(std::string_view file)

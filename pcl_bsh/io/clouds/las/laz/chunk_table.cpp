@@ -49,7 +49,6 @@ void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t reco
 ChunkTable oneChunk(ByteSource& file, const LasBlock& block, std::uint64_t at)
 {
   ChunkTable table{{}, file.size()};
-  if (block.points == 0) return table;
   std::uint64_t end = file.size();
   if (block.extended_records > 0 && block.extended_at >= at) end = std::min(end, block.extended_at);
   table.chunks.push_back({0, block.points, at, end - at});
