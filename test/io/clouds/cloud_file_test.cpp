@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "las_sample.h"
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+
+#include <gmock/gmock.h>
 
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
@@ -243,6 +246,149 @@ TEST(CloudFile, HeadersAreReadAlone)
   std::string comments;
   while (comments.size() < 200000) comments += "comment more than one reads at first\n";
   EXPECT_EQ(readCloudHeader(folder.write("long.ply", begin + comments + end)).fields.size(), 3U);
+}
+
+TEST(CloudFile, EachNameThatCanBeWrittenIsReadAgain)
+{
+  const TemporaryFolder folder;
+  const pcl::PCLPointCloud2 cloud = readCloud(folder.write("in.xyz", "0.1 2 3\n4 5 6\n"));
+  const std::string rows = "0.1 2 3\n4 5 6\n", csv = "x,y,z\n0.1,2,3\n4,5,6\n";
+  const std::string ptx = "2\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n" + rows;
+  for (const auto& [name, content] : {std::pair<const char*, std::string>{"a.pts", "2\n" + rows},
+                                      {"a.ptx", ptx},
+                                      {"a.csv", csv},
+                                      {"a.xyz", "x y z\n" + rows},
+                                      {"a.TXT", "x y z\n" + rows},
+                                      {"a.obj", "# Vertices: 2\nv 0.1 2 3\nv 4 5 6\n"},
+                                      {"a.pcd", ""},
+                                      {"a.ply", ""},
+                                      {"a.las", ""}}) {
+    writeCloud(folder / name, cloud);
+    if (!content.empty()) {
+      EXPECT_EQ(contentOf(folder / name), content) << name;
+    }
+    const pcl::PCLPointCloud2 read = readCloud(folder / name);
+    EXPECT_EQ(read.width, 2U) << name;
+    EXPECT_NEAR(valueOf(read, 0, "x"), 0.1, 1e-6) << name;
+    EXPECT_EQ(namesOf(readCloudHeader(folder / name)), namesOf(read)) << name;
+  }
+  const auto refusalOf = [&](const std::string& name) -> std::string {
+    try {
+      requireWritableCloud(folder / name);
+    }
+    catch (const files::FileError& error) {
+      return std::string(error.what()).substr((folder / name).string().size());
+    }
+    return "none";
+  };
+  const std::string known = ": write a .pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt file";
+  EXPECT_EQ(refusalOf("b.e57"), ": unknown extension '.e57'" + known);
+  EXPECT_EQ(refusalOf("b"), ": has no extension" + known);
+  EXPECT_EQ(refusalOf("b.off"), ": unknown extension '.off'" + known) << "read, but not written";
+  EXPECT_EQ(refusalOf("b.laz"), ": is the name of a compressed file, which is not written: write a .las file");
+  EXPECT_EQ(refusalOf("b.las"), "none");
+}
+
+/// It has no name to tell a format by, and gets PCL's own.
+TEST(CloudFile, StandardOutputIsPcd)
+{
+  const pcl::PCLPointCloud2 cloud = randomCloud<float>(3, 1, {});
+  const TemporaryFolder folder;
+  EXPECT_NO_THROW(requireWritableCloud("-"));
+  testing::internal::CaptureStdout();
+  writeCloud("-", cloud);
+  expectSame(readCloud(folder.write("a.pcd", testing::internal::GetCapturedStdout())), cloud);
+}
+
+TEST(CloudFile, NamesOfColumnsAreForFilesOfColumnsAlone)
+{
+  const TemporaryFolder folder;
+  const pcl::PCLPointCloud2 cloud = randomCloud<float>(3, 1, {});
+  writeCloud(folder / "a.pcd", cloud);
+  LasSample sample(4, 6);
+  sample.addPoints(2);
+  folder.write("a.las", sample.text());
+  for (const char* name : {"a.pcd", "a.las"}) {
+    const std::string wrong =
+        std::string(name) + ": is a " + fs::path(name).extension().string() +
+        ", which names its fields itself: give names of columns for .xyz, .txt and .csv files alone";
+    EXPECT_THAT(
+        [&] {
+          readCloud(folder / name, nullptr, {"x", "y", "z"});
+        },
+        testing::ThrowsMessage<files::FileError>(testing::HasSubstr(wrong)));
+    EXPECT_THAT(
+        [&] {
+          readCloudHeader(folder / name, {"x", "y", "z"});
+        },
+        testing::ThrowsMessage<files::FileError>(testing::HasSubstr(wrong)));
+  }
+  for (const char* name : {"b.xyz", "b.txt", "b.csv"}) {
+    folder.write(name, "1 2 3\n");
+    EXPECT_EQ(valueOf(readCloud(folder / name, nullptr, {"z", "y", "x"}), 0, "x"), 3) << name;
+    EXPECT_EQ(namesOf(readCloudHeader(folder / name, {"z", "y", "x"})), "z y x") << name;
+  }
+}
+
+/// What comes through a pipe is held in memory, LAS too, whatever the pipe is called.
+TEST(CloudFile, PipesMayBeginInAnyWayOfTheirFormat)
+{
+  const TemporaryFolder folder;
+  LasSample sample(4, 6);
+  sample.addPoints(3);
+  const std::string rest = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 3\nDATA ascii\n1 2 3\n4 5 6\n7 8 9\n";
+  for (const auto& [name, content] : {std::pair<const char*, std::string>{"pipe", sample.text()},
+                                      {"pipe.las", sample.text()},
+                                      {"pipe.1", "# .PCD v0.7\n" + rest},
+                                      {"pipe.2", "VERSION .7\n" + rest}}) {
+    ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
+    std::thread writer([&, text = content] { std::ofstream(folder / name, std::ios::binary) << text; });
+    CloudFacts facts;
+    EXPECT_NO_THROW(EXPECT_EQ(readCloud(folder / name, &facts).width, 3U) << name);
+    EXPECT_EQ(facts.las != nullptr, content == sample.text()) << name;
+    writer.join();
+  }
+}
+
+TEST(CloudFile, ListsOfNumbersAreDenseWhereEachIsFinite)
+{
+  for (std::size_t i = 0; i < 5; ++i) {
+    pcl::PCLPointCloud2 cloud;
+    addField(cloud, "x", Field::INT32);
+    addField(cloud, "histogram", Field::FLOAT64, 5);
+    allocate(cloud, 2);
+    setDense(cloud);
+    EXPECT_TRUE(cloud.is_dense);
+    const double infinite = std::numeric_limits<double>::infinity();
+    std::memcpy(&cloud.data[cloud.point_step + 4 + 8 * i], &infinite, sizeof infinite);
+    setDense(cloud);
+    EXPECT_FALSE(cloud.is_dense) << i;
+  }
+}
+
+/// Clouds that lie about themselves are refused, before a byte beyond them is read.
+TEST(CloudFile, RefusesCloudsThatLie)
+{
+  const auto refusalOf = [](const pcl::PCLPointCloud2& cloud) { return defectOf([&] { namedFields(cloud); }); };
+  const pcl::PCLPointCloud2 sound = randomCloud<float>(3, 2, {});
+  EXPECT_EQ(namedFields(sound).size(), 5U);
+  pcl::PCLPointCloud2 cloud = sound;
+  cloud.fields[4].count = 6;
+  EXPECT_EQ(refusalOf(cloud), "field 'histogram' lies outside the records");
+  cloud = sound;
+  ++cloud.fields[4].offset;
+  EXPECT_EQ(refusalOf(cloud), "field 'histogram' lies outside the records");
+  cloud = sound;
+  cloud.data.pop_back();
+  EXPECT_EQ(refusalOf(cloud), "the cloud has fewer records than width x height");
+  cloud = sound;
+  cloud.fields[3].name.clear();
+  EXPECT_EQ(refusalOf(cloud), "a field named '' cannot be written");
+  cloud.fields[3].name = "_";
+  EXPECT_EQ(namedFields(cloud).size(), 4U) << "padding";
+  cloud = sound;
+  cloud.fields[3].count = 0;
+  EXPECT_EQ(namedFields(cloud)[3].count, 1U) << "as PCL takes it";
 }
 
 } // namespace pcl_bsh::io

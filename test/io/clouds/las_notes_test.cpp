@@ -136,5 +136,61 @@ TEST(LasNotes, RealFiles)
   EXPECT_EQ(systemIn("test1_4.las"), "NAD83(HARN) / New Mexico Central (ftUS)");
 }
 
+/// Of control characters those between words are blanks.
+TEST(LasNotes, NamesAreALineOfAscii)
+{
+  LasSample sample(4, 6);
+  sample.records = {LasSample::record("LASF_Projection", 2112, "PROJCS[\" a\rb\tc\x7f~\x1f \"]")};
+  EXPECT_EQ(systemOf(sample), "a b c?~?");
+  sample.records = {LasSample::record("LASF_Projection", 2112, "P[\"" + std::string(300, 'n') + "\"]")};
+  EXPECT_EQ(systemOf(sample), std::string(200, 'n'));
+}
+
+TEST(LasNotes, KeysThatSayNothingAreLeftOut)
+{
+  LasSample sample(2, 1);
+  sample.records = {keys({{3072, 0, 1, 0}, {1026, 34737, 5, 0}}), texts("a UTM|")};
+  EXPECT_EQ(systemOf(sample), "a UTM") << "no code is 0";
+  sample.records = {keys({{3072, 34737, 1, 26915}, {1026, 34737, 5, 0}}), texts("a UTM|")};
+  EXPECT_EQ(systemOf(sample), "a UTM") << "a place in the texts is no code";
+  sample.records = {keys({{3073, 34737, 2, 0}, {1026, 34737, 5, 2}}), texts(" |a UTM|")};
+  EXPECT_EQ(systemOf(sample), "a UTM") << "the first citation that says something";
+  sample.records = {keys({{3073, 34737, 3, 0}, {1026, 34737, 5, 2}}), texts("a UTM|")};
+  EXPECT_EQ(systemOf(sample), "a U") << "as long as its key says";
+}
+
+/// Which no reader has checked.
+TEST(LasNotes, HeadersMayEndTooEarly)
+{
+  LasSample sample(4, 6);
+  sample.extended = {LasSample::extendedRecord("somebody", 9, "more"),
+                     LasSample::extendedRecord("LASF_Projection", 2112, wkt)};
+  sample.addPoints(2);
+  const std::string file = sample.text();
+  const LasHeader sound = LasReader(std::make_unique<HeldBytes>(file)).header();
+  ASSERT_EQ(coordinateSystemOf(sound), "NAD83 / UTM zone 15N + NAVD88");
+  LasHeader header = sound;
+  for (std::size_t left = 0; left < sound.behind_points.size(); left += 3) {
+    header.behind_points.resize(left);
+    EXPECT_EQ(coordinateSystemOf(header), "") << left;
+    header.behind_points = sound.behind_points;
+  }
+  header.block.extended_at = 7;
+  EXPECT_EQ(coordinateSystemOf(header), "");
+  header.block.extended_at = ~std::uint64_t{0};
+  EXPECT_EQ(coordinateSystemOf(header), "");
+}
+
+/// Points of a .laz end where its chunks do: what is behind them is no point.
+TEST(LasNotes, OfCompressedPointsThereIsNoRoomForMore)
+{
+  LasBlock block;
+  block.points_at = 375;
+  block.record_length = 20;
+  EXPECT_EQ(remarksOn(block, 1000).size(), 1U);
+  block.compressed = true;
+  EXPECT_TRUE(remarksOn(block, 1000).empty());
+}
+
 } // namespace
 } // namespace pcl_bsh::io

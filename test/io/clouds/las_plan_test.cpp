@@ -68,5 +68,26 @@ TEST(LasPlan, TheNewOffsetStaysOnTheGrid)
   }
 }
 
+/// Doubles that stand for no other stored number stay, though a division takes them beyond the range.
+TEST(LasPlan, TheEndOfTheRangeIsInIt)
+{
+  const LasHeader header = headerOf(0x1p-60, 1);
+  expectExact(header, {1 + 0x1p-29});
+  expectExact(header, {1 - 0x1p-29, 1 + 0x1p-29});
+}
+
+TEST(LasPlan, PointsTooFarApartForTheirScaleGetAnother)
+{
+  const LasHeader header = headerOf(scale, 0);
+  const std::vector<double> places = {0, 4 * whole_range, 8 * whole_range};
+  std::ostringstream out;
+  writeLas(out, alongX(places), &header);
+  const std::string file = out.str();
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  const pcl::PCLPointCloud2 read = readLas(reader);
+  EXPECT_EQ(reader.block().scale[0], 10) << "the least power of ten";
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(valueOf(read, i, "x"), places[i], 5) << i;
+}
+
 } // namespace
 } // namespace pcl_bsh::io

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace pcl_bsh::io {
 
@@ -67,6 +69,42 @@ LasSample fullSample()
   sample.global_encoding = 2 | 16;
   sample.addPoints(50);
   return sample;
+}
+
+/// A cloud of x y z at 0, and of these fields.
+pcl::PCLPointCloud2 cloudOf(const std::vector<std::pair<std::string, std::uint8_t>>& fields, std::uint32_t points = 2)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT64);
+  for (const auto& [name, type] : fields) addField(cloud, name, type);
+  allocate(cloud, points);
+  return cloud;
+}
+
+template <typename T>
+void setValue(pcl::PCLPointCloud2& cloud, std::size_t record, const std::string& name, T value)
+{
+  for (const Field& field : cloud.fields)
+    if (field.name == name) std::memcpy(&cloud.data[record * cloud.point_step + field.offset], &value, sizeof value);
+}
+
+bool hasField(const pcl::PCLPointCloud2& cloud, const std::string& name)
+{
+  return std::any_of(cloud.fields.begin(), cloud.fields.end(), [&](const Field& field) { return field.name == name; });
+}
+
+/// What becomes of one value of a described field of a file: written, and read again.
+double keptValue(std::uint8_t type, const std::string& descriptor, std::size_t bytes, double value)
+{
+  LasSample sample(4, 6, bytes);
+  sample.records = {LasSample::record("LASF_Spec", 4, descriptor)};
+  sample.points.assign(3, std::string(sample.length(), '\0'));
+  Las las = readText(sample.text());
+  EXPECT_EQ(las.cloud.fields.back().datatype, Field::FLOAT64) << int{type};
+  setValue(las.cloud, 1, las.cloud.fields.back().name, value);
+  const Las again = readText(written(las.cloud, &las.header));
+  EXPECT_EQ(valueOf(again.cloud, 0, "e"), valueOf(las.cloud, 0, "e"));
+  return valueOf(again.cloud, 1, "e");
 }
 
 } // namespace
@@ -666,6 +704,287 @@ TEST(Las, RealFiles)
               testing::HasSubstr("truncated"));
   EXPECT_EQ(readText(contentOf(samples / "gps-time-nan.las")).cloud.width, 1U);
   EXPECT_EQ(readText(contentOf(samples / "bad_vlr_count.las")).cloud.width, 10U);
+}
+
+TEST(Las, NamesOfExtraBytesAreFreeAndPlain)
+{
+  const auto namesFrom = [](const std::vector<std::string>& given) {
+    LasSample sample(4, 6, given.size());
+    std::string descriptors;
+    for (const std::string& name : given) descriptors += LasSample::descriptor(1, name);
+    sample.records = {LasSample::record("LASF_Spec", 4, descriptors)};
+    sample.addPoints(1);
+    const std::string names = namesOf(readText(sample.text()).cloud), last = "point_source_id gps_time ";
+    return names.substr(names.find(last) + last.size());
+  };
+  EXPECT_EQ(namesFrom({"a\x7f~ b!", "_"}), "a_~_b! extra__");
+  EXPECT_EQ(namesFrom({"extra_a_2", "a", "a", "a", "a"}), "extra_a_2 a extra_a extra_a_3 extra_a_4");
+  EXPECT_EQ(namesFrom({"extra_a", "a", "a"}), "extra_a a extra_a_2");
+}
+
+/// Records of the specification that describe something else, or bytes that are none.
+TEST(Las, OnlyExtraBytesAreDescribed)
+{
+  LasSample sample(4, 6, 2);
+  sample.records = {
+      LasSample::record("LASF_Spec", 0, std::string(16, 'c')),
+      LasSample::record("LASF_Spec", 4, LasSample::descriptor(0, "nothing") + LasSample::descriptor(3, "a"))};
+  sample.addPoints(2);
+  const Las las = readText(sample.text());
+  EXPECT_EQ(las.cloud.fields.back().name, "a");
+  EXPECT_FALSE(hasField(las.cloud, "nothing"));
+  const std::string more = written(withField(las.cloud, "collision", test::verdictsOf({1, 0})), &las.header);
+  EXPECT_NE(more.find(std::string(16, 'c')), std::string::npos);
+  EXPECT_EQ(namesOf(readText(more).cloud), namesOf(las.cloud) + " collision");
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "width", 16, 1, bad))};
+    EXPECT_THAT(defectOf([&] { readText(sample.text()); }),
+                testing::HasSubstr("its extra bytes 'width' are scaled by"));
+  }
+}
+
+/// What the type of a field of the file cannot say gets another type; what it can, none.
+TEST(Las, ValuesOfExtraBytesAreNeverChanged)
+{
+  const double nan = std::nan("");
+  EXPECT_TRUE(std::isnan(keptValue(3, LasSample::descriptor(3, "e", 8, 0.5), 2, nan))) << "no value of it is none";
+  EXPECT_TRUE(std::isnan(keptValue(3, LasSample::descriptor(3, "e", 9, 0.5, 0, 77), 2, nan))) << "one is";
+  EXPECT_TRUE(std::isnan(keptValue(1, LasSample::descriptor(1, "e", 1, 0, 0, 300), 1, nan))) << "none of a byte is";
+  EXPECT_TRUE(std::isnan(keptValue(9, LasSample::descriptor(9, "e", 8, 0.5), 4, nan))) << "floats have one";
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 1, 0, 0, 255), 1, 255), 255) << "which would be none";
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 1, 0, 0, 255), 1, 254), 254);
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 8, 2), 1, 510), 510);
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 8, 2), 1, 512), 512) << "beyond the range";
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 8, 2), 1, -2), -2);
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 8, 2), 1, 3), 3) << "between two";
+  // 255 stands for none, and 254 for the same double.
+  EXPECT_EQ(keptValue(1, LasSample::descriptor(1, "e", 25, 256.0 / 255, 0x1p60, 255), 1, 0x1p60 + 256), 0x1p60 + 256);
+}
+
+/// As doubles they are beyond their types.
+TEST(Las, TheEndsOfLongIntegersStay)
+{
+  LasSample sample(4, 6, 16);
+  sample.records = {
+      LasSample::record("LASF_Spec", 4, LasSample::descriptor(7, "u", 8, 1) + LasSample::descriptor(8, "i", 8, 1))};
+  sample.points.assign(2, std::string(sample.length(), '\0'));
+  put(sample.points[0], 30, ~std::uint64_t{0});
+  put(sample.points[0], 38, std::numeric_limits<std::int64_t>::max());
+  put(sample.points[1], 38, std::numeric_limits<std::int64_t>::lowest());
+  EXPECT_EQ(difference(rewritten(sample.text()), sample.text()), "");
+  Las las = readText(sample.text());
+  setValue(las.cloud, 1, "i", -0x1p64);
+  EXPECT_EQ(valueOf(readText(written(las.cloud, &las.header)).cloud, 1, "i"), -0x1p64);
+}
+
+/// A field of the format is taken where each of its values fits, in whichever batch that is.
+TEST(Las, ValuesThatDoNotFitAFieldGetOneOfTheirOwn)
+{
+  for (const auto& [name, wrong, right] : {std::tuple{"intensity", 0.5F, 3.0F},
+                                           {"intensity", -1.0F, 0.0F},
+                                           {"return_number", 16.0F, 15.0F},
+                                           {"return_number", 0.5F, 1.0F},
+                                           {"return_number", 300.0F, 0.0F},
+                                           {"edge_of_flight_line", 2.0F, 1.0F}}) {
+    for (const std::size_t at : {0U, 4999U})
+      for (const bool fits : {false, true}) {
+        pcl::PCLPointCloud2 cloud = cloudOf({{name, Field::FLOAT32}}, 5000);
+        setValue(cloud, at, name, fits ? right : wrong);
+        const pcl::PCLPointCloud2 read = readText(written(cloud, nullptr)).cloud;
+        const std::string extra = std::string("extra_") + name;
+        EXPECT_EQ(hasField(read, extra), !fits) << name << ' ' << wrong << ' ' << at;
+        EXPECT_EQ(valueOf(read, at, fits ? name : extra), fits ? right : wrong);
+      }
+  }
+  pcl::PCLPointCloud2 list = cloudOf({});
+  addField(list, "intensity", Field::UINT16, 2);
+  allocate(list, 1);
+  EXPECT_TRUE(hasField(readText(written(list, nullptr)).cloud, "intensity[1]"));
+}
+
+/// The least format that has what the points have, and all that the file had.
+TEST(Las, FormatsGrowByWhatIsNew)
+{
+  const std::vector<std::pair<std::string, std::uint8_t>> time = {{"gps_time", Field::FLOAT64}},
+                                                          colour = {{"red", Field::UINT16},
+                                                                    {"green", Field::UINT16},
+                                                                    {"blue", Field::UINT16}},
+                                                          infrared = {{"nir", Field::UINT16}};
+  const auto formatOf = [](std::uint8_t minor, std::uint8_t format, auto fields) {
+    LasSample sample(minor, format);
+    sample.addPoints(1);
+    const Las las = readText(sample.text());
+    const Las again = readText(written(cloudOf(fields), &las.header));
+    for (const auto& [name, type] : fields) EXPECT_EQ(hasField(again.cloud, "extra_" + name), false) << name;
+    EXPECT_EQ(again.header.block.minor, std::max<int>(minor, again.header.block.format >= 2 ? 2 : 0)) << int{format};
+    return int{again.header.block.format};
+  };
+  EXPECT_EQ(formatOf(2, 0, time), 1);
+  EXPECT_EQ(formatOf(1, 0, colour), 2);
+  EXPECT_EQ(formatOf(1, 1, colour), 3);
+  EXPECT_EQ(formatOf(2, 2, time), 3);
+  EXPECT_EQ(formatOf(3, 4, colour), 5);
+  EXPECT_EQ(formatOf(3, 4, time), 4) << "has it";
+  EXPECT_EQ(formatOf(4, 6, colour), 7);
+  EXPECT_EQ(formatOf(4, 6, infrared), 8);
+  EXPECT_EQ(formatOf(4, 7, infrared), 8);
+  EXPECT_EQ(formatOf(4, 9, colour), 10);
+  EXPECT_EQ(formatOf(4, 9, infrared), 10);
+  EXPECT_EQ(formatOf(4, 8, colour), 8);
+}
+
+/// Three make one; each of these has two.
+TEST(Las, ChannelsAreThree)
+{
+  for (const std::string left_out : {"red", "green", "blue"}) {
+    std::vector<std::pair<std::string, std::uint8_t>> two;
+    for (const char* channel : {"red", "green", "blue"})
+      if (channel != left_out) two.emplace_back(channel, Field::UINT16);
+    const Las las = readText(written(cloudOf(two), nullptr));
+    EXPECT_EQ(las.header.block.format, 6) << left_out;
+    for (const auto& [name, type] : two) EXPECT_TRUE(hasField(las.cloud, name)) << name;
+  }
+  // Channels that do not fit leave the packed colour what it is; a field of its name that is none stays, too.
+  const std::vector<std::pair<std::string, std::uint8_t>> channels = {
+      {"red", Field::FLOAT32}, {"green", Field::FLOAT32}, {"blue", Field::FLOAT32}};
+  auto fields = channels;
+  fields.emplace_back("rgb", Field::FLOAT32);
+  pcl::PCLPointCloud2 cloud = cloudOf(fields);
+  for (const auto& [name, type] : channels) setValue(cloud, 0, name, 0.5F);
+  setValue(cloud, 0, "rgb", 7.0F);
+  EXPECT_EQ(valueOf(readText(written(cloud, nullptr)).cloud, 0, "extra_rgb"), 7.0);
+  fields.back().second = Field::FLOAT64;
+  cloud = cloudOf(fields);
+  setValue(cloud, 0, "rgb", 7.0);
+  EXPECT_EQ(valueOf(readText(written(cloud, nullptr)).cloud, 0, "extra_rgb"), 7.0);
+}
+
+TEST(Las, RefusesWhatPointsOfLasCannotBe)
+{
+  const auto refusalOf = [](const pcl::PCLPointCloud2& cloud) { return defectOf([&] { written(cloud, nullptr); }); };
+  const std::string no_axes = "the cloud has not one each of x, y and z";
+  for (std::size_t k = 0; k < 3; ++k) {
+    pcl::PCLPointCloud2 cloud = cloudOf({});
+    cloud.fields[k].name = "w";
+    EXPECT_EQ(refusalOf(cloud), no_axes);
+    cloud.fields[k].name = k == 0 ? "y" : "x";
+    EXPECT_EQ(refusalOf(cloud), no_axes) << "two of one name";
+    cloud = cloudOf({});
+    cloud.fields[k].datatype = Field::INT32;
+    EXPECT_EQ(refusalOf(cloud), no_axes);
+    cloud.fields[k].datatype = Field::FLOAT32;
+    EXPECT_NO_THROW(written(cloud, nullptr));
+    cloud.fields[k].count = 2;
+    EXPECT_EQ(refusalOf(cloud), no_axes);
+  }
+  EXPECT_NO_THROW(written(cloudOf({{std::string(32, 'n'), Field::UINT8}}), nullptr));
+  EXPECT_EQ(refusalOf(cloudOf({{std::string(33, 'n'), Field::UINT8}})),
+            "the name of field '" + std::string(33, 'n') + "' is longer than the 32 letters of LAS");
+  const auto listed = [](std::uint32_t count) {
+    pcl::PCLPointCloud2 cloud;
+    for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT64);
+    addField(cloud, "list", Field::FLOAT64, count);
+    allocate(cloud, 1);
+    return cloud;
+  };
+  EXPECT_EQ(readText(written(listed(341), nullptr)).header.block.record_length, 30 + 341 * 8);
+  EXPECT_EQ(refusalOf(listed(342)), "the points have more than 341 extra fields");
+  EXPECT_EQ(refusalOf(listed(8189)), "a point takes more than 65535 bytes") << "30 and 65512";
+  EXPECT_EQ(refusalOf(listed(8188)), "the points have more than 341 extra fields");
+}
+
+TEST(Las, ABoolIsAByte)
+{
+  pcl::PCLPointCloud2 cloud = cloudOf({{"seen", Field::BOOL}});
+  setValue(cloud, 1, "seen", std::uint8_t{1});
+  const pcl::PCLPointCloud2 read = readText(written(cloud, nullptr)).cloud;
+  EXPECT_EQ(read.fields.back().datatype, Field::UINT8);
+  EXPECT_EQ(valueOf(read, 0, "seen"), 0);
+  EXPECT_EQ(valueOf(read, 1, "seen"), 1);
+}
+
+/// Taken away, extra bytes leave no description behind; new ones of LAS 1.0 have its signature.
+TEST(Las, DescriptionsComeAndGo)
+{
+  LasSample sample(2, 0, 2);
+  sample.records = {LasSample::record("LASF_Spec", 4, LasSample::descriptor(3, "a")),
+                    LasSample::record("somebody", 4, "else")};
+  sample.addPoints(2);
+  const Las las = readText(sample.text());
+  LasSample without = sample;
+  without.extra_bytes = 0;
+  without.records.erase(without.records.begin());
+  for (std::string& point : without.points) point.resize(20);
+  pcl::PCLPointCloud2 less = las.cloud;
+  less.fields.pop_back();
+  EXPECT_EQ(difference(written(less, &las.header), without.text()), "");
+
+  for (const std::uint8_t minor : {std::uint8_t{0}, std::uint8_t{1}}) {
+    LasSample old(minor, 0);
+    old.padding = "\xcc\xdd";
+    old.addPoints(2);
+    const Las read = readText(old.text());
+    const std::string file = written(withField(read.cloud, "collision", test::verdictsOf({1, 0})), &read.header);
+    EXPECT_EQ(get<std::uint16_t>(file, 227), minor == 0 ? 0xaabb : 0);
+    EXPECT_EQ(valueOf(readText(file).cloud, 0, "collision"), 1);
+  }
+}
+
+/// Of a file without points there are no counts to go by.
+TEST(Las, CountsForOldReaders)
+{
+  for (const std::uint8_t format : {std::uint8_t{1}, std::uint8_t{6}}) {
+    const LasSample none(4, format);
+    const Las las = readText(none.text());
+    const std::string file = written(cloudOf({}, 3), &las.header);
+    EXPECT_EQ(get<std::uint32_t>(file, 107), format == 1 ? 3U : 0U);
+    EXPECT_EQ(get<std::uint64_t>(file, 247), 3U);
+    EXPECT_EQ(get<std::uint32_t>(file, 111), format == 1 ? 3U : 0U) << "one return each";
+  }
+}
+
+/// Where nothing is behind the points, a place is left what it is.
+TEST(Las, PlacesBeforeTheEndOfThePointsStay)
+{
+  LasSample sample(3, 1);
+  sample.addPoints(5);
+  std::string file = sample.text();
+  const std::uint64_t end = file.size();
+  for (const auto& [place, moved] :
+       {std::pair<std::uint64_t, std::uint64_t>{5, 5}, {end - 1, end - 1}, {end, end - 28}, {end + 9, end - 19}}) {
+    put(file, 227, place);
+    const Las las = readText(file);
+    const std::string fewer = written(selectedRecords(las.cloud, {0, 1, 2, 3}), &las.header);
+    EXPECT_EQ(get<std::uint64_t>(fewer, 227), moved) << place - end;
+  }
+}
+
+TEST(Las, WaveformsOfPointsAreInTheFile)
+{
+  LasSample sample(3, 4);
+  sample.addPoints(2);
+  sample.global_encoding = 2;
+  const std::string sound = sample.text() + LasSample::extendedRecord("LASF_Spec", 65535, "waves");
+  EXPECT_EQ(readText(sound).cloud.width, 2U);
+  for (const std::uint64_t place :
+       {std::uint64_t{10}, std::uint64_t{234}, std::uint64_t{sound.size() - 59}, std::uint64_t{1} << 50}) {
+    std::string file = sound;
+    put(file, 227, place);
+    EXPECT_EQ(defectOf([&] { readText(file); }),
+              "is truncated: its waveforms, from byte " + std::to_string(place) + " on, are not all there");
+  }
+}
+
+TEST(Las, BatchesGetTheFieldsOfTheFile)
+{
+  LasSample sample(4, 6);
+  sample.addPoints(3);
+  const std::string file = sample.text();
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  pcl::PCLPointCloud2 batch;
+  batch.point_step = reader.cloudHeader().point_step;
+  EXPECT_EQ(reader.read(batch, 2), 2U);
+  EXPECT_EQ(namesOf(batch), namesOf(reader.cloudHeader()));
 }
 
 } // namespace pcl_bsh::io

@@ -3,6 +3,7 @@
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <gmock/gmock.h>
@@ -285,6 +286,46 @@ TEST(Mesh, WrittenWithValuesOfTriangles)
   catch (const files::FileError& error) {
     EXPECT_THAT(error.what(), HasSubstr("write a .ply file"));
   }
+}
+
+TEST(MeshFile, TellsWhatAFacetLacks)
+{
+  const TemporaryFolder folder;
+  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
+                            "endfacet\n";
+  const auto refusalOf = [&](const std::string& text) { return failureOf(folder.write("a.stl", text)); };
+  EXPECT_EQ(refusalOf("solid a\n" + facet + "endsolid\n"), "no error");
+  std::size_t line = 3;
+  for (const std::string word : {"outer", "loop", "vertex", "endloop", "endfacet"}) {
+    std::string damaged = facet;
+    damaged.replace(damaged.find(word == "loop" ? " loop" : word) + (word == "loop" ? 1 : 0), word.size(), "thing");
+    EXPECT_THAT(refusalOf("solid a\n" + damaged + "endsolid\n"),
+                HasSubstr("line " + std::to_string(line) + " has no '" + word + "' where a facet needs one"));
+    line += word == "outer" ? 0 : word == "loop" ? 1 : word == "vertex" ? 3 : 1;
+  }
+  EXPECT_THAT(refusalOf("solid a\nendsolid\n" + facet), HasSubstr("line 3 starts with 'facet', which no STL file"));
+  EXPECT_THAT(refusalOf("solid a\nthing\nendsolid\n"), HasSubstr("line 2 starts with 'thing', which no STL file"));
+}
+
+TEST(MeshFile, HeadersOfStlAreOfTextOrLongEnough)
+{
+  const TemporaryFolder folder;
+  EXPECT_EQ(readCloudHeader(folder.write("a.stl", "solid\nendsolid\n")).fields.size(), 3u)
+      << "shorter than binary ones";
+  EXPECT_EQ(readCloudHeader(folder.write("b.stl", binaryStl({}))).fields.size(), 3u);
+  for (const std::string& wrong : {std::string("short"), std::string(83, ' '), std::string(83, '\0')})
+    EXPECT_THROW(readCloudHeader(folder.write("c.stl", wrong)), files::FileError);
+  EXPECT_EQ(readCloudHeader(folder.write("d.stl", std::string(84, ' '))).fields.size(), 3u);
+}
+
+TEST(MeshFile, FacesEndWithTheFile)
+{
+  const TemporaryFolder folder;
+  EXPECT_THAT(failureOf(folder.write("a.obj", "v 0 0 0\nf 1 1 \\\n")), HasSubstr("is truncated: it ends in a face"));
+  EXPECT_EQ(defectOf([] { parseOffFaces("OFF\n2 1 0\n0 0 0\n"); }),
+            "is truncated: it ends before the last of its vertices");
+  EXPECT_EQ(defectOf([] { parseOffFaces("OFF\n1 2 0\n0 0 0\n1 0\n"); }),
+            "is truncated: it ends before the last of its faces");
 }
 
 } // namespace

@@ -77,5 +77,45 @@ TEST(Obstacle, NamesTheFileOfWhatIsNoSurface)
               testing::ThrowsMessage<files::FileError>(HasSubstr("vast.off: triangle 0 is too large for a float32")));
 }
 
+TEST(Obstacle, TellsItsCallerTheFactsToo)
+{
+  const TemporaryFolder folder;
+  CloudFacts facts;
+  const auto path = folder.write("a.xyz", "1 5 7 9\n2 6 8 0\n3 1 1 1\n");
+  const Obstacle told = readObstacle(path, {}, {}, &facts);
+  EXPECT_EQ(facts.remarks.size(), 1u);
+  EXPECT_EQ(told.remarks(), facts.remarks);
+  EXPECT_EQ(readObstacle(path, {}).remarks(), facts.remarks);
+  EXPECT_EQ(told.cloud()->width, 3u);
+  EXPECT_EQ(&told.points(), told.cloud().get());
+}
+
+/// Where a beginning tells it, the rest is not read: these end too early.
+TEST(Obstacle, KnowsWhetherAFileHasFaces)
+{
+  const TemporaryFolder folder;
+  const auto facesIn = [&](const char* name, const std::string& text) { return hasFaces(folder.write(name, text)); };
+  EXPECT_TRUE(facesIn("a.off", crate));
+  EXPECT_FALSE(facesIn("a.off", "OFF\n1 0 0\n1 2 3\n"));
+  EXPECT_TRUE(facesIn("a.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  EXPECT_FALSE(facesIn("a.obj", "v 0 0 0\n"));
+  EXPECT_TRUE(facesIn("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
+                               "endloop\nendfacet\nendsolid\n"));
+  EXPECT_FALSE(facesIn("a.stl", "solid\nendsolid\n"));
+  EXPECT_FALSE(facesIn("a.xyz", "nothing"));
+  const std::string begin = "ply\nformat ascii 1.0\n", vertices = "element vertex 3\nproperty float x\n"
+                                                                  "property float y\nproperty float z\n";
+  EXPECT_FALSE(facesIn("a.ply", begin + vertices + "end_header\n0 0 0\n"));
+  const std::string rows = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const std::string element : {"face", "tristrips"}) {
+    const std::string of_faces = vertices + "element " + element + " 1\nproperty list uchar int vertex_indices\n";
+    EXPECT_TRUE(facesIn("a.ply", begin + of_faces + rows)) << element;
+    EXPECT_THROW(facesIn("a.ply", begin + of_faces + "end_header\n0 0 0\n"), files::FileError) << "is read";
+    std::string comments;
+    while (comments.size() < 70000) comments += "comment more than one reads at first\n";
+    EXPECT_TRUE(facesIn("a.ply", begin + comments + of_faces + rows)) << "a long header: " << element;
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh::io

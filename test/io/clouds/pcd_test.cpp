@@ -212,4 +212,9 @@ TEST(Pcd, RefusesFieldsThatNoHeaderCanName)
   EXPECT_EQ(defectOf([] { written({}); }), "the cloud has no fields");
 }
 
+TEST(Pcd, FieldsMayBeCalledColumns)
+{
+  EXPECT_EQ(namesOf(parse("COLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n")), "x y z");
+}
+
 } // namespace pcl_bsh::io

@@ -6,6 +6,7 @@
 #include <pcl/io/ply_io.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace pcl_bsh::io {
 
@@ -340,6 +341,121 @@ TEST(Ply, RefusesHeadersThatMakeNoCloud)
             "line 4 is damaged: 'many' is not a whole number in the range of its type");
   // Rows without values take no bytes: nothing to walk through.
   EXPECT_EQ(parse(ascii("element nothing 18446744073709551615\n" + xyz(1), "1 2 3\n")).width, 1U);
+}
+
+/// Of each type that a length or an index may have, none that would be cut or turned into another.
+TEST(Ply, RefusesLengthsAndIndicesThatNoFileCanHave)
+{
+  const auto list = [](const std::string& value) {
+    return ascii("element vertex 1\nproperty float x\nproperty list double float a\n", "1 " + value + " 2 3\n");
+  };
+  EXPECT_EQ(defect(list("4294967296")), "a list of 'a' has an impossible length");
+  EXPECT_EQ(defect(list("inf")), "a list of 'a' has an impossible length");
+  EXPECT_EQ(defect(list("4294967295")), "line 8 has fewer values than it should");
+  for (const std::string index : {"-2", "4294967296", "nan", "1e300"}) {
+    Viewpoint viewpoint;
+    Polygons faces;
+    EXPECT_EQ(defectOf([&] {
+                parsePly(ascii(xyz(1) + "element face 1\nproperty list uchar double vertex_index\n",
+                               "1 2 3\n1 " + index + "\n"),
+                         viewpoint, &faces);
+              }),
+              "its list 'vertex_index' holds no index of a vertex")
+        << index;
+  }
+}
+
+TEST(Ply, CornersOfFacesHaveEitherName)
+{
+  Viewpoint viewpoint;
+  for (const std::string name : {"vertex_index", "vertex_indices"}) {
+    Polygons faces;
+    const std::string face = "element face 1\nproperty float a\nproperty list uchar int " + name + "\n";
+    parsePly(ascii(xyz(1) + face, "1 2 3\n7 2 0 5\n"), viewpoint, &faces);
+    ASSERT_EQ(faces.size(), 1U) << name;
+    EXPECT_EQ(faces[0][1], 5U);
+    ASSERT_EQ(faces.values().size(), 1U);
+    EXPECT_EQ(faces.values()[0].values, std::vector<double>{7});
+  }
+  Polygons faces;
+  const std::string both = "element face 1\nproperty list uchar int vertex_index\nproperty float a\n"
+                           "property list uchar int vertex_indices\n";
+  parsePly(ascii(xyz(1) + both, "1 2 3\n1 0 7 2 0 0\n"), viewpoint, &faces);
+  EXPECT_EQ(faces.size(), 2U);
+  EXPECT_TRUE(faces.values().empty()) << "of which of the two a row tells something is not known";
+  Polygons none;
+  parsePly(ascii("element face 18446744073709551615\n" + xyz(1), "1 2 3\n"), viewpoint, &none);
+  EXPECT_EQ(none.size(), 0U) << "rows without values take no bytes";
+}
+
+/// Neither takes a line.
+TEST(Ply, CamerasWithoutRowsOrValuesAreNone)
+{
+  Viewpoint viewpoint;
+  for (const char* camera : {"element camera 0\nproperty float view_px\n", "element camera 1\n"}) {
+    EXPECT_EQ(parsePly(ascii(camera + xyz(1), "1 2 3\n"), viewpoint).width, 1U) << camera;
+    EXPECT_EQ(viewpoint, no_viewpoint);
+  }
+}
+
+/// To the byte, but for the comment that has it in full.
+TEST(Ply, AViewpointWithoutATurnIsWrittenAsNotTurned)
+{
+  const pcl::PCLPointCloud2 cloud = parse(ascii(xyz(1), "1 2 3\n"));
+  const auto fileOf = [&](double w) {
+    std::ostringstream out;
+    writePly(out, cloud, {1, 2, 3, w, 0, 0, 0});
+    std::string file = out.str();
+    const std::size_t comment = file.find("comment viewpoint");
+    return file.erase(comment, file.find('\n', comment) + 1 - comment);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  for (const double w : {0.0, nan, infinite, 7.0}) EXPECT_TRUE(fileOf(w) == fileOf(1.0)) << w;
+  Viewpoint viewpoint;
+  parsePly(fileOf(0.0), viewpoint);
+  EXPECT_EQ(viewpoint, (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
+}
+
+/// Lists are no channels and no normals; a colour of another size is no packed one.
+TEST(Ply, OnlySingleValuesAreChannelsAndNormals)
+{
+  std::string channels = xyz(1), normals = xyz(1);
+  for (const char* name : {"red", "green"}) channels += std::string("property uchar ") + name + '\n';
+  for (const char* name : {"nx", "ny"}) normals += std::string("property float ") + name + '\n';
+  EXPECT_EQ(namesOf(parse(ascii(channels + "property list uchar uchar blue\n", "1 2 3 4 5 2 6 7\n"))),
+            "x y z red green blue");
+  EXPECT_EQ(namesOf(parse(ascii(normals + "property list uchar float nz\n", "1 2 3 0 0 2 1 1\n"))), "x y z nx ny nz");
+
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z"}) addField(cloud, name, Field::FLOAT32);
+  pcl::PCLPointCloud2 wide = cloud, twice = cloud, beside = cloud;
+  addField(wide, "rgb", Field::FLOAT64);
+  addField(twice, "rgb", Field::FLOAT32, 2);
+  addField(beside, "rgb", Field::FLOAT32);
+  addField(beside, "Green", Field::FLOAT32);
+  for (pcl::PCLPointCloud2* const odd : {&wide, &twice, &beside}) {
+    allocate(*odd, 1);
+    expectSame(parse(written(*odd)), *odd);
+  }
+}
+
+/// Beyond what is written at once.
+TEST(Ply, ManyFacesArriveInOrder)
+{
+  constexpr std::uint32_t count = 200000;
+  pcl::PCLPointCloud2 vertices = parse(ascii(xyz(1), "1 2 3\n"));
+  std::vector<Triangle> triangles(count);
+  for (std::uint32_t i = 0; i < count; ++i) triangles[i] = {i, i + 1, i + 2};
+  std::ostringstream out;
+  writePlyMesh(out, vertices, triangles, {}, no_viewpoint);
+  Viewpoint viewpoint;
+  Polygons faces;
+  parsePly(out.str(), viewpoint, &faces);
+  ASSERT_EQ(faces.size(), count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ASSERT_EQ(faces[i].size(), 3U);
+    ASSERT_EQ(faces[i][2], i + 2);
+  }
 }
 
 } // namespace pcl_bsh::io

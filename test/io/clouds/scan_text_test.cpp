@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace pcl_bsh::io {
@@ -256,6 +257,99 @@ TEST(ScanText, RealFiles)
   for (std::size_t i = 0; i < 4; ++i) // the same points in both, if the transform is applied
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(placeOf(two, i)[k], placeOf(two, i + 4)[k], 1e-6);
   EXPECT_EQ(viewpoint[0], 600000);
+}
+
+TEST(Pts, HeadersHaveTheFields)
+{
+  EXPECT_EQ(namesOf(parsePtsHeader("2\n1 2 3 -4 5 6 7\n8 9 broken")), "x y z intensity rgb");
+  EXPECT_EQ(namesOf(parsePtsHeader("1 2 3\n")), "x y z") << "no count";
+  EXPECT_EQ(parsePtsHeader("1\n1 2 3\n").width, 0U);
+  EXPECT_THAT(defectOf([] { parsePtsHeader("1\n1.25 2.25\n"); }),
+              testing::HasSubstr("line 2 is no point: it has fewer than three numbers"));
+  EXPECT_EQ(defectOf([] { parsePts("1\n\n\n\n\n\n\n\n"); }),
+            "is truncated: its header promises points, and there are none");
+}
+
+/// Three or six numbers are no intensity: what is at the scanner was not seen, whatever its colour.
+TEST(Ptx, WithoutIntensitiesNothingIsSeenAtTheScanner)
+{
+  for (const std::string rest : {"", " 255 0 0"}) {
+    const pcl::PCLPointCloud2 cloud = readPtx("1\n2\n" + identity + "0 0 0" + rest + "\n0 0 1" + rest + '\n');
+    EXPECT_TRUE(std::isnan(valueOf(cloud, 0, "x"))) << rest;
+    EXPECT_EQ(placeOf(cloud, 1), (Place{0, 0, 1})) << rest;
+  }
+  for (const std::string axis : {"1 0 0", "0 1 0", "0 0 1"})
+    EXPECT_FALSE(std::isnan(valueOf(readPtx("1\n1\n" + identity + axis + " 0\n"), 0, "x"))) << axis;
+}
+
+TEST(Ptx, AScanMayBeEmpty)
+{
+  for (const std::string size : {"0\n0\n", "2\n0\n", "0\n2\n"}) {
+    const pcl::PCLPointCloud2 cloud = readPtx(size + identity);
+    EXPECT_EQ(cloud.width, 0U);
+    EXPECT_EQ(cloud.height, 1U) << size;
+    EXPECT_EQ(namesOf(cloud), "x y z");
+  }
+  const pcl::PCLPointCloud2 second = readPtx("0\n1\n" + identity + "1\n1\n" + identity + "1 2 3 0.25\n");
+  EXPECT_EQ(namesOf(second), "x y z intensity scan");
+  EXPECT_EQ(valueOf(second, 0, "scan"), 1);
+  EXPECT_THAT(defectOf([] { readPtx("1\n1\n" + identity + "1 2 \n\n\n\n\n"); }),
+              testing::HasSubstr("is followed by no point"));
+}
+
+/// A scanner that stands nowhere, or looks nowhere: points stay where they are.
+TEST(Ptx, APoseThatIsNoneMovesNothing)
+{
+  const pcl::PCLPointCloud2 cloud = parsePts("1 2 3 0.5\n");
+  const std::string unmoved = printedPtx(cloud);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Viewpoint& viewpoint : {Viewpoint{1, 2, 3, 0, 0, 0, 0}, Viewpoint{1, nan, 3, 1, 0, 0, 0}})
+    EXPECT_EQ(printedPtx(cloud, viewpoint), unmoved);
+}
+
+TEST(Ptx, RefusesEachIntensityThatMeansNothingSeen)
+{
+  for (const char* unseen : {"0", "0.5"})
+    EXPECT_THAT(defectOf([&] { printedPtx(parsePts("1 2 3 1\n0 0 0 " + std::string(unseen) + '\n')); }),
+                testing::HasSubstr("point 1 is at the scanner"))
+        << unseen;
+  EXPECT_NO_THROW(printedPtx(parsePts("1 2 3 1\n0 0 0 0.25\n")));
+  EXPECT_NO_THROW(printedPtx(parsePts("1 2 3 0\n"))) << "elsewhere it may have any";
+}
+
+/// Of float32 no digits that it does not have, and only of numbers that have a place.
+TEST(Pts, WritesWhatFieldsHold)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z"}) addField(cloud, axis, Field::FLOAT32);
+  addField(cloud, "intensity", Field::FLOAT32);
+  allocate(cloud, 1);
+  const float numbers[] = {0.1F, 0.2F, 0.3F, 0.4F};
+  std::memcpy(cloud.data.data(), numbers, sizeof numbers);
+  EXPECT_EQ(printedPts(cloud), "1\n0.1 0.2 0.3 0.4\n");
+
+  pcl::PCLPointCloud2 lists = cloud;
+  lists.fields[3].offset = 4;
+  lists.fields[3].count = 3;
+  EXPECT_EQ(defectOf([&] { printedPts(lists); }), "field 'intensity' has no place in a .pts");
+  const pcl::PCLPointCloud2 fine = parseColumns("x,y,z,red,green,blue\n1,2,3,0.5,0.25,0.5\n");
+  EXPECT_EQ(defectOf([&] { printedPts(fine); }), "field 'red' has no place in a .pts");
+  const pcl::PCLPointCloud2 two = parseColumns("x,y,z,red,green\n1,2,3,0,1\n");
+  EXPECT_EQ(defectOf([&] { printedPts(two); }), "field 'red' has no place in a .pts");
+}
+
+TEST(Pts, TellsWhichFieldsHaveAPlace)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z", "intensity", "rgb", "column_8", "column", "scan", "ring"})
+    addField(cloud, name, Field::FLOAT32);
+  const auto held = [&](bool several_scans) {
+    std::string names;
+    for (const Field& field : fieldsForScans(cloud, several_scans)) names += field.name + ' ';
+    return names;
+  };
+  EXPECT_EQ(held(false), "x y z intensity rgb column_8 ");
+  EXPECT_EQ(held(true), "x y z intensity rgb column_8 scan ");
 }
 
 } // namespace pcl_bsh::io

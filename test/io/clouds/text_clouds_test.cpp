@@ -377,4 +377,45 @@ TEST(TextClouds, HeaderNamesTheColumns)
   EXPECT_EQ(parseColumnNames("x y z ring\n").fields.size(), 4U);
 }
 
+/// Each of these would be read as something else than a name.
+TEST(TextClouds, RefusesNamesThatReadersWouldNotTakeForNames)
+{
+  for (const std::string name : {"a#b", "a,b", "a;b", "a\"b", "//a", "4a",
+                                 "\xff\xfe"
+                                 "a",
+                                 "\xfe\xff"
+                                 "a"}) {
+    pcl::PCLPointCloud2 cloud = parseColumns("1 2 3 4\n");
+    cloud.fields.back().name = name;
+    std::ostringstream out;
+    EXPECT_EQ(defectOf([&] { writeColumns(out, cloud); }), "field '" + name + "' cannot name a column");
+  }
+  pcl::PCLPointCloud2 cloud = parseColumns("1 2 3 4\n");
+  cloud.fields.back().name = "a/b";
+  std::ostringstream out;
+  EXPECT_NO_THROW(writeColumns(out, cloud));
+}
+
+TEST(TextClouds, ObjNeedsOneEachOfItsCoordinates)
+{
+  std::ostringstream out;
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y"}) addField(cloud, axis, Field::FLOAT32);
+  allocate(cloud, 1);
+  EXPECT_EQ(defectOf([&] { writeObj(out, cloud); }), "the cloud has not one each of x, y and z");
+  addField(cloud, "z", Field::FLOAT32, 2);
+  allocate(cloud, 1);
+  EXPECT_EQ(defectOf([&] { writeObj(out, cloud); }), "the cloud has not one each of x, y and z") << "a list";
+}
+
+TEST(TextClouds, ObjPromisesAreWholeNumbersAlone)
+{
+  const std::string vertex = "v 1 2 3\n";
+  EXPECT_EQ(defectOf([&] { parseObj("# vertices: 2\n" + vertex); }),
+            "is truncated: it has 1 of the 2 vertices that a comment promises");
+  for (const char* other : {"# Vertices: 2x\n", "# Vertices: 2 of many\n", "# Vertices: many\n", "# Vertices:\n",
+                            "# Vertices: 99999999999999999999\n", "# Vertice: 2\n", "#Vertices: 2\n"})
+    EXPECT_EQ(parseObj(other + vertex).width, 1U) << other;
+}
+
 } // namespace pcl_bsh::io

@@ -440,4 +440,98 @@ TEST(UnpackedLaz, RealFiles)
   }
 }
 
+/// As encoders write it of what is the same in all points of a chunk.
+TEST(UnpackedLaz, LayersInWhichNothingChangesAreLeftOut)
+{
+  for (const std::uint8_t format : std::initializer_list<std::uint8_t>{7, 10}) {
+    for (const unsigned version : {3U, 4U}) {
+      LazOptions options;
+      options.version = version;
+      const LasSample scanned = scan(format, 150, 3, 3);
+      const std::size_t length = scanned.length();
+      for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{8, 12},
+                                     {12, 14},
+                                     {14, 15},
+                                     {15, 16},
+                                     {16, 17},
+                                     {17, 18},
+                                     {18, 20},
+                                     {20, 22},
+                                     {22, 30},
+                                     {30, 36},
+                                     {36, 38},
+                                     {30, length},
+                                     {0, length}}) {
+        LasSample sample = scanned;
+        for (std::string& point : sample.points)
+          for (std::size_t k = from; k < std::min(to, length); ++k) point[k] = scanned.points.front()[k];
+        const std::string las = sample.text();
+        ASSERT_EQ(differenceOf(unpacked(compressed(las, options)), las), "")
+            << unsigned{format} << ' ' << version << ' ' << from;
+      }
+    }
+  }
+}
+
+/// Of a bit that was always the same the other stays possible.
+TEST(UnpackedLaz, LongTheSameAndThenNot)
+{
+  LasSample sample(2, 0);
+  sample.points.assign(9000, std::string(sample.length(), '\1'));
+  for (std::size_t i = 8500; i < sample.points.size(); i += 3)
+    put(sample.points[i], 0, get<std::int32_t>(sample.points[i], 0) + 1);
+  LazOptions options;
+  options.chunk_points = 9000;
+  const std::string las = sample.text();
+  EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "");
+}
+
+TEST(UnpackedLaz, NoPointsInOneStream)
+{
+  LazOptions options;
+  options.one_stream = true;
+  const std::string las = scan(1, 0).text();
+  EXPECT_EQ(differenceOf(unpacked(compressed(las, options)), las), "");
+}
+
+TEST(UnpackedLaz, ItemsAreToldInFullAndInOrder)
+{
+  using testing::HasSubstr;
+  const std::string sound = compressed(scan(1, 20).text());
+  const std::size_t head = sound.find("laszip encoded") - 2, items = head + 54 + 34;
+  for (const std::uint16_t bytes : {std::uint16_t{0}, std::uint16_t{33}, std::uint16_t{34}, std::uint16_t{34 + 11}}) {
+    std::string cut = sound;
+    put(cut, head + 20, bytes);
+    EXPECT_THAT(refusal(cut), HasSubstr("has a record of its compression that is not complete")) << bytes;
+  }
+  EXPECT_EQ(get<std::uint16_t>(sound, items), 6);
+
+  LasSample sample(4, 6, 30);
+  addScan(sample, 20);
+  const std::string layered = compressed(sample.text());
+  const std::size_t first = layered.find("laszip encoded") - 2 + 54 + 34;
+  for (const std::size_t item : {std::size_t{0}, std::size_t{1}}) {
+    std::string other = layered;
+    put(other, first + 6 * item, static_cast<std::uint16_t>(item == 0 ? 14 : 10));
+    EXPECT_THAT(refusal(other), HasSubstr("its points do not begin with the one item POINT14")) << item;
+  }
+}
+
+/// More small chunks than are unpacked at once, in any order.
+TEST(UnpackedLaz, ManySmallChunks)
+{
+  LasSample sample(4, 6, 970);
+  sample.points.assign(2500, std::string(sample.length(), '\0'));
+  for (std::size_t i = 0; i < sample.points.size(); ++i) put(sample.points[i], 0, static_cast<std::int32_t>(7 * i));
+  const std::string las = sample.text();
+  const std::string laz = compressed(las);
+  for (const unsigned threads : {1U, 2U}) {
+    const auto file = unpackedLaz(std::make_unique<HeldBytes>(laz), threads);
+    for (const std::size_t point : {0, 1040, 1050, 1099, 1100, 2499, 2200, 99, 100}) {
+      const std::size_t at = get<std::uint32_t>(las, 96) + point * sample.length();
+      ASSERT_EQ(file->text(at, sample.length()), las.substr(at, sample.length())) << point;
+    }
+  }
+}
+
 } // namespace pcl_bsh::io
