@@ -89,5 +89,26 @@ TEST(LasPlan, PointsTooFarApartForTheirScaleGetAnother)
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(valueOf(read, i, "x"), places[i], 5) << i;
 }
 
+/// Which readers refuse: all integers must have a place that is a number.
+TEST(LasPlan, PointsAsFarApartAsNumbersAreRefused)
+{
+  std::ostringstream out;
+  EXPECT_EQ(defectOf([&] {
+              writeLas(out, alongX({-1.7e308, 0, 1.7e308}), nullptr);
+            }),
+            "its coordinates x are too far apart for LAS");
+  EXPECT_EQ(defectOf([&] {
+              writeLas(out, alongX({1.7e308, 1.6e308}), nullptr);
+            }),
+            "its coordinates x are too far apart for LAS");
+  const std::vector<double> places = {-1e307, 0, 1e307};
+  std::ostringstream nearer;
+  writeLas(nearer, alongX(places), nullptr);
+  const std::string file = nearer.str();
+  LasReader reader(std::make_unique<HeldBytes>(file));
+  const pcl::PCLPointCloud2 read = readLas(reader);
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(valueOf(read, i, "x"), places[i], 1e298) << i;
+}
+
 } // namespace
 } // namespace pcl_bsh::io

@@ -64,7 +64,8 @@ void chooseScale(const LasPoints& points, LasPlan& plan)
     const double middle = points.size() == 0 ? 0 : points.least(k) / 2 + points.greatest(k) / 2;
     const double step = 1000 * plan.scale[k]; // a round offset
     plan.offset[k] = std::nearbyint(middle / step) * step;
-    if (!hasPlaces(points, k, plan.scale[k], plan.offset[k])) {
+    const bool finite = std::isfinite(plan.scale[k] * 0x1p31 + std::abs(plan.offset[k])); // as readers ask for
+    if (!finite || !hasPlaces(points, k, plan.scale[k], plan.offset[k])) {
       throw FormatError("its coordinates " + std::string(axes[k]) + " are too far apart for LAS",
                         "write a .pcd instead");
     }
