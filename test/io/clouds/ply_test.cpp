@@ -458,4 +458,22 @@ TEST(Ply, ManyFacesArriveInOrder)
   }
 }
 
+TEST(Ply, RowsOfOtherElementsAreAsLongAsTheirHeaderSays)
+{
+  const std::string other = "element other 1\nproperty int a\n";
+  EXPECT_EQ(parse(ascii(other + xyz(1), "7\n1 2 3\n")).width, 1U);
+  EXPECT_EQ(defect(ascii(other + xyz(1), "7 8\n1 2 3\n")), "line 11 has more values than it should, from '8' on");
+  EXPECT_EQ(defect(ascii("element vertex 1\nproperty float\n", "1\n")), "line 5 names no property");
+}
+
+/// Tabs, too.
+TEST(Ply, WordsOfAHeaderAreSeparatedByAnyBlanks)
+{
+  const std::string head = "element\tvertex  1\nproperty\tfloat\tx\nproperty list\tuchar \tfloat\tuv\n";
+  const pcl::PCLPointCloud2 cloud = parse(ascii(head, "1\t2 3\t4\n"));
+  ASSERT_EQ(cloud.fields.size(), 2U);
+  EXPECT_EQ(cloud.fields[1].count, 2U);
+  EXPECT_EQ(valueOf(cloud, 0, "uv"), 3);
+}
+
 } // namespace pcl_bsh::io

@@ -50,7 +50,7 @@ std::uint8_t readType(TextCursor& text)
 Property readProperty(TextCursor& text)
 {
   Property property;
-  if (text.line().starts_with("list ")) {
+  if (TextCursor(text).word() == "list") {
     text.word();
     property.length_type = readType(text);
   }
