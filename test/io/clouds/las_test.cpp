@@ -987,4 +987,27 @@ TEST(Las, BatchesGetTheFieldsOfTheFile)
   EXPECT_EQ(namesOf(batch), namesOf(reader.cloudHeader()));
 }
 
+TEST(Las, HeadersAreToldToTheByte)
+{
+  for (const auto& [minor, bytes] : {std::pair<std::uint8_t, std::size_t>{2, 227}, {4, 375}}) {
+    LasSample sample(minor, 1);
+    sample.addPoints(1);
+    const std::string cut = sample.text().substr(0, bytes - 1);
+    EXPECT_EQ(defectOf([&] { readText(cut); }), "is truncated: " + std::to_string(bytes - 1) + " of the " +
+                                                    std::to_string(bytes) + " bytes of its header are there");
+    const std::string none = LasSample(minor, 1).text();
+    ASSERT_EQ(none.size(), bytes);
+    EXPECT_EQ(readText(none).cloud.width, 0U);
+    std::string nowhere = sample.text();
+    put(nowhere, 163, std::nan(""));
+    EXPECT_EQ(defectOf([&] { readText(nowhere); }), "its header moves y by no number");
+  }
+}
+
+TEST(Las, PointsWithoutAnExtentHaveAUsualScale)
+{
+  EXPECT_EQ(readText(written(cloudOf({}, 0), nullptr)).header.block.scale[1], 0.001);
+  EXPECT_EQ(readText(written(cloudOf({}, 3), nullptr)).header.block.scale[1], 1e-6);
+}
+
 } // namespace pcl_bsh::io

@@ -217,4 +217,18 @@ TEST(Pcd, FieldsMayBeCalledColumns)
   EXPECT_EQ(namesOf(parse("COLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n")), "x y z");
 }
 
+/// A column that is read and not kept.
+TEST(Pcd, ReadsAsciiWithPadding)
+{
+  const std::string head = "FIELDS x _ y z\nSIZE 4 1 4 4\nTYPE F U F F\nCOUNT 1 2 1 1\nPOINTS 2\nDATA ascii\n";
+  const pcl::PCLPointCloud2 cloud = parse(head + "1 9 9 2 3\n4 9 9 5 6\n");
+  EXPECT_EQ(namesOf(cloud), "x y z");
+  EXPECT_EQ(cloud.point_step, 12U);
+  EXPECT_EQ(valueOf(cloud, 1, "x"), 4);
+  EXPECT_EQ(valueOf(cloud, 1, "y"), 5);
+  EXPECT_EQ(valueOf(cloud, 0, "z"), 3);
+  EXPECT_EQ(defect("FIELDS x\nSIZE 4\nTYPE FF\nPOINTS 1\nDATA ascii\n1\n"),
+            "line 3 has the type 'FF', which is none of F I U");
+}
+
 } // namespace pcl_bsh::io

@@ -98,5 +98,19 @@ TEST(JsonSchema, RefusesKeywordsThatItWouldNotCheck)
   EXPECT_THROW(JsonSchema(R"({"properties": {"a": {"type": "nubmer"}}})"), std::logic_error);
 }
 
+/// A schema of its own for each key that has one; any others have one of theirs, or none.
+TEST(JsonSchema, MembersAreCheckedByTheirKeys)
+{
+  const std::string number = R"({"properties": {"a": {"type": "number"}}, )";
+  for (const std::string& rest :
+       {std::string(R"("additionalProperties": false})"), std::string(R"("additionalProperties": {"type": "string"}})"),
+        std::string(R"("minProperties": 0})")})
+    EXPECT_EQ(faultOf(number + rest, R"({"a": "x"})"), "d.json: a: \"x\" is no number: give one") << rest;
+  const std::string texts = number + R"("additionalProperties": {"type": "string"}})";
+  EXPECT_EQ(faultOf(texts, R"({"a": 1, "b": "x"})"), "");
+  EXPECT_EQ(faultOf(texts, R"({"a": 1, "b": 2})"), "d.json: b: 2 is no text: give \"...\"");
+  EXPECT_EQ(faultOf(number + R"("minProperties": 0})", R"({"b": [null]})"), "") << "nothing is said of others";
+}
+
 } // namespace
 } // namespace pcl_bsh::io

@@ -262,4 +262,33 @@ TEST_F(PoseFile, APoseOfAFileIsAMatrix)
   }
 }
 
+/// Names that begin with a separator, that are a unit alone, that are but one letter.
+TEST_F(PoseFile, OddNamesOfColumnsAreNoFault)
+{
+  const std::string half = "0.70710678118654752";
+  const std::string rows = "0 0 0 0 0 0 1\n1 2 3 0 0 " + half + " " + half + "\n";
+  expectQuarterTurn(read("/t/x /t/y /t/z /q/x /q/y /q/z /q/w\n" + rows));
+  expectQuarterTurn(read("_.p..x _p_y p__z -q--x q..y qz_ qw()\n" + rows));
+  expectQuarterTurn(
+      read("[a] t tx ty tz q qx qy qz qw pos\n9 9 0 0 0 9 0 0 0 1 9\n9 9 1 2 3 9 0 0 " + half + " " + half + " 9\n"));
+}
+
+TEST_F(PoseFile, NobodyHasToAskForWarnings)
+{
+  EXPECT_EQ(readPoses(folder.write("poses.txt", printed(5, 6))).size(), 5U);
+}
+
+/// Rz(yaw) Ry(pitch) Rx(roll), then moved.
+TEST(PoseText, SixNumbersArePlaceAndAngles)
+{
+  const Eigen::Isometry3d pose = poseFrom({1, 2, 3, 0.1, 0.2, 0.3});
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  const Eigen::Matrix3d turn =
+      (AngleAxisd(0.3, Vector3d::UnitZ()) * AngleAxisd(0.2, Vector3d::UnitY()) * AngleAxisd(0.1, Vector3d::UnitX()))
+          .toRotationMatrix();
+  EXPECT_TRUE(pose.linear().isApprox(turn, 1e-15));
+  EXPECT_EQ(pose.translation(), Vector3d(1, 2, 3));
+  EXPECT_THROW(poseFrom({1, 2, 3}), FormatError);
+}
+
 } // namespace pcl_bsh::io

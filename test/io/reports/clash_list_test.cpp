@@ -294,4 +294,13 @@ TEST(ClashLists, TellUncertaintiesInWords)
   EXPECT_EQ(uncertaintyText(of_field), "2 x field sigma and of poses 0.01,0.002,1,2,3");
 }
 
+/// Which did not say it among their options.
+TEST(ClashLists, OfEarlierVersionsTellSweptMotion)
+{
+  std::string swept = old_list;
+  swept.replace(swept.find("null"), 4, "0.25");
+  EXPECT_EQ(parseClashes(swept, "old.json").question.swept, 0.25);
+  EXPECT_EQ(parseClashes(old_list, "old.json").question.swept, 0.0);
+}
+
 } // namespace pcl_bsh::io

@@ -574,6 +574,8 @@ TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
   EXPECT_EQ(json["unit"], "m");
   EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
   EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N,\n"));
+  setenv("SOURCE_DATE_EPOCH", "0", 1);
+  EXPECT_TRUE(has(clashPage(list), " on 1970-01-01.")) << "the first second";
   setenv("SOURCE_DATE_EPOCH", "253402300799", 1);
   EXPECT_TRUE(has(clashPage(list), " on 9999-12-31.")) << "the last second";
   for (const char* wrong : {"yesterday", "", "-1", "1e99", "253402300800", "999999999999"}) {
@@ -634,6 +636,10 @@ TEST_F(ClashReports, TellWhatASurfaceIs)
   EXPECT_EQ(json["surface"]["triangles"], 1);
   EXPECT_EQ(json["surface"]["promise"], promiseOf(surface, true));
   EXPECT_EQ(json["clashes"][0]["closest_pair"]["obstacle"]["triangle"], 0);
+  const Json at =
+      json["clashes"][0]["closest_pair"]["obstacle"]["at"]; // the corner that is nearest to the scan's point
+  EXPECT_NEAR(at[0].get<double>(), 8, 1e-9);
+  EXPECT_NEAR(at[1].get<double>(), 0.1, 1e-9);
   EXPECT_THAT(clashCsv(list), HasSubstr(",obstacle_triangle,"));
 }
 
@@ -665,6 +671,48 @@ TEST_F(ClashReports, PagesHaveNoControlCharacters)
   twoClashes();
   const std::string page = clashPage(report("a\x1f \x7f~.ply"));
   EXPECT_TRUE(has(page, "a\xef\xbf\xbd \xef\xbf\xbd~.ply"));
+}
+
+/// What is not there any more, and what is not known, is no number of the page.
+TEST_F(ClashReports, PagesTellWhatIsThere)
+{
+  ClashReport list = twoClashes();
+  Clash gone = list.clashes[1];
+  gone.id = "gone";
+  gone.status = ClashStatus::resolved;
+  gone.distance = 0.01;
+  list.clashes.push_back(gone);
+  const std::string alone = clashPage(list);
+  EXPECT_TRUE(has(alone, "<b>0.1</b><span>smallest"));
+  EXPECT_FALSE(has(alone, "uncertainty of the input"));
+  EXPECT_FALSE(has(alone, "compared with"));
+  EXPECT_FALSE(has(alone, "<span>persisting"));
+  list.previous = "monday.json";
+  const std::string compared = clashPage(list);
+  EXPECT_TRUE(has(compared, "<b>1</b><span>resolved"));
+  EXPECT_TRUE(has(compared, "<b>0</b><span>persisting"));
+  EXPECT_FALSE(has(compared, "<span>not visited"));
+  list.clashes.back().status = ClashStatus::not_visited;
+  EXPECT_TRUE(has(clashPage(list), "<b>1</b><span>not visited"));
+}
+
+TEST_F(ClashReports, NothingIsLookedForThatIsNotMissed)
+{
+  ClashReport list = twoClashes();
+  const ClashList before = parseClashes(clashJson(list), "list.json");
+  listUnseen(list);
+  EXPECT_EQ(list.clashes.size(), 2U) << "nobody asked what is unseen";
+  compareWithList(list, "list.json", before, [](FormerPlaces&) { ADD_FAILURE() << "all are found again"; });
+  ClashReport none = report();
+  none.clashes.clear();
+  std::size_t looks = 0;
+  compareWithList(none, "list.json", before, [&](FormerPlaces& former) {
+    ++looks;
+    former.visit(SphereHierarchy(model()), poses, TrajectoryRequest());
+    former.scan(scan());
+  });
+  EXPECT_EQ(looks, 1U);
+  EXPECT_EQ(none.count(ClashStatus::resolved), 2U);
 }
 
 } // namespace pcl_bsh::io

@@ -242,5 +242,21 @@ TEST_F(DistanceReports, TellThatTheObstacleIsASurface)
   }
 }
 
+TEST_F(DistanceReports, PointsThatAreNotFiniteAreNotDrawn)
+{
+  high.insert(high.end(), {nothing, 1.0, 1.0});
+  EXPECT_THAT(page(), HasSubstr("From above, 100 of 100 points; circles"));
+  EXPECT_THAT(page(), Not(HasSubstr("nan")));
+}
+
+TEST_F(DistanceReports, TellThatNothingIsFar)
+{
+  question.beyond = 100;
+  EXPECT_THAT(page(), HasSubstr("No point is farther than 100."));
+  EXPECT_THAT(page(), Not(HasSubstr("Places are groups of points")));
+  question.beyond = 0.25;
+  EXPECT_THAT(page(), HasSubstr("Places are groups of points farther than 0.25."));
+}
+
 } // namespace
 } // namespace pcl_bsh::io

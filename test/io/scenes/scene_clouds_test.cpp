@@ -126,7 +126,18 @@ TEST(ShapePoints, OfAnOpenCylinderHasNoLids)
   const std::vector<Place> closed = placesOf(shapePoints("cylinder", {1, 2, 0}, 0.25));
   std::size_t within = 0;
   for (const Place& place : closed) within += place.head<2>().norm() < 0.99 ? 1u : 0u;
+  EXPECT_EQ(closed.size(), open.size() + within) << "the rims are the mantle's";
   EXPECT_EQ(within, 2u * (1 + 7 + 13 + 19)) << "rings of a quarter's radius more each, in both lids";
+}
+
+/// Of whatever is larger they would be too many to be made.
+TEST(ShapePoints, AreAsManyAsToldBefore)
+{
+  constexpr double pi = 3.14159265358979323846;
+  EXPECT_DOUBLE_EQ(shapePointCount("sphere", {1, 2, 3}, 1), 4 * pi * 9);
+  EXPECT_DOUBLE_EQ(shapePointCount("box", {1, 2, 3}, 1), 2 * (3 * 4 + 4 * 5 + 3 * 5));
+  EXPECT_DOUBLE_EQ(shapePointCount("cylinder", {1, 2, 3}, 1), 2 * pi * 3 * (4 + 3));
+  EXPECT_DOUBLE_EQ(shapePointCount("box", {1, 2, 3}, 0.5), 2 * (4 * 6 + 6 * 8 + 4 * 8));
 }
 
 } // namespace

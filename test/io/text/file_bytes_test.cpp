@@ -199,4 +199,17 @@ TEST(FileBytes, TellWhatTheSystemSays)
               testing::ThrowsMessage<files::FileError>(testing::HasSubstr("-: cannot be read (Bad file descriptor)")));
 }
 
+TEST(FileBytes, LeaveNoFileOpen)
+{
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("file", "a");
+  const auto open_files = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+  };
+  const auto before = open_files();
+  EXPECT_EQ(FileBytes(file).view(), "a");
+  EXPECT_EQ(openBytes(file)->text(0, 1), "a");
+  EXPECT_EQ(open_files(), before);
+}
+
 } // namespace pcl_bsh::io
