@@ -9,6 +9,7 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 
@@ -67,6 +68,7 @@ protected:
   Chart chart;
   vtkNew<vtkPNGReader> reader;
   vtkImageData* image = nullptr;
+  double left = 0.0, right = 0.0; ///< of the axis, in pixels
 };
 
 TEST_F(ChartPicture, PutsPointsByTheLogarithmOfTimeAndError)
@@ -94,6 +96,32 @@ TEST_F(ChartPicture, DrawsChartsSideBySideAndPointsBeyondTheEndsAtTheEnds)
   const Blot first = blotOf(distinctColor(0)), second = blotOf(distinctColor(1));
   EXPECT_NEAR(second.x - first.x, 400.0, 1.0);
   EXPECT_NEAR(second.y, first.y, 1.0);
+}
+
+/// A logarithm of theirs is none: they stand at the lower end.
+TEST_F(ChartPicture, PutsPointsThatAreNotAboveZeroAtTheLowerEnd)
+{
+  for (const double x : {0.0, -1.0, 1e-9}) {
+    chart.series = {seriesAt(0, x, 0.1), seriesAt(1, 1e-5, 1.0)};
+    draw({chart});
+    EXPECT_GT(blotOf(distinctColor(0)).count, 100u) << x;
+    EXPECT_NEAR(blotOf(distinctColor(0)).x, blotOf(distinctColor(1)).x, 0.1) << x;
+  }
+}
+
+TEST_F(ChartPicture, FaintSeriesAreSmallAndHaveNoLabels)
+{
+  const auto inkOf = [&](bool faint, const std::string& label) {
+    chart.series = {seriesAt(0, 1e-4, 0.1)};
+    chart.series[0].faint = faint;
+    chart.series[0].points[0].label = label;
+    draw({chart});
+    return blotOf(distinctColor(0)).count;
+  };
+  const std::size_t mark = inkOf(false, ""), faint = inkOf(true, "");
+  EXPECT_NEAR(static_cast<double>(faint), static_cast<double>(mark) * 16 / 81, 20) << "by the squares of 4 and 9";
+  EXPECT_GT(inkOf(false, "label"), mark);
+  EXPECT_EQ(inkOf(true, "label"), faint);
 }
 
 TEST_F(ChartPicture, JoinsASeriesAndTellsHollowFromFilled)
@@ -191,6 +219,47 @@ TEST_F(ChartPicture, DrawsASpanBetweenItsEnds)
                     much = ink({{1e-5, 1e-3, "100 times"}});
   EXPECT_EQ(little, none) << "no room";
   EXPECT_GT(much, none + 800);
+}
+
+/// Where no mark of the lowest row covers it.
+TEST_F(ChartPicture, PutsTheTextOfASpanIntoItsWidestGap)
+{
+  const auto inkIn = [&](double from, double to) { // of the lowest row, between the shares of the axis
+    std::size_t dark = 0;
+    for (int y = 104; y < 162; ++y)
+      for (int x = static_cast<int>(left + from * (right - left)); x < left + to * (right - left); ++x)
+        dark += static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0))[0] < 100;
+    return dark;
+  };
+  chart.series = {seriesAt(0, 1e-5, 0.0), seriesAt(1, 1e-3, 0.0)};
+  draw({chart});
+  left = blotOf(distinctColor(0)).x;
+  right = blotOf(distinctColor(1)).x;
+  const auto atShare = [](double share) { return 1e-5 * std::pow(100.0, share); };
+  std::array<double, 2> span = {0.0, 1.0};
+  const auto textAt = [&](const std::vector<double>& shares, double y) {
+    chart.spans = {{atShare(span[0]), atShare(span[1]), "MMM"}};
+    chart.series.clear();
+    for (const double share : shares) chart.series.push_back(seriesAt(4, atShare(share), y));
+    draw({chart});
+    std::size_t most = 0;
+    double at = 0.0;
+    for (double share = 0.1; share < 0.9; share += 0.05) {
+      const std::size_t dark = inkIn(share - 0.05, share + 0.05);
+      if (dark > most) most = dark, at = share;
+    }
+    return at;
+  };
+  EXPECT_NEAR(textAt({}, 0.0), 0.5, 0.06);
+  EXPECT_NEAR(textAt({0.4}, 0.0), 0.7, 0.06);
+  EXPECT_NEAR(textAt({0.6}, 0.0), 0.3, 0.06);
+  EXPECT_NEAR(textAt({0.8, 0.2}, 0.0), 0.5, 0.06) << "in whichever order";
+  EXPECT_NEAR(textAt({0.4}, 0.1), 0.5, 0.06) << "of another row";
+  EXPECT_NEAR(textAt({0.0, 1.0}, 0.0), 0.5, 0.06) << "at its ends";
+  span = {0.5, 1.0};
+  EXPECT_NEAR(textAt({0.0}, 0.0), 0.75, 0.06) << "before it";
+  span = {0.0, 0.5};
+  EXPECT_NEAR(textAt({1.0}, 0.0), 0.25, 0.06) << "behind it";
 }
 
 TEST_F(ChartPicture, DrawsASpreadWithBothItsEnds)

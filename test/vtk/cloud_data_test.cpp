@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <vtkDataArray.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
 
 #include <limits>
@@ -48,6 +49,26 @@ TEST(CloudData, ArraysAndSubsetsFollowTheNumbers)
       testing::ThrowsMessage<std::invalid_argument>(testing::StartsWith("array short: 1 value, and none for point ")));
 }
 
+/// In whichever coordinate it is.
+TEST(CloudData, LeavesOutWhatIsNotFinite)
+{
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const double xyz[] = {0, nan, 0, 0, 0, infinite, 1, 2, 3, -infinite, 0, 0};
+  const auto data = cloudData(viewOf(xyz, 4));
+  ASSERT_EQ(data->GetNumberOfPoints(), 1);
+  EXPECT_EQ(data->GetPointData()->GetArray("index")->GetTuple1(0), 2);
+}
+
+TEST(CloudData, DataOfOthersIsRefused)
+{
+  vtkNew<vtkPolyData> other;
+  EXPECT_THAT(([&] { addArray(*other, "distance", std::vector<float>{1.0f}); }),
+              testing::ThrowsMessage<std::invalid_argument>(
+                  "array distance: the data has no array 'index': take it from cloudData()"));
+  EXPECT_THAT(([&] { subset(*other, {1}); }), testing::ThrowsMessage<std::invalid_argument>(
+                                                  "subset: the data has no array 'index': take it from cloudData()"));
+}
+
 TEST(CloudData, SubsetsKeepDoubles)
 {
   const double xyz[] = {0, 0, 0, 500000.125, 5400000.0625, 2};
@@ -81,6 +102,8 @@ TEST(PathData, IsALineWithTimes)
   EXPECT_EQ(path->GetPointData()->GetArray("time")->GetTuple1(1), 0.5);
   EXPECT_EQ(path->GetPointData()->GetArray("pose")->GetTuple1(2), 2);
   EXPECT_EQ(pathData(poses)->GetPointData()->GetArray("time")->GetTuple1(2), 2);
+  EXPECT_EQ(pathData({})->GetNumberOfPoints(), 0);
+  EXPECT_EQ(pathData({})->GetNumberOfLines(), 0) << "not one of no points";
   poses.resize(1);
   EXPECT_THAT(
       [&] {

@@ -147,6 +147,23 @@ TEST_F(HierarchyData, AFolderThatIsNotThereIsAnError)
   EXPECT_EQ(folder.files(), 0u);
 }
 
+TEST(HierarchyDataTrace, HasASphereOfEachTest)
+{
+  std::vector<TracedSphere> traced(2);
+  traced[0] = {{500000.125, 1, 2}, 0.5, -1, SphereFate::opened};
+  traced[1] = {{3, 4, 5}, 0.25, 7, SphereFate::pruned};
+  const auto data = traceData(traced);
+  ASSERT_EQ(data->GetNumberOfPoints(), 2);
+  for (vtkIdType i = 0; i < 2; ++i) {
+    const TracedSphere& sphere = traced[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(data->GetPoint(i)[k], sphere.center[static_cast<std::size_t>(k)]);
+    EXPECT_EQ(data->GetPointData()->GetArray("radius")->GetTuple1(i), sphere.radius);
+    EXPECT_EQ(data->GetPointData()->GetArray("level")->GetTuple1(i), sphere.level);
+    EXPECT_EQ(data->GetPointData()->GetArray("fate")->GetTuple1(i), static_cast<int>(sphere.fate));
+  }
+  EXPECT_EQ(sphereGlyphs(*data, 6)->GetBounds()[5], 5.25);
+}
+
 TEST(HierarchyDataEmpty, NothingGivesNothing)
 {
   const SphereHierarchy nothing{PointsView{}};

@@ -62,6 +62,24 @@ TEST(LabelLayout, StandsAsideOfALineThroughTheMark)
   EXPECT_GT(places[0]->bottom, 158.0);
 }
 
+/// A line may run along an edge of the room that a label has, and leads it elsewhere from within.
+TEST(LabelLayout, ALineAlongTheEdgeLeavesThePlaceAndOneWithinTakesIt)
+{
+  const PixelBox first = *placeLabels({{{200, 150}, 60, 20}}, emptySpace())[0];
+  const double gap = 0.5 * emptySpace().gap, left = first.left - gap, right = first.right + gap,
+               bottom = first.bottom - gap, top = first.top + gap;
+  const auto stays = [&](const PixelSegment& line) {
+    LabelSpace space = emptySpace();
+    space.lines = {line};
+    const std::optional<PixelBox> now = placeLabels({{{200, 150}, 60, 20}}, space)[0];
+    return now && now->left == first.left && now->bottom == first.bottom;
+  };
+  for (const double x : {left - 1, left, right, right + 1}) EXPECT_TRUE(stays({{x, 0}, {x, 300}})) << x;
+  for (const double y : {bottom - 1, bottom, top, top + 1}) EXPECT_TRUE(stays({{0, y}, {400, y}})) << y;
+  for (const double x : {left + 1, right - 1}) EXPECT_FALSE(stays({{x, 0}, {x, 300}})) << x;
+  for (const double y : {bottom + 1, top - 1}) EXPECT_FALSE(stays({{0, y}, {400, y}})) << y;
+}
+
 TEST(LabelLayout, NeverCoversLabelsMarksOrLines)
 {
   std::mt19937 random(3);

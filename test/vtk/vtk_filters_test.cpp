@@ -29,6 +29,7 @@
 #include <vtkPointData.h>
 #include <vtkSOADataArrayTemplate.h>
 #include <vtkSphereSource.h>
+#include <vtkStringArray.h>
 #include <vtkStripper.h>
 #include <vtkTable.h>
 #include <vtkTransform.h>
@@ -388,6 +389,19 @@ TEST_P(Filters, ObstaclesWithCellsAreSurfaces)
   expectSame(values(*distances->GetOutput(), "distance"), wanted.distance);
   expectSame(values(*distances->GetOutput(), "closest_point"), wanted.closest_point);
 
+  PointDistancesRequest near;
+  near.max_distance = 0.2;
+  const PointDistances some = pointDistances({a}, {b}, near);
+  distances->SetMaximumDistance(near.max_distance);
+  distances->Update();
+  const std::vector<double> cells = values(*distances->GetOutput(), "closest_point");
+  std::size_t none = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    none += some.closest_point[i] == kNothing;
+    EXPECT_EQ(cells[i], some.closest_point[i] == kNothing ? -1.0 : some.closest_point[i]);
+  }
+  EXPECT_GT(none, 100u);
+
   ball->SetPhiResolution(9); // other triangles
   filter->Update();
   EXPECT_EQ(filter->GetHierarchiesBuilt(), 3);
@@ -632,6 +646,19 @@ TEST_P(Filters, FailuresLeaveNothingThatLooksLikeAnAnswer)
   table->RemoveColumn(11);
   filter->SetPosesData(table);
   expectFailure(*filter, "poses: ");
+  table = tableOf(path);
+  vtkNew<vtkStringArray> words;
+  words->SetNumberOfValues(static_cast<vtkIdType>(path.size()));
+  vtkNew<vtkDoubleArray> pairs;
+  pairs->SetNumberOfComponents(2);
+  pairs->SetNumberOfTuples(static_cast<vtkIdType>(path.size()));
+  for (vtkAbstractArray* column : {static_cast<vtkAbstractArray*>(words), static_cast<vtkAbstractArray*>(pairs)}) {
+    column->SetName("Field 11");
+    table->RemoveColumn(11);
+    table->AddColumn(column);
+    filter->SetPosesData(table);
+    expectFailure(*filter, "poses: column 11 holds no numbers: give a table of numbers");
+  }
   vtkNew<vtkTable> none;
   filter->SetPosesData(none);
   expectFailure(*filter, "poses: holds no pose");
@@ -696,6 +723,46 @@ TEST(CollisionFilter, AnOptionWithoutAValueIsLeftOut)
   const vtkMTimeType before = filter->GetMTime();
   for (const char* const nameless : {"", static_cast<const char*>(nullptr)}) filter->SetOption(nameless, "true");
   EXPECT_EQ(filter->GetMTime(), before) << "without a name it is none";
+}
+
+/// ParaView has a check box for it.
+TEST(CollisionFilter, SolidIsAnOption)
+{
+  vtkNew<vtkBSHCollisionFilter> filter;
+  EXPECT_FALSE(filter->GetSolid());
+  filter->SetSolid(true);
+  EXPECT_TRUE(filter->GetSolid());
+  const vtkMTimeType before = filter->GetMTime();
+  filter->SetSolid(true);
+  EXPECT_EQ(filter->GetMTime(), before) << "it was before";
+  filter->SetSolid(false);
+  EXPECT_GT(filter->GetMTime(), before);
+  EXPECT_FALSE(filter->GetSolid());
+  filter->SetOption("solid", "true");
+  EXPECT_TRUE(filter->GetSolid());
+  filter->SetOption("solid", "false");
+  EXPECT_FALSE(filter->GetSolid());
+}
+
+TEST(CollisionFilter, PrintsWhatIsSet)
+{
+  const auto printed = [](vtkObject& filter) {
+    std::ostringstream text;
+    filter.Print(text);
+    return text.str();
+  };
+  vtkNew<vtkBSHCollisionFilter> filter;
+  filter->SetNumberOfThreads(3);
+  filter->SetClearance(0.25);
+  filter->SetSwept(0.125);
+  filter->SetOption("solid", "true");
+  for (const char* const line : {"NumberOfThreads: 3\n", "Options: solid=true\n", "HierarchiesBuilt: 0\n",
+                                 "Clearance: 0.25\n", "Swept: 0.125\n", "NumberOfCollidingPoints: 0\n"})
+    EXPECT_THAT(printed(*filter), HasSubstr(line));
+  vtkNew<vtkBSHDistanceFilter> distances;
+  distances->SetMaximumDistance(0.5);
+  for (const char* const line : {"MaximumDistance: 0.5\n", "Options:\n"})
+    EXPECT_THAT(printed(*distances), HasSubstr(line));
 }
 
 /// An input that is taken away leaves no answer of before.

@@ -100,6 +100,14 @@ TEST(WriteVtm, VtkReadsItBack)
   EXPECT_EQ(namesIn(folder / "a & \"b\"").size(), 1U) << "the earlier blocks are gone";
 }
 
+/// XML has no place for them.
+TEST(WriteVtm, ControlCharactersOfANameAreQuestionMarks)
+{
+  const TemporaryFolder folder;
+  writeVtm({{"a\nb\x1f \x7f'", dataOf(1)}}, folder / "a.vtm");
+  EXPECT_EQ(read(folder / "a.vtm").at(0).first, "a?b? \x7f'");
+}
+
 TEST(WriteVtm, RemovesOnlyWhatAnEarlierListNames)
 {
   const TemporaryFolder folder;
@@ -131,6 +139,30 @@ TEST(WriteVtm, AFolderOfTheUsersIsInTheWay)
   EXPECT_NE(failureOf(folder / "file.vtm").find("is in the way"), std::string::npos);
   EXPECT_EQ(contentOf(folder / "file"), "mine");
   EXPECT_EQ(folder.files(), 2U);
+}
+
+/// hall_<number>.vtp and hall_<number>_<number>.vtp may be there: anything else is the user's.
+TEST(WriteVtm, TellsFilesOfTheUsersFromBlocks)
+{
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "hall");
+  for (const char* const name :
+       {"ball_0.vtp", "hall_0.vtq", "hall.vtp", "hall_.vtp", "hall0.vtp", "hall_0_.vtp", "hall__0.vtp", "hall_0__1.vtp",
+        "hall_0_1_2.vtp", "hall_x.vtp", "hall_:.vtp", "hall_-1.vtp", "hall0_1.vtp", "vtp", "hall_0"}) {
+    const fs::path file = folder / "hall" / name;
+    folder.write(std::string("hall/") + name, "mine");
+    EXPECT_NE(failureOf(folder / "hall.vtm").find(std::string("and holds ") + name + ", which is none"),
+              std::string::npos)
+        << name;
+    EXPECT_NO_THROW(requireWritableData(folder / "hall.vtp")) << "which has no blocks";
+    EXPECT_EQ(contentOf(file), "mine");
+    fs::remove(file);
+  }
+  for (const char* const name : {"hall_0.vtp", "hall_9.vtp", "hall_10_0.vtp", "hall_0_19.vtp"})
+    folder.write(std::string("hall/") + name, "block");
+  EXPECT_NO_THROW(requireWritableData(folder / "hall.vtm"));
+  writeVtm({{"a", dataOf(1)}}, folder / "hall.vtm");
+  EXPECT_EQ(namesIn(folder / "hall").count("hall_1_0.vtp"), 1U) << "there is one of generation 0";
 }
 
 TEST(WriteVtm, LeavesNothingWhenItFails)
