@@ -72,6 +72,10 @@ TEST(CollisionField, SeveralOfSeveralTypes)
                 withFields(result, {{"pose", &nearer}});
               }),
               refusedWith("field 'pose' exists already and is not one FLOAT32"));
+  EXPECT_THAT(([&] {
+                withFields(result, {{"distance", &poses}});
+              }),
+              refusedWith("field 'distance' exists already and is not one INT32"));
 }
 
 TEST(CollisionField, KeepsRowsAndDensity)
@@ -103,6 +107,15 @@ TEST(CollisionField, RefusesAFieldOfAnotherType)
       },
       refusedWith("field 'intensity' exists already and is not one UINT8 per point"));
   pcl::PCLPointCloud2 cloud = withField(threePoints(), "collision", test::verdictsOf({1, 0, 1}));
+  cloud.fields.back().count = 0; // one, as PCL once wrote it
+  EXPECT_NO_THROW(withField(cloud, "collision", test::verdictsOf({1, 0, 1})));
+  cloud.fields.back().count = 2;
+  EXPECT_THAT(
+      [&] {
+        withField(cloud, "collision", test::verdictsOf({1, 0, 1}));
+      },
+      refusedWith("field 'collision' exists already and is not one UINT8 per point"));
+  cloud.fields.back().count = 1;
   cloud.fields.back().offset = cloud.point_step;
   EXPECT_THAT(
       [&] {

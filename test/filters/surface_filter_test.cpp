@@ -315,13 +315,14 @@ TEST(MeshFilter, RefusesWhatIsNoInput)
   };
   filter.setObstacleCloud(scanAround(6, 100));
   refused([&] { filter.computeFlags(flags); }, "input mesh is missing");
+  refused([&] { filter.filter(kept); }, "input mesh is missing: call setInputMesh() before filtering");
   refused([&] { filter.setInputMesh(nullptr); }, "input mesh is null");
   const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 1, 1}};
   filter.setInputSurface(TrianglesView{viewOf(xyz.data(), 3), triangles[0].data(), 2});
   filter.computeFlags(flags);
   EXPECT_EQ(flags.size(), 2u) << "triangles";
-  refused([&] { filter.filter(kept); }, "call setInputMesh()");
+  refused([&] { filter.filter(kept); }, "a list of triangles is no mesh to keep of: call setInputMesh()");
   filter.setInputMesh(crate());
   filter.setDensityGuard(true);
   refused([&] { filter.filter(kept); }, "density: is about points");
