@@ -438,6 +438,19 @@ TEST_F(ClashWriter, WritesEveryFormatAndComparesRuns)
   EXPECT_THAT(csv, Not(HasSubstr(",new,")));
 }
 
+TEST_F(ClashWriter, WarnsOfAListThatMayBeOfOtherClouds)
+{
+  listOf(R"(, "input_name": "hall")");
+  const std::string options = R"("clearance": 0.03, "trajectory": )" + quoted(track) + R"(, "filename": )" +
+                              quoted(folder / "now.json") + R"(, "previous": )" + quoted(list);
+  const auto told = [&](const std::string& more) {
+    return linesWith("lists clashes of the input 'hall', now it is ",
+                     runStage(scan, stage("writers.clashes", options + more), model));
+  };
+  EXPECT_EQ(told(R"(, "input_name": "yard")"), 1);
+  EXPECT_EQ(told(R"(, "input_name": "hall")"), 0);
+}
+
 TEST_F(ClashWriter, SaysWhatIsUncertainAndWhereItLooked)
 {
   const std::string near = R"(, "cluster_distance": 0.05)", uncertain = near + R"(, "uncertainty": 0.02, "unit": "m")";

@@ -110,6 +110,7 @@ TEST_F(DistanceStages, AreTheFilter)
     EXPECT_TRUE(found->cloud.data == expected.data) << c.options;
   }
   EXPECT_GT(output(R"(, "accuracy": "tolerance=0.1")")->cloud.width, 0U);
+  EXPECT_THAT(error("filters.bsh_distance", R"("filter_limits": [-1, null])"), HasSubstr("/filter_limits: from -1 "));
 }
 
 TEST_F(DistanceStages, TheirFieldIsKnownBeforehand)

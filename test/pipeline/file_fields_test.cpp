@@ -11,6 +11,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <cmath>
+#include <limits>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -173,6 +174,66 @@ TEST_F(FileFields, LasLeavesOutWhatIsNotFinite)
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_THAT(warnings[0], HasSubstr("1 is left out"));
   EXPECT_EQ(io::readCloud(folder / "b.las").width, 2U);
+}
+
+/// And says which points and fields; what is no field but padding is not missed.
+TEST_F(FileFields, FormatsWithoutAPlaceForEverythingLeaveItOut)
+{
+  const auto cloud = std::make_shared<StageCloud>();
+  for (const char* axis : {"x", "y", "z", "intensity"}) io::addField(cloud->cloud, axis, pcl::PCLPointField::FLOAT32);
+  io::addField(cloud->cloud, "_", pcl::PCLPointField::UINT8, 4);
+  io::addField(cloud->cloud, "label", pcl::PCLPointField::UINT16);
+  io::addField(cloud->cloud, "scan", pcl::PCLPointField::UINT32);
+  io::allocate(cloud->cloud, 4);
+  const float place = 1.0F;
+  for (std::size_t i = 0; i < 4; ++i)
+    std::memcpy(&cloud->cloud.data[i * cloud->cloud.point_step], &place, sizeof place);
+  const auto warningsOf = [&](const std::string& extension) {
+    const std::string file = (folder / ("b" + extension)).string();
+    PipelineResult result = runStage(cloud, "{\"filename\": \"" + file + "\"}");
+    for (std::string& warning : result.warnings) warning.erase(0, warning.find(": ") + 2);
+    return result.warnings;
+  };
+  using testing::ElementsAre;
+  const std::string lost = " has no place for the fields", end = ": they are left out";
+  EXPECT_THAT(warningsOf(".pts"), ElementsAre("a .pts" + lost + " label scan" + end));
+  EXPECT_EQ(io::namesOf(io::readCloud(folder / "b.pts")), "x y z intensity");
+  EXPECT_THAT(warningsOf(".ptx"), ElementsAre("a .ptx" + lost + " label" + end));
+  EXPECT_THAT(warningsOf(".obj"), ElementsAre("an .obj" + lost + " intensity label scan" + end));
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const std::size_t i : {1U, 3U}) {
+    std::memcpy(&cloud->cloud.data[i * cloud->cloud.point_step], &none, sizeof none);
+    const std::string points = i == 1 ? "1 is left out" : "2 are left out";
+    EXPECT_THAT(warningsOf(".pts"), ElementsAre("a .pts" + lost + " label scan" + end,
+                                                "a .pts has no place for points that are not finite: " + points));
+    EXPECT_THAT(warningsOf(".las"), testing::Contains("a .las has no place for points that are not finite: " + points));
+    EXPECT_THAT(warningsOf(".ptx"), testing::SizeIs(1)) << "no return";
+  }
+}
+
+TEST_F(FileFields, ColumnsOfATextMayBeNamed)
+{
+  std::string rows;
+  for (int i = 1; i < 13; ++i) rows += std::to_string(i) + ",2.5,3.5,4." + std::to_string(i) + "\n";
+  const auto text = folder.write("a.csv", rows);
+  const auto read = [&](const std::string& columns) {
+    return Pipeline::parse("[{\"type\": \"readers.text\", \"filename\": \"" + text.string() + "\", \"columns\": \"" +
+                           columns + "\"}]")
+        .run();
+  };
+  const PipelineResult named = read("y,x,_,z");
+  const pcl::PCLPointCloud2& cloud = named.clouds.begin()->second->cloud;
+  EXPECT_EQ(io::namesOf(cloud), "y x z");
+  EXPECT_EQ(io::valueOf(cloud, 1, "z"), 4.2);
+  EXPECT_THAT(named.warnings, testing::IsEmpty());
+  EXPECT_THAT(read("").warnings, testing::ElementsAre(HasSubstr(text.string() + ": "))) << "what it is taken for";
+  EXPECT_THAT(errorOf([&] { read("x,y,z,x"); }), HasSubstr("/0/columns: names two columns x: "));
+}
+
+TEST_F(FileFields, AFileOfAnotherFormatIsRefused)
+{
+  EXPECT_THAT(errorOf([] { Pipeline::parse(R"([{"type": "readers.las", "filename": "a.pcd"}])").validate(); }),
+              testing::EndsWith("/0/filename: is \"a.pcd\": give a .las or .laz file, or leave out the type"));
 }
 
 TEST_F(FileFields, OneScanOfSeveral)

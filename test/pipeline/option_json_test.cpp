@@ -28,6 +28,8 @@ struct Everything : Stage {
   Pose pose;
   InputFile in;
   OutputFile out;
+  std::optional<OutputFile> also;
+  double share = 0.25, slope = 1, angle = 0, far = 0, high = 0;
   OtherCloud other;
   std::optional<double> maybe;
   LengthOrField sigma;
@@ -55,6 +57,19 @@ const StageType& everything()
                                     .option(&Everything::pose, "pose", "")
                                     .option(&Everything::in, "in", "")
                                     .option(&Everything::out, "out", "")
+                                    .option(&Everything::also, "also", "")
+                                    .option(&Everything::share, "share", "")
+                                    .above(0)
+                                    .atMost(0.5)
+                                    .option(&Everything::slope, "slope", "")
+                                    .atLeast(1e-7)
+                                    .option(&Everything::angle, "angle", "")
+                                    .atLeast(-2)
+                                    .atMost(3)
+                                    .option(&Everything::far, "far", "")
+                                    .atLeast(-1e9)
+                                    .option(&Everything::high, "high", "")
+                                    .atMost(1e9)
                                     .option(&Everything::other, "other", "")
                                     .option(&Everything::maybe, "maybe", "")
                                     .option(&Everything::sigma, "sigma", "")
@@ -97,6 +112,12 @@ TEST(OptionJson, EachKindGoesInAndOut)
                                                         {"limits", "[-9007199254740993,18446744073709551615]"},
                                                         {"stamp", "1700000000000000001"},
                                                         {"stamp", "-9223372036854775808"},
+                                                        {"share", "0.5"},
+                                                        {"slope", "1e-07"},
+                                                        {"angle", "-2.0"},
+                                                        {"angle", "3.0"},
+                                                        {"also", "null"},
+                                                        {"also", "\"null\""},
                                                         {"place", "[0.1,-2.0,1e-300]"},
                                                         {"size", "[0.1,0.2,0.3]"},
                                                         {"in", "\"a.pcd\""},
@@ -110,6 +131,7 @@ TEST(OptionJson, EachKindGoesInAndOut)
   }
   EXPECT_EQ(through("size", "0.25"), "[0.25,0.25,0.25]");
   EXPECT_EQ(through("integer", "3.0"), "3");
+  EXPECT_EQ(through("stamp", "-9007199254740992.0"), "-9007199254740992") << "-2^53";
   EXPECT_EQ(through("pose", "[1, 2, 3, 0, 0, 0]"), "[1.0,0.0,0.0,1.0,0.0,1.0,0.0,2.0,0.0,0.0,1.0,3.0,0.0,0.0,0.0,1.0]");
   EXPECT_EQ(through("pose", "[1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6]"),
             "[1.0,0.0,0.0,4.0,0.0,1.0,0.0,5.0,0.0,0.0,1.0,6.0,0.0,0.0,0.0,1.0]");
@@ -149,11 +171,40 @@ TEST(OptionJson, RefusesWrongValuesAndSaysWhatIsRight)
   EXPECT_EQ(refusal("in", "\"a\\u0000.pcd\""), "is \"a\\u0000.pcd\": give the name of a file");
 }
 
+TEST(OptionJson, SaysRangesAsPeopleWriteThem)
+{
+  for (const char* const number : {"0", "0.75"})
+    EXPECT_EQ(refusal("share", number), "is " + std::string(number) + ": give a number above 0 and up to 0.5");
+  EXPECT_EQ(refusal("slope", "0"), "is 0: give a number of at least 1e-07");
+  for (const char* const number : {"-3", "4"})
+    EXPECT_EQ(refusal("angle", number), "is " + std::string(number) + ": give a number from -2 to 3");
+  EXPECT_EQ(refusal("far", "-2e9"), "is -2000000000.0: give a number of at least -1000000000");
+  EXPECT_EQ(refusal("high", "2e9"), "is 2000000000.0: give a number") << "as good as none";
+}
+
+/// Of programs: documents have none.
+TEST(OptionJson, RefusesNumbersThatAreNotFinite)
+{
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double number : {infinite, -infinite, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(valueOf(Json(number), *everything().findOption("maybe")), std::invalid_argument) << number;
+    EXPECT_THROW(valueOf(Json{1, number, 2}, *everything().findOption("place")), std::invalid_argument) << number;
+  }
+}
+
+TEST(OptionJson, RefusesWholeNumbersThatDoublesDoNotTellApart)
+{
+  for (const char* const number : {"9007199254740994.0", "-9007199254740994.0", "1e300"})
+    EXPECT_THAT(refusal("stamp", number), HasSubstr("give an integer")) << number;
+}
+
 TEST(OptionJson, PosesMayBeFiles)
 {
   const io::TemporaryFolder folder;
   const std::string file = folder.write("pose.txt", "1 0 0 4\n0 1 0 5\n0 0 1 6\n").string();
   EXPECT_EQ(through("pose", Json(file).dump()), through("pose", "[4, 5, 6, 0, 0, 0]"));
+  folder.write("pose.txt", "1 0 0 4\n0 nan 0 5\n0 0 1 6\n");
+  EXPECT_THAT(refusal("pose", Json(file).dump()), HasSubstr("pose.txt"));
 }
 
 TEST(OptionJson, TextOfACommandLine)
@@ -170,6 +221,9 @@ TEST(OptionJson, TextOfACommandLine)
   EXPECT_EQ(given("pose", "pose.txt"), "\"pose.txt\"");
   EXPECT_EQ(given("flag", "true"), "true");
   EXPECT_EQ(given("maybe", "null"), "null");
+  EXPECT_EQ(given("also", "null"), "null");
+  EXPECT_EQ(given("also", "a.csv"), "\"a.csv\"");
+  EXPECT_EQ(given("out", "null"), "\"null\"") << "the name of a file";
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // Documents, right and wrong. Every kind of error with its message.
 #include <pcl_bsh/filters/pipeline/graph.h>
 
+#include "io/clouds/samples.h"
 #include "run_stage.h"
 
 namespace pcl_bsh::pipeline {
@@ -177,6 +178,38 @@ TEST(ParseGraph, RefusesTagsThatAreNoneOrTaken)
             "p.json: /1/tag: is \"a\" a second time: rename one");
   const Graph graph = parse(R"(["a.pcd", {"type": "filters.merge", "tag": "readers_pcd1"}, "b.pcd"])");
   EXPECT_EQ(graph.nodes[0].tag, "readers_pcd2") << "a tag that is made up avoids those that are given";
+}
+
+struct Row : Stage {
+  StageCloudPtr run(StageClouds&& inputs) override { return inputs[0]; }
+};
+
+/// The eleventh of test_row and the first of test_row1 have the same letters.
+TEST(ParseGraph, MadeUpTagsAreOfOneStageEach)
+{
+  if (!findStageType("filters.test_row")) {
+    registerStage(describe<Row>("filters.test_row", ""));
+    registerStage(describe<Row>("filters.test_row1", ""));
+  }
+  std::string stages;
+  for (int i = 0; i < 11; ++i) stages += R"({"type": "filters.test_row"}, )";
+  const Graph graph = parse(around(stages + R"({"type": "filters.test_row1"})"));
+  EXPECT_EQ(graph.nodes[11].tag, "filters_test_row11");
+  EXPECT_EQ(graph.nodes[12].tag, "filters_test_row12");
+}
+
+TEST(ParseGraph, ReadsFiles)
+{
+  const io::TemporaryFolder folder;
+  EXPECT_EQ(errorOf([&] { Pipeline::read(folder / "none.json"); }),
+            (folder / "none.json").string() + ": no such file: check the name");
+  const auto file = folder.write("p.json", "{}");
+  EXPECT_THAT(errorOf([&] { Pipeline::read(file); }), StartsWith(file.string() + ": "));
+  Pipeline pipeline = Pipeline::parse(R"(["a.pcd"])");
+  pipeline = Pipeline::parse(R"(["b.pcd"])", {}, "b.json");
+  const Pipeline moved = std::move(pipeline);
+  EXPECT_THAT(errorOf([&] { Pipeline(Pipeline::parse(R"(["c.pcd"])", {}, "c.json")).setCloud("d", nullptr); }),
+              StartsWith("c.json: "));
 }
 
 TEST(ParseGraph, RefusesInputsThatAreNotThere)

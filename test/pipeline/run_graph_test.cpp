@@ -67,6 +67,10 @@ struct Fail : Stage {
   StageCloudPtr run(StageClouds&&) override { throw std::runtime_error("went wrong: mend it"); }
 };
 
+struct Grow : Stage {
+  StageCloudPtr run(StageClouds&&) override { throw std::bad_alloc(); }
+};
+
 /// Goes on with its loop when the other stage has failed.
 struct Loop : Stage {
   static constexpr int count = 1000;
@@ -110,13 +114,13 @@ struct InPlace : Stage {
   }
 };
 
-const bool registered = registerStage(describe<Copy>("filters.test_copy", "").option(&Copy::warning, "warning", "")) &&
-                        registerStage(describe<Meet>("filters.test_meet", "")) &&
-                        registerStage(describe<Fail>("filters.test_fail", "")) &&
-                        registerStage(describe<Loop>("filters.test_loop", "")) &&
-                        registerStage(describe<FailLater>("filters.test_fail_later", "")) &&
-                        registerStage(describe<Nothing>("filters.test_nothing", "")) &&
-                        registerStage(describe<InPlace>("filters.test_in_place", ""));
+const bool registered =
+    registerStage(describe<Copy>("filters.test_copy", "").option(&Copy::warning, "warning", "")) &&
+    registerStage(describe<Meet>("filters.test_meet", "")) && registerStage(describe<Fail>("filters.test_fail", "")) &&
+    registerStage(describe<Grow>("filters.test_grow", "")) && registerStage(describe<Loop>("filters.test_loop", "")) &&
+    registerStage(describe<FailLater>("filters.test_fail_later", "")) &&
+    registerStage(describe<Nothing>("filters.test_nothing", "")) &&
+    registerStage(describe<InPlace>("filters.test_in_place", ""));
 
 StageCloudPtr someCloud(std::size_t points = 100)
 {
@@ -241,6 +245,8 @@ TEST_F(RunGraph, NamesTheStageThatFails)
             "p.json: bad: /1: went wrong: mend it");
   EXPECT_EQ(errorOf([] { pipelineOf(R"({"type": "filters.test_nothing"})", someCloud()).run(); }),
             "p.json: filters_test_nothing1: /1: gave no cloud: let its run() return one");
+  EXPECT_EQ(errorOf([] { pipelineOf(R"({"type": "filters.test_grow", "tag": "large"})", someCloud()).run(); }),
+            "p.json: large: /1: there is too little memory: give smaller clouds or a larger machine");
 }
 
 TEST_F(RunGraph, WritesNothingAfterAFailure)
@@ -276,6 +282,27 @@ TEST_F(RunGraph, TellsProgress)
   });
   pipeline.run();
   EXPECT_THAT(told, ElementsAre("in begins", "in done 7", "a begins", "a done 7", "b begins", "b done 7"));
+}
+
+/// Not even of a stage that was at work when it threw.
+TEST_F(RunGraph, IsNotCalledAgainAfterItHasThrown)
+{
+  Pipeline pipeline = pipelineOf(R"({"type": "filters.test_meet", "tag": "a", "inputs": ["in"]},
+                                    {"type": "filters.test_meet", "tag": "b", "inputs": ["in"]},
+                                    {"type": "filters.merge", "inputs": ["a", "b"]})",
+                                 someCloud());
+  pipeline.setNumberOfThreads(2);
+  int calls_after = 0;
+  bool has_thrown = false;
+  pipeline.setProgress([&](const StageProgress& stage) {
+    calls_after += has_thrown ? 1 : 0;
+    if (!stage.done || stage.tag == "in" || has_thrown) return;
+    has_thrown = true;
+    throw std::runtime_error("enough");
+  });
+  EXPECT_THROW(pipeline.run(), std::runtime_error);
+  EXPECT_TRUE(has_thrown);
+  EXPECT_EQ(calls_after, 0);
 }
 
 TEST_F(RunGraph, MetadataSaysWhatRanAndRunsAgain)

@@ -4,9 +4,13 @@
 
 #include "../filters/clouds.h"
 #include "support/made_scans.h"
+#include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +55,23 @@ TEST_F(SeenStages, WarnOfWhatIsUnseen)
               Contains(HasSubstr(told)));
 }
 
+TEST_F(SeenStages, ListWhatIsUnseen)
+{
+  const files::TemporaryFolder folder;
+  const auto unseenIn = [&](const std::string& seen) {
+    const std::string file = (folder / "a.json").string();
+    runStage(scan,
+             R"({"type": "writers.clashes", "obstacle": "other", "clearance": 0.1, "filename": ")" + file + '"' + seen +
+                 "}",
+             machine);
+    const nlohmann::json list = nlohmann::json::parse(files::contentOf(file));
+    return std::count_if(list["clashes"].begin(), list["clashes"].end(),
+                         [](const nlohmann::json& clash) { return clash["status"] == "unseen"; });
+  };
+  EXPECT_EQ(unseenIn(R"(, "seen": true)"), 1);
+  EXPECT_EQ(unseenIn(""), 0);
+}
+
 /// A viewpoint of some of the points says nothing of the others.
 TEST_F(SeenStages, RefuseCloudsMergedOfSeveralScans)
 {
@@ -75,6 +96,20 @@ TEST_F(SeenStages, KnowWhereEachMergedScanIsFrom)
   EXPECT_EQ(io::valueOf(again->cloud, count(merged) + count(scan), "scan"), 3.0);
   const StageCloudPtr moved = outputOf(merged, R"({"type": "filters.transform", "transform": [1, 0, 0, 0, 0, 0]})");
   EXPECT_EQ(moved->scanners[1][0], 0.0) << "the scanners move along";
+}
+
+/// The scanner, where it is known; else the viewpoint.
+TEST_F(SeenStages, KnowWhereASingleScanIsFrom)
+{
+  const std::string merge = R"({"type": "filters.merge", "inputs": ["in", "other"], "number_scans": true})";
+  const io::Viewpoint stood = {7, 0, 1, 1, 0, 0, 0}, elsewhere = {-2, 0, 1, 1, 0, 0, 0};
+  auto one = std::make_shared<StageCloud>(*cloudOf({0, 0, 0}, at_scanner));
+  one->scanners = {stood};
+  auto merged = std::make_shared<StageCloud>(*outputOf(one, merge, cloudOf({1, 0, 0}, elsewhere)));
+  EXPECT_EQ(merged->scanners, (std::vector<io::Viewpoint>{stood, elsewhere}));
+  merged->scanners.clear(); // of a file that numbers its scans and does not say where they are from
+  merged->viewpoint = elsewhere;
+  EXPECT_EQ(outputOf(merged, merge, merged)->scanners, (std::vector<io::Viewpoint>{elsewhere, elsewhere}));
 }
 
 } // namespace

@@ -4,9 +4,12 @@
 
 #include <pcl_bsh/question/options.h>
 
+#include <pcl_bsh/io/json/json_document.h>
+
 #include "io/clouds/samples.h"
 #include "run_stage.h"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -97,6 +100,37 @@ TEST(StageType, DocumentationIsCurrent)
     const bool of_tests = type.name.find("test") != std::string::npos;
     EXPECT_TRUE(of_tests || lines.find("### " + type.name + "\n") != std::string::npos) << type.name;
   }
+}
+
+TEST(StageType, SchemaIsCurrent)
+{
+  Json written = io::parseJson(jsonSchema());
+  const auto is_of_tests = [](const std::string& name) { return name.find("test") != std::string::npos; };
+  const auto leaveOut = [](Json& list, const auto& which) {
+    list.erase(std::remove_if(list.begin(), list.end(), which), list.end());
+  };
+  Json& definitions = written["definitions"];
+  for (const StageType& type : stageTypes())
+    if (is_of_tests(type.name)) definitions.erase(type.name);
+  leaveOut(definitions["stage"]["properties"]["type"]["enum"],
+           [&](const Json& name) { return is_of_tests(name.get<std::string>()); });
+  leaveOut(definitions["stage"]["allOf"],
+           [&](const Json& one) { return is_of_tests(one["then"]["$ref"].get<std::string>()); });
+  const Json held = io::parseJson(committed("examples/pipelines/pcl_bsh_pipeline.schema.json"));
+  EXPECT_EQ(Json::diff(held, written).dump(), "[]")
+      << "run pcl_bsh_pipeline --print-schema > examples/pipelines/pcl_bsh_pipeline.schema.json";
+}
+
+/// Not filters alone: an application reads and writes formats of its own.
+TEST(StageType, ReadersAndWritersMayBeAdded)
+{
+  for (const std::string name : {"readers.test_own", "writers.test_own"}) {
+    registerStage(describe<Own>(name, ""));
+    EXPECT_NE(findStageType(name), nullptr);
+    EXPECT_THAT([&] { registerStage(describe<Own>(name, "")); }, refusedWith("is taken"));
+  }
+  EXPECT_TRUE(findStageType("readers.test_own")->isReader());
+  EXPECT_TRUE(findStageType("writers.test_own")->isWriter());
 }
 
 } // namespace

@@ -5,14 +5,17 @@
 #include "run_stage.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <pcl/point_types.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -271,6 +274,17 @@ TEST(Stages, NeighbourSearchSaysWhatFloatLoses)
   EXPECT_THAT(errorOf([&] { runStage(wide(1e200), stage); }), HasSubstr("too large for float32"));
 }
 
+TEST(Stages, ClustersSayWhatFloatLoses)
+{
+  const auto warningsOf = [](double far) {
+    return runStage(cloudOf<double>({{0.1, 0, 0}, {0.2, 0, 0}, {far, 0, 0}}),
+                    R"({"type": "filters.euclidean_cluster", "cluster_tolerance": 1})")
+        .warnings;
+  };
+  EXPECT_THAT(warningsOf(10), IsEmpty());
+  EXPECT_THAT(warningsOf(1e5), ElementsAre(HasSubstr("moves points of this float64 cloud by up to")));
+}
+
 TEST(Stages, CountingNeighboursSaysWhatFloatLoses)
 {
   // Two heaps of neighbours some centimetres apart: nothing of that is seen in the box around both.
@@ -333,12 +347,14 @@ TEST(Stages, NormalsPointToWhereTheSensorStood)
 {
   Points plane;
   for (int i = 0; i < 100; ++i) plane.emplace_back(i % 10, i / 10, 0);
+  plane.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0, 0);
   auto cloud = std::make_shared<StageCloud>();
   cloud->cloud = *test::fieldCloud<float>(plane);
   for (const float side : {5.0F, -5.0F}) {
     cloud->viewpoint = {5, 5, side, 1, 0, 0, 0};
     const StageCloudPtr out = outputOf(cloud, R"({"type": "filters.normal_estimation", "k_search": 9})");
     EXPECT_NEAR(io::valueOf(out->cloud, 50, "normal_z"), side > 0 ? 1 : -1, 1e-6);
+    EXPECT_TRUE(std::isnan(io::valueOf(out->cloud, 100, "normal_z"))) << "a point that is nowhere has none";
   }
 }
 
@@ -449,6 +465,164 @@ TEST(Stages, OptionsThatContradictEachOther)
   EXPECT_THAT(
       error(R"({"type": "filters.bsh_flag", "obstacle": "in", "clearance": 1, "pose": [1,0,0,0, 0,2,0,0, 0,0,1,0]})"),
       HasSubstr("/1/pose: "));
+}
+
+/// Numbers of an earlier run are replaced, and nothing else is.
+TEST(Stages, ClustersAreNumberedAnew)
+{
+  const StageCloudPtr in = cloudOf<float>({{0, 0, 0}, {0.5, 0, 0}, {2, 0, 0}, {0.25, 0, 0}});
+  const auto clustered = [](const StageCloudPtr& cloud, const std::string& tolerance) {
+    return outputOf(cloud, R"({"type": "filters.euclidean_cluster", "cluster_tolerance": )" + tolerance + "}");
+  };
+  const auto numbersOf = [](const StageCloudPtr& cloud) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < cloud->cloud.width; ++i) numbers.push_back(io::valueOf(cloud->cloud, i, "cluster"));
+    return numbers;
+  };
+  const StageCloudPtr once = clustered(in, "0.3"), again = clustered(once, "5");
+  EXPECT_THAT(numbersOf(once), ElementsAre(0, 0, 1, 0));
+  EXPECT_THAT(numbersOf(again), ElementsAre(0, 0, 0, 0));
+  EXPECT_EQ(again->cloud.point_step, once->cloud.point_step);
+  EXPECT_EQ(again->cloud.fields.size(), once->cloud.fields.size());
+  EXPECT_EQ(pointsOf(again), pointsOf(in));
+
+  auto other = std::make_shared<StageCloud>(*once);
+  other->cloud.fields.back().count = 0; // one, as PCL once wrote it
+  EXPECT_THAT(numbersOf(clustered(other, "5")), ElementsAre(0, 0, 0, 0));
+  const std::string refusal = "the cloud has a field 'cluster' of another type: rename it";
+  other->cloud.fields.back().count = 2;
+  EXPECT_THAT(errorOf([&] { clustered(other, "5"); }), EndsWith(refusal));
+  other->cloud.fields.back().count = 1;
+  other->cloud.fields.back().datatype = pcl::PCLPointField::FLOAT32;
+  EXPECT_THAT(errorOf([&] { clustered(other, "5"); }), EndsWith(refusal));
+}
+
+/// A cloud of x y z at the origin, and of more fields: name, type and count.
+pcl::PCLPointCloud2 cloudWith(const std::vector<std::tuple<std::string, std::uint8_t, std::uint32_t>>& fields,
+                              std::uint32_t points)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const char* const axis : {"x", "y", "z"}) io::addField(cloud, axis, pcl::PCLPointField::FLOAT32);
+  for (const auto& [name, datatype, count] : fields) io::addField(cloud, name, datatype, count);
+  io::allocate(cloud, points);
+  return cloud;
+}
+
+/// Sets the first value of a field.
+void set(pcl::PCLPointCloud2& cloud, std::size_t record, const std::string& name, double number)
+{
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    if (field.name != name) continue;
+    io::withFieldType(field.datatype, [&](auto value) {
+      value = static_cast<decltype(value)>(number);
+      std::memcpy(&cloud.data[record * cloud.point_step + field.offset], &value, sizeof value);
+    });
+  }
+}
+
+StageCloudPtr asInput(const pcl::PCLPointCloud2& cloud)
+{
+  auto input = std::make_shared<StageCloud>();
+  input->cloud = cloud;
+  return input;
+}
+
+/// Of three fields of one floating-point type, with one value each; what has no direction keeps none.
+TEST(Stages, TransformTurnsNormalsOfAnyRealType)
+{
+  using Field = pcl::PCLPointField;
+  const auto turned = [](const std::array<std::uint8_t, 3>& types, std::uint32_t count, const Eigen::Vector3d& normal) {
+    pcl::PCLPointCloud2 cloud = cloudWith(
+        {{"normal_x", types[0], 1}, {"normal_y", types[1], std::max(count, 1U)}, {"normal_z", types[2], 1}}, 2);
+    if (count == 0) cloud.fields[4].count = 0;
+    for (int k = 0; k < 3; ++k) set(cloud, 1, std::string("normal_") + "xyz"[k], normal[k]);
+    const StageCloudPtr out =
+        outputOf(asInput(cloud), R"({"type": "filters.transform", "transform": [0, 0, 0, 0, 0, 1.5707963267948966]})");
+    Eigen::Vector3d found;
+    for (int k = 0; k < 3; ++k) found[k] = io::valueOf(out->cloud, 1, std::string("normal_") + "xyz"[k]);
+    return found;
+  };
+  constexpr std::uint8_t narrow = Field::FLOAT32, wide = Field::FLOAT64;
+  const Eigen::Vector3d before(2, 0, 0), after(0, 2, 0);
+  EXPECT_TRUE(turned({narrow, narrow, narrow}, 1, before).isApprox(after, 1e-6));
+  EXPECT_TRUE(turned({wide, wide, wide}, 1, before).isApprox(after, 1e-15));
+  EXPECT_TRUE(turned({wide, wide, wide}, 0, before).isApprox(after, 1e-15)) << "one, as PCL once wrote it";
+  EXPECT_EQ(turned({narrow, narrow, narrow}, 2, before), before) << "two values";
+  EXPECT_EQ(turned({Field::INT16, Field::INT16, Field::INT16}, 1, before), before);
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<std::uint8_t, 3> types = {narrow, narrow, narrow};
+    types[k] = wide;
+    EXPECT_EQ(turned(types, 1, before), before) << k;
+  }
+  EXPECT_EQ(turned({narrow, narrow, narrow}, 1, {0, 0, 0}), Eigen::Vector3d::Zero());
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(turned({wide, wide, wide}, 1, {none, 4, 0})[1], 4) << "as it was";
+}
+
+/// Colours are means of bytes, other numbers means, and normals means of length 1, where they are float32.
+TEST(Stages, VoxelGridKnowsColoursAndNormals)
+{
+  using Field = pcl::PCLPointField;
+  const auto meanOf = [](const std::string& name, std::uint8_t type, double first, double second) {
+    pcl::PCLPointCloud2 cloud = cloudWith({{name, type, 1}}, 2);
+    set(cloud, 0, name, first);
+    set(cloud, 1, name, second);
+    return io::valueOf(outputOf(asInput(cloud), R"({"type": "filters.voxel_grid", "leaf_size": 1})")->cloud, 0, name);
+  };
+  for (const char* const name : {"rgb", "rgba"}) {
+    EXPECT_EQ(meanOf(name, Field::UINT32, 0xff00c801, 0xff006403), 0xff009602) << name;
+    EXPECT_EQ(meanOf(name, Field::FLOAT64, 1, 2), 1.5) << name;
+  }
+  EXPECT_EQ(meanOf("rgbs", Field::UINT32, 0xff00c801, 0xff006403), 0xff006403) << "the least of the most frequent";
+
+  const auto normalOf = [](std::uint8_t type, const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
+    pcl::PCLPointCloud2 cloud = cloudWith({{"normal_x", type, 1}, {"normal_y", type, 1}, {"normal_z", type, 1}}, 2);
+    Eigen::Vector3d mean;
+    for (int k = 0; k < 3; ++k) {
+      set(cloud, 0, std::string("normal_") + "xyz"[k], first[k]);
+      set(cloud, 1, std::string("normal_") + "xyz"[k], second[k]);
+    }
+    const StageCloudPtr out = outputOf(asInput(cloud), R"({"type": "filters.voxel_grid", "leaf_size": 1})");
+    for (int k = 0; k < 3; ++k) mean[k] = io::valueOf(out->cloud, 0, std::string("normal_") + "xyz"[k]);
+    return mean;
+  };
+  const double half = std::sqrt(0.5);
+  EXPECT_TRUE(normalOf(Field::FLOAT32, {1, 0, 0}, {0, 1, 0}).isApprox(Eigen::Vector3d(half, half, 0), 1e-6));
+  EXPECT_EQ(normalOf(Field::FLOAT64, {1, 0, 0}, {0, 1, 0}), Eigen::Vector3d(0.5, 0.5, 0));
+  EXPECT_EQ(normalOf(Field::FLOAT32, {1, 0, 0}, {-1, 0, 0}), Eigen::Vector3d::Zero()) << "not the length of nothing";
+}
+
+/// 18641348 and more cells from the origin, where products of floats count by twos.
+TEST(Stages, VoxelGridCountsFloat32BeyondFloat)
+{
+  const Points points = {{16777213, 0, 0}, {16777214, 0, 0}, {16777215, 0, 0}};
+  EXPECT_EQ(outputOf(cloudOf<float>(points), R"({"type": "filters.voxel_grid", "leaf_size": 0.9})")->cloud.width, 3U);
+}
+
+TEST(Stages, PassThroughTakesFieldsOfOneValue)
+{
+  pcl::PCLPointCloud2 cloud = cloudWith({{"pair", pcl::PCLPointField::FLOAT32, 2}, {"single", 7, 1}}, 3);
+  cloud.fields[4].count = 0; // one, as PCL once wrote it
+  const auto filtered = [&](const std::string& field) {
+    return outputOf(asInput(cloud), R"({"type": "filters.pass_through", "filter_limits": [1, 2],
+                                        "filter_field_name": ")" +
+                                        field + "\"}")
+        ->cloud.width;
+  };
+  set(cloud, 1, "single", 1.5);
+  EXPECT_EQ(filtered("single"), 1U);
+  EXPECT_THAT(errorOf([&] { filtered("pair"); }), HasSubstr("is 'pair', which is no field with one value"));
+  EXPECT_THAT(errorOf([&] { filtered("pairs"); }), testing::Not(HasSubstr("mean 'pair'")));
+}
+
+TEST(Stages, MergeRefusesFieldsOfOtherCounts)
+{
+  const StageCloudPtr one = asInput(cloudWith({{"echo", pcl::PCLPointField::FLOAT32, 1}}, 2)),
+                      two = asInput(cloudWith({{"echo", pcl::PCLPointField::FLOAT32, 2}}, 2));
+  const std::string stage = R"({"type": "filters.merge", "inputs": ["in", "other"]})";
+  EXPECT_THAT(errorOf([&] { runStage(one, stage, two); }),
+              EndsWith("/inputs/1: has no field 'echo' of the type that another has: give clouds alike"));
+  EXPECT_EQ(outputOf(two, stage, two)->cloud.width, 4U);
 }
 
 TEST(Stages, MergeRefusesCloudsThatDiffer)

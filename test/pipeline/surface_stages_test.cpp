@@ -272,6 +272,16 @@ TEST_F(SurfaceInput, IsRefusedWherePointsAreAsked)
   EXPECT_THAT(refusal(collide + R"("uncertainty": "x")"), HasSubstr("the input: is a surface, which has no field 'x'"));
 }
 
+/// As an application may give it.
+TEST_F(SurfaceStages, RefuseTrianglesOfNoPoints)
+{
+  const auto mesh = std::make_shared<StageCloud>(*scan());
+  mesh->triangles = std::make_shared<const std::vector<Triangle>>(std::vector<Triangle>{{0, 1, 2}, {0, 1, 4}});
+  const std::string flag = R"({"type": "filters.bsh_flag", "obstacle": "other", "clearance": 0.1})";
+  EXPECT_THAT(errorOf([&] { runStage(scan(), flag, mesh); }), HasSubstr("/obstacle: "));
+  EXPECT_THAT(errorOf([&] { runStage(mesh, flag, scan()); }), HasSubstr("/input: "));
+}
+
 TEST_F(SurfaceStages, RefuseWhatCannotBe)
 {
   const auto refusal = [&](const std::string& options) {
