@@ -38,6 +38,9 @@ std::string escapedForXml(const std::string& text)
     case '<':
       xml += "&lt;";
       break;
+    case '>': // with which VTK's reader takes an element for ended, wherever it is
+      xml += "&gt;";
+      break;
     case '"':
       xml += "&quot;";
       break;

@@ -80,6 +80,39 @@ TEST(SitePieces, AreReadByVtk)
   EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
+TEST(SitePieces, HaveNamesOfAnyLetters)
+{
+  const files::TemporaryFolder folder;
+  pcl::PCLPointCloud2 cloud;
+  for (const char* axis : {"x", "y", "z", "a&b", "c<d>", "e\"f", "g'h"})
+    io::addField(cloud, axis, pcl::PCLPointField::FLOAT32);
+  io::allocate(cloud, 3);
+  io::writeCloud(folder / "a.pcd", cloud);
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site");
+  const fs::path file = folder / "p & <q> \"r\".pvtp";
+  exportPieces(site, file);
+  const vtkNew<vtkXMLPPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 3);
+  for (const char* const name : {"a&b", "c<d>", "e\"f", "g'h", "record"})
+    EXPECT_NE(reader->GetOutput()->GetPointData()->GetArray(name), nullptr) << name;
+}
+
+TEST(SitePieces, TakeAnEmptyFolderAndNoFile)
+{
+  const files::TemporaryFolder folder;
+  folder.write("a.xyz", "x y z\n1 2 3\n4 5 6\n");
+  const Site site = makeSite({folder / "a.xyz"}, folder / "site");
+  fs::create_directory(folder / "empty");
+  exportPieces(site, folder / "empty.pvtp");
+  EXPECT_FALSE(fs::is_empty(folder / "empty"));
+  folder.write("taken", "");
+  EXPECT_THROW(exportPieces(site, folder / "taken.pvtp"), files::FileError);
+  EXPECT_TRUE(fs::is_regular_file(folder / "taken"));
+  EXPECT_FALSE(fs::exists(folder / "taken.pvtp"));
+}
+
 TEST(SitePieces, ByTheProgram)
 {
   const files::TemporaryFolder folder;
