@@ -20,6 +20,10 @@
 
 #include <gmock/gmock.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <limits>
 #include <map>
@@ -238,10 +242,21 @@ TEST(MakeSite, Refuses)
   refuse("its field 'intensity' has another type", {folder / "a.pcd", folder / "other.pcd"}, folder / "site");
   refuse("has a field named 'record'", {folder / "own.pcd"}, folder / "site");
   refuse("has two fields named 'intensity'", {folder / "two.pcd"}, folder / "site");
+  own.fields[3].name = "source";
+  writeBinary(folder / "own.pcd", own);
+  refuse("has a field named 'source'", {folder / "own.pcd"}, folder / "site");
+  folder.write("pairs.pcd", "FIELDS x y z intensity\nSIZE 4 4 4 2\nTYPE F F F U\nCOUNT 1 1 1 2\nWIDTH 1\nHEIGHT 1\n"
+                            "POINTS 1\nDATA ascii\n1 2 3 4 5\n");
+  refuse("its field 'intensity' has another type", {folder / "a.pcd", folder / "pairs.pcd"}, folder / "site");
+  folder.write("faces.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  refuse("faces.off: has faces, which a site cannot hold: take its vertices alone", {folder / "faces.off"},
+         folder / "site");
   refuse("truncated", {folder / "short.pcd"}, folder / "site");
   refuse("name one", {}, folder / "site");
   refuse("is not empty", {folder / "a.pcd"}, folder.path());
   refuse("tile of 0 points", {folder / "a.pcd"}, folder / "site", tilesOf(0));
+  refuse("a tile of 2147483648 points cannot be: give from 1 to 2147483647", {folder / "a.pcd"}, folder / "site",
+         tilesOf(std::uint64_t{1} << 31));
   MakeOptions options;
   options.memory = 1000;
   refuse("give 64 MiB or more", {folder / "a.pcd"}, folder / "site", options);
@@ -268,6 +283,163 @@ TEST(MakeSite, Refuses)
   }
   makeSite({folder / "a.pcd"}, folder / "site");
   refuse("is a site already", {folder / "a.pcd"}, folder / "site");
+}
+
+/// A cloud of holes: so many records of `bytes` more, each at a place of its own.
+void writeWide(const fs::path& path, std::uint32_t points, std::uint32_t bytes)
+{
+  Cloud header;
+  for (const char* axis : {"x", "y", "z"}) io::addField(header, axis, io::Field::FLOAT32);
+  io::addField(header, "more", io::Field::UINT8, bytes);
+  const std::string head = io::binaryPcdHeader(header.fields, points);
+  std::ofstream out(path, std::ios::binary);
+  out << head;
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const auto x = static_cast<float>(i);
+    out.seekp(static_cast<std::streamoff>(head.size() + std::size_t{i} * header.point_step));
+    out.write(reinterpret_cast<const char*>(&x), sizeof x);
+  }
+  out.close();
+  fs::resize_file(path, head.size() + std::size_t{points} * header.point_step);
+}
+
+TEST(MakeSite, RefusesTilesThatDoNotFitIntoTheMemory)
+{
+  const files::TemporaryFolder folder;
+  MakeOptions options = tilesOf(100);
+  options.memory = std::uint64_t{64} << 20;
+  options.overview_points = 0;
+  const auto refuse = [&](const char* name, const std::string& words) {
+    expectRefused(folder.path(), words, [&] { makeSite({folder / name}, folder / "site", options); });
+  };
+  writeWide(folder / "a.pcd", 100, 700000);
+  refuse("a.pcd", "a tile of 100 points needs 67 MiB, more than the memory given: make tiles smaller, or give more");
+  fs::remove(folder / "a.pcd");
+  options.tile_points = 1; // so many tiles that a buffer of each has no room for a record
+  const std::string too_fine = "tiles of 1 point are too many for 64 MiB: make tiles larger, or give more memory";
+  writeWide(folder / "a.pcd", 300, 60000);
+  refuse("a.pcd", too_fine);
+  writeBinary(folder / "a.pcd", unevenCloud(260000, 3)); // or that the plan of them has none
+  refuse("a.pcd", too_fine);
+}
+
+TEST(MakeSite, RefusesCloudsThatChange)
+{
+  const files::TemporaryFolder folder;
+  writeBinary(folder / "a.pcd", unevenCloud(3000, 2));
+  MakeOptions options;
+  options.progress = [&](MakeStep step, std::uint64_t, std::uint64_t) {
+    if (step == MakeStep::count) writeBinary(folder / "a.pcd", unevenCloud(2999, 2));
+    return true;
+  };
+  try {
+    makeSite({folder / "a.pcd"}, folder / "site", options);
+    ADD_FAILURE();
+  }
+  catch (const files::FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.pcd: has changed while it was read: make the site when it is complete"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "site"));
+}
+
+TEST(MakeSite, ColumnsMayBeNamedAndWhatIsAssumedIsTold)
+{
+  const files::TemporaryFolder folder;
+  std::string rows;
+  for (int i = 1; i < 13; ++i) rows += std::to_string(i) + ",2.5,3.5,4.5\n";
+  const fs::path counted = folder.write("counted.csv", rows);
+  writeBinary(folder / "a.pcd", unevenCloud(10, 2));
+  std::vector<fs::path> told;
+  MakeOptions options;
+  options.remark = [&](const fs::path& file, const std::vector<std::string>& remarks) {
+    EXPECT_THAT(remarks, testing::ElementsAre(HasSubstr("its first column counts up by one")));
+    told.push_back(file);
+  };
+  const Site plain = makeSite({folder / "a.pcd", counted}, folder / "plain", options);
+  EXPECT_THAT(told, testing::ElementsAre(counted));
+  options.columns = [&](const fs::path& file) {
+    return file == counted ? std::vector<std::string>{"_", "x", "y", "z"} : std::vector<std::string>();
+  };
+  const Site named = makeSite({counted}, folder / "named", options);
+  EXPECT_EQ(named.bounds->low, (Point3{2.5, 3.5, 4.5}));
+  EXPECT_EQ(told.size(), 1U) << "names are no guess";
+}
+
+TEST(MakeSite, ClearsNothingButWhatIsItsOwn)
+{
+  const files::TemporaryFolder folder;
+  writeBinary(folder / "a.pcd", unevenCloud(3000, 2));
+  const fs::path place = folder / "site";
+  const auto begin = [&] {
+    fs::remove_all(place);
+    fs::create_directories(place / "tiles");
+    folder.write("site/unfinished_site", "");
+  };
+  begin();
+  const std::vector<std::string> users = {"tile_00000.pcd", "tile_00000x.pcd", "tile_000000.txt",
+                                          "tile_000000",    "file_000000.pcd", "tile_000000.pcd.part0"};
+  for (const std::string& name : users) folder.write("site/tiles/" + name, "the user's");
+  for (const char* const name : {"tiles/tile_000009.answer", "tiles/tile_000009.answer.part0", "tiles/tile_1234567.pcd",
+                                 "overview.pcd", "unfinished_site.plan", "unfinished_site.state.part1"})
+    folder.write(std::string("site/") + name, "left");
+  makeSite({folder / "a.pcd"}, place);
+  checkSite(readSite(place));
+  for (const std::string& name : users) EXPECT_EQ(files::contentOf(place / "tiles" / name), "the user's") << name;
+  std::size_t found = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(place)) found += entry.is_regular_file() ? 1U : 0U;
+  EXPECT_EQ(found, users.size() + 4) << "two tiles, the overview and site.json";
+
+  begin(); // a folder of the user's in the place of a tile
+  fs::create_directories(place / "tiles/tile_000003.pcd/letters");
+  for (int again = 0; again < 2; ++again) // which is free again for who goes on
+    expectRefused(folder.path(), "cannot be cleared (Directory not empty): name a new folder",
+                  [&] { makeSite({folder / "a.pcd"}, place); });
+
+  begin(); // a way to a folder of the user's
+  fs::create_directory(folder / "mine");
+  folder.write("mine/tile_000000.pcd", "the user's");
+  fs::remove(place / "tiles");
+  fs::create_directory_symlink(folder / "mine", place / "tiles");
+  EXPECT_THROW(makeSite({folder / "a.pcd"}, place), files::FileError);
+  EXPECT_EQ(files::contentOf(folder / "mine/tile_000000.pcd"), "the user's");
+
+  begin();
+  const int mark = ::open((place / "unfinished_site").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(mark, LOCK_EX), 0);
+  expectRefused(folder.path(), "another program makes a site there: wait for it, or name a new folder",
+                [&] { makeSite({folder / "a.pcd"}, place); });
+  ::close(mark);
+  EXPECT_NO_THROW(makeSite({folder / "a.pcd"}, place));
+}
+
+TEST(TileFiles, AreWrittenBufferByBuffer)
+{
+  const files::TemporaryFolder folder;
+  const Cloud cloud = unevenCloud(10, 4);
+  for (const std::size_t buffer : {std::size_t{1}, 3 * std::size_t{cloud.point_step}, std::size_t{1} << 20}) {
+    const fs::path path = folder / ("tile" + std::to_string(buffer) + ".pcd");
+    files::NewFile file(path);
+    TileFile tile(file, cloud.fields, buffer);
+    for (std::size_t i = 0; i < cloud.width; ++i) {
+      tile.add(&cloud.data[i * cloud.point_step], cloud.point_step);
+      // Never more than the buffer is waiting.
+      const std::uint64_t waiting = TileFile::bytesOf(cloud.fields, i + 1) - fs::file_size(path);
+      EXPECT_LE(waiting, std::max<std::uint64_t>(buffer, cloud.point_step));
+    }
+    tile.finish();
+    file.keep();
+    EXPECT_EQ(tile.points(), 10U);
+    io::expectSame(io::readCloud(path), cloud);
+  }
+}
+
+TEST(TileFiles, TakeTheirBytesAndABlockEach)
+{
+  const Cloud cloud = unevenCloud(1, 4); // 14 bytes
+  EXPECT_EQ(diskSpaceOf(cloud.fields, 1000, 7, 100), 1100U * 14 + 9 * 4096);
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / 2;
+  EXPECT_EQ(diskSpaceOf(cloud.fields, most / 14, 0, 0), most / 14 * 14 + 2 * 4096);
+  EXPECT_EQ(diskSpaceOf(cloud.fields, most / 14 + 1, 0, 0), most + 2 * 4096) << "and no overflow";
 }
 
 TEST(MakeSite, BeginsAgainWhereOneWasKilled)
@@ -383,6 +555,47 @@ TEST(DensityTree, FindsTheSameTileAfterAnyOtherPoint)
     std::shuffle(expected.begin(), expected.end(), random);
     for (const auto& [point, tile] : expected) ASSERT_EQ(tree.tileOf(point), tile);
   }
+}
+
+/// Where nobody was counted, there is no tile but the first.
+TEST(DensityTree, FindsTheFirstTileInAnEmptyOctant)
+{
+  DensityTree tree(2);
+  for (int i = 0; i < 40; ++i) tree.add({1.0 + i, 2.0, 3.0});
+  EXPECT_GT(tree.plan(), 10U);
+  EXPECT_EQ(tree.tileOf({-1, 2, 3}), 0U);
+}
+
+TEST(DensityTree, APlanIsReadAsItWasWrittenOrRefused)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Point3> points(300);
+  for (Point3& point : points)
+    for (double& c : point) c = unit(random);
+  DensityTree tree(10);
+  for (const Point3& point : points) tree.add(point);
+  tree.plan();
+  const std::vector<std::uint32_t> numbers = tree.planned();
+  DensityTree read = DensityTree::fromPlanned(numbers);
+  EXPECT_EQ(read.planned(), numbers);
+  for (const Point3& point : points) EXPECT_EQ(read.tileOf(point), tree.tileOf(point));
+
+  constexpr std::size_t head = 17, per_cell = 10;
+  const auto cells = static_cast<std::uint32_t>((numbers.size() - head) / per_cell);
+  const auto expectRefusal = [](const std::vector<std::uint32_t>& wrong) {
+    EXPECT_THROW(DensityTree::fromPlanned(wrong), std::invalid_argument);
+  };
+  for (const std::size_t size : {std::size_t{0}, head - per_cell, head - 1, numbers.size() - 1})
+    expectRefusal({numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(size)});
+  for (const std::size_t place : {std::size_t{1}, std::size_t{15}, head, head + 7, numbers.size() - 3}) {
+    std::vector<std::uint32_t> wrong = numbers;
+    wrong[place] = cells; // roots and parts of cells: one behind the last
+    expectRefusal(wrong);
+    wrong[place] = cells - 1;
+    EXPECT_NO_THROW(DensityTree::fromPlanned(wrong)) << place;
+  }
+  EXPECT_EQ(DensityTree::fromPlanned(DensityTree(10).planned()).planned(), DensityTree(10).planned()) << "of nothing";
 }
 
 TEST(DensityTree, TakesAnyPlace)

@@ -207,35 +207,32 @@ void UnfinishedSite::save(const std::string& state)
 
 void UnfinishedSite::mark()
 {
-  mark_ = open((folder() / mark_name).c_str(), O_RDWR | O_CLOEXEC);
-  if (mark_ < 0 && errno != ENOENT) files::failToWrite(folder() / mark_name, errno);
-  if (mark_ < 0 || flock(mark_, LOCK_EX | LOCK_NB) != 0) {
-    if (mark_ >= 0) close(mark_);
-    mark_ = -1;
+  mark_.file = open((folder() / mark_name).c_str(), O_RDWR | O_CLOEXEC);
+  if (mark_.file < 0 && errno != ENOENT) files::failToWrite(folder() / mark_name, errno);
+  if (mark_.file < 0 || flock(mark_.file, LOCK_EX | LOCK_NB) != 0)
     throw files::FileError(folder(), "another program makes a site there", "wait for it, or name a new folder");
-  }
   // It may have been complete before the lock was ours, and its mark be gone.
   struct stat locked = {}, named = {};
-  const bool is_there = fstat(mark_, &locked) == 0 && stat((folder() / mark_name).c_str(), &named) == 0 &&
+  const bool is_there = fstat(mark_.file, &locked) == 0 && stat((folder() / mark_name).c_str(), &named) == 0 &&
                         locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;
   std::error_code error;
-  if (!is_there || fs::exists(folder() / site_file_name, error)) {
-    close(mark_);
-    mark_ = -1;
+  if (!is_there || fs::exists(folder() / site_file_name, error))
     throw files::FileError(folder(), "another program has made a site there", "name a new folder");
-  }
+}
+
+UnfinishedSite::Mark::~Mark()
+{
+  if (file >= 0) close(file);
 }
 
 UnfinishedSite::~UnfinishedSite()
 {
   files_.clear();
   tiles_.reset();
-  if (mark_ < 0) return;
   if (finished_ || !stays_) {
     std::error_code ignored;
     for (const char* name : {state_name, plan_name, mark_name}) fs::remove(folder() / name, ignored);
   }
-  close(mark_);
 }
 
 files::NewFile& UnfinishedSite::add(const fs::path& name)

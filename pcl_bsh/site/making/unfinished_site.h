@@ -78,8 +78,18 @@ private:
   void clear();
   void keepMark();
 
+  /// Open and locked while the site is made. Closed also where the constructor throws: a caller that goes on is not
+  /// taken for another program that makes a site there.
+  struct Mark {
+    int file = -1;
+    Mark() = default;
+    ~Mark();
+    Mark(const Mark&) = delete;
+    Mark& operator=(const Mark&) = delete;
+  };
+
   files::OutputFolder folder_;
-  int mark_ = -1; ///< open and locked while the site is made
+  Mark mark_;
   bool stays_ = false, was_saved_ = false, finished_ = false;
   std::unique_ptr<files::NewFile> mark_file_;
   std::unique_ptr<files::OutputFolder> tiles_;
