@@ -63,6 +63,7 @@ public:
 private:
   void fill(std::uint64_t begin, std::uint64_t end)
   {
+    std::vector<bool> is_filled(end - begin, false);
     std::uint64_t filled = 0;
     pcl::PCLPointCloud2 cloud;
     for (const Tile& tile : site_.tiles) {
@@ -75,7 +76,8 @@ private:
         const std::uint64_t number = begins_[source] + record;
         if (number < begin || number >= end) continue;
         copy_(bytes, window_.data() + (number - begin) * layout_.point_step);
-        ++filled;
+        filled += is_filled[number - begin] ? 0 : 1; // a record that is there twice hides no other one
+        is_filled[number - begin] = true;
       }
     }
     if (filled != end - begin)

@@ -7,9 +7,18 @@
 
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/site/check_site.h>
+#include <pcl_bsh/site/export_site.h>
 #include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/making/make_state.h>
+#include <pcl_bsh/site/tiles/checksum.h>
+#include <pcl_bsh/site/tiles/records.h>
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/site/result_site.h>
+#endif
 
 #include <gmock/gmock.h>
 
@@ -61,8 +70,162 @@ protected:
     folder.write("site/site.json", text.replace(at, what.size(), by));
   }
 
+  /// Writes another site.json. @return the site as it was
+  template <typename Change>
+  Site document(Site site, const Change& change) const
+  {
+    const Site before = site;
+    change(site);
+    folder.write("site/site.json", siteText(site));
+    return before;
+  }
+
   files::TemporaryFolder folder;
 };
+
+/// A tile whose checksum is right, which is not what the site was made with: each point is there once, in its order.
+TEST_F(SiteFaults, TilesThatLie)
+{
+  const Site made = make();
+  const pcl::PCLPointCloud2 points = readTile(made, made.tiles[1]);
+  const PointNames names(points);
+  const auto rewrite = [&](const auto& change) {
+    pcl::PCLPointCloud2 cloud = points;
+    change(cloud.data.data(), cloud.data.data() + cloud.point_step);
+    folder.write("site/" + made.tiles[1].file,
+                 io::binaryPcdHeader(made.fields, cloud.width) + std::string(cloud.data.begin(), cloud.data.end()));
+    document(made, [&](Site& site) { site.tiles[1].crc32 = crcOf(cloud.data); });
+  };
+  const auto expectNoExport = [&] {
+    try {
+      exportCloud(readSite(made.folder), folder / "all.pcd");
+      ADD_FAILURE();
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("its tiles do not hold each record once: make the site again"));
+    }
+    EXPECT_FALSE(fs::exists(folder / "all.pcd"));
+  };
+  const SitePoint first = names(points.data.data()), second = names(points.data.data() + points.point_step);
+  rewrite([&](std::uint8_t*, std::uint8_t*) {});
+  EXPECT_NO_THROW(checkSite(readSite(made.folder)));
+  rewrite([&](std::uint8_t* record, std::uint8_t*) { names.set(record, {0, 20000}); });
+  expectDefect("has record 20000 of source 0, which there is not");
+  expectNoExport();
+  rewrite([&](std::uint8_t* record, std::uint8_t*) { names.set(record, {1, 0}); });
+  expectDefect("has record 0 of source 1, which there is not");
+  expectNoExport();
+  rewrite([&](std::uint8_t* record, std::uint8_t*) { names.set(record, second); });
+  expectDefect("has record " + std::to_string(second.record) + " of source 0, which is there twice");
+  expectNoExport();
+  rewrite([&](std::uint8_t* record, std::uint8_t* next) {
+    names.set(record, second);
+    names.set(next, first);
+  });
+  expectDefect("its points are not in the order of their sources and records");
+  EXPECT_NO_THROW(exportCloud(readSite(made.folder), folder / "all.pcd")) << "which has an order of its own";
+}
+
+TEST_F(SiteFaults, BoundsThatLie)
+{
+  const Site made = make();
+  const std::string of_tile = "its points have other bounds than site.json says",
+                    of_site = "site.json: its bounds are not those of its tiles: make the site again";
+  for (const double by : {-1.0, 1.0}) {
+    document(made, [&](Site& site) { (by < 0 ? site.tiles[1].bounds->low : site.tiles[1].bounds->high)[1] += by; });
+    expectDefect(made.tiles[1].file + ": " + of_tile);
+    document(made, [&](Site& site) { (by < 0 ? site.bounds->low : site.bounds->high)[1] += by; });
+    expectDefect(of_site);
+  }
+  document(made, [](Site& site) { site.tiles[1].bounds.reset(); });
+  expectDefect(of_tile);
+  document(made, [](Site& site) { site.bounds.reset(); });
+  expectDefect(of_site);
+  for (const std::size_t k : {0U, 1U, 2U}) {
+    document(made, [&](Site& site) { site.tiles[1].bounds->high[k] = site.tiles[1].bounds->low[k] - 1; });
+    expectDefect("the low corner lies above the high one");
+  }
+}
+
+TEST_F(SiteFaults, ChecksAndExportsTellHowFarTheyAre)
+{
+  const Site made = make();
+  std::vector<std::uint64_t> told;
+  const auto go_on = [&](std::uint64_t done, std::uint64_t all) {
+    EXPECT_EQ(all, 20000U);
+    told.push_back(done);
+    return true;
+  };
+  const auto stop = [](std::uint64_t done, std::uint64_t) { return done < 15000; };
+  checkSite(made, go_on);
+  std::uint64_t sum = 0;
+  ASSERT_EQ(told.size(), made.tiles.size());
+  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], sum += made.tiles[i].points);
+  EXPECT_THROW(checkSite(made, stop), Cancelled);
+  ExportOptions options;
+  options.memory = 2 * 6000 * recordBytes(made);
+  options.progress = go_on;
+  told.clear();
+  exportCloud(made, folder / "all.pcd", options);
+  EXPECT_THAT(told, testing::ElementsAre(6000, 12000, 18000, 20000));
+  options.progress = stop;
+  EXPECT_THROW(exportCloud(made, folder / "new.pcd", options), Cancelled);
+  EXPECT_FALSE(fs::exists(folder / "new.pcd"));
+}
+
+TEST_F(SiteFaults, ExportsThatCannotBe)
+{
+  Site site = make();
+  const auto refuse = [&](const std::string& name, const std::string& words) {
+    try {
+      exportCloud(site, folder / name);
+      ADD_FAILURE() << words;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(name + ": " + words));
+    }
+    EXPECT_FALSE(fs::exists(folder / name));
+  };
+  refuse("all.ply", "is not the name of a .pcd file, which is what sites are exported to: name a .pcd file");
+  site.sources[0].points = std::uint64_t{1} << 31;
+  refuse("all.pcd", "would have more than 2147483647 points: export the sources one by one");
+}
+
+TEST_F(SiteFaults, FoldersThatAreNoSite)
+{
+  fs::create_directory(folder / "empty");
+  for (const auto& [name, words] : {std::pair{"none", "none: is no folder: name the folder of a site"},
+                                    {"scan.xyz", "scan.xyz: is no folder"},
+                                    {"empty", "empty: is no site: it has no site.json"}}) {
+    try {
+      readSite(folder / name);
+      ADD_FAILURE() << name;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(words));
+    }
+  }
+}
+
+TEST_F(SiteFaults, FieldsThatLie)
+{
+  const Site made = make();
+  const auto defect = [&](const std::string& name, std::uint8_t datatype, std::uint32_t count,
+                          const std::string& words) {
+    document(made, [&](Site& site) {
+      for (auto& field : site.fields)
+        if (field.name == name) field.datatype = datatype, field.count = count;
+    });
+    expectDefect(words);
+  };
+  using Field = pcl::PCLPointField;
+  for (const std::string own : {"source", "record"}) {
+    defect(own, Field::INT32, 1, "there is no field '" + own + "' of type uint32");
+    defect(own, Field::UINT32, 2, "there is no field '" + own + "' of type uint32");
+  }
+  defect("y", Field::INT32, 1, "make the site again");
+  defect("y", made.fields[0].datatype == Field::FLOAT32 ? Field::FLOAT64 : Field::FLOAT32, 1, "make the site again");
+}
 
 TEST_F(SiteFaults, Tiles)
 {
@@ -102,6 +265,10 @@ TEST_F(SiteFaults, Documents)
   };
   each("\"version\": 3", "\"version\": 4", "version: this program reads versions 1 to 3");
   each("\"version\": 3", "\"version\": 0", "version: this program reads versions 1 to 3");
+  each("\"version\": 3", "\"version\": \"3\"", "version");
+  each("\"version\": 3,", "", "version");
+  folder.write("site/site.json", "[3]");
+  expectDefect("site.json");
   each("tiles/tile_000001.pcd", "../scan.xyz", "tiles[1].file: '../scan.xyz' leaves the folder");
   each("tiles/tile_000001.pcd", "/etc/passwd", "leaves the folder");
   each("tiles/tile_000001.pcd", "tiles/../../scan.xyz", "leaves the folder");
@@ -213,6 +380,11 @@ TEST_F(SiteFaults, AnOverviewOfOtherFields)
   std::string other = overview;
   other.replace(other.find("record"), 6, "rekord");
   folder.write("site/overview.pcd", other);
+  expectDefect("overview.pcd: has other fields than the site says");
+  other = overview;
+  const std::size_t types = other.find("TYPE F F F U U");
+  ASSERT_NE(types, std::string::npos);
+  folder.write("site/overview.pcd", other.replace(types, 14, "TYPE F F F U I"));
   expectDefect("overview.pcd: has other fields than the site says");
   fs::remove(site.folder / overview_file_name); // sites may be made without
   EXPECT_NO_THROW(checkSite(readSite(folder / "site")));
@@ -337,6 +509,19 @@ TEST_F(SitesContinued, IsRefusedForAnotherQuestionOrDamage)
   };
   const auto put = [&](const std::string& name, const std::string& bytes) { folder.write("site/" + name, bytes); };
 
+  EXPECT_TRUE(isBegun(folder / "site"));
+#ifdef PCL_BSH_SITE_QUERIES
+  try {
+    ResultSite(makeSite({folder / "scan.xyz"}, folder / "other"), folder / "site", {});
+    ADD_FAILURE();
+  }
+  catch (const files::FileError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("holds a site that is not complete: repeat the command that makes it to go on"));
+  }
+#endif
+  EXPECT_TRUE(contentsOf(folder / "site") == left);
+
   --options.tile_points;
   refuse("of other clouds or options");
   EXPECT_TRUE(contentsOf(folder / "site") == left);
@@ -351,6 +536,15 @@ TEST_F(SitesContinued, IsRefusedForAnotherQuestionOrDamage)
   refuse("is damaged");
   put("unfinished_site.state", "{}");
   refuse("is damaged");
+  io::Json changed = io::Json::parse(state);
+  changed["open"][0] = changed["files"].size();
+  put("unfinished_site.state", changed.dump());
+  refuse("is damaged");
+  changed = io::Json::parse(state);
+  for (std::size_t i = 0; i <= changed["files"].size(); ++i)
+    changed["measured"][i] = {nullptr, 0.0, 0, io::Json::object()};
+  put("unfinished_site.state", changed.dump());
+  refuse("is damaged");
   put("unfinished_site.state", state);
   std::string wrong = plan;
   wrong[wrong.size() / 2] ^= 1;
@@ -364,6 +558,42 @@ TEST_F(SitesContinued, IsRefusedForAnotherQuestionOrDamage)
   EXPECT_NO_THROW(checkSite(readSite(folder / "site")));
   EXPECT_FALSE(fs::exists(folder / "site/unfinished_site"));
   EXPECT_FALSE(fs::exists(folder / "site/unfinished_site.state"));
+  EXPECT_FALSE(isBegun(folder / "site"));
+}
+
+/// Nothing has a place, or a tile has none.
+TEST(MakeState, IsReadAsItWasWritten)
+{
+  const files::TemporaryFolder folder;
+  MakeState state;
+  state.plan_crc32 = 1;
+  state.source = 2;
+  state.record = 3;
+  state.dealt = 4;
+  state.overview = 5;
+  state.files = {6, 7};
+  state.open = {std::nullopt, 1, 0};
+  state.measured.resize(2);
+  state.measured[1].bounds = Bounds{{1, 2, 3}, {4, 5, 6}};
+  state.measured[1].spacing = 0.5;
+  state.measured[1].crc32 = 8;
+  state.measured[1].greatest["intensity"] = 9.5;
+  const io::Json question = {{"asked", 1}};
+  for (const std::optional<Bounds>& bounds : {std::optional<Bounds>(), std::optional(Bounds{{0, 1, 2}, {3, 4, 5}})}) {
+    state.bounds = bounds;
+    const MakeState read = readState(folder.write("state", stateText(state, question)), question);
+    EXPECT_EQ(stateText(read, question), stateText(state, question));
+    ASSERT_EQ(read.bounds.has_value(), bounds.has_value());
+    if (bounds) {
+      EXPECT_EQ(read.bounds->high, bounds->high);
+    }
+    EXPECT_FALSE(read.measured[0].bounds);
+    EXPECT_EQ(read.measured[1].bounds->low, (Point3{1, 2, 3}));
+    EXPECT_EQ(read.open[1], 1U);
+  }
+  const std::string bytes = planBytes({1, 2, 3});
+  EXPECT_EQ(readPlan(folder.write("plan", bytes), crcOf(bytes)), (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_THROW(readPlan(folder.write("plan", bytes + "4"), crcOf(bytes + "4")), files::FileError);
 }
 
 /// A disk that was full, or a stop that the caller wanted: the folder says so, and goes on.
