@@ -372,6 +372,25 @@ TEST_F(CollideSite, RefusesWithoutATileToAsk)
   EXPECT_THROW(collideAlong(site, other, {bad.pose}, {}), std::invalid_argument);
 }
 
+/// No tile can be near to it, whatever the distance.
+TEST_F(CollideSite, NothingIsNearACloudWithoutPoints)
+{
+  io::writeCloud(folder / "a.pcd", float64Cloud(randomScene(2).a));
+  MakeOptions options;
+  options.tile_points = 40;
+  const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
+  const SphereHierarchy nothing{PointsView{}};
+  const SiteClosest closest = closestPair(site, nothing, {});
+  EXPECT_FALSE(closest.point);
+  EXPECT_EQ(closest.distance, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(closest.tiles.needed, 0U);
+  EXPECT_EQ(closest.tiles.read, 0U);
+  const SiteDistances distances = pointDistances(site, nothing, std::numeric_limits<double>::infinity(), {});
+  EXPECT_EQ(distances.measured, 0U);
+  EXPECT_EQ(distances.tiles.needed, 0U);
+  EXPECT_EQ(anyCollision(site, nothing, {}).verdict, Verdict::free);
+}
+
 /// From far away, one tile is enough.
 TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
 {

@@ -11,6 +11,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/site/check_site.h>
 #include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/site_clashes.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/site/collide_site.h>
@@ -287,6 +288,60 @@ TEST_F(CollideSites, AlongAPathOfTies)
       poses.push_back(Eigen::Isometry3d(Eigen::Translation3d(k - 20, 0, 1.0 + differs * (k * 7 % 40))));
     expectSamePassage(row, body, poses, 1.25, 0.0);
   }
+}
+
+/// At one pose two tiles of the body are as near: the smaller point counts, whichever tile comes first.
+TEST_F(CollideSites, OfTilesAsNearTheSmallerPointCounts)
+{
+  const Points row = {{0, 0, 0}};
+  for (const double side : {-1.0, 1.0}) {
+    Points body;
+    for (int k = 0; k < 2; ++k)
+      for (int i = 0; i < 40; ++i) body.push_back({(k == 0 ? side : -side) * (1.0 + 0.1 * i), 0, 0});
+    const Site site = siteOf("a", row, 100), other = siteOf("b", body, 40);
+    ASSERT_GT(other.tiles.size(), 1U);
+    SiteRequest request;
+    request.clearance = 1.0;
+    ClashFinder finder(site, 1.0);
+    request.clashes = &finder;
+    const SitePassage passage = collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request);
+    EXPECT_EQ(passage.colliding, 1U);
+    const SiteClashes found = finder.finish();
+    ASSERT_EQ(found.clashes.size(), 1U);
+    const MetPoint& met = found.met.at(found.clashes[0].model_point);
+    EXPECT_EQ(met.point, (SitePoint{0, 0})) << side;
+    EXPECT_EQ(met.place, body[0]) << side;
+  }
+}
+
+/// Without distances flags alone are joined; and a site of nothing meets nothing.
+TEST_F(CollideSites, AlongAPathWithoutDistances)
+{
+  const Points a = floorOf(400, 20), body = floorOf(100, 21);
+  const Site site = siteOf("a", a, 60), other = siteOf("b", body, 30), none = siteOf("c", {}, 30);
+  const std::vector<Eigen::Isometry3d> poses = pathOver(3, 1.5, 0.3, 0.3);
+  SiteRequest request;
+  request.clearance = 0.3;
+  request.accuracy = Accuracy::parse("level=2");
+  const SphereHierarchy all(viewOf(a.front().data(), a.size())), model(viewOf(body.front().data(), body.size()));
+  TrajectoryRequest exact;
+  exact.clearance = 0.3;
+  const std::vector<Verdict> truth = pcl_bsh::collideAlong({all}, model, poses, exact).flags;
+  std::vector<Verdict> found(a.size(), Verdict::free);
+  const SitePassage passage = collideAlong(site, other, {}, poses, request,
+                                           [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+                                             EXPECT_TRUE(result.distance.empty());
+                                             EXPECT_TRUE(result.closest_point.empty());
+                                             for (std::uint32_t i = 0; i < cloud.width; ++i)
+                                               found[placeOf(cloud, i, a)] = result.flags[i];
+                                           });
+  EXPECT_GT(passage.colliding + passage.undecided, 0U);
+  EXPECT_TRUE(std::isnan(passage.distance));
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(truth[i] == Verdict::free || found[i] != Verdict::free) << i;
+  request.accuracy = {};
+  EXPECT_EQ(collideAlong(none, other, {}, poses, request).colliding, 0U);
+  EXPECT_EQ(collideAlong(site, none, {}, poses, request).colliding, 0U);
+  EXPECT_EQ(collideAlong(none, model, poses, request).colliding, 0U);
 }
 
 TEST_F(CollideSites, AlongAPathOfSweptMotion)

@@ -257,6 +257,55 @@ TEST_F(SiteResults, RefuseWhatTheyMustNotWriteOver)
   EXPECT_FALSE(fs::exists(folder / "new"));
 }
 
+TEST_F(SiteResults, RefuseFieldsAndPointsThatAreNotAsTheyMustBe)
+{
+  const auto expectRefusal = [](const std::string& words, const auto& call) {
+    try {
+      call();
+      ADD_FAILURE() << words;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(words));
+    }
+  };
+  Cloud pairs;
+  for (const char* axis : {"x", "y", "z"}) io::addField(pairs, axis, io::Field::FLOAT32);
+  io::addField(pairs, "collision", io::Field::UINT8, 2);
+  io::allocate(pairs, 3);
+  io::writeCloud(folder / "pairs.pcd", pairs);
+  const Site of_pairs = makeSite({folder / "pairs.pcd"}, folder / "pairs");
+  expectRefusal("its field 'collision' has another type than the results", [&] {
+    ResultSite(of_pairs, folder / "new", {{"collision", io::Field::UINT8, 0}});
+  });
+  EXPECT_FALSE(fs::exists(folder / "new"));
+
+  Cloud cloud = readTile(site, site.tiles[0]);
+  const std::uint32_t source = 1; // there is 0 alone
+  for (const auto& field : cloud.fields)
+    if (field.name == source_field_name) std::memcpy(&cloud.data[field.offset], &source, sizeof source);
+  ResultSite results(site, folder / "new", {});
+  expectRefusal(site.tiles[0].file + ": has a point of source 1, which there is not: make the site again",
+                [&] { results.write(site.tiles[0], cloud, {}); });
+}
+
+TEST_F(SiteResults, OfNothing)
+{
+  Cloud nothing;
+  for (const char* axis : {"x", "y", "z"}) io::addField(nothing, axis, io::Field::FLOAT32);
+  io::allocate(nothing, 0);
+  io::writeCloud(folder / "nothing.pcd", nothing);
+  const Site empty = makeSite({folder / "nothing.pcd"}, folder / "empty");
+  ResultSite results(empty, folder / "out", {{"collision", io::Field::UINT8, 0}});
+  EXPECT_EQ(results.answers(), nullptr) << "nothing is kept without a question";
+  EXPECT_EQ(results.thrownAway(), 0U);
+  results.finish();
+  EXPECT_NO_THROW(checkSite(readSite(folder / "out")));
+  EXPECT_FALSE(fs::exists(folder / "out" / overview_file_name));
+  EXPECT_EQ(spaceWanted(empty, folder / "out2", {{"collision", io::Field::UINT8, 0}}), 2U * 4096);
+  EXPECT_EQ(spaceWanted(site, folder / "out2", {{"collision", io::Field::UINT8, 0}}),
+            16000U * (recordBytes(site) + 1) + (site.tiles.size() + 2) * 4096);
+}
+
 /// A tile that is damaged, and a disk that is full, leave nothing; a run that is killed a folder that says so.
 TEST_F(SiteResults, AreWholeOrNotThere)
 {

@@ -222,6 +222,20 @@ TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
   expectRead(whole.tiles.read);
 
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
+  const auto put = [&](std::size_t number, const Json& json) {
+    const auto bytes = Json::to_cbor(json);
+    std::ofstream(answers()[number], std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  put(0, Json::array({1, 2}));
+  put(1, Json::object());
+  put(2, {{"question", "where?"}});
+  tile = answers()[3];
+  tile.replace_extension(".pcd");
+  fs::resize_file(tile, fs::file_size(tile) - 1);
+  expectRead(whole.tiles.read);
+
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 4));
   const std::string answer = files::contentOf(answers()[0]);
   Json json = Json::from_cbor(answer);
   json["numbers"][0] = json["numbers"][0].get<double>() + 1;
@@ -453,6 +467,19 @@ TEST_F(ResumedSite, SaysWhatIsThrownAway)
   EXPECT_THAT(anew.err, HasSubstr(warning(4)));
   EXPECT_THAT(Json::parse(files::contentOf(folder / "r.json"))["warnings"][0].get<std::string>(),
               HasSubstr("is thrown away"));
+  fs::remove_all(folder / "out");
+
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 3));
+  EXPECT_EQ(ResultSite(site, folder / "out", {}, {"where?", false}).thrownAway(), 3U);
+  fs::remove_all(folder / "out");
+  ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, 3));
+  EXPECT_EQ(ResultSite(site, folder / "out",
+                       {{"collision", pcl::PCLPointField::UINT8, 0.0},
+                        {"distance", pcl::PCLPointField::FLOAT32, std::numeric_limits<double>::quiet_NaN()}},
+                       {"where?", true})
+                .thrownAway(),
+            0U)
+      << "goes on with them";
   fs::remove_all(folder / "out");
 
   // Nothing is thrown away: where no tile was answered, and where another program has the folder.

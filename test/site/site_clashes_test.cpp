@@ -249,6 +249,23 @@ TEST_F(SiteClashList, NothingCollides)
   expectSame(scene, 0);
 }
 
+TEST(SiteSpacing, IsTheMedianOfItsPoints)
+{
+  Site site;
+  EXPECT_EQ(spacingOf(site), 0.0);
+  const auto add = [&](double spacing, std::uint64_t points) {
+    Tile tile;
+    tile.spacing = spacing;
+    tile.points = points;
+    site.tiles.push_back(tile);
+    return spacingOf(site);
+  };
+  EXPECT_EQ(add(3.0, 10), 3.0);
+  EXPECT_EQ(add(1.0, 10), 1.0) << "of two halves the smaller";
+  EXPECT_EQ(add(2.0, 1), 2.0);
+  EXPECT_EQ(add(4.0, 22), 4.0);
+}
+
 TEST_F(SiteClashList, RefusesADistance)
 {
   const std::vector<Point3> point = {{0, 0, 0}};

@@ -222,6 +222,32 @@ TEST_F(SurfaceSite, SolidsAreThoseOfMemory)
   for (const char* field : {"collision", "first_pose"}) expectSame("out", "m.pcd", field);
 }
 
+/// As the whole cloud: of tiles inside, whose boxes meet that of the solid, the deepest point counts.
+TEST_F(SurfaceSite, TheClosestPairOfASolidIsThatOfMemory)
+{
+  const pcl::PCLPointCloud2 scan = io::readCloud(folder / "scan.pcd");
+  const io::Mesh mesh = io::readMesh(folder / "crate.off");
+  for (const double up : {0.0, 0.5, 40.0}) {
+    SCOPED_TRACE(up);
+    pcl_bsh::Shape cloud("the input", viewOf(scan)),
+        crate("the obstacle", viewOf(trianglesOf(viewOf(mesh.vertices),
+                                                 std::make_shared<const std::vector<Triangle>>(mesh.triangles))));
+    const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, up));
+    Question question;
+    question.solid = true;
+    question.wanted.closest = true;
+    question.pose = pose;
+    const Answer wanted = pcl_bsh::ask(question, cloud, crate);
+    SiteRequest request;
+    request.solid = &crate;
+    const SiteClosest found = closestPair(site, Placed(crate.hierarchy(), pose), request);
+    EXPECT_EQ(found.distance, wanted.closest.distance);
+    EXPECT_EQ(found.distance < 0.0, up < 10.0);
+    ASSERT_TRUE(found.point && wanted.closest.pair);
+    EXPECT_EQ(found.point->record, wanted.closest.pair->a);
+  }
+}
+
 /// Near the surface what a solid holds is certain or not by the clearance, too.
 TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
 {
