@@ -548,7 +548,8 @@ TEST(Stages, TransformTurnsNormalsOfAnyRealType)
   EXPECT_TRUE(turned({wide, wide, wide}, 1, before).isApprox(after, 1e-15));
   EXPECT_TRUE(turned({wide, wide, wide}, 0, before).isApprox(after, 1e-15)) << "one, as PCL once wrote it";
   EXPECT_EQ(turned({narrow, narrow, narrow}, 2, before), before) << "two values";
-  EXPECT_EQ(turned({Field::INT16, Field::INT16, Field::INT16}, 1, before), before);
+  const Eigen::Vector3d whole(2, 1 << 30, 5); // whose bytes would pass for a double of 2
+  EXPECT_EQ(turned({Field::INT32, Field::INT32, Field::INT32}, 1, whole), whole);
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<std::uint8_t, 3> types = {narrow, narrow, narrow};
     types[k] = wide;
@@ -588,7 +589,8 @@ TEST(Stages, VoxelGridKnowsColoursAndNormals)
   };
   const double half = std::sqrt(0.5);
   EXPECT_TRUE(normalOf(Field::FLOAT32, {1, 0, 0}, {0, 1, 0}).isApprox(Eigen::Vector3d(half, half, 0), 1e-6));
-  EXPECT_EQ(normalOf(Field::FLOAT64, {1, 0, 0}, {0, 1, 0}), Eigen::Vector3d(0.5, 0.5, 0));
+  EXPECT_EQ(normalOf(Field::FLOAT64, {0.1, 0.2, 0}, {0.3, 0.7, 0}),
+            Eigen::Vector3d(0.1 + (0.3 - 0.1) / 2, 0.2 + (0.7 - 0.2) / 2, 0));
   EXPECT_EQ(normalOf(Field::FLOAT32, {1, 0, 0}, {-1, 0, 0}), Eigen::Vector3d::Zero()) << "not the length of nothing";
 }
 
