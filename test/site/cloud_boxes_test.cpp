@@ -188,6 +188,17 @@ TEST(CloudBoxes, OfFewPoints)
   EXPECT_EQ(CloudBoxes(line.view()).parts().size(), 3U) << "cells of 1 along it, and one across";
 }
 
+/// No grid divides what is longer than any number.
+TEST(CloudBoxes, OfPointsAsFarApartAsNumbersGo)
+{
+  const double far = 1.7e308;
+  const double ends[] = {-far, 1, 2, far, 1, 2, 0, 1, 2};
+  const CloudBoxes boxes(viewOf(ends, 3));
+  ASSERT_EQ(boxes.parts().size(), 1U);
+  EXPECT_LE(boxes.whole().low[0], -far);
+  EXPECT_GE(boxes.whole().high[0], far);
+}
+
 /// A box is reached where a point of the model is within the distance of a place in it, at a pose or on the way.
 TEST(PathBoxes, MissNothingAtPosesAndBetween)
 {

@@ -16,6 +16,7 @@
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/hollow_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/result_site.h>
 
@@ -26,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <random>
 #include <thread>
 
@@ -340,6 +342,45 @@ TEST_F(SurfaceSite, TellsWhereFacesCloseRoundThePoints)
   const std::string open = std::string(large).replace(large.find("8 6 0"), 5, "8 5 0");
   folder.write("large.off", open);
   EXPECT_FALSE(warned("--clearance 0.1" + in));
+}
+
+TEST_F(SurfaceSite, WarnsOfWhatIsHollowWhereNothingIsNear)
+{
+  const io::Mesh mesh = io::readMesh(folder / "crate.off");
+  pcl::PCLPointCloud2 corners = mesh.vertices;
+  for (std::size_t i = 0; i < corners.width; ++i) { // sixty metres wide
+    double p[3];
+    std::memcpy(p, &corners.data[i * corners.point_step], sizeof p);
+    for (double& c : p) c *= 30;
+    std::memcpy(&corners.data[i * corners.point_step], p, sizeof p);
+  }
+  const auto triangles = std::make_shared<const std::vector<Triangle>>(mesh.triangles);
+  pcl_bsh::Shape crate("the crate", viewOf(trianglesOf(viewOf(corners), triangles)));
+  pcl_bsh::Shape points("the corners", viewOf(corners));
+  crate.hierarchy({}, 1);
+  points.hierarchy({}, 1);
+  const auto warned = [&](const Question& question, std::optional<double> nearest, pcl_bsh::Shape& obstacle) {
+    const std::optional<Warning> warning = warningOfHollow(site, "the hall", question, nearest, obstacle);
+    if (warning) {
+      EXPECT_THAT(warning->text, HasSubstr("the crate: its faces close round places of the hall"));
+    }
+    return warning.has_value();
+  };
+  const Eigen::Isometry3d about(Eigen::Translation3d(-30, -30, -30)), beside(Eigen::Translation3d(-200, 0, 0));
+  Question question;
+  question.pose = about;
+  EXPECT_TRUE(warned(question, std::nullopt, crate));
+  EXPECT_TRUE(warned(question, 20.0, crate));
+  EXPECT_FALSE(warned(question, 0.0, crate)) << "something is on its faces";
+  EXPECT_FALSE(warned(question, std::nullopt, points));
+  question.pose = beside;
+  EXPECT_FALSE(warned(question, std::nullopt, crate));
+  question.path = std::vector<Eigen::Isometry3d>(3, beside);
+  EXPECT_FALSE(warned(question, 20.0, crate));
+  question.path->back() = about;
+  EXPECT_TRUE(warned(question, 20.0, crate));
+  question.solid = true;
+  EXPECT_FALSE(warned(question, 20.0, crate));
 }
 
 TEST_F(SurfaceSite, RefusesSolidsThatDoNotClose)

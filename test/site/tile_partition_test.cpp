@@ -50,6 +50,9 @@ TEST(TilePartition, LeavesRoomForWhatLiesAbove)
   EXPECT_TRUE(tilesOf({}, {}, 10).empty());
   const std::vector<CountedVoxel> full = {{{0, 0, 0}, 500, DividedVoxel::none, 0},
                                           {{0, 0, 0}, 2, DividedVoxel::none, 0}};
+  const std::vector<CountedVoxel> empty = {{{5, 0, 0}, 0, 0, 500}, {{3, 0, 0}, 0, 0, 500}};
+  const std::vector<std::uint32_t> apart = tilesOf(empty, {{500, DividedVoxel::none}}, 10);
+  EXPECT_NE(apart[0], apart[1]) << "each may get all that was counted above";
   EXPECT_EQ(tilesOf(full, {}, 10), (std::vector<std::uint32_t>{0, 1})) << "a voxel of one place may have more";
 }
 
