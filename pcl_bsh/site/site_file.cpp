@@ -120,7 +120,7 @@ Source readSourceEntry(const JsonReader& json)
 
 void requireVersion(const JsonReader& json)
 {
-  if (!json.json().is_object() || !json.has("version") || !json.json()["version"].is_number_integer()) return;
+  if (!json.has("version") || !json.json()["version"].is_number_integer()) return;
   const auto version = json.json()["version"].get<std::int64_t>();
   if (version < 1 || version > site_version) {
     json.at("version").fail("this program reads versions 1 to " + std::to_string(site_version),

@@ -101,7 +101,7 @@ void DensityTree::add(const Point3& point)
   Point3 p;
   Octree& tree = octreeOf(point, p);
   Place place = tree.last;
-  if (place.cell == none || cells_[place.cell].is_divided || !holds(place.corner, place.edge, p)) {
+  if (place.cell == none || !holds(place.corner, place.edge, p)) {
     grow(tree, p);
     place = {tree.root, {}, std::ldexp(1.0, tree.exponent)};
   }
