@@ -40,9 +40,11 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <new>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -1042,11 +1044,25 @@ public:
     rlimit limit = before_;
     limit.rlim_cur = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (std::size_t{1} << 20);
     setrlimit(RLIMIT_AS, &limit);
+    while (void* const block = std::malloc(std::size_t{1} << 18)) taken_ = new (block) Block{taken_};
   }
-  ~NoMoreMemory() { setrlimit(RLIMIT_AS, &before_); }
+  ~NoMoreMemory()
+  {
+    setrlimit(RLIMIT_AS, &before_);
+    while (Block* const block = taken_) {
+      taken_ = block->next;
+      std::free(block);
+    }
+  }
+  NoMoreMemory(const NoMoreMemory&) = delete;
+  NoMoreMemory& operator=(const NoMoreMemory&) = delete;
 
 private:
+  struct Block {
+    Block* next;
+  };
   rlimit before_ = {};
+  Block* taken_ = nullptr; ///< what earlier tests have left free
 };
 
 TEST(SphereSource, RunsAgainAfterAFailure)
