@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -39,7 +40,8 @@ public:
     const SphereHierarchy& surface = obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
     if (bounds.box.isEmpty()) return;
     const double longest = bounds.box.sizes().maxCoeff();
-    edge_ = std::max(longest / 48.0, std::min(longest / 8.0, question.clearance.value_or(0.0)));
+    edge_ = std::max({longest / 48.0, std::min(longest / 8.0, question.clearance.value_or(0.0)),
+                      std::numeric_limits<double>::min()}); // a solid may be one place
     const Eigen::Array3i count = (bounds.box.sizes().array() / edge_).ceil().max(1.0).cast<int>();
     std::vector<Point3> middles;
     for (int x = 0; x < count[0]; ++x)
