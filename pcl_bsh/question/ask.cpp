@@ -157,7 +157,7 @@ private:
   {
     const bool path = alongPath();
     const bool flags = wanted_.flags || wanted_.obstacle_flags;
-    return (question_.density && flags && !path) + (path || flags) + wanted_.any +
+    return (question_.density && flags) + (path || flags) + wanted_.any +
            (wanted_.indices || wanted_.obstacle_indices) + (wanted_.closest && !path) +
            (wanted_.measures() && !question_.path);
   }

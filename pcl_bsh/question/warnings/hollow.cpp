@@ -54,7 +54,7 @@ std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const Spher
                       step = std::max<std::size_t>(1, count * some.size() / most_records);
     std::size_t place = 0;
     storage.forEachRecord(v, [&](std::uint32_t record) {
-      if (place++ % step != 0 || records.size() >= 2 * most_records) return;
+      if (place++ % step != 0) return;
       const Point3 p = storage.view.point(record);
       if (box.contains(T_surface_content * Eigen::Vector3d(p[0], p[1], p[2]))) records.push_back(record);
     });

@@ -16,9 +16,9 @@ constexpr double far_apart = 10;           // diagonals
 constexpr double pi = 3.14159265358979323846;
 constexpr double most_angle = 4 * pi;
 
-bool isScan(const std::optional<Spacing>& spacing)
+bool isScan(const Spacing& spacing)
 {
-  return spacing && spacing->samples >= least_samples;
+  return spacing.samples >= least_samples;
 }
 
 void append(std::vector<Warning>& warnings, Warning warning)
@@ -37,7 +37,7 @@ double Density::blind() const
 bool Density::couldHide(double clearance) const
 {
   if (!input && !obstacle) return false;
-  return (!input || isScan(input)) && (!obstacle || isScan(obstacle)) && blind() > clearance;
+  return (!input || isScan(*input)) && (!obstacle || isScan(*obstacle)) && blind() > clearance;
 }
 
 std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance, double least_length)
@@ -95,7 +95,7 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
   const double size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
   const bool have_size = size > 1e-12 * apart; // of single places there is no more than rounding
   const bool is_far = have_size && apart > clearance && apart > far_apart * size;
-  if (!is_far || !std::isfinite(apart)) return std::nullopt;
+  if (!is_far) return std::nullopt;
   return Warning{WarningKind::apart,
                  plainText("the boxes of ", a, " and of ", b, ", with all of its motion, are ", apart,
                            " apart, and neither is larger than ", size,
