@@ -254,6 +254,114 @@ TEST_F(Ask, DistancesAndLimits)
   }
 }
 
+/// Limits above and below the greatest distance that is told, and none: a distance is compared however great it is.
+TEST_F(Ask, DistancesAreWithinAnyLimits)
+{
+  const std::vector<double> expected = pointDistances({a}, {b, question.pose}).distance;
+  question.wanted.within = true;
+  for (const DistanceLimits limits : {DistanceLimits(), {0.1, infinity}, {0.0, 0.2}, {0.3, 0.4}, {0.0, 0.0}})
+    for (const std::optional<double> told : {std::optional<double>(), std::optional(0.15), std::optional(0.6)})
+      for (const bool distances : {false, true}) {
+        SCOPED_TRACE(testing::Message() << limits.least << ' ' << limits.most << ' ' << told.value_or(-1));
+        question.limits = limits;
+        question.max_distance = told;
+        question.wanted.distances = distances;
+        const Answer found = answer();
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+          ASSERT_EQ(found.within[i], expected[i] >= limits.least && expected[i] <= limits.most) << i;
+          if (distances) {
+            ASSERT_EQ(std::isnan(found.distances.a.distance[i]), !(expected[i] <= told.value_or(infinity))) << i;
+          }
+        }
+      }
+}
+
+TEST_F(Ask, WhetherAnythingCollidesAndListsOfWhatDoes)
+{
+  question.wanted.any = true;
+  Answer found = answer();
+  const AnyResult any = anyCollision({a}, {b, question.pose}, {*question.clearance, {}});
+  EXPECT_EQ(found.any.verdict, Verdict::colliding);
+  EXPECT_EQ(found.any.pair, any.pair);
+  EXPECT_EQ(found.work.node_pairs, any.work.node_pairs);
+  for (const Side side : {Side::a, Side::b, Side::both}) {
+    question.wanted = {};
+    question.wanted.indices = side != Side::b;
+    question.wanted.obstacle_indices = side != Side::a;
+    const CollidingIndices lists = collidingIndices({a}, {b, question.pose}, {*question.clearance, side});
+    found = answer();
+    EXPECT_EQ(found.indices.a, lists.a);
+    EXPECT_EQ(found.indices.b, lists.b);
+    EXPECT_EQ(found.work.node_pairs, lists.work.node_pairs);
+    EXPECT_TRUE(question.wanted.collisions());
+  }
+}
+
+TEST_F(Ask, APoseIsSummedUpAsAPathOfOne)
+{
+  question.wanted.poses = true;
+  const std::vector<PoseSummary> alone = answer().collisions.poses;
+  question.path = {question.pose};
+  question.wanted.flags = true;
+  const Answer found = answer();
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(alone[0].colliding_points, found.collisions.colliding);
+  EXPECT_GT(alone[0].colliding_points, 50u);
+  EXPECT_EQ(alone[0].distance, found.collisions.poses.at(0).distance);
+}
+
+/// An accuracy that stops early knows no distances: none is asked of the query, which would refuse it.
+TEST_F(Ask, OfAPathThatStopsEarlyNothingIsClosest)
+{
+  question.path = somePath();
+  question.wanted.flags = question.wanted.closest = true;
+  question.accuracy = Accuracy::level(3);
+  const Answer found = answer();
+  EXPECT_GT(found.collisions.colliding + found.collisions.undecided, 0u);
+  EXPECT_FALSE(found.closest.pair);
+  question.accuracy = {};
+  EXPECT_TRUE(answer().closest.pair);
+}
+
+/// Of all queries together, whichever are asked.
+TEST_F(Ask, ProgressGoesFromNothingToAll)
+{
+  using Members = std::vector<bool Wanted::*>;
+  for (const bool density : {false, true})
+    for (const bool along : {false, true})
+      for (const Members& members : {Members{&Wanted::flags},
+                                     {&Wanted::closest},
+                                     {&Wanted::distances},
+                                     {&Wanted::within, &Wanted::closest},
+                                     {&Wanted::any},
+                                     {&Wanted::obstacle_indices, &Wanted::any},
+                                     {&Wanted::indices},
+                                     {&Wanted::flags, &Wanted::obstacle_flags, &Wanted::closest, &Wanted::distances},
+                                     {&Wanted::flags, &Wanted::contacts, &Wanted::closest}}) {
+        question.wanted = {};
+        for (bool Wanted::*const member : members) question.wanted.*member = true;
+        question.density = density;
+        question.path.reset();
+        if (along) question.path = somePath();
+        question.max_distance = 5.0;
+        input = scan.shape("a");
+        obstacle = robot.shape("b"); // whose spacings nobody has measured
+        double last = 0.0;
+        question.progress = [&](double done) {
+          EXPECT_GE(done, last);
+          last = done;
+          return true;
+        };
+        try {
+          answer();
+        }
+        catch (const InvalidOption&) {
+          continue; // they do not go together
+        }
+        EXPECT_EQ(last, 1.0) << density << along << ' ' << members.size();
+      }
+}
+
 /// Where nobody needs all of them, they cost less.
 TEST_F(Ask, FirstPosesAlone)
 {
@@ -470,6 +578,18 @@ TEST_F(Ask, CheckRefusesBeforeAnythingIsThere)
   question.accuracy = {};
   question.uncertainty = Uncertainty("of nothing", 1.0);
   EXPECT_EQ(option(), "") << "fields are known with the clouds";
+  question.sigmas = 2.0;
+  EXPECT_EQ(option(), "");
+  question.sigmas = -1.0;
+  EXPECT_EQ(option(), "sigmas");
+  question.sigmas = 1.0;
+  question.progress = [](double) { return false; };
+  question.wanted.spacings = question.seen = question.solid = question.input_solid = true;
+  question.seen_angle = 0.1;
+  EXPECT_EQ(option(), "") << "so are scanners and faces; and nothing is asked that could be cancelled";
+  question.seen = false;
+  EXPECT_EQ(option(), "seen_angle");
+  question.seen_angle.reset();
   question.path->at(1).linear() *= 2;
   EXPECT_EQ(option(), "path");
   question.path.reset();

@@ -171,6 +171,10 @@ TEST(QuestionOptions, AreSetByText)
   EXPECT_EQ(question.threads, 3u);
   EXPECT_EQ(question.uncertainty.field, "sigma");
   EXPECT_EQ(question.obstacle_uncertainty.length, 0.5);
+  setOption(question, "obstacle_uncertainty", "-"); // the name of a field
+  EXPECT_EQ(question.obstacle_uncertainty.field, "-");
+  setOption(question, "obstacle_uncertainty", "");
+  EXPECT_TRUE(question.obstacle_uncertainty.isZero());
   EXPECT_EQ(question.accuracy.text(), "pairs=7");
 }
 
@@ -200,13 +204,16 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_THAT(refusal([](Question& q) { q.path.emplace(); }), HasSubstr("path: has no pose"));
   EXPECT_THAT(refusal([](Question& q) { q.swept = 1; }), HasSubstr("swept: is given, but nothing moves"));
   EXPECT_THAT(refusal([](Question& q) { q.sigmas = 2; }), HasSubstr("sigmas: is given, but no uncertainty is a field"));
+  EXPECT_EQ(refusal([](Question& q) { q.sigmas = 2, q.obstacle_uncertainty = {"sigma", 1.0}; }), "");
   EXPECT_THAT(refusal([](Question& q) { q.widest_gap = 2; }), HasSubstr("widest_gap: is given, but not `density`"));
   const auto of_distances = [](Question& q) { q.wanted.flags = false, q.input_solid = q.wanted.distances = true; };
   EXPECT_THAT(refusal(of_distances), HasSubstr("input_solid: is about distances of the obstacle"));
   for (bool Wanted::*const beside : {&Wanted::both_ways, &Wanted::flags, &Wanted::closest})
     EXPECT_EQ(refusal([&](Question& q) { of_distances(q), q.wanted.*beside = true; }), "");
   EXPECT_THAT(refusal([&](Question& q) { q.density = true, q.path = path; }), HasSubstr("density: is about which"));
-  EXPECT_THAT(refusal([](Question& q) { q.density = q.wanted.contacts = true; }), HasSubstr("density: is about which"));
+  for (bool Wanted::*const along : {&Wanted::contacts, &Wanted::poses, &Wanted::first_poses})
+    EXPECT_THAT(refusal([&](Question& q) { q.density = q.wanted.*along = true; }),
+                HasSubstr("density: is about which"));
   for (bool Wanted::*const list : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_indices})
     EXPECT_THAT(refusal([&](Question& q) { q.density = q.wanted.*list = true; }),
                 HasSubstr("density: is told by flags"));
@@ -215,8 +222,10 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
   EXPECT_EQ(refusal([](Question& q) { q.density = q.wanted.obstacle_flags = true; }), "");
   EXPECT_THAT(refusal([](Question& q) { q.accuracy = Accuracy::level(1), q.wanted.distances = true; }),
               HasSubstr("accuracy: level=1: leaves points without a distance: give exact or tolerance=LENGTH"));
-  EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.both_ways = true; }), HasSubstr("path: has no"));
-  EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.obstacle_flags = true; }), HasSubstr("path: has no"));
+  for (bool Wanted::*const of_one : {&Wanted::both_ways, &Wanted::obstacle_flags, &Wanted::within})
+    EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.*of_one = true; }), HasSubstr("path: has no dist"));
+  const auto both = [&](Question& q) { q.path = path, q.max_distance = 1, q.wanted.distances = true; };
+  EXPECT_THAT(refusal(both), HasSubstr("path: has either collisions or distances: ask twice"));
   for (bool Wanted::*const list : {&Wanted::any, &Wanted::indices, &Wanted::obstacle_indices})
     EXPECT_THAT(refusal([&](Question& q) { q.path = path, q.wanted.*list = true; }),
                 HasSubstr("path: is given, and lists of what collides are asked for at one pose"));
@@ -225,6 +234,16 @@ TEST(QuestionOptions, RefuseWhatDoesNotGoTogether)
                 q.limits = {infinity, infinity};
               }),
               HasSubstr("filter_limits: from inf to inf"));
+  EXPECT_EQ(refusal([](Question& q) { q.limits = {1, 1}; }), "");
+  EXPECT_EQ(refusal([](Question& q) {
+              q.limits = {-1, 1};
+            }),
+            "filter_limits: from -1 to 1: give a finite least >= 0, and a most that is not less");
+  const auto of_solid = [&](double least, double most) {
+    return refusal([&](Question& q) { q.solid = true, q.limits = {least, most}; });
+  };
+  EXPECT_EQ(of_solid(-1, 1), "") << "depths are negative";
+  EXPECT_EQ(of_solid(-1, -2), "filter_limits: from -1 to -2: give a finite least, and a most that is not less");
 }
 
 std::string inSmallLetters(std::string text)
@@ -266,6 +285,11 @@ TEST(QuestionOptions, AreKnownByTheCodesOfTheCore)
   EXPECT_EQ(named(Input::accuracy), "accuracy");
   EXPECT_EQ(named(Input::max_distance), "max_distance");
   EXPECT_EQ(named(Input::pose), "pose");
+  EXPECT_EQ(named(Input::trajectory), "pose");
+  Question along;
+  along.path.emplace();
+  for (const Input input : {Input::pose, Input::trajectory})
+    EXPECT_EQ(optionOf(InvalidInput(input, "something", "is wrong"), along), "path");
   EXPECT_EQ(named(Input::uncertainty), "") << "of whom?";
   EXPECT_EQ(named(Input::points), "");
   EXPECT_EQ(named(Input::surface), "") << "of a mesh itself";

@@ -190,6 +190,36 @@ TEST(PoseUncertainty, AddsToWhatPointsHave)
   EXPECT_GE(moved(), 0.975 + 4 * std::sin(0.5));
 }
 
+/// Of double coordinates: a length that no float holds.
+TEST(PoseUncertainty, RefusesToMovePointsByMoreThanAFloatHolds)
+{
+  const double places[] = {1, 2, 5, NAN, 0, 0, 1e39, 0, 0};
+  Uncertainty all;
+  all.pose = {0.0, 1.0, {0, 0, 0}};
+  EXPECT_NO_THROW(withUncertainty(viewOf(places, 2), {}, "cloud", all));
+  EXPECT_THAT([&] { withUncertainty(viewOf(places, 3), {}, "cloud", all); },
+              testing::ThrowsMessage<InvalidInput>(
+                  HasSubstr("cloud: point 2 may move by inf: give finite lengths >= 0, no more than 3.4")));
+}
+
+TEST(PoseUncertainty, MakesAQuestionUncertain)
+{
+  EXPECT_FALSE(Question().isUncertain());
+  for (PoseUncertainty Question::*const pose : {&Question::pose_uncertainty, &Question::input_pose_uncertainty})
+    for (const PoseUncertainty& bound : {PoseUncertainty{0.1, 0.0}, PoseUncertainty{0.0, 0.1}}) {
+      Question question;
+      question.*pose = bound;
+      EXPECT_TRUE(question.isUncertain());
+    }
+  for (Uncertainty Question::*const points : {&Question::uncertainty, &Question::obstacle_uncertainty}) {
+    Question question;
+    question.*points = 0.1;
+    EXPECT_TRUE(question.isUncertain());
+    question.*points = {"sigma", 1.0};
+    EXPECT_TRUE(question.isUncertain());
+  }
+}
+
 std::string refusalOf(const std::string& text)
 {
   try {
@@ -213,8 +243,15 @@ TEST(PoseUncertainty, ReadsItsText)
   const PoseUncertainty others[] = {
       {0.02, 0.002, {1, -2, 3.5}}, {0.01, 0.003, {1, -2, 3.5}}, {0.01, 0.002, {1, -2, 3}}};
   for (const PoseUncertainty& other : others) EXPECT_FALSE(other == all) << other.text();
-  for (const char* wrong : {"a", "1,2,3", "-1", "1,-1", "nan", "1,inf", "covariance=3", "covariance=3:1,2", "1,,2"})
+  for (const char* wrong :
+       {"a", "1,2,3", "-1", "1,-1", "nan", "1,inf", "covariance=3", "covariance=3:1,2", "1,,2", "1m"})
     EXPECT_THAT(refusalOf(wrong), HasSubstr(std::string("pose uncertainty: '") + wrong + "' is none: give T")) << wrong;
+  std::string numbers = ":0";
+  for (int i = 1; i < 36; ++i) numbers += ",0";
+  EXPECT_EQ(refusalOf("covariance=3" + numbers), "");
+  for (const std::string& wrong : {"covariance=" + numbers, "covariance=x" + numbers, "covariance=1,2" + numbers,
+                                   "covariance=3" + numbers + ",0", "covariance=3" + numbers + "x"})
+    EXPECT_THAT(refusalOf(wrong), HasSubstr("' is none: give T")) << wrong;
 }
 
 TEST(PoseUncertainty, IsComputedFromACovariance)
@@ -237,6 +274,13 @@ TEST(PoseUncertainty, IsComputedFromACovariance)
   EXPECT_THROW(PoseUncertainty::of(covariance, 3.0), InvalidInput); // a negative variance
   EXPECT_THROW(PoseUncertainty::of(Eigen::Matrix<double, 6, 6>::Identity(), -1.0), InvalidInput);
   EXPECT_THROW(PoseUncertainty::of(Eigen::Matrix<double, 6, 6>::Identity(), INFINITY), InvalidInput);
+  for (const double none : {std::nan(""), static_cast<double>(INFINITY)}) {
+    Eigen::Matrix<double, 6, 6> without_a_number = Eigen::Matrix<double, 6, 6>::Identity();
+    without_a_number(0, 5) = none; // in neither block
+    EXPECT_THAT(
+        [&] { PoseUncertainty::of(without_a_number, 1.0); },
+        testing::ThrowsMessage<InvalidInput>(HasSubstr("covariance has numbers that are not finite: give 6 x")));
+  }
 }
 
 } // namespace

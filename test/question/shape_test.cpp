@@ -115,13 +115,23 @@ TEST(Shape, HasNoUncertaintiesOfFieldsThatThereAreNot)
         ask(Shape("a", view, {{"sigma", sizeof(Record) - 1, 7, 1}}));
       },
       ThrowsMessage<InvalidInput>(HasSubstr("field 'sigma' reaches beyond its record")));
+  const auto beyond = [] { return std::vector<RecordField>{{"sigma", sizeof(Record) - 1, 7, 1}}; };
+  EXPECT_THAT(
+      [&] {
+        ask(Shape(
+            "a", [&] { return view; }, beyond));
+      },
+      ThrowsMessage<InvalidInput>(HasSubstr("field 'sigma' reaches beyond its record")));
 }
 
 TEST(Shape, ThatIsNothing)
 {
   Shape nothing;
   EXPECT_FALSE(nothing);
-  EXPECT_THROW(nothing.hierarchy({}, 1), InvalidInput);
+  EXPECT_THAT([&] { nothing.hierarchy({}, 1); }, ThrowsMessage<InvalidInput>("a cloud: is missing: give one"));
+  Shape missing("the scan", std::shared_ptr<const SphereHierarchy>());
+  EXPECT_FALSE(missing);
+  EXPECT_THAT([&] { missing.hierarchy({}, 1); }, ThrowsMessage<InvalidInput>("the scan: is missing: give one"));
   EXPECT_TRUE(Shape("empty", PointsView()));
 }
 
@@ -132,8 +142,39 @@ TEST(Shape, ThatIsBuiltAlready)
   Shape shape("pair", built);
   EXPECT_EQ(&shape.hierarchy({}, 1), built.get());
   EXPECT_THROW(shape.hierarchy(0.1, 1), InvalidInput) << "they are those of its points";
+  Uncertainty of_pose;
+  of_pose.pose.angle = 0.1;
+  EXPECT_THROW(shape.hierarchy(of_pose, 1), InvalidInput);
   EXPECT_FALSE(shape.isSurface());
   EXPECT_EQ(shape.facts(false).points, 2u);
+}
+
+/// It has no fields that would number several scans.
+TEST(Shape, ThatIsBuiltAlreadyIsAScanOfOneOrigin)
+{
+  std::vector<float> xyz;
+  for (int i = 0; i < 400; ++i)
+    xyz.insert(xyz.end(), {10.0f, 0.1f * static_cast<float>(i % 20), 0.1f * static_cast<float>(i / 20)});
+  const PointsView view = viewOf(xyz.data(), 400);
+  Shape built("wall", std::make_shared<const SphereHierarchy>(view)), points("wall", view);
+  points.hierarchy({}, 1);
+  const ScanOrigins origin = ScanOrigins::of({0, 0, 0});
+  EXPECT_GT(built.seen(origin, {}, 1).angle(0), 0.01);
+  EXPECT_EQ(built.seen(origin, {}, 1).angle(0), points.seen(origin, {}, 1).angle(0));
+  EXPECT_THAT([&] { built.seen(ScanOrigins::parse("scan:1=0,0,0"), {}, 1); },
+              ThrowsMessage<InvalidInput>(HasSubstr("wall: field 'scan' that numbers its scans is missing")));
+}
+
+TEST(Shape, TakesPatchesThatItsOwnerHasMeasured)
+{
+  const std::vector<float> xyz = {0, 0, 0, 1, 0, 0};
+  Shape shape("pair", viewOf(xyz.data(), 2));
+  shape.hierarchy({}, 1);
+  shape.setPatches({0.5f, 0.25f});
+  EXPECT_THAT(shape.patches({}, 1).spacings, testing::ElementsAre(0.5f, 0.25f));
+  EXPECT_EQ(shape.patches({}, 1).gap, 0.0) << "which nobody has told";
+  EXPECT_EQ(shape.patches(3.0, 1).gap, 3.0);
+  EXPECT_EQ(shape.patches(3.0, 1).spacings, patchSpacings(shape.hierarchy(), 3.0));
 }
 
 TEST(Shape, CopiesMeasureSpacingsOnce)

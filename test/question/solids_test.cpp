@@ -102,6 +102,18 @@ TEST_F(SolidsTest, UncertainPointsNearTheSurfaceStayUndecided)
   }
   EXPECT_EQ(lists.indices.b, colliding);
   EXPECT_EQ(lists.indices.undecided_b, undecided);
+  question.wanted = {};
+  question.wanted.indices = true;
+  const CollidingIndices of_input = answer().indices;
+  EXPECT_EQ(of_input.a, lists.indices.a);
+  EXPECT_EQ(of_input.undecided_a, lists.indices.undecided_a);
+  EXPECT_TRUE(of_input.b.empty() && of_input.undecided_b.empty()) << "nobody asked for them";
+  question.wanted = {};
+  question.wanted.obstacle_indices = true;
+  const CollidingIndices of_tank = answer().indices;
+  EXPECT_EQ(of_tank.b, lists.indices.b);
+  EXPECT_EQ(of_tank.undecided_b, lists.indices.undecided_b);
+  EXPECT_TRUE(of_tank.a.empty() && of_tank.undecided_a.empty());
   question.uncertainty.length = 3.0;
   question.solid = false;
   const std::vector<std::int32_t> of_surface = answer().indices.undecided_b;
@@ -230,6 +242,49 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(found.collisions.first_contact->fraction, 0.0);
   question.path = {at(0), at(1.5)}; // its wall comes later
   EXPECT_EQ(answer().collisions.first_contact->fraction, 0.0);
+  question.path = {at(3), at(0)}; // its wall comes first
+  found = answer();
+  EXPECT_EQ(found.collisions.first_contact->pose, 0u);
+  EXPECT_NEAR(found.collisions.first_contact->fraction, 2.0 / 3.0, 0.01);
+  question.path = {at(9), at(9), at(0)};
+  points = {{0, 0, 0}};
+  EXPECT_EQ(answer().collisions.first_contact->pose, 1u);
+}
+
+/// For who asks a query for less than a question does: what is not there is left alone.
+TEST_F(SolidsTest, OnlyWhatAQueryToldIsAddedTo)
+{
+  points = {{0, 0, 0}, {9, 0, 0}, {20, 0, 0}};
+  question.clearance = 0.0;
+  question.path = {Eigen::Isometry3d(Eigen::Translation3d(30, 0, 0)), Eigen::Isometry3d::Identity()};
+  const SphereHierarchy scan(viewOf(points[0].data(), points.size())), tank(viewOf(view()));
+  Shape input("the scan", viewOf(points[0].data(), points.size())), obstacle("the tank", viewOf(view()));
+  const auto held = [&](bool flags, bool distances, bool closest_poses, bool first_poses) {
+    TrajectoryRequest request;
+    request.flags = flags;
+    request.distances = distances;
+    request.closest_poses = closest_poses;
+    request.first_poses = first_poses;
+    TrajectoryResult found = collideAlong({scan}, tank, *question.path, request);
+    addHeld(question, input, obstacle, found);
+    return found;
+  };
+  EXPECT_EQ(held(true, false, false, false).flags, test::verdictsOf({1, 0, 0}));
+  TrajectoryResult found = held(false, true, false, false);
+  EXPECT_TRUE(found.flags.empty() && found.closest_pose.empty() && found.first_pose.empty());
+  EXPECT_EQ(found.distance[0], 0.0f);
+  EXPECT_TRUE(std::isnan(found.distance[1]));
+  EXPECT_LT(found.closest_point[0], 12u);
+  EXPECT_EQ(found.closest_point[1], std::uint32_t{kNothing});
+  found = held(false, false, false, true);
+  EXPECT_THAT(found.first_pose, ElementsAre(1, -1, -1));
+  found = held(true, true, true, true);
+  EXPECT_THAT(found.closest_pose, ElementsAre(1, -1, -1));
+  found = collideAlong({scan}, tank, *question.path, {});
+  found.distance = {NAN, NAN, NAN}; // of a program that keeps these alone
+  addHeld(question, input, obstacle, found);
+  EXPECT_EQ(found.distance[0], 0.0f);
+  EXPECT_TRUE(found.closest_pose.empty() && found.closest_point.empty());
 }
 
 /// The first contact that is certain is that of points which are held wherever they truly are.
@@ -252,6 +307,12 @@ TEST_F(SolidsTest, OnAWayWhatIsCertainlyInsideMeetsForCertain)
   EXPECT_TRUE(found.collisions.first_contact);
   EXPECT_FALSE(found.collisions.certain_contact);
   EXPECT_THAT(found.collisions.certain_pose, ElementsAre(-1));
+  question.path = {at(0.875), at(0.875)}; // inside, as measured
+  found = answer();
+  EXPECT_TRUE(found.collisions.first_contact);
+  EXPECT_FALSE(found.collisions.certain_contact);
+  EXPECT_THAT(found.collisions.certain_pose, ElementsAre(-1));
+  EXPECT_EQ(found.collisions.flags, test::verdictsOf({2}));
 }
 
 TEST_F(SolidsTest, ASurfaceInsideCollides)
@@ -543,6 +604,46 @@ TEST_F(TwoSolidsTest, AlongAPathEachPoseIsThatOfBruteForce)
       EXPECT_EQ(found.collisions.poses[k].colliding_points,
                 countOf(bruteForce((*question.path)[k]).a, Verdict::colliding));
   }
+}
+
+/// Each of its triangles is told the first that its own body holds, which is not the first that any holds.
+TEST_F(TwoSolidsTest, AlongAPathEachBodyOfTheInputHasItsOwn)
+{
+  first = test::ClosedMesh();
+  first.add(test::boxMesh());
+  first.add(test::boxMesh(), 1.0, {10, 0, 0});
+  first.add(test::boxMesh(), 1.0, {20, 0, 0});
+  const std::vector<Point3> points = {{30.5, 0.5, 0.5}, {10.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {10.5, 0.5, 0.25}};
+  question.clearance = 0.0;
+  question.input_solid = true;
+  question.wanted.contacts = true;
+  question.path = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(-10, 0, 0))};
+  Shape input("the machine", viewOf(first.view())), obstacle("a scan", viewOf(points[0].data(), points.size()));
+  const TrajectoryResult found = ask(question, input, obstacle).collisions;
+  std::vector<std::int32_t> poses(24, 0);
+  poses.insert(poses.end(), 12, 1);
+  std::vector<std::uint32_t> held(12, 2);
+  held.insert(held.end(), 12, 1);
+  held.insert(held.end(), 12, 0);
+  EXPECT_EQ(found.first_pose, poses);
+  EXPECT_EQ(found.closest_pose, poses);
+  EXPECT_EQ(found.closest_point, held);
+}
+
+/// Distances of the obstacle that nobody asked for are not turned.
+TEST_F(TwoSolidsTest, AnInputThatIsSolidChangesNoDistanceOfItsOwn)
+{
+  first = test::ClosedMesh();
+  first.add(test::boxMesh(), 4.0, {-2, -2, -2});
+  second = test::ClosedMesh();
+  second.add(test::boxMesh(), 1.0, {-1.5, -0.5, -0.5});
+  question.wanted.closest = question.wanted.distances = true;
+  const std::vector<double> expected = answer().distances.a.distance;
+  question.input_solid = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.distances.a.distance, expected);
+  EXPECT_TRUE(found.distances.b.distance.empty());
+  EXPECT_EQ(found.closest.distance, -1.5);
 }
 
 TEST_F(TwoSolidsTest, OfWhichOneHoldsTheOtherAreAsDeepAsTheDeepestPlace)

@@ -5,6 +5,7 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/model_stray.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
 #include "solid/meshes.h"
@@ -105,6 +106,57 @@ TEST_F(Unseen, IsAskedForOnly)
   const Answer found = asked(first_);
   EXPECT_TRUE(found.obstacle_flags.empty());
   EXPECT_EQ(found.unseen.count, 0u);
+}
+
+/// Distances have no unseen places.
+TEST_F(Unseen, IsToldBesideCollisionsOnly)
+{
+  question.wanted = {};
+  question.wanted.distances = true;
+  const Answer found = asked(first_);
+  EXPECT_TRUE(found.obstacle_flags.empty());
+  EXPECT_TRUE(found.unseen.at_poses.empty());
+  question.wanted = {};
+  question.wanted.obstacle_indices = true;
+  EXPECT_EQ(asked(first_).unseen.count, 1u);
+}
+
+/// A point that is nowhere is of no scan, and no part of what a scan's own uncertain place moves.
+TEST_F(Unseen, IsNotOfPointsThatAreNotFinite)
+{
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  both_.push_back({NAN, 0, 0, 77, 0.05f});
+  EXPECT_EQ(asked(both_).obstacle_flags, test::verdictsOf({0, 0, 1}));
+  question.origin = ScanOrigins::of({1, 3, 1.5});
+  model_ = {2, 3, 1.5, 2.7, 3, 1.5, NAN, 3, 1.5};
+  question.input_pose_uncertainty = {0.0, 0.01, {2.7, 3, 1.5}};
+  const std::vector<Verdict> flags = asked(first_).obstacle_flags;
+  EXPECT_EQ(flags, test::verdictsOf({0, 0, 0}));
+  model_ = {NAN, 3, 1.5};
+  EXPECT_EQ(asked(first_).obstacle_flags, test::verdictsOf({0}));
+  EXPECT_EQ(strayOf({0.1, 0.0}, CornerBox(viewOf(model_.data(), 1)), Eigen::Isometry3d::Identity()), 0.0);
+  model_ = {};
+  EXPECT_EQ(asked(first_).unseen.at_poses, std::vector<std::size_t>{0});
+}
+
+/// A mesh that closes, but is nowhere, or at one place, or as thin as a sheet: the last two have a surface.
+TEST_F(Unseen, TheInsideOfWhatHasNoVolume)
+{
+  const auto inside = [&](const std::vector<double>& corners) {
+    const std::vector<std::uint32_t> faces = {0, 1, 2, 0, 2, 1};
+    question.solid = true;
+    Shape room = shapeOf(first_);
+    Shape mesh("mesh", viewOf(TrianglesView{viewOf(corners.data(), 3), faces.data(), 2}));
+    const Answer found = ask(question, room, mesh);
+    return std::pair(found.unseen.inside.at(0), found.obstacle_flags);
+  };
+  EXPECT_EQ(inside({NAN, 3, 1, 5, 4, 1, 5, 3, 2}).first, 0.0);
+  const auto [of_place, at_place] = inside({5, 3, 1.5, 5, 3, 1.5, 5, 3, 1.5});
+  EXPECT_EQ(at_place, test::verdictsOf({4, 4}));
+  EXPECT_EQ(of_place, 0.0);
+  const auto [of_sheet, at_sheet] = inside({5, 2.8, 1.4, 5, 3.2, 1.4, 5, 3, 1.6});
+  EXPECT_EQ(at_sheet, test::verdictsOf({4, 4}));
+  EXPECT_GT(of_sheet, 0.0) << "of the cubes that it crosses";
 }
 
 TEST_F(Unseen, OneScannerThatSeesItSuffices)
@@ -377,7 +429,8 @@ TEST(ScanOrigins, AreEqualWhereFieldsAndAllOriginsAre)
 TEST(ScanOrigins, ReadTheirText)
 {
   for (const char* text : {"", "1,2.5,-3", "scan:0=1,2,3;7=4,5,6"}) EXPECT_EQ(ScanOrigins::parse(text).text(), text);
-  for (const char* wrong : {"1,2", "x", "scan:", ":0=1,2,3", "scan:0=1,2", "scan:0=1,2,3;0=1,2,3", "nan,0,0"}) {
+  for (const char* wrong : {"1,2", "x", "scan:", ":0=1,2,3", "scan:0=1,2", "scan:0=1,2,3;0=1,2,3", "nan,0,0", "scan:5",
+                            "scan:x=1,2,3", "scan:=1,2,3", "scan:1,2=1,2,3", "scan:0=1,2,3;", "1,2,3m"}) {
     try {
       ScanOrigins::parse(wrong);
       ADD_FAILURE() << wrong;
