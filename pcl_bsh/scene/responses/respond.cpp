@@ -113,13 +113,11 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
     const Eigen::Vector3d wanted = target.translation() - start.translation();
     const auto advance = [&](const Eigen::Vector3d& center) { return (center - from).dot(wanted); };
     const auto drop = [&](Mover& falling, double depth) {
-      falling.outcome.touched = false;
-      return !falling.translate(shifted(falling.pose(), depth * down), false) && falling.outcome.touched &&
-             !falling.outcome.stuck;
+      return !falling.translate(shifted(falling.pose(), depth * down), false) && !falling.outcome.stuck;
     };
     Outcome& outcome = mover.outcome;
     bool lifted_is_better = false;
-    if (!reached && response != Response::none) {
+    if (!reached) {
       // Blocked at this height: it may be a step.
       const Eigen::Isometry3d plain = body.object.pose;
       const Eigen::Vector3d plain_center = mover.center();

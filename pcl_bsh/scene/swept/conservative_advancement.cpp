@@ -134,7 +134,6 @@ public:
   double drift() const { return drift_; }      ///< of any corner, per unit of s
   double turningSpeed() const { return rim_; } ///< of any corner at most
   double bend() const { return bend_; }        ///< no acceleration is larger
-  std::uint32_t count() const { return count_; }
 
   /// At an instant, seen from where the centre is at `from`.
   Corners at(double s, const Eigen::Vector3d& from) const
