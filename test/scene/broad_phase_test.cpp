@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pairs of objects that share a voxel, where points have radii or may be elsewhere than they were measured.
+#include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"
@@ -8,7 +9,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -30,6 +34,78 @@ Cloud reaching(const std::vector<Point3>& points, bool uncertain)
   else
     cloud.setRadii(std::vector<float>(points.size(), static_cast<float>(reach)));
   return cloud;
+}
+
+/// A grid of objects from 0, in boxes from one corner to another.
+struct GridOfBoxes {
+  explicit GridOfBoxes(double edge)
+  {
+    for (int i = 0; i < 4; ++i) rules.addObject("", false);
+    grid.reset(edge, rules);
+  }
+
+  /// @return how many voxels it came into
+  std::uint64_t place(ObjectId object, const std::vector<Box3>& boxes)
+  {
+    BroadPhaseCost cost;
+    grid.place(object, boxes, cost);
+    return cost.voxels_entered;
+  }
+
+  std::vector<std::pair<ObjectId, ObjectId>> pairs()
+  {
+    std::vector<std::pair<ObjectId, ObjectId>> found;
+    for (const BroadPair* pair : grid.pairs()) found.emplace_back(pair->a, pair->b);
+    return found;
+  }
+
+  std::vector<ObjectId> around(const Box3& box) const
+  {
+    std::vector<ObjectId> found;
+    grid.around(box, found);
+    return found;
+  }
+
+  static Box3 box(double low, double high) { return {Eigen::Vector3d::Constant(low), Eigen::Vector3d::Constant(high)}; }
+
+  PairRules rules{0.0, true};
+  BroadPhase grid;
+};
+
+TEST(BroadPhase, WhatIsNotPlacedYetMeetsNothing)
+{
+  using Pairs = std::vector<std::pair<ObjectId, ObjectId>>;
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double edge : {1.0, infinity}) {
+    SCOPED_TRACE(edge);
+    GridOfBoxes boxes(edge);
+    const Box3 small = GridOfBoxes::box(0.25, 0.75), everywhere = GridOfBoxes::box(-1000, 1000);
+    boxes.place(3, {small});
+    boxes.place(1, {everywhere});
+    EXPECT_EQ(boxes.pairs(), (Pairs{{1, 3}}));
+    for (const Box3& box : {small, everywhere}) EXPECT_EQ(boxes.around(box), (std::vector<ObjectId>{1, 3}));
+    EXPECT_TRUE(boxes.around(Box3()).empty());
+    boxes.place(2, {GridOfBoxes::box(5.25, 5.75)});
+    EXPECT_EQ(boxes.pairs(), edge == 1.0 ? (Pairs{{1, 2}, {1, 3}}) : (Pairs{{1, 2}, {1, 3}, {2, 3}}));
+    boxes.place(1, {small});
+    if (edge == 1.0) {
+      EXPECT_EQ(boxes.pairs(), (Pairs{{1, 3}}));
+      EXPECT_EQ(boxes.around(small), (std::vector<ObjectId>{1, 3}));
+    }
+  }
+}
+
+/// Of several boxes each voxel counts once; of too many voxels an object is everywhere.
+TEST(BroadPhase, AnObjectIsInEachVoxelOfItsBoxesOnce)
+{
+  GridOfBoxes boxes(1.0);
+  EXPECT_EQ(boxes.place(0, {GridOfBoxes::box(0.25, 1.5), GridOfBoxes::box(1.25, 2.5), Box3()}), 15u);
+  EXPECT_EQ(boxes.place(1, {{{0.5, 0.5, 0.5}, {63.5, 31.5, 31.5}}}), std::uint64_t{1} << 16);
+  EXPECT_EQ(boxes.pairs().size(), 1u);
+  EXPECT_EQ(boxes.place(1, {{{70.5, 0.5, 0.5}, {70.75, 0.75, 0.75}}}), 1u);
+  EXPECT_TRUE(boxes.pairs().empty());
+  EXPECT_EQ(boxes.place(1, {{{70.5, 0.5, 0.5}, {134.5, 31.5, 31.5}}}), 1u) << "65 x 32 x 32";
+  EXPECT_EQ(boxes.pairs().size(), 1u) << "though none of its voxels is near";
 }
 
 /// A sheet of more than 64 voxels, and a dot above it: nearer than the points of one reach.

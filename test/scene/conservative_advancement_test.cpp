@@ -223,6 +223,27 @@ TEST(ConservativeAdvancement, TurningWaysAreWatchedDensely)
   EXPECT_GT(passed, 50);
 }
 
+/// Also where they move off. From half the tolerance on they are let go.
+TEST(ConservativeAdvancement, WhatIsWithinReachWhereItBeginsMeetsThere)
+{
+  const double begin = 0.25, reach = 0.5, tolerance = 0.125;
+  Leg turning, still;
+  turning.turn = {0, 0, 1.0};
+  turning.to = Eigen::Isometry3d(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()));
+  const ObjectMotion motion(turning, Box3()), rest(still, Box3());
+  const Eigen::Vector3d p(1, 0, 0), now = motion.at(begin) * p, off = Eigen::Vector3d::UnitZ().cross(now);
+  const auto at = [](const Eigen::Vector3d& v) { return Point3{v[0], v[1], v[2]}; };
+  for (const bool triangle : {false, true})
+    for (const auto& [distance, met] : {std::pair(0.25, true), {0.49, true}, {0.55, false}, {0.6, false}}) {
+      const Eigen::Vector3d q = now - distance * off;
+      const Corners other =
+          triangle ? Corners{{at(q), at(q - off + Eigen::Vector3d::UnitZ()), at(q - off - Eigen::Vector3d::UnitZ())}, 3}
+                   : Corners::of(at(q));
+      const auto s = timeOfContact(motion, Corners::of(at(p)), rest, other, {reach, tolerance}, begin, 1.0);
+      EXPECT_EQ(s, met ? std::optional(begin) : std::nullopt) << triangle << ' ' << distance;
+    }
+}
+
 TEST(ConservativeAdvancement, PathsHaveNoJumpsAndPassThroughBothPoses)
 {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

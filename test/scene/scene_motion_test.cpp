@@ -5,7 +5,7 @@
 #include "scene_worlds.h"
 #include "watched_motion.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
@@ -20,6 +20,7 @@ using test::Random;
 using test::sheet;
 using test::Shelf;
 using test::WatchedMotion;
+using testing::HasSubstr;
 
 constexpr double pi = std::numbers::pi, speeds[] = {0.3, 2.0, 3.5, 2 * pi, 15.0};
 
@@ -103,6 +104,65 @@ TEST(SceneMotion, ACircleBeginsWhereTheObjectStandsAndTurnsItIfItIsToBe)
   turning.turning = true;
   const Eigen::Isometry3d turned = at(1, 2, 5) * Eigen::AngleAxisd(0.5 * pi, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(poseAt(turning, start, 1).isApprox(turned, 1e-14));
+}
+
+TEST(SceneMotion, WaypointsStandBeforeTheFirstAndAfterTheLast)
+{
+  const WaypointMotion motion{{1, 2, 4}, {at(1, 0, 0), at(2, 0, 0), at(2, 8, 0)}};
+  for (const auto& [time, expected] : {std::pair(-1.0, at(1, 0, 0)),
+                                       {1.0, at(1, 0, 0)},
+                                       {1.25, at(1.25, 0, 0)},
+                                       {2.0, at(2, 0, 0)},
+                                       {2.5, at(2, 2, 0)},
+                                       {4.0, at(2, 8, 0)},
+                                       {9.0, at(2, 8, 0)}})
+    EXPECT_EQ(poseAt(motion, at(7, 7, 7), time).matrix(), expected.matrix()) << time;
+}
+
+TEST(SceneMotion, WhatDoesNotTurnTurnsByNothing)
+{
+  EXPECT_EQ(turnOf(NoMotion{}, 0, 3), Eigen::Vector3d::Zero());
+  EXPECT_EQ(poseAt(NoMotion{}, at(1, 2, 3), 5).matrix(), at(1, 2, 3).matrix());
+  const CircularMotion gondola{{0, 0, 0}, {0, 0, 2}, 0.5, false};
+  EXPECT_EQ(turnOf(gondola, 0, 3), Eigen::Vector3d::Zero());
+  EXPECT_EQ(turnOf(VelocityMotion{{1, 0, 0}, {0, 0, 0.5}}, 1, 3), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(turnOf(CircularMotion{{0, 0, 0}, {0, 0, 2}, 0.5, true}, 1, 3), Eigen::Vector3d(0, 0, 1));
+}
+
+TEST(SceneMotion, SaysWhatOfAMotionMakesNoSense)
+{
+  const auto refusal = [](const Motion& motion) -> std::string {
+    try {
+      check(motion);
+    }
+    catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const Eigen::Isometry3d pose = at(1, 2, 3);
+  EXPECT_EQ(refusal(NoMotion{}), "");
+  EXPECT_EQ(refusal(VelocityMotion{{1, 2, 3}, {4, 5, 6}}), "");
+  EXPECT_EQ(refusal(CircularMotion{{1, 2, 3}, {0, 0, 9}, -1, true}), "");
+  EXPECT_EQ(refusal(WaypointMotion{{-1, 2}, {pose, pose}}), "");
+  for (const double wrong : {std::nan(""), static_cast<double>(INFINITY)}) {
+    for (const Motion& motion :
+         {Motion(VelocityMotion{{0, wrong, 0}, {0, 0, 0}}), Motion(VelocityMotion{{0, 0, 0}, {0, 0, wrong}})})
+      EXPECT_THAT(refusal(motion), HasSubstr("a velocity is not finite"));
+    for (const Motion& motion : {Motion(CircularMotion{{wrong, 0, 0}, {0, 0, 1}, 1, true}),
+                                 Motion(CircularMotion{{0, 0, 0}, {0, 0, 1}, wrong, true})})
+      EXPECT_THAT(refusal(motion), HasSubstr("a circle's centre or speed is not finite"));
+    EXPECT_THAT(refusal(CircularMotion{{0, 0, 0}, {0, 0, wrong}, 1, true}), HasSubstr("a circle's axis is not finite"));
+    EXPECT_THAT(refusal(WaypointMotion{{wrong}, {pose}}), HasSubstr("of waypoint 0 does not ascend"));
+  }
+  EXPECT_THAT(refusal(CircularMotion{{0, 0, 0}, {0, 0, 0}, 1, true}), HasSubstr("or of length 0"));
+  EXPECT_THAT(refusal(WaypointMotion{}), HasSubstr("waypoints without a pose"));
+  EXPECT_THAT(refusal(WaypointMotion{{1, 2}, {pose}}), HasSubstr("1 waypoint for 2 times"));
+  EXPECT_THAT(refusal(WaypointMotion{{1}, {pose, pose}}), HasSubstr("2 waypoints for 1 time"));
+  EXPECT_THAT(refusal(WaypointMotion{{1, 1}, {pose, pose}}), HasSubstr("time 1 of waypoint 1 does not ascend"));
+  Eigen::Isometry3d scaled = pose;
+  scaled.linear() *= 2;
+  EXPECT_THAT(refusal(WaypointMotion{{1, 2}, {pose, scaled}}), HasSubstr("waypoint 1"));
 }
 
 TEST(SceneMotion, TurnsByAnyAngleWithinAStep)

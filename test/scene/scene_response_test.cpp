@@ -241,6 +241,30 @@ TEST(SceneResponse, TooManyPairsToFollowAreFollowedInShorterWays)
   }
 }
 
+/// So many points at one place that no way is short enough to follow all pairs.
+TEST(SceneResponse, HeapsHaltBeforeTheyMeet)
+{
+  Shelf shelf;
+  const auto heap = shelf.add(std::vector<Point3>(200, Point3{0, 0, 0}));
+  for (const auto& [response, turn] : {std::pair(Response::stop, 0.0), {Response::slide, 0.0}, {Response::stop, 0.1}}) {
+    Scene scene(responding(response, 0.1));
+    scene.add(object("beside", shelf.add({{0, 0, 0}}), at(0, 5, 0)));
+    const ObjectId rest = scene.add(object("at rest", heap));
+    SceneObject mover = object("mover", heap, at(-3, 0, 0));
+    mover.motion = VelocityMotion{{5, 0, 0}, {turn, 0, 0}};
+    const ObjectId id = scene.add(mover);
+    for (int step = 0; step < 2; ++step) {
+      const SceneResult result = scene.step(1);
+      ASSERT_EQ(result.outcomes.size(), 1u);
+      EXPECT_TRUE(result.outcomes[0].touched);
+      EXPECT_FALSE(result.outcomes[0].stuck);
+      EXPECT_EQ(result.outcomes[0].against, rest);
+      EXPECT_GT(distance(scene, rest, id), 0.1);
+      EXPECT_LE(distance(scene, rest, id), 0.1 + tolerance);
+    }
+  }
+}
+
 /// Ground with a step of this height at x = 0, and a wall at x = 3; points 5 cm apart.
 std::vector<Point3> stairs(double step)
 {

@@ -224,6 +224,50 @@ TEST_F(SceneOfSolids, AMotionThatBeginsInsideMeetsAtItsFirstInstant)
   EXPECT_TRUE(found.first_contact.empty());
 }
 
+/// Its body is flagged as a whole, whichever of the two was added first.
+TEST_F(SceneOfSolids, WhatPassesThroughASolidFlagsItsBody)
+{
+  options.effects.swept = true;
+  const auto tank = box(1.0);
+  const auto probe = shelf.add(std::vector<Point3>{{0, 0, 0}});
+  for (const bool solid : {false, true})
+    for (const bool tank_first : {false, true}) {
+      Scene scene(options);
+      if (tank_first) scene.add(objectOf("tank", tank, solid));
+      const ObjectId moving = scene.add(objectOf("probe", probe, false, at(-4, 0.3, 0.2)));
+      if (!tank_first) scene.add(objectOf("tank", tank, solid));
+      scene.query();
+      scene.setPose(moving, at(4, 0.3, 0.2));
+      const SceneResult found = scene.query();
+      ASSERT_EQ(found.swept.size(), 2u);
+      EXPECT_EQ(found.swept[moving].colliding, 1u);
+      EXPECT_EQ(found.swept[1 - moving].colliding, solid ? 12u : 2u) << "the triangles that it passes";
+    }
+}
+
+/// Out of the hollow and back into it by an arc: it meets the hollow's surface alone, and the body about it holds it
+/// meanwhile.
+TEST_F(SceneOfSolids, WhatLeavesAHollowIsHeldByTheBodyAboutIt)
+{
+  options.effects.swept = true;
+  test::ClosedMesh mesh;
+  mesh.add(test::boxMesh(), 1.0, {-0.5, -0.5, -0.5});
+  mesh.add(test::boxMesh(), 0.6, {-0.3, -0.3, -0.3}, true);
+  mesh.add(test::boxMesh(), 1.0, {9, 0, 0}); // another body, far away
+  const auto hollow = keep(mesh);
+  const auto probe = shelf.add(std::vector<Point3>{{0.25, 0.24, 0.02}, {-0.25, -0.24, -0.02}});
+  Scene scene(options);
+  scene.add(objectOf("hollow", hollow, true));
+  SceneObject turning = objectOf("probe", probe, false);
+  turning.motion = VelocityMotion{{0, 0, 0}, {0, 0, -std::acos(0.0)}};
+  scene.add(turning);
+  const SceneResult found = scene.step(1.0);
+  ASSERT_EQ(found.swept.size(), 2u);
+  std::vector<Verdict> expected(36, Verdict::free);
+  std::fill(expected.begin(), expected.begin() + 24, Verdict::colliding);
+  EXPECT_EQ(found.swept[0].flags, expected);
+}
+
 TEST_F(SceneOfSolids, WhatBeginsInsideIsStuckAndToldSo)
 {
   const auto tank = box(4.0);
@@ -314,6 +358,38 @@ TEST_F(SceneOfSolids, UncertainPlacesMayStillBeOutside)
     EXPECT_EQ(found.first_contact.size(), 1u);
     EXPECT_EQ(found.certain_contact.size(), certain ? 1u : 0u);
   }
+}
+
+/// A point near the wall may be outside; another one is inside wherever it truly is.
+TEST_F(SceneOfSolids, OfUncertainPlacesOneThatIsCertainlyHeldDecides)
+{
+  options.effects.any = options.effects.flags = options.effects.first_contact = options.effects.self = true;
+  const std::vector<Point3> points = {{1.5, 0, 0}, {0, 0, 0}};
+  PointsView view = viewOf(points[0].data(), 2);
+  view.uncertainty = 1.0;
+  const auto probe = std::make_shared<SphereHierarchy>(view);
+  const auto tank = box(4.0);
+  Scene scene(options);
+  scene.add(objectOf("tank", tank, true));
+  scene.add(objectOf("probe", probe, false));
+  SceneObject both = objectOf("both", tank, true, at(100, 0, 0));
+  both.parts.push_back({"inner", probe, at(0, 0, 0)});
+  scene.add(both);
+  const SceneResult found = scene.query();
+  ASSERT_EQ(found.any.size(), 1u);
+  EXPECT_EQ(found.any[0].pair.b, 1u);
+  EXPECT_LT(found.any[0].pair.a, 12u);
+  EXPECT_TRUE(found.undecided.empty());
+  ASSERT_EQ(found.flags.size(), 2u);
+  EXPECT_EQ(found.flags[0].colliding, 12u);
+  EXPECT_EQ(found.flags[1].flags, test::verdictsOf({2, 1}));
+  ASSERT_EQ(found.first_contact.size(), 1u);
+  EXPECT_EQ(found.first_contact[0].pair.b, 0u) << "the surface, which it may touch";
+  ASSERT_EQ(found.certain_contact.size(), 1u);
+  EXPECT_EQ(found.certain_contact[0].pair.b, 1u);
+  EXPECT_EQ(found.certain_contact[0].fraction, 0.0);
+  ASSERT_EQ(found.self.size(), 1u);
+  EXPECT_EQ(found.self[0].pair.b, 1u);
 }
 
 TEST_F(SceneOfSolids, FollowsPointsThatMove)

@@ -8,7 +8,7 @@
 #include "support/allocations.h"
 #include "support/verdicts.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
@@ -32,6 +32,8 @@ using test::Shape;
 using test::sheet;
 using test::Shelf;
 using test::within;
+using testing::AllOf;
+using testing::HasSubstr;
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -618,6 +620,130 @@ TEST(Scene, KnowsWhatIsNearAtAnyMagnitude)
     ASSERT_EQ(found.distance.size(), 1u) << scale;
     EXPECT_EQ(found.distance[0].distance, 0.5 * scale);
   }
+}
+
+/// So far that its speed is no number: nothing is looked up ahead of it.
+TEST(Scene, KnowsWhatIsNearAfterAnyMotion)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.clearance = 0.5;
+  options.effects.any = true;
+  Scene scene(options);
+  const double farthest = std::numeric_limits<double>::max();
+  const ObjectId mover = scene.add(object("mover", shelf.add({{0, 0, 0}}), at(farthest, 0, 0)));
+  scene.add(object("other", shelf.add({{0, 0, 0}})));
+  EXPECT_TRUE(scene.query().any.empty());
+  for (const auto& [x, collides] : {std::pair(-farthest, false), {0.25, true}, {farthest, false}, {0.75, false}}) {
+    scene.setPose(mover, at(x, 0, 0));
+    EXPECT_EQ(scene.query().any.size(), collides ? 1u : 0u) << x;
+  }
+}
+
+TEST(Scene, OfObjectsWithoutAPointFindsNothing)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.any = options.effects.flags = options.effects.first_contact = options.effects.swept = true;
+  options.effects.distance = 1.0;
+  Scene scene(options);
+  const auto nothing = shelf.add(std::vector<Point3>());
+  scene.add(object("one", nothing));
+  SceneObject other = object("other", nothing);
+  other.motion = VelocityMotion{{1, 0, 0}, {0, 0, 1}};
+  scene.add(other);
+  const SceneResult result = scene.step(1.0);
+  EXPECT_TRUE(result.any.empty() && result.flags.empty() && result.distance.empty());
+  EXPECT_TRUE(result.first_contact.empty() && result.swept.empty());
+}
+
+TEST(Scene, ContactsThatAreLeftOutAreTold)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.clearance = 0.5;
+  for (const auto& [most, complete] : {std::pair(std::size_t{0}, false), {1, false}, {2, true}}) {
+    options.effects.contacts = most;
+    Scene scene(options);
+    scene.add(object("one", shelf.add({{0, 0, 0}, {0.25, 0, 0}})));
+    scene.add(object("other", shelf.add({{0, 0, 0}}), at(0, 0.125, 0)));
+    const SceneResult result = scene.query();
+    ASSERT_EQ(result.contacts.size(), 1u) << most;
+    EXPECT_EQ(result.contacts[0].contacts.size(), most);
+    EXPECT_EQ(result.contacts[0].complete, complete) << most;
+    scene.setPose(1, at(0, 9, 0));
+    EXPECT_TRUE(scene.query().contacts.empty());
+  }
+}
+
+template <class Do>
+std::string refusalOf(const Do& act)
+{
+  try {
+    act();
+  }
+  catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Scene, SaysWhichOptionMakesNoSense)
+{
+  const auto refusal = [](const auto& change) {
+    SceneOptions options;
+    options.effects.gravity = Gravity{};
+    options.effects.deform = 1.0;
+    change(options);
+    return refusalOf([&] { Scene{options}; });
+  };
+  EXPECT_EQ(refusal([](SceneOptions&) {}), "");
+  for (const double wrong : {-1.0, infinity, std::nan("")}) {
+    SCOPED_TRACE(wrong);
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.clearance = wrong; }), HasSubstr("is not finite and >= 0"));
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.tolerance = wrong; }), HasSubstr("is not finite and > 0"));
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.accuracy = Accuracy::tolerance(wrong); }),
+                AllOf(HasSubstr("accuracy tolerance="), HasSubstr("has a number that is not finite and >= 0")));
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.voxel_edge = wrong; }),
+                AllOf(HasSubstr("voxel edge "), HasSubstr("is not finite and >= 0")));
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.effects.gravity->step_height = wrong; }),
+                AllOf(HasSubstr("step height "), HasSubstr("is not finite and > 0")));
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.effects.deform = wrong; }),
+                AllOf(HasSubstr("deform's threshold "), HasSubstr("is not finite and >= 1")));
+  }
+  EXPECT_THAT(refusal([](SceneOptions& o) { o.effects.gravity->step_height = 0.0; }), HasSubstr("step height 0"));
+  for (const Eigen::Vector3d& down : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, infinity)})
+    EXPECT_THAT(refusal([&](SceneOptions& o) { o.effects.gravity->down = down; }),
+                HasSubstr("gravity's direction is not finite or of length 0"));
+  EXPECT_THAT(refusal([](SceneOptions& o) { o.effects.distance = -1.0; }), HasSubstr("distances within -1"));
+  EXPECT_EQ(refusal([](SceneOptions& o) { o.effects.distance = o.clearance = o.voxel_edge = 0.0; }), "");
+}
+
+TEST(Scene, SaysWhichObjectRuleOrPartMakesNoSense)
+{
+  Shelf shelf;
+  Scene scene({});
+  const std::vector<Point3> place = {{0, 0, 0}};
+  scene.add(object("one", shelf.add(place)));
+  scene.add(object("two", shelf.add(place)));
+  for (const double wrong : {-1.0, infinity}) {
+    EXPECT_THAT(refusalOf([&] { scene.setRule(0, 1, {{}, wrong}); }), HasSubstr("of a rule is not finite and >= 0"));
+    EXPECT_THAT(refusalOf([&] { scene.setGroupRule("", "", {{}, wrong}); }), HasSubstr("of a rule is not finite"));
+  }
+  for (const std::pair<std::uint32_t, std::uint32_t>& joint : {std::pair(0u, 1u), {1u, 0u}}) {
+    SceneObject joined = object("joined", shelf.add(place));
+    joined.adjacent = {joint};
+    EXPECT_THAT(refusalOf([&] { scene.add(joined); }),
+                HasSubstr("object 'joined': part 1 is adjacent, but there are 1 parts"));
+  }
+  const PointsView view = viewOf(place[0].data(), 1);
+  EXPECT_EQ(refusalOf([&] { scene.deform(0, 0, view); }), "Scene: object 'one' cannot deform: deform is not listed");
+  SceneOptions options;
+  options.effects.deform = 1.5;
+  Scene deforming(options);
+  deforming.add(object("one", shelf.add(place)));
+  EXPECT_EQ(refusalOf([&] { deforming.deform(0, 0, view); }), "");
+  EXPECT_THAT(refusalOf([&] { deforming.deform(0, 1, view); }), HasSubstr("object 'one' has no part 1"));
 }
 
 TEST(Scene, RefusesWhatMakesNoSense)

@@ -147,6 +147,33 @@ TEST(SceneUncertainty, PointsThatPassByMayCollideOrDoForCertain)
   EXPECT_EQ(pass(edge(1.0) + 1.1 * tolerance), Verdict::free);
 }
 
+/// Too many pairs to follow each: what may collide is undecided there, too.
+TEST(SceneUncertainty, HeapsThatComeNearMayCollideOrDoForCertain)
+{
+  SceneOptions options;
+  options.effects.swept = options.effects.first_contact = true;
+  options.clearance = 0.5;
+  options.tolerance = 0.01;
+  for (const auto& [end, verdict] :
+       {std::pair(-1.0, Verdict::free), {-0.6, Verdict::undecided}, {-0.2, Verdict::colliding}}) {
+    SCOPED_TRACE(end);
+    Shelf shelf;
+    Cloud heap(std::vector<Point3>(200, Point3{0, 0, 0}), doubles);
+    heap.setUncertainties(0.1, {});
+    const auto points = shelf.add(std::move(heap));
+    Scene scene(options);
+    scene.add(fixedObject("at rest", points));
+    const ObjectId mover = scene.add(object("mover", points, at(-2, 0, 0)));
+    scene.query();
+    scene.setPose(mover, at(end, 0, 0));
+    const SceneResult result = scene.query();
+    EXPECT_EQ(result.first_contact.size(), verdict == Verdict::free ? 0u : 1u);
+    EXPECT_EQ(result.certain_contact.size(), verdict == Verdict::colliding ? 1u : 0u);
+    ASSERT_EQ(result.swept.size(), verdict == Verdict::free ? 0u : 2u);
+    for (const FlaggedPart& part : result.swept) EXPECT_EQ(part.flags, std::vector<Verdict>(200, verdict));
+  }
+}
+
 TEST(SceneUncertainty, NothingCollidesForCertainWhereTheClearanceIsLessThanTheUncertainty)
 {
   Effects effects;

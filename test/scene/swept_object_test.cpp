@@ -176,6 +176,24 @@ TEST(SweptObject, APartWhosePoseWasSetGoesByALegOfItsOwn)
   EXPECT_TRUE(moved.unswept[0].detoured) << "the part was set, then moved on with its object";
 }
 
+TEST(SweptObject, APartWithoutPointsGoesByALegOfItsOwnToo)
+{
+  DotAndPlate world;
+  SceneObject robot;
+  robot.name = "robot";
+  robot.parts = {{"base", world.dot, Eigen::Isometry3d::Identity()},
+                 {"empty", world.shelf.add(std::vector<Point3>()), at(0, 0.1, 0)}};
+  const ObjectId id = world.scene.add(robot);
+  world.scene.query();
+  world.scene.setPartPose(id, 1, at(2, 0.1, 0));
+  const SceneResult result = world.scene.query();
+  EXPECT_TRUE(result.first_contact.empty());
+  ASSERT_EQ(result.swept_motions.size(), 2u);
+  EXPECT_EQ(result.swept_motions[1].part, 1u);
+  EXPECT_EQ(result.swept_motions[1].leg.center, Eigen::Vector3d::Zero());
+  EXPECT_EQ(result.swept_motions[1].leg.to.matrix(), at(2, 0.1, 0).matrix());
+}
+
 TEST(SweptObject, APoseThatIsSetBeforeAStepIsMarkedWhereTheObjectMovesOn)
 {
   DotAndPlate world;
