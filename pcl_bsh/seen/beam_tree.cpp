@@ -47,11 +47,6 @@ BeamNode around(const Beam* begin, const Beam* end)
 
 } // namespace
 
-std::uint32_t beamRecords(const ScanBeams& scan)
-{
-  return static_cast<std::uint32_t>(scan.returns.count + scan.misses.count);
-}
-
 BeamEnd beamOf(const ScanBeams& scan, std::uint32_t record)
 {
   const bool returned = record < scan.returns.count;

@@ -36,9 +36,6 @@ struct BeamEnd {
 };
 BeamEnd beamOf(const ScanBeams& scan, std::uint32_t record);
 
-/// Records that beamOf() takes.
-std::uint32_t beamRecords(const ScanBeams& scan);
-
 /// Calls visit(record, beam) for all beams of a scan.
 template <class Visit>
 void eachBeam(const ScanBeams& scan, const Visit& visit)

@@ -72,7 +72,7 @@ inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double em
     const double cosine = ball.way.dot(unit) / ball.distance;
     const double sine = ball.way.cross(unit).norm() / ball.distance;
     const double sine_left = sine * speaks.cosine - cosine * speaks.sine;
-    if (sine_left > 0.0 || cosine < 0.0) {
+    if (sine_left > 0.0) {
       along = ball.distance * (cosine * speaks.cosine + sine * speaks.sine);
       off = std::max(0.0, ball.distance * sine_left - ball.slack);
     }
