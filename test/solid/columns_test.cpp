@@ -55,9 +55,9 @@ Point3 placeOn(const Columns& columns, const TrianglesView& view, Random& random
 
 TEST(Columns, NoPlaceOnTheSurfaceIsClear)
 {
-  constexpr double sizes[] = {1.0, 1e-3, 1e9, 1e300, 1e-300};
+  constexpr double sizes[] = {1.0, 1e-3, 1e9, 1e300, 1e-300, 1e-310};
   Random random(1);
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < 480; ++trial) {
     const test::ClosedMesh mesh = someTriangles(random, random.pick(sizes));
     const Columns columns(mesh.view());
     for (int i = 0; i < 400; ++i) ASSERT_FALSE(columns.isClear(placeOn(columns, mesh.view(), random), 0.0)) << trial;
@@ -174,6 +174,55 @@ TEST(Columns, ListLittleWhereTrianglesCrowd)
     listed += static_cast<double>(columns.above(columns.seen(at), 0.0, several).size()) / 500;
   }
   EXPECT_LT(listed, 340) << "of 6252 triangles";
+}
+
+/// Of finer grids, and of strips, which the columns of a place that may be in several of them have.
+TEST(Columns, ListWhatIsAboveAnyOfSeveralCrowdedPlaces)
+{
+  test::ClosedMesh crowd;
+  crowd.add(test::boxMesh(), 1.0);
+  crowd.add(test::bumpyMesh(12, 0.1), 0.001, {0.5, 0.5, 0.5});
+  const test::ClosedMesh fan = test::fanMesh(1000);
+  Random random(8);
+  std::vector<std::uint32_t> several;
+  for (const test::ClosedMesh* const mesh : {static_cast<const test::ClosedMesh*>(&crowd), &fan}) {
+    const Columns columns(mesh->view());
+    const auto count = static_cast<std::uint32_t>(mesh->view().count);
+    const double error = mesh == &crowd ? 0.00005 : 0.02;
+    std::size_t under = 0, all = 0;
+    for (int i = 0; i < 300; ++i) {
+      Point3 q = random.point([&] { return 0.5 + 0.001 * random.uniform(0, 1); });
+      if (mesh == &fan) q = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)};
+      const Point3 at = columns.seen(q);
+      const Columns::Range listed = columns.above(at, error, several);
+      all += listed.size();
+      for (std::uint32_t t = 0; t < count; ++t) {
+        const Triangle3 seen = columns.seenTriangle(t);
+        if (std::max({seen[0][2], seen[1][2], seen[2][2]}) < at[2]) continue;
+        for (const double off : {-error, 0.0, error}) {
+          if (!isUnder(seen, {at[0] + off, at[1] - off, at[2]})) continue;
+          ++under;
+          ASSERT_TRUE(std::binary_search(listed.begin(), listed.end(), t)) << t;
+        }
+      }
+    }
+    EXPECT_GT(under, 1000u);
+    EXPECT_LT(all, std::size_t{300} * count / 2) << "of " << count;
+  }
+}
+
+TEST(Columns, OfNothingAreEmpty)
+{
+  test::ClosedMesh mesh;
+  const std::uint32_t nan = mesh.vertex(NAN, 0, 0), at = mesh.vertex(1, 2, 3);
+  EXPECT_TRUE(Columns(mesh.view()).empty());
+  mesh.triangle(nan, at, at);
+  const Columns nothing(mesh.view());
+  EXPECT_TRUE(nothing.empty());
+  EXPECT_TRUE(nothing.isBeyond({1, 2, 3}, 0.0));
+  EXPECT_FALSE(nothing.isClear({1, 2, 3}, 0.0)) << "nothing is known";
+  mesh.triangle(at, at, at);
+  EXPECT_FALSE(Columns(mesh.view()).empty());
 }
 
 TEST(Columns, ListWhatIsAboveAnyOfSeveralPlaces)

@@ -26,11 +26,14 @@ Isometry3d poseOf(double angle, const Eigen::Vector3d& shift)
 
 /// Compares all queries with brute force, of voxels that are built and that are not.
 void expectExact(const Mesh& mesh, const std::vector<double>& points, const Isometry3d& pose_a = Isometry3d::Identity(),
-                 const Isometry3d& pose_b = Isometry3d::Identity(), const std::string& what = {})
+                 const Isometry3d& pose_b = Isometry3d::Identity(), const std::string& what = {},
+                 double voxel_edge = 0.0)
 {
   SCOPED_TRACE(what);
   const Solid solid(mesh.view());
-  const SphereHierarchy cloud(viewOf(points.data(), points.size() / 3));
+  HierarchyOptions options;
+  options.voxel_edge = voxel_edge;
+  const SphereHierarchy cloud(viewOf(points.data(), points.size() / 3), options);
   const Placed a(cloud, pose_a);
   const PlacedSolid b(solid, pose_b);
   const LabelsResult expected = brute_force::labelPoints(a, b);
@@ -63,6 +66,33 @@ TEST(Labels, OfABox)
   expectExact(box, somewhere(2000, -0.3, 1.3, 1));
   expectExact(box, test::pointsAbout(box, 2000, 0.01, 2));
   expectExact(box, somewhere(2000, -0.3, 1.3, 3), poseOf(0.3, {0.2, 0.1, 0}), poseOf(1.1, {0.1, 0, 0.2}));
+}
+
+/// A tree of several levels above them.
+TEST(Labels, OfManyVoxels)
+{
+  const Mesh bumpy = test::bumpyMesh(12, 0.3);
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    std::vector<double> points = somewhere(100, 2.0, 4.0, seed); // outside
+    const std::vector<double> about = test::pointsAbout(bumpy, seed == 1 ? 1 : 1000, 0.3, seed);
+    points.insert(points.end(), about.begin(), about.end());
+    expectExact(bumpy, points, poseOf(0.3, {0.2, 0.1, 0}), poseOf(0.4, {0.1, 0, 0.2}), std::to_string(seed), 0.06);
+  }
+}
+
+/// Where their sum is beyond all doubles, and where it is not.
+TEST(Labels, OfPlacesBeyondAllNumbers)
+{
+  Mesh box;
+  box.add(test::boxMesh(), 1e300, {-5e299, -5e299, -5e299});
+  for (const double from : {-1.7e308, 1.7e308})
+    for (const double to : {-1.7e308, 0.0, 1.7e308}) {
+      Isometry3d pose_a = Isometry3d::Identity(), pose_b = pose_a;
+      pose_a.translation().x() = from;
+      pose_b.translation().x() = to;
+      const std::vector<double> points = {0, 0, 0, -1.7e308, 0, 0, 1.7e308, 0, 0, 1.7e308, 5e299, 0};
+      expectExact(box, points, pose_a, pose_b, std::to_string(from > 0) + " " + std::to_string(to));
+    }
 }
 
 TEST(Labels, OfShellsThatCrossAndTouchOnALattice)
@@ -241,6 +271,10 @@ TEST(Labels, OfPointsThatAreNotFinite)
   const std::vector<double> points = {0.5, 0.5, 0.5, nan, 0.5, 0.5, 0.25, 0.5, 0.5};
   const SphereHierarchy cloud(viewOf(points.data(), 3));
   EXPECT_EQ(labelPoints({cloud}, solid).labels, (std::vector<std::uint8_t>{1, 0, 1}));
+  const LabelsResult by_force = brute_force::labelPoints({cloud}, solid);
+  EXPECT_EQ(by_force.labels, (std::vector<std::uint8_t>{1, 0, 1}));
+  EXPECT_EQ(by_force.inside, 2u);
+  EXPECT_EQ(by_force.work.exact_decisions, 2 * box.view().count);
 }
 
 } // namespace

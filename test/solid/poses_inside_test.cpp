@@ -32,12 +32,36 @@ TEST(PosesInside, AreThoseOfLabels)
     for (std::size_t j = 0; j < first.size(); ++j)
       if (labels.labels[j] != labelOf(Label::outside) && first[j] == kNothing) first[j] = i, ++inside;
   }
-  for (const unsigned threads : {1u, 2u}) {
-    const PosesInside found = findPosesInside({cloud}, solid, poses, threads);
-    EXPECT_EQ(found.first, first);
-    EXPECT_EQ(found.inside, inside);
-  }
+  HierarchyOptions small;
+  small.voxel_edge = 0.15; // a tree of several levels above them
+  const SphereHierarchy of_small(viewOf(points.data(), points.size() / 3), small);
+  for (const bool built : {false, true})
+    for (const SphereHierarchy* const of : {&cloud, &of_small}) {
+      if (built) of->buildAll();
+      for (const unsigned threads : {1u, 2u}) {
+        const PosesInside found = findPosesInside({*of}, solid, poses, threads);
+        EXPECT_EQ(found.first, first);
+        EXPECT_EQ(found.inside, inside);
+      }
+    }
   EXPECT_GT(inside, 100u);
+}
+
+TEST(PosesInside, OfNoPointsAndOfManyPoses)
+{
+  const test::ClosedMesh mesh = test::boxMesh();
+  const Solid solid(mesh.view());
+  std::vector<Eigen::Isometry3d> poses(1500, Eigen::Isometry3d(Eigen::Translation3d(9, 0, 0)));
+  poses[1400] = poses[1300] = Eigen::Isometry3d::Identity(); // after those that are looked at together
+  poses[1450] = Eigen::Isometry3d(Eigen::Translation3d(2, 0, 0));
+  const std::vector<double> points = {0.5, 0.5, 0.5, 2.5, 0.5, 0.5, NAN, 0.5, 0.5, 5, 5, 5};
+  const SphereHierarchy cloud(viewOf(points.data(), 4)), nothing(viewOf(points.data() + 6, 1));
+  const PosesInside found = findPosesInside({cloud}, solid, poses);
+  EXPECT_EQ(found.first, (std::vector<std::uint32_t>{1300, 1450, kNothing, kNothing}));
+  EXPECT_EQ(found.inside, 2u);
+  const PosesInside none = findPosesInside({nothing}, solid, poses);
+  EXPECT_EQ(none.first, std::vector<std::uint32_t>{kNothing});
+  EXPECT_EQ(none.inside, 0u);
 }
 
 TEST(PosesInside, OfAPathThatIsFarOffCostsItsPoses)

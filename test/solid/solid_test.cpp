@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/solid/bodies.h>
+#include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/solid/solid.h>
 
 #include "meshes.h"
@@ -42,6 +44,21 @@ TEST(Solid, JoinsCornersOfEqualCoordinates)
   for (const std::uint32_t corner : box.corners)
     soup.corners.push_back(soup.vertex(box.xyz[3 * corner], box.xyz[3 * corner + 1], box.xyz[3 * corner + 2]));
   EXPECT_NO_THROW(Solid(soup.view()));
+}
+
+TEST(Solid, OfOneBodyIsThatBody)
+{
+  test::ClosedMesh mesh = test::boxMesh();
+  const Solid solid(mesh.view());
+  const SolidBodies bodies(solid);
+  ASSERT_EQ(bodies.all().size(), 1u);
+  EXPECT_EQ(&bodies.solidOf(bodies.all()[0]), &solid);
+  mesh.add(test::boxMesh(), 1.0, {5, 0, 0});
+  const Solid two(mesh.view());
+  const SolidBodies of_two(two);
+  ASSERT_EQ(of_two.all().size(), 2u);
+  EXPECT_EQ(labelPlace(of_two.solidOf(of_two.all()[1]), {5.5, 0.5, 0.5}), Label::inside);
+  EXPECT_EQ(labelPlace(of_two.solidOf(of_two.all()[1]), {0.5, 0.5, 0.5}), Label::outside);
 }
 
 TEST(Solid, TakesLittleMemory)

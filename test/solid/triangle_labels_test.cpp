@@ -43,5 +43,22 @@ TEST(TriangleLabels, OfBodiesOfWhichOneHoldsTheOther)
   EXPECT_FALSE(holdsAny(solid, bodies.view(), {0}, identity));
 }
 
+/// A triangle that is nowhere joins no bodies, is the first of none, and is held by nothing.
+TEST(TriangleLabels, OfBodiesWithTrianglesThatAreNotFinite)
+{
+  test::ClosedMesh bodies;
+  const std::uint32_t nan = bodies.vertex(0.5, NAN, 0.5), inside = bodies.vertex(0.5, 0.5, 0.5);
+  bodies.triangle(nan, inside, inside);
+  bodies.add(test::boxMesh(), 1.0, {10, 0, 0});
+  bodies.triangle(2, nan, 10);
+  bodies.add(test::boxMesh(), 0.2, {0.4, 0.4, 0.4});
+  const std::vector<std::uint32_t> shells = firstOfShells(bodies.view());
+  EXPECT_EQ(shells, (std::vector<std::uint32_t>{1, 14}));
+  const test::ClosedMesh tank = test::boxMesh();
+  const Solid solid(tank.view());
+  EXPECT_TRUE(holdsAny(solid, bodies.view(), shells, identity));
+  EXPECT_FALSE(holdsAny(solid, bodies.view(), {0, 1, 13}, identity));
+}
+
 } // namespace
 } // namespace pcl_bsh
