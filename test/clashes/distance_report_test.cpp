@@ -205,6 +205,11 @@ TEST_F(FarPlaces, RefuseWhatHasNoMeaning)
   EXPECT_THROW(findFarPlaces(view(), all, 1, 0), std::invalid_argument);
   EXPECT_THROW(findFarPlaces(view(), all, 1, infinity), std::invalid_argument);
   EXPECT_THROW(findFarPlaces(view(), PointDistances(), 1, 1), std::invalid_argument);
+  PointDistances without_points = all, more_points = all;
+  without_points.closest_point.clear();
+  EXPECT_THROW(findFarPlaces(view(), without_points, 1, 1), std::invalid_argument);
+  more_points.closest_point.push_back(0);
+  EXPECT_THROW(findFarPlaces(view(), more_points, 1, 1), std::invalid_argument);
   EXPECT_TRUE(findFarPlaces(PointsView{}, PointDistances(), 1, 1).empty());
 }
 

@@ -377,5 +377,15 @@ TEST(BoundingSphereSearch, SignatureFollowsTheBase)
   EXPECT_TRUE(as_tree->getSortedResults());
 }
 
+TEST(BoundingSphereSearch, KnowsItsThreads)
+{
+  BoundingSphereSearch<Point> search;
+  EXPECT_EQ(search.getNumberOfThreads(), 0u);
+  search.setNumberOfThreads(3);
+  EXPECT_EQ(search.getNumberOfThreads(), 3u);
+  search.setNumberOfThreads();
+  EXPECT_EQ(search.getNumberOfThreads(), 0u);
+}
+
 } // namespace
 } // namespace pcl_bsh::search

@@ -77,5 +77,23 @@ TEST(LookedAt, HoldsTheBeamsThatSpeakForTheModelAndFewOthers)
   EXPECT_GT(left_out, 500);
 }
 
+/// Its square overflows, with the ball about it.
+TEST(LookedAt, HoldsAllOfWhatCannotBeMeasured)
+{
+  const Point3 far = {1.2e154, 0, 0}, beside = {-5, 0, 0};
+  LookedAt looked({0, 0, 0}, 0.1);
+  EXPECT_FALSE(looked.holds(beside));
+  EXPECT_TRUE(looked.holdsSome(far, 0.5e154));
+  EXPECT_FALSE(looked.holdsSome(far, 0.05e154));
+  looked.add({SphereHierarchy(PointsView())}, 0.1);
+  EXPECT_FALSE(looked.holds(beside)) << "nothing is looked at";
+  const SphereHierarchy model(viewOf(far.data(), 1));
+  looked.add({model}, 0.05e154);
+  EXPECT_FALSE(looked.holds(beside));
+  looked.add({model}, 0.5e154);
+  EXPECT_TRUE(looked.holds(beside));
+  EXPECT_TRUE(looked.holdsSome(beside, 1.0));
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/seen/unseen_points.h>
 
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/query/result.h>
 
@@ -420,6 +421,41 @@ TEST(MarkUnseenHardCases, TwoBeamsAreEnough)
   EXPECT_FALSE(isSeen({scanOf({5, 0, 0})}, 0.25, {2, 0, 0}, 0.05));
 }
 
+/// They are told apart by no angle: there is none that they speak for.
+TEST(MarkUnseenHardCases, BeamsOfOneDirectionSeeNothing)
+{
+  const std::vector<double> ends = {5, 0, 0, 6, 0, 0, 7, 0, 0}, place = {2, 0, 0};
+  const SeenSpace space({scanOf(ends)});
+  EXPECT_EQ(space.angle(0), 0.0);
+  EXPECT_EQ(space.beams(0), 3u);
+  EXPECT_EQ(verdictsOf(space, {SphereHierarchy(viewOf(place.data(), 1))}, 0.1)[0], kUnseen);
+}
+
+/// Of a grid of many levels, whose cells are covered as a whole beside some that are not.
+TEST(MarkUnseen, APatchOfBeamsSeesWhatIsWellWithinIt)
+{
+  constexpr double kStep = 0.004, kEdge = 0.3;
+  std::vector<double> ends;
+  for (int i = -75; i <= 75; ++i)
+    for (int j = -75; j <= 75; ++j)
+      for (const double x : {10.0, 10 * kStep * i, 10 * kStep * j}) ends.push_back(x);
+  const SeenSpace space = spaceOf({scanOf(ends)}, 0.01);
+  Random random(32);
+  int seen = 0, unseen = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double u = random.uniform(-0.4, 0.4), w = random.uniform(-0.4, 0.4), range = random.uniform(2, 9);
+    const double inside = kEdge - std::max(std::abs(u), std::abs(w));
+    if (std::abs(inside) < 0.015) continue;
+    const Point3 place = {range, range * u, range * w};
+    const SphereHierarchy model(viewOf(place.data(), 1));
+    const bool is_seen = verdictsOf(space, {model}, 1e-3)[0] != kUnseen;
+    ASSERT_EQ(is_seen, inside > 0) << u << ' ' << w << ' ' << range;
+    ++(is_seen ? seen : unseen);
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_GT(unseen, 500);
+}
+
 TEST(MarkUnseenHardCases, Antipode)
 {
   std::vector<double> ends = allAround(0.1, 12.5);
@@ -458,6 +494,61 @@ TEST(MarkUnseenHardCases, CoordinatesWhoseProductsOverflow)
   scan.origin = {0, -1.5e148, 0};
   EXPECT_FALSE(isSeen({scan}, 0.25, {0, 0, -1.8e138}, 1.8e138)); // both beams end in it
   EXPECT_TRUE(isSeen({scan}, 0.25, {0, -1e148, -1.8e138}, 1.8e138));
+}
+
+TEST(MarkUnseen, TellsItsProgressAndCanBeCancelled)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5);
+  Random random(4);
+  std::vector<float> places(3 * 2000);
+  for (float& x : places) x = static_cast<float>(random.uniform(-15, 15));
+  HierarchyOptions options;
+  options.voxel_edge = 5.0;
+  const SphereHierarchy model(viewOf(places.data(), 2000), options), nothing{PointsView()};
+  const SeenSpace space = spaceOf({scanOf(ends)}, 0.2);
+  const Verdicts expected = verdictsOf(space, {model}, 0.1);
+  for (const unsigned threads : {1u, 2u}) {
+    UnseenRequest request = within(0.1, threads);
+    double last = 0.0;
+    std::size_t reports = 0;
+    request.progress = [&](double done) {
+      EXPECT_GE(done, last);
+      last = done;
+      ++reports;
+      return true;
+    };
+    Verdicts verdicts(2000, Verdict::free);
+    const UnseenResult found = markUnseen(space, {model}, request, verdicts);
+    EXPECT_EQ(verdicts, expected);
+    EXPECT_EQ(found.unseen, static_cast<std::size_t>(std::count(expected.begin(), expected.end(), kUnseen)));
+    EXPECT_EQ(last, 1.0);
+    EXPECT_GT(reports, 3u);
+    request.progress = [](double) { return false; };
+    EXPECT_THROW(markUnseen(space, {model}, request, verdicts), Cancelled);
+    Verdicts none;
+    EXPECT_EQ(markUnseen(space, {nothing}, request, none).unseen, 0u) << "of no voxel there is none to be cancelled";
+  }
+  Verdicts none;
+  EXPECT_EQ(markUnseen(space, {nothing}, within(0.1), none).unseen, 0u);
+}
+
+TEST(MarkUnseen, RefusesVerdictsOfAnotherModel)
+{
+  const std::vector<double> ends = allAround(0.1, 12.5), places = {1, 0, 0, 2, 0, 0};
+  const SphereHierarchy model(viewOf(places.data(), 2));
+  Verdicts one(1, Verdict::free);
+  const auto refusal = [](const auto& mark) -> std::string {
+    try {
+      mark();
+    }
+    catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string expected = "verdicts: are 1 of 2 points: give one per record of the model";
+  EXPECT_EQ(refusal([&] { markUnseen(spaceOf({scanOf(ends)}, 0.2), {model}, within(0.1), one); }), expected);
+  EXPECT_EQ(refusal([&] { brute_force::markUnseen({scanOf(ends)}, 0.2, {model}, within(0.1), one); }), expected);
 }
 
 TEST(MarkUnseen, ShortensBeamsByTheirUncertainty)
