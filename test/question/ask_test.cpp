@@ -276,6 +276,18 @@ TEST_F(Ask, DistancesAreWithinAnyLimits)
       }
 }
 
+TEST_F(Ask, LimitsThatNobodyAsksAboutChangeNoDistance)
+{
+  question.wanted.distances = true;
+  question.max_distance = 0.15;
+  const PointDistances expected = answer().distances.a;
+  question.limits = {0.1, 0.4};
+  const Answer found = answer();
+  EXPECT_EQ(found.distances.a.measured, expected.measured);
+  EXPECT_EQ(found.distances.a.closest_point, expected.closest_point);
+  EXPECT_THAT(found.within, IsEmpty());
+}
+
 TEST_F(Ask, WhetherAnythingCollidesAndListsOfWhatDoes)
 {
   question.wanted.any = true;
@@ -360,6 +372,16 @@ TEST_F(Ask, ProgressGoesFromNothingToAll)
         }
         EXPECT_EQ(last, 1.0) << density << along << ' ' << members.size();
       }
+}
+
+TEST_F(Ask, ContactsAloneTellWhichPointsCollide)
+{
+  question.path = somePath();
+  question.wanted.contacts = true;
+  const TrajectoryResult found = answer().collisions, expected = collideAlong({a}, b, *question.path, along());
+  EXPECT_EQ(found.flags, expected.flags);
+  EXPECT_EQ(found.colliding, expected.colliding);
+  EXPECT_GT(found.colliding, 50u);
 }
 
 /// Where nobody needs all of them, they cost less.

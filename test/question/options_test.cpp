@@ -175,6 +175,8 @@ TEST(QuestionOptions, AreSetByText)
   EXPECT_EQ(question.obstacle_uncertainty.field, "-");
   setOption(question, "obstacle_uncertainty", "");
   EXPECT_TRUE(question.obstacle_uncertainty.isZero());
+  setOption(question, "seen", "false");
+  EXPECT_FALSE(question.seen);
   EXPECT_EQ(question.accuracy.text(), "pairs=7");
 }
 

@@ -265,6 +265,13 @@ TEST(PoseUncertainty, IsComputedFromACovariance)
   const PoseUncertainty tiny = PoseUncertainty::of(1e-16 * covariance, 3.0);
   EXPECT_NEAR(tiny.length, 9e-10, 1e-15);
   EXPECT_NEAR(tiny.angle, 6e-11, 1e-16);
+  for (const double scale : {1e-16, 1.0, 1e16}) { // by how much it may be off in its last digits
+    Eigen::Matrix<double, 6, 6> rounded = covariance;
+    rounded(0, 1) = 5e-10;
+    EXPECT_NO_THROW(PoseUncertainty::of(scale * rounded, 3.0));
+    rounded(0, 1) = 5e-9;
+    EXPECT_THROW(PoseUncertainty::of(scale * rounded, 3.0), InvalidInput) << scale;
+  }
   std::string text = "covariance=3:";
   for (int i = 0; i < 36; ++i) text += (i == 0 ? "" : ",") + std::to_string(covariance(i / 6, i % 6));
   EXPECT_NEAR(PoseUncertainty::parse(text).length, 0.09, 1e-3);

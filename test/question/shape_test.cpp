@@ -84,6 +84,15 @@ TEST_F(WatchedShape, MeasuresOnce)
   EXPECT_EQ(shape.facts(true).spacing->median, 1.0);
 }
 
+TEST(Shape, OfOnePlaceHasNoPatches)
+{
+  const std::vector<float> xyz = {1, 2, 3, 1, 2, 3};
+  Shape shape("place", viewOf(xyz.data(), 2));
+  shape.hierarchy({}, 1);
+  EXPECT_EQ(shape.patches({}, 1).gap, 0.0);
+  EXPECT_TRUE(shape.patches({}, 1).spacings.empty());
+}
+
 /// Neither a vertex nor a corner's number may change.
 TEST(Shape, OfTrianglesIsWatchedToo)
 {
