@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ways, not only where they end: what responses and first contacts claim is replayed at many instants.
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "scene_worlds.h"
@@ -245,6 +246,42 @@ TEST(SceneMotion, AUsersPoseTurnsTheShorterWayAndAMotionGoesOnFromThere)
   ASSERT_EQ(result.swept_motions.size(), 1u);
   EXPECT_NEAR(result.swept_motions[0].leg.turn.z(), -1.0, 1e-12);
   EXPECT_TRUE(scene.query().swept_motions.empty());
+}
+
+/// Where it was when it began, it stands, and goes on from there as if nobody had asked.
+TEST(SceneMotion, AStepThatIsCancelledIsNotMade)
+{
+  for (const Response response : {Response::none, Response::slide}) {
+    Shelf shelf;
+    SceneOptions options = responding(response, 0.1);
+    options.effects.any = options.effects.first_contact = true;
+    bool goes_on = true;
+    options.progress = [&](double) { return goes_on; };
+    Scene scene(options), twin(responding(response, 0.1));
+    const auto points = shelf.add({{0, 0, 0}});
+    for (Scene* const each : {&scene, &twin}) {
+      SceneObject mover = object("mover", points);
+      mover.motion = VelocityMotion{{1, 0, 0}, {0, 0, 1}};
+      each->add(mover);
+      each->add(fixedObject("at rest", points, at(9, 0, 0)));
+      each->add(object("set", points, at(0, 9, 0)));
+      each->step(0.5);
+    }
+    goes_on = false;
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_THROW(scene.step(0.5), Cancelled);
+      EXPECT_EQ(scene.time(), 0.5);
+      for (ObjectId id = 0; id < 3; ++id) EXPECT_EQ(scene[id].pose.matrix(), twin[id].pose.matrix()) << id;
+    }
+    goes_on = true;
+    const SceneResult found = scene.step(0.25);
+    EXPECT_EQ(found.time, 0.75);
+    EXPECT_EQ(found.unswept.empty(), response == Response::none) << "who slides turns first";
+    ASSERT_EQ(found.swept_motions.size(), 1u);
+    EXPECT_NEAR(found.swept_motions[0].leg.turn.z(), 0.25, 1e-12);
+    twin.step(0.25);
+    EXPECT_EQ(scene[0].pose.matrix(), twin[0].pose.matrix());
+  }
 }
 
 TEST(SceneMotion, RefusesWaysOnWhichItsPromisesCannotBeKept)

@@ -274,6 +274,78 @@ TEST(Scene, AMovedObjectUpdatesOnlyTheVoxelsItLeavesAndEnters)
   EXPECT_EQ(result.broad_phase.moved + result.broad_phase.voxels_entered + result.broad_phase.box_tests, 0u);
 }
 
+TEST(Scene, AnObjectLeavesTheVoxelsOfItsMotionWhenItRests)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.first_contact = true;
+  options.voxel_edge = 1.0;
+  Scene scene(options);
+  scene.add(object("cube", shelf.add({{0, 0, 0}, {0.9, 0.9, 0.9}}), at(0.05, 0.05, 0.05)));
+  EXPECT_EQ(scene.query().broad_phase.voxels_entered, 1u);
+  scene.setPose(0, at(3.05, 0.05, 0.05));
+  const BroadPhaseCost moving = scene.query().broad_phase, resting = scene.query().broad_phase;
+  EXPECT_EQ(moving.voxels_entered, 3u);
+  EXPECT_EQ(moving.voxels_left, 0u);
+  EXPECT_EQ(resting.moved, 1u);
+  EXPECT_EQ(resting.voxels_left, 3u);
+  EXPECT_EQ(resting.voxels_entered, 0u);
+  EXPECT_EQ(scene.query().broad_phase.moved, 0u);
+}
+
+/// Of each query by itself, whichever effects it has.
+TEST(Scene, ProgressGoesFromNothingToAll)
+{
+  for (std::size_t e = 0; e < 8; ++e) { // all that look, and each of them alone
+    Shelf shelf;
+    SceneOptions options;
+    options.clearance = 1.5;
+    options.effects.any = e == 0 || e == 1;
+    options.effects.flags = e == 0 || e == 2;
+    if (e == 0 || e == 3) options.effects.distance = 2.0;
+    if (e == 0 || e == 4) options.effects.contacts = 2;
+    options.effects.first_contact = e == 0 || e == 5;
+    options.effects.swept = e == 0 || e == 6;
+    options.effects.self = e == 0 || e == 7;
+    double last = 0.0;
+    std::size_t reports = 0;
+    options.progress = [&](double done) {
+      EXPECT_GE(done, last) << e;
+      EXPECT_LE(done, 1.0) << e;
+      last = done;
+      ++reports;
+      return true;
+    };
+    Scene scene(options);
+    const auto points = shelf.add({{0, 0, 0}, {0.5, 0, 0}});
+    for (int i = 0; i < 5; ++i) scene.add(object("object " + std::to_string(i), points, at(i, 0, 0)));
+    for (int query = 0; query < 2; ++query) {
+      last = 0.0;
+      reports = 0;
+      scene.query();
+      EXPECT_EQ(last, 1.0) << e;
+      EXPECT_GT(reports, e == 0 ? 6u : 0u) << e;
+    }
+  }
+}
+
+TEST(Scene, DeformationsAreCounted)
+{
+  Shelf shelf;
+  SceneOptions options;
+  options.effects.deform = 2.0;
+  Scene scene(options);
+  scene.add(object("one", shelf.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})));
+  scene[0].parts[0].hierarchy->buildAll();
+  const std::vector<Point3> moved = {{0, 0, 0.1}, {1, 0, 0}, {0, 1, 0}};
+  const RefitReport report = scene.deform(0, 0, viewOf(moved[0].data(), 3));
+  EXPECT_GT(report.volumes_refitted, 0u);
+  const SceneResult result = scene.query();
+  EXPECT_EQ(result.cost(Effect::deform).work.volumes_built, report.volumes_refitted);
+  EXPECT_EQ(result.cost(Effect::deform).pairs, 1u);
+  EXPECT_EQ(scene.query().cost(Effect::deform).pairs, 0u);
+}
+
 TEST(Scene, FindsWhatIsNearAcrossTheVoxelsBorders)
 {
   Shelf shelf;
