@@ -45,7 +45,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
     fuzz::requireSound(vertices, file.size());
     if (vertices.width == 0) return 0;
     const PointsView view = viewOf(vertices);
-    for (const Triangle& triangle : io::trianglesOf(faces, view)) triangles.push_back(triangle);
+    std::vector<io::FaceValues> values;
+    for (const Triangle& triangle : io::trianglesOf(faces, view, values)) triangles.push_back(triangle);
     fuzz::require(triangles.size() <= file.size(), "more triangles than the file has bytes");
     for (const Triangle& triangle : triangles)
       for (const std::uint32_t corner : triangle) fuzz::require(corner < view.count, "a corner that is not there");
