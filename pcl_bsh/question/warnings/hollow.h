@@ -14,9 +14,9 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// A place of some points or triangles that the faces of a surface wind round, where these close. At up to 16 of the
-/// poses, of voxels that meet the surface's box, 256 records at most are looked at, and 8 are samples, or one of each
-/// pose. The first question about a surface passes all of its triangles, which takes some 160 instructions each; the
-/// second finds out whether they close. Where they are known not to, nothing is looked at.
+/// poses, of voxels that meet the surface's box, some 256 records are looked at, 511 at most, and 8 are samples, or one
+/// of each pose. The first question about a surface passes all of its triangles, which takes some 160 instructions
+/// each; the second finds out whether they close. Where they are known not to, nothing is looked at.
 /// @param T_surface_content where the content is, of one pose or more @return in the content's own frame
 /// @pre hierarchy() of the surface was called, and isSurface()
 std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& content,
