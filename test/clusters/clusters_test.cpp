@@ -59,6 +59,14 @@ TEST(Clusters, SameAsBruteForceOfTriangles)
     }
 }
 
+TEST(Clusters, BruteForceComparesEachPairOnce)
+{
+  const Cloud cloud({{0, 0, 0}, {1, 0, 0}, {std::nan(""), 0, 0}, {5, 0, 0}, {6, 0, 0}});
+  const Clusters clusters = brute_force::euclideanClusters(SphereHierarchy(cloud.view()), 1.0);
+  EXPECT_EQ(clusters.work.exact_decisions, 6u);
+  EXPECT_EQ(clusters.sizes, (std::vector<std::size_t>{2, 2}));
+}
+
 TEST(Clusters, StepsOfExactlyTheDistanceJoin)
 {
   const std::vector<float> line = {0, 0, 0, 1, 0, 0, 2, 0, 0, 3.5f, 0, 0};

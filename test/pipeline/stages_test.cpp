@@ -25,6 +25,7 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 template <typename Coordinate>
 StageCloudPtr cloudOf(const Points& points)
@@ -283,6 +284,16 @@ TEST(Stages, ClustersSayWhatFloatLoses)
   };
   EXPECT_THAT(warningsOf(10), IsEmpty());
   EXPECT_THAT(warningsOf(1e5), ElementsAre(HasSubstr("moves points of this float64 cloud by up to")));
+  const auto moved_by_one =
+      [](const char* tolerance) { // a ten thousandth of it is heard of, a hundredth refused beyond
+        return runStage(cloudOf<double>({{-0x1.000001p24, 0, 0}, {0x1.000001p24, 0, 0}}),
+                        std::string(R"({"type": "filters.euclidean_cluster", "cluster_tolerance": )") + tolerance + "}")
+            .warnings;
+      };
+  EXPECT_THAT(moved_by_one("10000"), IsEmpty());
+  EXPECT_THAT(moved_by_one("9999"), SizeIs(1));
+  EXPECT_THAT(moved_by_one("100"), SizeIs(1));
+  EXPECT_THAT(errorOf([&] { moved_by_one("99"); }), EndsWith(": crop the cloud first"));
 }
 
 TEST(Stages, CountingNeighboursSaysWhatFloatLoses)

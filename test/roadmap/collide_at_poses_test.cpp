@@ -133,6 +133,39 @@ struct Bodies {
   Poses poses;
 };
 
+/// All lengths times a power of two: frames have a unit of their own there.
+TEST(AtPoses, AreTheSameAtAnyScale)
+{
+  Random random(171);
+  const std::vector<Point3> body = test::makePoints(test::Shape::sphere, 400, 1.0, random);
+  const std::vector<Point3> hall = test::makePoints(test::Shape::clusters, 600, 4.0, random);
+  Poses poses;
+  for (int i = 0; i < 300; ++i) poses.push_back(random.pose(2.0));
+  const auto answersAt = [&](double scale) {
+    const auto scaled = [&](std::vector<Point3> points) {
+      for (Point3& p : points)
+        for (double& x : p) x *= scale;
+      return Cloud(points, {Scalar::float64, 0, 0});
+    };
+    const Cloud of_a = scaled(hall), of_b = scaled(body);
+    Poses there = poses;
+    for (Eigen::Isometry3d& pose : there) pose.translation() *= scale;
+    const SphereHierarchy a(of_a.view()), b(of_b.view());
+    AnyRequest request;
+    request.clearance = 0.5 * scale;
+    DistancesAtPoses closest = closestPairAtPoses({a}, b, there, {});
+    for (double& distance : closest.distances) distance /= scale;
+    return std::pair(anyCollisionAtPoses({a}, b, there, request).flags, closest.distances);
+  };
+  const auto expected = answersAt(1.0);
+  EXPECT_GT(countOf(expected.first, Verdict::colliding), 50u);
+  EXPECT_GT(countOf(expected.first, Verdict::free), 50u);
+  for (const double scale : {0x1p-70, 0x1p70}) {
+    SCOPED_TRACE(scale);
+    EXPECT_EQ(answersAt(scale), expected);
+  }
+}
+
 TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
 {
   for (const double spread : {0.001, 0.05, 0.5}) {

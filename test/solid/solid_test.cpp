@@ -6,6 +6,7 @@
 
 #include "meshes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -34,7 +35,8 @@ TEST(Solid, RefusesCornersThatAreNotThere)
 {
   test::ClosedMesh mesh = test::boxMesh();
   mesh.corners[7] = 8;
-  EXPECT_THROW(Solid(mesh.view()), InvalidInput);
+  EXPECT_THAT([&] { Solid(mesh.view()); },
+              testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("names vertex 8 of 8")));
 }
 
 TEST(Solid, JoinsCornersOfEqualCoordinates)

@@ -2,6 +2,7 @@
 #include "support/temporary_folder.h"
 
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/unfinished.h>
 #include <pcl_bsh/vtk/write_data.h>
 
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -87,6 +89,28 @@ TEST(WriteVtm, LeavesNothingOnAFullDisk)
     setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_EQ(folder.files(), 0U);
   }
+}
+
+/// What failed is not removed once more when the program is told to stop: by then it may be another file.
+TEST(WriteVtm, ForgetsWhatItCouldNotWrite)
+{
+  const TemporaryFolder written, failed;
+  writeVtm({{"a", dataOf(5000)}}, written / "a.vtm");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limits = {4000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &limits);
+  EXPECT_THROW(writeVtm({{"a", dataOf(5000)}}, failed / "a.vtm"), files::FileError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  const fs::path source = (written / "a.vtm").parent_path(), target = (failed / "a.vtm").parent_path();
+  fs::copy(source, target, fs::copy_options::recursive); // of somebody else
+  const auto count = [](const fs::path& folder) {
+    return std::distance(fs::recursive_directory_iterator(folder), fs::recursive_directory_iterator());
+  };
+  static_cast<void>(files::discardUnfinished());
+  EXPECT_GE(count(target), 3);
+  EXPECT_EQ(count(target), count(source));
 }
 
 TEST(WriteVtm, VtkReadsItBack)

@@ -269,6 +269,8 @@ TEST_F(PoseFile, OddNamesOfColumnsAreNoFault)
   const std::string rows = "0 0 0 0 0 0 1\n1 2 3 0 0 " + half + " " + half + "\n";
   expectQuarterTurn(read("/t/x /t/y /t/z /q/x /q/y /q/z /q/w\n" + rows));
   expectQuarterTurn(read("_.p..x _p_y p__z -q--x q..y qz_ qw()\n" + rows));
+  expectQuarterTurn(read("px py pz qx qy qz qw q_s rotation-k t_s\n0 0 0 0 0 0 1 9 9 9\n1 2 3 0 0 " + half + " " +
+                         half + " 9 9 9\n"));
   expectQuarterTurn(
       read("[a] t tx ty tz q qx qy qz qw pos\n9 9 0 0 0 9 0 0 0 1 9\n9 9 1 2 3 9 0 0 " + half + " " + half + " 9\n"));
 }
