@@ -52,7 +52,6 @@ int vtkBSHSphereSource::FillInputPortInformation(int, vtkInformation* info)
 int vtkBSHSphereSource::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* const output = vtkPolyData::GetData(outputs);
-  output->Initialize();
   this->DeepestLevel = 0;
   this->Failed = true;
   try {
