@@ -46,7 +46,7 @@ void visitCells(vtkPolyData& data, const Visit& visit)
 
 std::uint32_t recordOf(vtkIdType corner, vtkIdType cell, std::size_t points)
 {
-  if (corner < 0 || static_cast<std::size_t>(corner) >= points)
+  if (static_cast<std::size_t>(corner) >= points) // negative ones are large
     throw InvalidInput(Input::surface, "cell " + std::to_string(cell),
                        "names point " + std::to_string(corner) + " of " + std::to_string(points),
                        "leave the cell out, or mend the mesh");

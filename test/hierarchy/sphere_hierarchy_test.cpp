@@ -309,6 +309,23 @@ TEST(SphereHierarchy, CountsWhatQueriesMadeOfIt)
   EXPECT_EQ(hierarchy.statistics().bytes, before + own + 2 * nodes * sizeof(Slabs));
 }
 
+TEST(SphereHierarchy, TellsLengthsInTheUnitOfTheCloud)
+{
+  Random random(5);
+  const std::vector<Point3> points = test::makePoints(Shape::uniform, 1000, 1.0, random);
+  const auto radiusAt = [&](double scale) {
+    std::vector<Point3> scaled = points;
+    for (Point3& p : scaled)
+      for (double& x : p) x = static_cast<double>(static_cast<float>(x)) * scale;
+    const Cloud cloud(scaled, {Scalar::float64, 0, 0});
+    const SphereHierarchy hierarchy(cloud.view());
+    hierarchy.buildAll(1);
+    return hierarchy.statistics().mean_leaf_radius / scale;
+  };
+  EXPECT_NEAR(radiusAt(0x1p70) / radiusAt(1.0), 1.0, 1e-3);
+  EXPECT_NEAR(radiusAt(0x1p-70) / radiusAt(1.0), 1.0, 1e-3);
+}
+
 TEST(SphereHierarchy, SpheresAreTight)
 {
   Random random(8);

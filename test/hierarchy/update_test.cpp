@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/update.h>
 
 #include "support/random_clouds.h"
@@ -499,6 +500,28 @@ TEST(HierarchyUpdate, OfAnEmptyHierarchyBuildsItAnew)
   EXPECT_TRUE(report.sorted_anew);
   EXPECT_EQ(report.points_read, 3u);
   EXPECT_EQ(hierarchy.size(), 3u);
+  expectSound(hierarchy);
+  expectAsNew(hierarchy, cloud.view(), random);
+}
+
+TEST(HierarchyUpdate, APointThatGoesTouchesItsVoxelAlone)
+{
+  Random random(12);
+  std::vector<Point3> points;
+  for (int i = 0; i < 400; ++i) points.push_back({0.01 * i + 0.005, 0.5, 0.5});
+  ChangingCloud<float> cloud(points, false, random);
+  HierarchyOptions options;
+  options.voxel_edge = 1.0;
+  SphereHierarchy hierarchy(cloud.view(), options);
+  const double reach = hierarchy.storage().frame.reach[0];
+  const std::int32_t record = 150;
+  HierarchyUpdate update(hierarchy, &record, 1);
+  cloud.set(150, {0.5, nan, 0.5});
+  const UpdateReport report = update.commit(cloud.view());
+  EXPECT_FALSE(report.sorted_anew);
+  EXPECT_EQ(report.voxels_touched, 1u);
+  EXPECT_EQ(hierarchy.size(), 399u);
+  EXPECT_LT(hierarchy.storage().frame.reach[0], 1.01 * reach) << "as large as it was";
   expectSound(hierarchy);
   expectAsNew(hierarchy, cloud.view(), random);
 }

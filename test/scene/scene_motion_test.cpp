@@ -120,6 +120,17 @@ TEST(SceneMotion, WaypointsStandBeforeTheFirstAndAfterTheLast)
     EXPECT_EQ(poseAt(motion, at(7, 7, 7), time).matrix(), expected.matrix()) << time;
 }
 
+/// Poses that are just rigid enough stay as they are given; those between are of their nearest rotations.
+TEST(SceneMotion, WaypointsAreTakenAsTheyAreGiven)
+{
+  std::vector<Eigen::Isometry3d> poses(3, at(1, 2, 3));
+  for (Eigen::Isometry3d& pose : poses) pose.linear()(0, 1) = 1e-6;
+  const WaypointMotion motion{{1, 2, 4}, poses};
+  for (const double time : {1.0, 2.0, 4.0})
+    EXPECT_EQ(poseAt(motion, at(7, 7, 7), time).matrix(), poses[0].matrix()) << time;
+  EXPECT_NE(poseAt(motion, at(7, 7, 7), 1.5).matrix(), poses[0].matrix());
+}
+
 TEST(SceneMotion, WhatDoesNotTurnTurnsByNothing)
 {
   EXPECT_EQ(turnOf(NoMotion{}, 0, 3), Eigen::Vector3d::Zero());

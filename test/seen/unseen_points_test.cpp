@@ -398,6 +398,23 @@ TEST(MarkUnseenHardCases, AllBeamsWithoutReturn)
   EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 1.1));
 }
 
+/// It went nowhere: it says nothing, also where other beams do.
+TEST(MarkUnseenHardCases, ABeamWithoutLengthSaysNothing)
+{
+  for (const bool returned : {true, false}) {
+    ScanBeams scan;
+    const std::vector<double> nowhere = {0, 0, 0}, others = {5, 0, 0, 5, 0.01, 0, 0, 0, 0};
+    (returned ? scan.returns : scan.misses) = viewOf(nowhere.data(), 1);
+    scan.misses_beyond = 100.0;
+    EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 0.25));
+    EXPECT_FALSE(isSeen({scan}, 0.2, {0, 0, 0}, 0.25));
+    EXPECT_EQ(SeenSpace({scan}).beams(0), 0u);
+    (returned ? scan.returns : scan.misses) = viewOf(others.data(), 3);
+    EXPECT_TRUE(isSeen({scan}, 0.25, {2, 0, 0}, 0.05));
+    EXPECT_EQ(SeenSpace({scan}).beams(0), 2u);
+  }
+}
+
 TEST(MarkUnseenHardCases, SomeBeamsWithoutReturn)
 {
   std::vector<double> returns, misses;

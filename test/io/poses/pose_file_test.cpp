@@ -68,6 +68,8 @@ TEST_F(PoseFile, NamesOfColumnsDecide)
                          half + ",0,0," + half + ",9,9\n"));
   expectQuarterTurn(read("timestamp tx ty tz qx qy qz qw\n0 0 0 0 0 0 0 1\n1 1 2 3 0 0 " + half + " " + half + "\n"));
   expectQuarterTurn(
+      read("# x y z qx qy qz qw\n0 0 0 0 0 0 1\n# z y x qw qx qy qz\n1 2 3 0 0 " + half + " " + half + "\n"));
+  expectQuarterTurn(
       read("# by someone\n# time qw qx qy qz tx ty tz\n0 1 0 0 0 0 0 0\n1 " + half + " 0 0 " + half + " 1 2 3\n"));
   expectQuarterTurn(
       read("%time,field.header.frame_id,field.pose.position.x,field.pose.position.y,field.pose.position.z,"

@@ -171,6 +171,11 @@ TEST(ClashLists, RefuseQuestionsAndSurveysThatNoRunWrites)
   const std::string begin = "old.json: is no list of clashes: ";
   EXPECT_THAT(refusal(oldListWith(R"("path": {"poses": -2, "checksum": "ab", "box": null}, "scan": {"box": null})")),
               HasSubstr(begin + "path.poses: -2 is too small"));
+  const std::string most = R"("path": {"poses": 2147483647, "checksum": "ab", "box": null}, "scan": {"box": null})";
+  EXPECT_EQ(parseClashes(oldListWith(most), "old.json").survey->poses, 2147483647u);
+  EXPECT_THAT(
+      refusal(oldListWith(R"("path": {"poses": 2147483648, "checksum": "ab", "box": null}, "scan": {"box": null})")),
+      HasSubstr(begin + "path.poses: 2147483648 is too large"));
   EXPECT_THAT(
       refusal(oldListWith(
           R"("path": {"poses": 2, "checksum": "ab", "box": null}, "scan": {"box": {"min": [0, 0], "max": []}})")),
