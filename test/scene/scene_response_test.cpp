@@ -265,6 +265,23 @@ TEST(SceneResponse, HeapsHaltBeforeTheyMeet)
   }
 }
 
+/// Without a response it goes where its motion leads, into a wall if need be, and is not lifted there to fall again.
+TEST(SceneResponse, WhatIsStuckStaysAtItsHeight)
+{
+  Shelf shelf;
+  SceneOptions options = responding(Response::none, 0.1);
+  options.effects.gravity = Gravity{};
+  Scene scene(options);
+  scene.add(object("wall", shelf.add(sheet({1, -1, -1}, {0, 0.05, 0}, {0, 0, 0.05}, 41, 61))));
+  SceneObject mover = object("mover", shelf.add({{0, 0, 0}}));
+  mover.motion = VelocityMotion{{1, 0, 0}, {0, 0, 0}};
+  const ObjectId id = scene.add(mover);
+  const SceneResult result = scene.step(1);
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  EXPECT_TRUE(result.outcomes[0].stuck);
+  EXPECT_EQ(place(scene, id), Eigen::Vector3d(1, 0, 0));
+}
+
 /// Ground with a step of this height at x = 0, and a wall at x = 3; points 5 cm apart.
 std::vector<Point3> stairs(double step)
 {
