@@ -47,6 +47,11 @@ TEST(SelectedRecords, OfNoneIsACloudWithTheSameHeaderAndFields)
     EXPECT_EQ(empty.height, 1u);
     EXPECT_TRUE(empty.data.empty());
   }
+  for (const std::uint8_t big : {std::uint8_t{0}, std::uint8_t{1}}) { // bytes are copied, in whatever order they are
+    pcl::PCLPointCloud2 cloud = numberedBytes();
+    cloud.is_bigendian = big;
+    EXPECT_EQ(selectedRecords(cloud, {1}).is_bigendian, big);
+  }
 }
 
 } // namespace
