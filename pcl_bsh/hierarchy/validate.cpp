@@ -33,12 +33,13 @@ public:
       checkPoints(voxel);
       if (voxel.nodes.empty())
         defect("no nodes");
-      else
+      else if (all_are_records_)
         checkNode(voxel.nodes, 0, 0, voxel.count, voxel.frame, v);
     }
     name_ = "cloud";
     if (points != s_.size) defect("voxels hold " + std::to_string(points) + " of " + counted(s_.size, "point"));
-    if (s_.size > 0) checkNode(s_.top, 0, 0, static_cast<std::uint32_t>(s_.voxel_count), s_.frame, kAboveVoxels);
+    if (s_.size > 0 && all_are_records_)
+      checkNode(s_.top, 0, 0, static_cast<std::uint32_t>(s_.voxel_count), s_.frame, kAboveVoxels);
     checkNoneLost();
     return std::move(defects_);
   }
@@ -59,6 +60,7 @@ private:
       const std::uint32_t record = voxel.records()[i];
       if (record >= s_.view.count) {
         defect("no such record: " + std::to_string(record));
+        all_are_records_ = false;
         continue;
       }
       ++seen_[record];
@@ -99,7 +101,8 @@ private:
     const Node& node = nodes[index];
     if (node.count < 1 || node.count > kNodeChildren)
       return defect(here + "has " + std::to_string(node.count) + " children");
-    if (node.begin[0] != begin || node.begin[node.count] != end) defect(here + "its children do not span its range");
+    if (node.begin[0] != begin || node.begin[node.count] != end)
+      return defect(here + "its children do not span its range");
     for (std::uint32_t i = 0; i < node.count; ++i) {
       if (node.begin[i] >= node.begin[i + 1]) return defect(here + "child " + std::to_string(i) + " is empty");
       checkSphere(node, i, frame, voxel, here);
@@ -203,6 +206,7 @@ private:
 
   const SphereHierarchy::Storage& s_;
   std::vector<std::uint32_t> seen_;
+  bool all_are_records_ = true; ///< of the cloud: nodes are looked at, which read their points
   std::string name_;
   HierarchyDefects defects_;
 };

@@ -504,15 +504,22 @@ TEST(HierarchyUpdate, OfAnEmptyHierarchyBuildsItAnew)
   expectAsNew(hierarchy, cloud.view(), random);
 }
 
-TEST(HierarchyUpdate, APointThatGoesTouchesItsVoxelAlone)
+/// 400 points along x, a hundred in each voxel.
+std::pair<ChangingCloud<float>, SphereHierarchy> pointsInARow(Random& random)
 {
-  Random random(12);
   std::vector<Point3> points;
   for (int i = 0; i < 400; ++i) points.push_back({0.01 * i + 0.005, 0.5, 0.5});
   ChangingCloud<float> cloud(points, false, random);
   HierarchyOptions options;
   options.voxel_edge = 1.0;
   SphereHierarchy hierarchy(cloud.view(), options);
+  return {std::move(cloud), std::move(hierarchy)}; // the coordinates stay where they are
+}
+
+TEST(HierarchyUpdate, APointThatGoesTouchesItsVoxelAlone)
+{
+  Random random(12);
+  auto [cloud, hierarchy] = pointsInARow(random);
   const double reach = hierarchy.storage().frame.reach[0];
   const std::int32_t record = 150;
   HierarchyUpdate update(hierarchy, &record, 1);
@@ -530,12 +537,7 @@ TEST(HierarchyUpdate, OfPointsThatARefitTookOutOfTheirVoxels)
 {
   // A refit leaves points in their voxels, wherever they go: their coordinates do not tell which voxel holds them.
   Random random(11);
-  std::vector<Point3> points;
-  for (int i = 0; i < 400; ++i) points.push_back({0.01 * i + 0.005, 0.5, 0.5});
-  ChangingCloud<float> cloud(points, false, random);
-  HierarchyOptions options;
-  options.voxel_edge = 1.0;
-  SphereHierarchy hierarchy(cloud.view(), options);
+  auto [cloud, hierarchy] = pointsInARow(random);
   cloud.set(50, {1.005, 0.5, 0.5});  // from the first voxel into the second
   cloud.set(150, {0.505, 0.5, 0.5}); // and the other way: both hold as many as before
   ASSERT_FALSE(hierarchy.refit(cloud.view()).sorted_anew);
