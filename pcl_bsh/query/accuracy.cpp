@@ -61,9 +61,9 @@ std::string Accuracy::text() const
     std::array<char, 32> digits;
     char *const begin = digits.data(), *const room = begin + digits.size();
     const bool whole = isWhole(mode) && value < 0x1p63; // without an exponent, as people write counts
-    char* const end =                                   // every number has room
-        whole ? std::to_chars(begin, room, static_cast<std::uint64_t>(value)).ptr
-              : std::to_chars(begin, room, value).ptr;
+    // Every number has room.
+    char* const end = whole ? std::to_chars(begin, room, static_cast<std::uint64_t>(value)).ptr
+                            : std::to_chars(begin, room, value).ptr;
     return std::string(known.name) + "=" + std::string(begin, end);
   }
   return {};

@@ -3,6 +3,7 @@
 #include <pcl_bsh/hierarchy/update.h>
 
 #include "support/random_clouds.h"
+#include "support/refusal.h"
 #include "support/verdicts.h"
 
 #include <pcl_bsh/collide.h>
@@ -19,6 +20,7 @@ namespace pcl_bsh {
 namespace {
 
 using test::Random;
+using test::refusalOf;
 using test::Shape;
 using testing::HasSubstr;
 
@@ -434,19 +436,6 @@ TEST(HierarchyRefit, RebuildsWhatHasGrownLoose)
   expectSound(hierarchy);
 }
 
-/// What a call says of what it is given; empty where it takes it.
-template <class Call>
-std::string complaintOf(const Call& call)
-{
-  try {
-    call();
-    return {};
-  }
-  catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
-
 TEST(HierarchyRefit, SaysInWhatAViewDiffers)
 {
   const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 2, 0, 0}, radii = {1, 1, 1};
@@ -458,7 +447,7 @@ TEST(HierarchyRefit, SaysInWhatAViewDiffers)
   balls.radii = radii.data();
   SphereHierarchy hierarchy(viewOf(xyz.data(), 3)), of_subset(subset), of_balls(balls);
   const auto says = [](SphereHierarchy& refitted, const PointsView& view) {
-    return complaintOf([&] { refitted.refit(view); });
+    return refusalOf([&] { refitted.refit(view); });
   };
   const auto other_type = HasSubstr("SphereHierarchy::refit: the view has coordinates of another type");
   EXPECT_THAT(says(hierarchy, viewOf(doubles.data(), 3)), other_type);
@@ -556,7 +545,7 @@ TEST(HierarchyUpdate, SaysInWhatAViewDiffers)
   balls.radii = radii.data();
   SphereHierarchy hierarchy(viewOf(xyz.data(), 3)), of_balls(balls);
   const auto says = [](SphereHierarchy& updated, const PointsView& view) {
-    return complaintOf([&] { HierarchyUpdate(updated, nullptr, 0).commit(view); });
+    return refusalOf([&] { HierarchyUpdate(updated, nullptr, 0).commit(view); });
   };
   const auto no_radii = HasSubstr("the new view has radii and the old one none, or the other way round");
   EXPECT_THAT(says(hierarchy, balls), no_radii);

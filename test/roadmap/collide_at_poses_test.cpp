@@ -7,6 +7,7 @@
 #include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/random_clouds.h"
+#include "support/refusal.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"
 
@@ -23,6 +24,7 @@ namespace {
 
 using test::Cloud;
 using test::Random;
+using test::refusalOf;
 using test::Scene;
 using Poses = std::vector<Eigen::Isometry3d>;
 
@@ -293,18 +295,6 @@ TEST(AtPoses, TakesAnyListAndEmptyOnes)
   EXPECT_EQ(closestPairAtPoses({a}, empty, Shelf()).distances[49], std::numeric_limits<double>::infinity());
 }
 
-template <class Call>
-std::string messageOf(const Call& call)
-{
-  try {
-    call();
-  }
-  catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(AtPoses, RefusesWhatTheSingleQueriesRefuseByTheIndexOfThePose)
 {
   const Cloud point({{0, 0, 0}});
@@ -313,24 +303,24 @@ TEST(AtPoses, RefusesWhatTheSingleQueriesRefuseByTheIndexOfThePose)
   poses[1234].translation().x() = std::numeric_limits<double>::quiet_NaN();
   poses[1300].linear() *= 2.0;
   for (const unsigned threads : {1u, 4u}) {
-    EXPECT_THAT(messageOf([&] {
+    EXPECT_THAT(refusalOf([&] {
                   anyCollisionAtPoses({a}, a, poses, {0.0, threads});
                 }),
                 testing::HasSubstr("pose 1234 of b"));
-    EXPECT_THAT(messageOf([&] {
+    EXPECT_THAT(refusalOf([&] {
                   closestPairAtPoses({a}, a, poses, {{}, threads});
                 }),
                 testing::HasSubstr("pose 1234 of b"));
   }
   poses.resize(10);
-  EXPECT_THAT(messageOf([&] { anyCollisionAtPoses({a}, a, poses, {-1.0, {}}); }), testing::HasSubstr("clearance"));
-  EXPECT_THAT(messageOf([&] {
+  EXPECT_THAT(refusalOf([&] { anyCollisionAtPoses({a}, a, poses, {-1.0, {}}); }), testing::HasSubstr("clearance"));
+  EXPECT_THAT(refusalOf([&] {
                 anyCollisionAtPoses({a}, a, poses, {1.0, Accuracy::time(1)});
               }),
               testing::HasSubstr("stops early"));
   Eigen::Isometry3d scaled = poses[0];
   scaled.linear() *= 2.0;
-  EXPECT_THAT(messageOf([&] { closestPairAtPoses({a, scaled}, a, poses); }), testing::HasSubstr("pose of a"));
+  EXPECT_THAT(refusalOf([&] { closestPairAtPoses({a, scaled}, a, poses); }), testing::HasSubstr("pose of a"));
 }
 
 TEST(AtPoses, ACallbackStopsThemInThreads)

@@ -6,6 +6,7 @@
 #include "random_world.h"
 #include "scene_worlds.h"
 #include "support/allocations.h"
+#include "support/refusal.h"
 #include "support/verdicts.h"
 
 #include <gmock/gmock.h>
@@ -28,6 +29,7 @@ using test::IdPair;
 using test::placed;
 using test::Random;
 using test::RandomWorld;
+using test::refusalOf;
 using test::Shape;
 using test::sheet;
 using test::Shelf;
@@ -746,18 +748,6 @@ TEST(Scene, ContactsThatAreLeftOutAreTold)
     scene.setPose(1, at(0, 9, 0));
     EXPECT_TRUE(scene.query().contacts.empty());
   }
-}
-
-template <class Do>
-std::string refusalOf(const Do& act)
-{
-  try {
-    act();
-  }
-  catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST(Scene, SaysWhichOptionMakesNoSense)
