@@ -10,7 +10,7 @@ find_package(TBB 2021 REQUIRED CONFIG)
 find_package(hwy 1.0 REQUIRED CONFIG)
 if(PCL_BSH_WITHOUT_PCL OR PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES OR PCL_BSH_BUILD_VTK)
   find_package(nlohmann_json 3.11 REQUIRED CONFIG)
-  find_package(FastFloat 3 REQUIRED CONFIG)
+  find_package(FastFloat REQUIRED CONFIG) # 3 or later: its package names itself compatible with its own major version alone
 endif()
 if(PCL_BSH_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED CONFIG)

@@ -13,6 +13,8 @@ function(pcl_bsh_target_defaults target)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict) # GCC 12 suspects "text" + std::string
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-dangling-reference) # GCC 14 suspects each reference that a call returns
   endif()
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     target_compile_options(${target} PRIVATE -fsized-deallocation) # as g++ has it
@@ -46,8 +48,8 @@ endif()
 # For what takes longer to compile than to run.
 function(pcl_bsh_compile_fast target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # GCC 12 suspects std::string and Eigen's vectors
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC 12 and 14 suspect std::string and Eigen's vectors
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
   endif()
 endfunction()
@@ -57,10 +59,9 @@ endfunction()
 function(pcl_bsh_precompile target set)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
-    if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-      # GCC 12 suspects "text" + std::string, and does not know that a precompiled <string> is the system's
-      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
-    endif()
+    # GCC 12 suspects "text" + std::string, and does not know that a precompiled <string> is the system's. GCC 14 also
+    # suspects std::sort of a few elements of an array.
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
   endif()
   get_property(first GLOBAL PROPERTY pcl_bsh_first_of_${set})
   if(first)

@@ -29,10 +29,10 @@ if [[ ! -r "$archive" ]]; then
   download 2>/dev/null || { update && download; } || die "libcgal-demo: cannot be downloaded: see the lines above"
   dpkg-deb --extract "$work"/libcgal-demo_*.deb "$work/package"
   archive="$(find "$work/package" -type f -name data.tar.gz -print -quit)"
-  [[ -n "$archive" ]] || die "libcgal-demo: has no data.tar.gz: this needs the package of Debian 12"
+  [[ -n "$archive" ]] || die "libcgal-demo: has no data.tar.gz: this needs the package of Debian 12 or 13"
 fi
 
 tar --extract --gzip --file "$archive" --directory "$work" --strip-components 2 \
-  data/points_3/building.ply data/meshes/man.off || die "$archive: lacks the scans: this needs the package of Debian 12"
+  data/points_3/building.ply data/meshes/man.off || die "$archive: lacks the scans: this needs the package of Debian 12 or 13"
 mv "$work/building.ply" "$work/man.off" "$folder/"
 say "the demo scans are in $folder"

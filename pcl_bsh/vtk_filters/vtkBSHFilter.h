@@ -13,7 +13,8 @@
 /// answer: a port without a connection, too. vtkWarningMacro tells what else is to be known of a question: clouds
 /// without a finite point, coarse float32 coordinates, holes that a collision may hide in, frames that are not one,
 /// points of a surface that no cell has. Progress is told, and an abort heeded, along poses and of distances; the flags
-/// at a single pose are one step. Points that are not finite are no points: they have the values of free points.
+/// at a single pose are one step. VTK 9.3 keeps AbortExecute set after an abort, 9.1 does not: call SetAbortExecute(0)
+/// before the next Update(). Points that are not finite are no points: they have the values of free points.
 ///
 /// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
 /// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has

@@ -6,6 +6,7 @@
 #include <pcl_bsh/collide.h>
 
 #include "support/pcd_points.h"
+#include "support/radius_hits.h"
 #include "support/random_clouds.h"
 
 #include <nanoflann.hpp>
@@ -120,9 +121,9 @@ std::size_t countNanoflann(const Question& c)
   std::size_t pairs = 0;
   for (const Point3& p : c.a.points) {
     const T query[3] = {static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2])};
-    std::vector<std::pair<std::uint32_t, T>> found;
+    test::RadiusHits<std::uint32_t, T> found;
     const T d = static_cast<T>(c.clearance);
-    pairs += tree.radiusSearch(query, d * d, found, nanoflann::SearchParams());
+    pairs += tree.radiusSearch(query, d * d, found, {});
   }
   return pairs;
 }

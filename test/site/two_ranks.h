@@ -12,14 +12,15 @@ inline bool hasMpirun()
 }
 
 /// Not in this process' environment: where MPI has begun in it, mpirun would take itself for a part of that job. Nor
-/// with hwloc's component that opens X displays, which other tests begin and end: tile_visitor.cpp.
+/// with hwloc's component that opens X displays, which other tests begin and end: tile_visitor.cpp. Open MPI 5 needs
+/// HOME.
 /// @param arguments as a shell reads them. @param place the folder to run in
 inline Outcome runOnTwoRanks(const std::string& arguments, const std::filesystem::path& place)
 {
   const io::TemporaryFolder folder;
   const std::string out = (folder / "out").string(), err = (folder / "err").string();
-  const std::string command = "cd " + place.string() +
-                              " && env -i PATH=\"$PATH\" HWLOC_COMPONENTS=-gl "
+  const std::string command = "cd " + place.string() + " && env -i PATH=\"$PATH\" HOME=" + (folder / "").string() +
+                              " HWLOC_COMPONENTS=-gl "
                               "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                               "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " +
                               arguments + " >" + out + " 2>" + err;

@@ -3,6 +3,7 @@
 // sure.
 #pragma once
 
+#include "support/radius_hits.h"
 #include "support/verdicts.h"
 
 #include <pcl_bsh/geometry/exact_distance.h>
@@ -15,7 +16,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace pcl_bsh::test {
@@ -60,8 +60,8 @@ public:
   template <class Accept>
   bool anyWithin(const Eigen::Vector3d& query, double distance, const Accept& accept) const
   {
-    std::vector<std::pair<std::size_t, double>> found;
-    tree_.radiusSearch(query.data(), distance * distance, found, nanoflann::SearchParams());
+    RadiusHits<std::size_t, double> found;
+    tree_.radiusSearch(query.data(), distance * distance, found, {});
     return std::any_of(found.begin(), found.end(), [&](const auto& hit) { return accept(points_.records[hit.first]); });
   }
 

@@ -967,7 +967,8 @@ TEST_P(Filters, TellProgressAndStop)
     filter->RemoveObserver(stopping);
     filter->RemoveObservers(vtkCommand::ErrorEvent);
     filter->GetExecutive()->RemoveObservers(vtkCommand::ErrorEvent);
-    filter->Update(); // asked again, the whole answer
+    filter->SetAbortExecute(0); // VTK 9.3 leaves it set, 9.1 does not
+    filter->Update();           // asked again, the whole answer
     EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 900);
   }
 }

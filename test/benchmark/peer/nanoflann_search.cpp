@@ -2,6 +2,7 @@
 #include "../workload/points_adaptor.h"
 #include "peer.h"
 #include "search_peer.h"
+#include "support/radius_hits.h"
 
 #include <cmath>
 #include <limits>
@@ -44,15 +45,15 @@ public:
         nanoflann::KNNResultSet<float, std::uint32_t> set(most);
         set.init(indices.data(), squared.data());
         squared[most - 1] = inclusive(radius);
-        tree_->findNeighbors(set, &q.x, nanoflann::SearchParams());
+        tree_->findNeighbors(set, &q.x, {});
         answer.found += set.size();
         for (std::size_t i = 0; i < set.size(); ++i) *answer.squared_distances += static_cast<double>(squared[i]);
       }
       return answer;
     }
-    std::vector<std::pair<std::uint32_t, float>> found;
+    test::RadiusHits<std::uint32_t, float> found;
     for (const Point& q : queries) {
-      answer.found += tree_->radiusSearch(&q.x, inclusive(radius), found, nanoflann::SearchParams());
+      answer.found += tree_->radiusSearch(&q.x, inclusive(radius), found, {});
       for (const auto& hit : found) *answer.squared_distances += static_cast<double>(hit.second);
     }
     return answer;

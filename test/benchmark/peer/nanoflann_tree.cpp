@@ -55,7 +55,7 @@ private:
   bool near(const Point& query, float d) const
   {
     FirstHit hit(d);
-    tree_->findNeighbors(hit, &query.x, nanoflann::SearchParams());
+    tree_->findNeighbors(hit, &query.x, {});
     return hit.found();
   }
 

@@ -195,7 +195,7 @@ PathFlags flagsByModelPoints(const Points& scan, const Points& model, const std:
   for (std::size_t k = 0; k < poses.size(); k += stride) {
     for (const Point& point : model) {
       const Point posed = poses[k].apply(point);
-      tree.findNeighbors(within, &posed.x, nanoflann::SearchParams());
+      tree.findNeighbors(within, &posed.x, {});
     }
   }
   result.query_seconds = query.seconds();
