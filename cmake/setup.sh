@@ -5,6 +5,7 @@
 # Installs the sections of packages.txt which the preset and the target need: for `library` what core, search and filters
 # need, for the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` what these need, otherwise all but
 # [paraview]. The preset `paraview` needs packages that exclude those of the others: apt-get removes nothing, and fails.
+# A package that this system's lists do not have is told, and kept in build/not_installed.txt for test/run.sh to tell again.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -25,13 +26,43 @@ case "$preset" in
   paraview) sections="core documents paraview" ;;
 esac
 
-# The packages of some sections that are not installed.
+unknown="" # packages that apt-get does not know, each between blanks
+
+# The packages of some sections that are not installed, save for the unknown ones.
 missing_packages() {
   sed -e 's/#.*//' -e 's/[[:space:]]*$//' cmake/packages.txt | awk -v sections=" $* " '
     /^\[/ { wanted = index(sections, " " substr($0, 2, length($0) - 2) " "); next }
     NF && wanted { print }' | while read -r package; do
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
-      printf '%s\n' "$package"
+      [[ "$unknown" == *" $package "* ]] || printf '%s\n' "$package"
+  done
+}
+
+# Which of these packages the lists of apt-get neither have nor see provided by others.
+find_unknown() {
+  local known package
+  known=" $(apt-cache showpkg "$@" 2>/dev/null | awk '
+    /^Package: / { package = $2; there = 0; next }
+    /^(Versions|Reverse Provides):/ { there = 1; next }
+    /^(Reverse Depends|Dependencies|Provides):/ { there = 0; next }
+    NF && there { print package }' | sort -u | tr '\n' ' ')"
+  unknown=""
+  for package in "$@"; do
+    [[ "$known" == *" $package "* ]] || unknown="${unknown:- }$package "
+  done
+}
+
+# This system may lack or rename packages. Without those of the first sections nothing can be built; what needs one of the
+# others is left out.
+tell_unknown() {
+  local needed package
+  needed=" $(unknown="" missing_packages core library documents pipelines | tr '\n' ' ')"
+  for package in $unknown; do
+    if [[ "$needed" == *" $package "* ]]; then
+      die "$package: this system's package lists do not have it (cmake/packages.txt names it), and nothing can be built without it"
+    fi
+    say "$package: this system's package lists do not have it (cmake/packages.txt names it): what needs it is left out"
+    printf '%s: this system has no such package\n' "$package" >>build/not_installed.txt
   done
 }
 
@@ -52,6 +83,7 @@ install_packages() {
   apt_get install --yes --no-remove --no-install-recommends "$@" || die "apt-get install failed: see the lines above"
 }
 
+# Warnings are errors where the environment says PCL_BSH_WERROR=ON (CMakePresets.json).
 configure() { cmake --preset "$preset" --log-level=WARNING "$@"; }
 
 # The names of what apt-get would install for these packages.
@@ -89,14 +121,24 @@ install_all_and_build_core() {
   wait "$installing" || { tail -n 20 "$log" >&2; die "apt-get install failed: see the lines above, and $log"; }
 }
 
+mkdir -p build
+rm -f build/not_installed.txt
 if command -v apt-get >/dev/null; then
   mapfile -t missing < <(missing_packages $sections)
   if ((${#missing[@]})); then
-    if [[ "$(id -u)" != 0 ]] && ! command -v sudo >/dev/null; then
-      die "not root and no sudo: as root, run: apt-get install --no-install-recommends ${missing[*]}"
+    find_unknown "${missing[@]}"
+    if [[ -n "$(missing_packages $sections)" || -z "$(apt-cache madison cmake)" ]]; then # some to install, or no lists yet
+      if [[ "$(id -u)" != 0 ]] && ! command -v sudo >/dev/null; then
+        die "not root and no sudo: as root, run: apt-get install --no-install-recommends ${missing[*]}"
+      fi
+      say "installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
+      apt_get update || say "apt-get update failed; going on with the package lists at hand"
+      find_unknown "${missing[@]}"
     fi
-    say "installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
-    apt_get update || say "apt-get update failed; going on with the package lists at hand"
+    tell_unknown
+    mapfile -t missing < <(missing_packages $sections)
+  fi
+  if ((${#missing[@]})); then
     if in_container; then install_packages eatmydata; fi
     if [[ " ${missing[*]} " == *" libpcl-dev "* && "$preset" == release ]]; then
       install_all_and_build_core

@@ -8,6 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+if [[ -n "${CI:-}" ]]; then export PCL_BSH_WERROR=ON; fi # elsewhere a newer compiler's warnings stop nobody
 bash cmake/setup.sh release
 bash cmake/setup.sh asan
 bash cmake/setup.sh tsan
@@ -28,6 +29,10 @@ for preset in tsan asan release; do
     printf '%s\n' "$skipped" "$missing" | sed '/^$/d'
   fi
 done
+if [[ -s build/not_installed.txt ]]; then
+  printf '== not installed\n'
+  cat build/not_installed.txt
+fi
 if ((${#failed[@]})); then
   printf 'test/run.sh: tests failed in: %s\n' "${failed[*]}" >&2
   exit 1
