@@ -147,7 +147,7 @@ bool Shape::isClosed()
 {
   if (surface_->enclosing.get()) return true;
   return madeOnce(surface_->closed,
-                  [this] { return std::make_unique<const bool>(openEdgesOf(*hierarchy_->view().triangles).closed()); });
+                  [this] { return std::make_unique<const bool>(closes(*hierarchy_->view().triangles)); });
 }
 
 std::optional<bool> Shape::isKnownToClose()

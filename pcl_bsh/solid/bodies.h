@@ -11,8 +11,11 @@
 
 namespace pcl_bsh {
 
-/// Finite triangles that share corners, by equal coordinates, are of one body. Each body closes by itself, as edges
-/// cancel where their ends are equal; so what is inside the solid is inside one of them at least.
+/// Finite triangles that share corners, by equal coordinates, are of one body. Each body closes by itself; so what is
+/// inside the solid is inside one of them at least.
+///
+/// Edges on a line cancel if and only if at each place as many begin as end (open_edges.cpp). All edges at a place are
+/// of one body: so those of each body cancel, also where corners of one lie within edges of another.
 class SolidBodies {
 public:
   /// Costs nothing until it is asked. @param solid borrowed

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/solid/open_edges.h>
 
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/geometry/exact/line_order.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
+#include <pcl_bsh/solid/cancel_along_line.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -145,35 +147,155 @@ bool closeByNumber(const TrianglesView& triangles)
                               most);
 }
 
+/// Edges of triangles that no edge between the same places cancels. Edge 3 i + k goes from corner k of triangle i to
+/// the next.
+class LoneEdges {
+public:
+  explicit LoneEdges(const TrianglesView& triangles) : triangles_(triangles), numbers_(triangles.count)
+  {
+    Joined joined;
+    for (std::size_t i = 0; i < triangles.count; ++i) {
+      const Triangle3 places = triangles.triangle(static_cast<Id>(i));
+      if (isFinite(places)) std::transform(places.begin(), places.end(), numbers_[i].begin(), std::ref(joined));
+    }
+    if (joined.size() >= kMostIds) refuse(triangles, "2^31 places");
+    places_ = std::exchange(joined, Joined()).size();
+    EdgesLeft left(triangles.count, places_, [&](std::size_t i) { return numbers_[i]; });
+    edges_.reserve(left.count());
+    for (std::size_t i = 0; edges_.size() < left.count(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (left.take(numbers_[i][k], numbers_[i][(k + 1) % 3])) edges_.push_back(static_cast<Id>(3 * i + k));
+  }
+
+  /// Whether they cancel along their lines. On a line they do if and only if at each place as many begin as end: how
+  /// often it is passed one way, less the other way, changes by the difference, and far out it is 0.
+  bool cancel() const
+  {
+    if (edges_.empty()) return true;
+    std::vector<std::size_t> ends(places_, 0); // of the edges that begin or end at each place
+    for (const Id edge : edges_) ++ends[number(edge, 0)], ++ends[number(edge, 1)];
+    std::size_t sum = 0;
+    for (std::size_t& n : ends) sum += std::exchange(n, sum);
+    std::vector<Id> at(sum);
+    for (const Id edge : edges_)
+      for (const std::size_t end : {0, 1}) at[ends[number(edge, end)]++] = edge;
+    std::vector<Leaving> leaving;
+    for (std::size_t place = 0; place < places_; ++place) {
+      leaving.clear();
+      for (std::size_t i = place == 0 ? 0 : ends[place - 1]; i < ends[place]; ++i)
+        leaving.push_back({spanOf(at[i]), number(at[i], 0) == place ? 1 : -1});
+      if (!cancel(leaving)) return false;
+    }
+    return true;
+  }
+
+  /// What of them is left open, by the edges' numbers. @param visit called with triangle, from, to
+  template <class Visit>
+  void forEachOpen(const Visit& visit) const
+  {
+    struct Line {
+      RoughSlope slope;
+      Id edge;
+    };
+    struct Part {
+      Id edge;
+      Point3 low, high;
+    };
+    std::vector<Line> lines;
+    lines.reserve(edges_.size());
+    for (const Id edge : edges_) lines.push_back({RoughSlope(spanOf(edge)), edge});
+    const auto compare = [&](const Line& l, const Line& r) {
+      const int rough = l.slope.compare(r.slope);
+      return rough != 0 ? rough : compareLines(spanOf(l.edge), spanOf(r.edge));
+    };
+    std::sort(lines.begin(), lines.end(), [&](const Line& l, const Line& r) { return compare(l, r) < 0; });
+    std::vector<Part> parts;
+    std::vector<EdgeOnLine> on_line;
+    for (auto line = lines.begin(); line != lines.end();) {
+      const auto first = line;
+      on_line.clear();
+      do {
+        const LineSpan span = spanOf(line->edge);
+        on_line.push_back({span.low, span.high, rises(line->edge), line->edge});
+      } while (++line != lines.end() && compare(*first, *line) == 0);
+      cancelAlongLine(on_line, [&](std::size_t i, const Point3& low, const Point3& high) {
+        parts.push_back({first[static_cast<std::ptrdiff_t>(i)].edge, low, high});
+      });
+    }
+    std::sort(parts.begin(), parts.end(), [&](const Part& l, const Part& r) {
+      return l.edge != r.edge ? l.edge < r.edge : rises(l.edge) ? l.low < r.low : r.low < l.low;
+    });
+    for (const Part& part : parts)
+      visit(part.edge / 3, rises(part.edge) ? part.low : part.high, rises(part.edge) ? part.high : part.low);
+  }
+
+private:
+  /// An edge seen from one of its ends.
+  struct Leaving {
+    LineSpan span;
+    int begins; ///< 1 where it begins there, -1 where it ends
+  };
+
+  static bool cancel(std::vector<Leaving>& leaving)
+  {
+    int sum = 0;
+    for (const Leaving& edge : leaving) sum += edge.begins;
+    if (sum != 0) return false;
+    std::sort(leaving.begin(), leaving.end(),
+              [](const Leaving& l, const Leaving& r) { return compareDirections(l.span, r.span) < 0; });
+    for (std::size_t i = 0; i < leaving.size(); ++i) {
+      sum += leaving[i].begins;
+      if (sum != 0 && (i + 1 == leaving.size() || compareDirections(leaving[i].span, leaving[i + 1].span) != 0))
+        return false;
+    }
+    return true;
+  }
+
+  Id number(Id edge, std::size_t end) const { return numbers_[edge / 3][(edge + end) % 3]; }
+  Point3 place(Id edge, std::size_t end) const
+  {
+    return triangles_.vertices.point(triangles_.cornersOf(edge / 3)[(edge % 3 + end) % 3]);
+  }
+  bool rises(Id edge) const { return place(edge, 0) < place(edge, 1); }
+  LineSpan spanOf(Id edge) const
+  {
+    const Point3 from = place(edge, 0), to = place(edge, 1);
+    return from < to ? LineSpan{from, to} : LineSpan{to, from};
+  }
+
+  const TrianglesView& triangles_;
+  std::vector<std::array<Id, 3>> numbers_; ///< of the places of each triangle's corners
+  std::size_t places_ = 0;
+  std::vector<Id> edges_; ///< ascending
+};
+
+void checkCount(const TrianglesView& triangles)
+{
+  if (3 * triangles.count >= kNone) refuse(triangles, "2^32 edges");
+}
+
 } // namespace
+
+bool closes(const TrianglesView& triangles)
+{
+  checkCount(triangles);
+  const DefaultFloatEnvironment environment;
+  return closeByNumber(triangles) || LoneEdges(triangles).cancel();
+}
 
 OpenEdges openEdgesOf(const TrianglesView& triangles, std::vector<OpenEdge>* all)
 {
   if (all) all->clear();
-  if (3 * triangles.count >= kNone) refuse(triangles, "2^32 edges");
-  if (closeByNumber(triangles)) return {};
-
-  std::vector<std::array<Id, 3>> corners(triangles.count);
-  Joined joined;
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    const Triangle3 places = triangles.triangle(static_cast<Id>(i));
-    if (isFinite(places)) std::transform(places.begin(), places.end(), corners[i].begin(), std::ref(joined));
-  }
-  if (joined.size() >= kMostIds) refuse(triangles, "2^31 places");
-  const std::size_t numbers = std::exchange(joined, Joined()).size();
-  EdgesLeft left(triangles.count, numbers, [&](std::size_t i) { return corners[i]; });
-
-  OpenEdges open{left.count()};
-  std::optional<OpenEdge> first;
-  for (std::size_t i = 0; open.count != 0 && i < triangles.count && (all || !first); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!left.take(corners[i][k], corners[i][(k + 1) % 3])) continue;
-      const Triangle3 places = triangles.triangle(static_cast<Id>(i));
-      const OpenEdge edge{i, places[k], places[(k + 1) % 3]};
-      if (!first) first = edge;
-      if (all) all->push_back(edge);
-    }
-  if (first) open.triangle = first->triangle, open.from = first->from, open.to = first->to;
+  checkCount(triangles);
+  const DefaultFloatEnvironment environment;
+  OpenEdges open;
+  if (closeByNumber(triangles)) return open;
+  const LoneEdges lone(triangles);
+  if (lone.cancel()) return open;
+  lone.forEachOpen([&](std::size_t triangle, const Point3& from, const Point3& to) {
+    if (open.count++ == 0) open.triangle = triangle, open.from = from, open.to = to;
+    if (all) all->push_back({triangle, from, to});
+  });
   return open;
 }
 

@@ -2,6 +2,7 @@
 #include "surface_questions.h"
 
 #include "bytes.h"
+#include "geometry/edge_chains.h"
 #include "questions.h"
 #include "target.h"
 
@@ -50,8 +51,8 @@ void requireSame(const PointDistances& found, const PointDistances& expected)
   require(found.greatest_pair == expected.greatest_pair, "distances: another pair is the farthest");
 }
 
-/// Directed edges that nothing cancels, counted one by one.
-std::uint64_t countOpenEdges(const TrianglesView& triangles)
+/// Whether anything is left of the directed edges, summed up along their lines.
+bool hasOpenEdges(const TrianglesView& triangles)
 {
   std::map<std::pair<Point3, Point3>, std::int64_t> edges;
   const auto plain = [](Point3 p) {
@@ -69,9 +70,11 @@ std::uint64_t countOpenEdges(const TrianglesView& triangles)
         --edges[{to, from}];
     }
   }
-  std::uint64_t open = 0;
-  for (const auto& [edge, left] : edges) open += static_cast<std::uint64_t>(std::abs(left));
-  return open;
+  std::vector<test::Edge> left; // by those between equal places
+  for (const auto& [edge, times] : edges)
+    for (std::int64_t i = 0; i < std::abs(times); ++i)
+      left.push_back(times > 0 ? test::Edge{edge.first, edge.second} : test::Edge{edge.second, edge.first});
+  return !test::chainOf(left).empty();
 }
 
 /// By all triangles, each in exact arithmetic.
@@ -166,15 +169,15 @@ void askSolid(const Placed& a, const Placed& b, double unit, Random& random)
 {
   const TrianglesView* const triangles = b.hierarchy().view().triangles;
   if (!triangles) return;
-  const std::uint64_t open = countOpenEdges(*triangles);
+  const bool open = hasOpenEdges(*triangles);
   std::optional<Solid> solid;
   try {
     solid.emplace(*triangles);
   }
   catch (const InvalidInput&) {
-    return require(open > 0, "solid: refused, though it closes");
+    return require(open, "solid: refused, though it closes");
   }
-  require(open == 0, "solid: accepted, though it does not close");
+  require(!open, "solid: accepted, though it does not close");
 
   const auto threads = static_cast<unsigned>(random.integer(1, 3));
   const PlacedSolid placed{*solid, b.pose};

@@ -4,7 +4,6 @@
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -44,24 +43,6 @@ inline Soup both(Soup x, const Soup& y)
 {
   x.insert(x.end(), y.begin(), y.end());
   return x;
-}
-
-/// The directed edges that nothing cancels: each against each other.
-inline std::vector<std::array<Point3, 2>> openByHand(const Soup& soup)
-{
-  std::vector<std::array<Point3, 2>> edges;
-  for (const Triangle3& t : soup)
-    for (std::size_t k = 0; isFinite(t) && k < 3; ++k) {
-      const std::array<Point3, 2> edge = {t[k], t[(k + 1) % 3]}, back = {edge[1], edge[0]};
-      if (edge[0] == edge[1]) continue;
-      const auto met = std::find(edges.begin(), edges.end(), back);
-      if (met != edges.end())
-        edges.erase(met);
-      else
-        edges.push_back(edge);
-    }
-  std::sort(edges.begin(), edges.end());
-  return edges;
 }
 
 } // namespace pcl_bsh::test

@@ -52,6 +52,21 @@ def test_points_in_a_box(points, pose):
     assert run.poses["colliding_points"].tolist() == [0, (d <= 0.1).sum()]
 
 
+def test_corners_within_edges_of_neighbours(points):
+    middles = np.array([[0, 0, 1], [0, -1, 1], [1, 0, 1], [0, 1, 1], [-1, 0, 1.0]])
+    rim = [4, 9, 5, 10, 7, 11, 6, 12]
+    top = [[8, rim[i], rim[(i + 1) % 8]] for i in range(8)]
+    corners, faces = np.vstack([CORNERS, middles]), np.vstack([FACES[:2], FACES[4:], top])
+    tank, scan = pcl_bsh.SphereHierarchy.of_triangles(corners, faces), pcl_bsh.SphereHierarchy(points)
+    d = signed(points, np.eye(4))
+    np.testing.assert_array_equal(pcl_bsh.collision_flags(scan, tank, solid=True), d <= 0)
+    np.testing.assert_allclose(pcl_bsh.point_distances(scan, tank, solid=True).distance, d, atol=1e-12)
+    corners[9, 1] = np.nextafter(-1, -2)
+    with pytest.raises(ValueError, match=r"3 edges are open, the first from \(-1, -1, 1\) to \(1, -1, 1\)|"
+                                         r"3 edges are open, the first from \(1, -1, 1\) to \(-1, -1, 1\)"):
+        pcl_bsh.collision_flags(scan, pcl_bsh.SphereHierarchy.of_triangles(corners, faces), solid=True)
+
+
 def test_two_solids_of_which_one_holds_the_other():
     tank, robot = box(4.0), box()
     for a, b, words in ((tank, robot, {"input_solid": True}), (robot, tank, {"solid": True})):

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Labels against every triangle in exact arithmetic.
+#include <pcl_bsh/solid/bodies.h>
 #include <pcl_bsh/solid/brute_force_labels.h>
 #include <pcl_bsh/solid/labels.h>
 
@@ -107,6 +108,36 @@ TEST(Labels, OfShellsThatCrossAndTouchOnALattice)
           points.insert(points.end(), {x / (2.0 * steps), y / (2.0 * steps), z / (2.0 * steps)});
     expectExact(mesh, points, Isometry3d::Identity(), Isometry3d::Identity(), "seed " + std::to_string(seed));
     expectExact(mesh, test::pointsAbout(mesh, 300, 1e-9, seed), poseOf(0.5, {0, 0, 0}), poseOf(0.5, {0, 0, 0}));
+  }
+}
+
+/// The same surface in triangles whose corners lie within edges of others has the same labels.
+TEST(Labels, OfCornersWithinEdges)
+{
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Mesh whole = seed % 2 == 0 ? test::boxMesh() : test::latticeMesh(10, 8, seed);
+    const Mesh cut = test::cutMesh(whole, 20 + 30 * static_cast<int>(seed), seed);
+    std::vector<double> points = test::pointsAbout(cut, 500, 1e-9, seed);
+    const std::vector<double> about = test::pointsAbout(whole, 500, 0.3, seed);
+    points.insert(points.end(), about.begin(), about.end());
+    for (int x = -1; x <= 17; x += 3)
+      for (int y = -1; y <= 17; y += 2)
+        for (int z = -1; z <= 17; ++z) points.insert(points.end(), {x / 16.0, y / 16.0, z / 16.0});
+    expectExact(cut, points, Isometry3d::Identity(), Isometry3d::Identity(), "seed " + std::to_string(seed));
+    expectExact(cut, points, poseOf(0.5, {5e5, 5e6, 0}), poseOf(0.5, {5e5, 5e6, 0}));
+    const Solid of_whole(whole.view()), of_cut(cut.view());
+    const SphereHierarchy cloud(viewOf(points.data(), points.size() / 3));
+    EXPECT_EQ(labelPoints(cloud, of_cut).labels, brute_force::labelPoints(cloud, of_whole).labels);
+
+    const SolidBodies bodies(of_cut); // each closes by itself, and what is inside is inside one of them
+    const std::vector<std::uint8_t> labels = labelPoints(cloud, of_cut).labels;
+    std::vector<bool> in_a_body(labels.size(), false);
+    for (const SolidBodies::Body& body : bodies.all()) {
+      const std::vector<std::uint8_t> own = labelPoints(cloud, bodies.solidOf(body)).labels;
+      for (std::size_t i = 0; i < own.size(); ++i) in_a_body[i] = in_a_body[i] || own[i] == labelOf(Label::inside);
+    }
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      EXPECT_TRUE(labels[i] != labelOf(Label::inside) || in_a_body[i]) << i;
   }
 }
 

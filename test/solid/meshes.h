@@ -112,6 +112,40 @@ inline ClosedMesh latticeMesh(int tetrahedra, int steps, std::uint64_t seed)
   return mesh;
 }
 
+/// The same surface in more triangles: so many times one of them, and not its neighbour, is cut in two at the middle of
+/// an edge, or in four. So corners lie within edges, and exactly so where coordinates have few digits.
+inline ClosedMesh cutMesh(const ClosedMesh& mesh, int cuts, std::uint64_t seed)
+{
+  Random random(seed);
+  ClosedMesh cut = mesh;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto at = [&](std::size_t k) { return 0.5 * cut.xyz[3 * a + k] + 0.5 * cut.xyz[3 * b + k]; };
+    const double x = at(0), y = at(1), z = at(2);
+    return cut.vertex(x, y, z);
+  };
+  for (int i = 0; i < cuts; ++i) {
+    const auto first = static_cast<std::size_t>(3 * random.integer(0, static_cast<int>(cut.corners.size() / 3) - 1));
+    const auto turn = static_cast<std::size_t>(random.integer(0, 2));
+    std::uint32_t t[3];
+    for (std::size_t k = 0; k < 3; ++k) t[k] = cut.corners[first + (k + turn) % 3];
+    const std::uint32_t half = middle(t[0], t[1]);
+    const auto replace = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      cut.corners[first] = a, cut.corners[first + 1] = b, cut.corners[first + 2] = c;
+    };
+    if (random.chance(0.5)) {
+      replace(t[0], half, t[2]);
+      cut.triangle(half, t[1], t[2]);
+      continue;
+    }
+    const std::uint32_t next = middle(t[1], t[2]), last = middle(t[2], t[0]);
+    replace(half, next, last);
+    cut.triangle(t[0], half, last);
+    cut.triangle(half, t[1], next);
+    cut.triangle(last, next, t[2]);
+  }
+  return cut;
+}
+
 /// Points of which most are near the surface, on it, or at its corners and on its edges.
 inline std::vector<double> pointsAbout(const ClosedMesh& mesh, std::size_t count, double spread, std::uint64_t seed)
 {

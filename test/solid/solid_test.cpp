@@ -31,6 +31,31 @@ TEST(Solid, RefusesWhatIsOpenAndSaysWhere)
   }
 }
 
+/// A cube whose top has a corner in the middle of each side, where the sides have none.
+TEST(Solid, TakesCornersWithinEdgesAndSaysWhichPartIsOpen)
+{
+  test::ClosedMesh cube = test::boxMesh();
+  cube.corners.erase(cube.corners.begin() + 6, cube.corners.begin() + 12); // the top
+  const std::uint32_t middle = cube.vertex(0.5, 0.5, 1),
+                      around[8] = {4, cube.vertex(0.5, 0, 1), 5, cube.vertex(1, 0.5, 1),
+                                   7, cube.vertex(0.5, 1, 1), 6, cube.vertex(0, 0.5, 1)};
+  for (std::size_t i = 0; i < 8; ++i) cube.triangle(middle, around[i], around[(i + 1) % 8]);
+  const Solid solid(cube.view());
+  EXPECT_EQ(labelPlace(solid, {0.5, 0.5, 0.5}), Label::inside);
+  EXPECT_EQ(labelPlace(solid, {0.5, 0, 1}), Label::surface);
+  EXPECT_EQ(SolidBodies(solid).all().size(), 1u);
+
+  test::ClosedMesh beside = cube;
+  beside.xyz[3 * around[1] + 1] = -0x1p-1074; // the least step out of the edge
+  EXPECT_THAT([&] { Solid(beside.view()); }, testing::ThrowsMessage<InvalidInput>(
+                                                 testing::HasSubstr("solid: 3 edges are open, the first from (1, 0, 1) "
+                                                                    "to (0, 0, 1) in triangle 3")));
+  cube.corners.erase(cube.corners.end() - 6 * 3, cube.corners.end() - 5 * 3); // from (1, 0, 1) to (1, 0.5, 1)
+  EXPECT_THAT([&] { Solid(cube.view()); }, testing::ThrowsMessage<InvalidInput>(
+                                               testing::HasSubstr("solid: 3 edges are open, the first from (1, 0.5, 1) "
+                                                                  "to (1, 0, 1) in triangle 9")));
+}
+
 TEST(Solid, RefusesCornersThatAreNotThere)
 {
   test::ClosedMesh mesh = test::boxMesh();
