@@ -212,11 +212,12 @@ public:
     set(question_.obstacle_uncertainty, "the obstacle", uncertainty);
   }
 
-  /// The density guard: a point that is free of all of the obstacle's points, but not of its surface between them, is
-  /// undecided with the reason *not scanned densely enough*: its flag is 3, and it counts as colliding wherever points
-  /// are kept or removed. FlagsRequest::spacings_of_b says what is promised and what not, patchSpacings() how wide the
-  /// holes between the obstacle's points are taken to be. These are measured once for an obstacle. At one pose: along a
-  /// trajectory, filtering throws. A surface has no holes, and nothing to guard. Default: false.
+  /// The density guard: a point that is free, but no farther from a point of the obstacle than the clearance and half
+  /// the spacing of the obstacle's points there, is undecided with the reason *not scanned densely enough*: its flag is
+  /// 3, and it counts as colliding wherever points are kept or removed. FlagsRequest::spacings_of_b says what is
+  /// promised and what not, patchSpacings() how wide the holes between the obstacle's points are taken to be. These are
+  /// measured once for an obstacle. At one pose: along a trajectory, filtering throws. A surface has no holes, and
+  /// nothing to guard. Default: false.
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
 
   /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its

@@ -30,8 +30,8 @@ accuracy : Accuracy or str, default exact
 threads : int, default 1
 **options of collisions
 spacings_of_b : ndarray of float32, (records of b,), optional
-    How far the samples of b's surface are apart (`patch_spacings`): what is free of points, but not of a patch of this
-    width, is `Verdict.SPARSE`.
+    How far the samples of b's surface are apart (`patch_spacings`): what is free, but no farther from a point of b than
+    the clearance and half of its spacing, is `Verdict.SPARSE`.
 
 Returns
 -------

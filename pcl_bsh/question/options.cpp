@@ -17,7 +17,6 @@ namespace {
 
 using Kind = QuestionKind;
 using Range = OptionRange;
-using Effect = OptionEffect;
 using Q = Question;
 
 std::vector<QuestionOption> table()
@@ -29,7 +28,7 @@ std::vector<QuestionOption> table()
        "above 0, the motion between the poses of a path counts, too, to this tolerance: what comes within the "
        "clearance "
        "collides, what stays beyond clearance + tolerance does not; 0: the poses alone",
-       Range::from_zero, false, nullptr, nullptr, Effect::other_answers},
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers},
       {"accuracy", &Q::accuracy, Kind::any, "HOW", "", Input::accuracy,
        "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, clearance + "
        "LENGTH] may count, too, and distances are that much too great at most; of collisions also `level=N`, "
@@ -51,8 +50,8 @@ std::vector<QuestionOption> table()
       {"input_pose_uncertainty", &Q::input_pose_uncertainty, Kind::collisions, "T,W,X,Y,Z", "m", Input::uncertainty,
        "the same for the input's own pose, all of whose points move together, about a place in its frame"},
       {"density", &Q::density, Kind::collisions, "", "", Input::density,
-       "a point that is free of the obstacle's points, but within the clearance of the surface in a hole between them, "
-       "is undecided: not scanned densely enough; at one pose"},
+       "a point that is free, but no farther from a point of the obstacle than the clearance and half the spacing of "
+       "the obstacle's points there, is undecided: not scanned densely enough; at one pose"},
       {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
        "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
        "median distance between its neighbouring points, too little where lines of a scan are farther apart",
@@ -61,18 +60,18 @@ std::vector<QuestionOption> table()
        "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
        "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
        "edges; not with swept motion",
-       Range::from_zero, false, nullptr, nullptr, Effect::other_answers},
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers},
       {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
        "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
        "the field that numbers them; without it, what the input's file says",
-       Range::from_zero, false, nullptr, "seen", Effect::other_answers},
+       Range::from_zero, false, nullptr, "seen", OptionEffect::other_answers},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
        "with `seen`: up to this angle from its own direction a beam tells what is empty, from 0.0001 to 0.25; without "
        "it, one and a half times the angle between the scan's beams as measured",
-       Range::above_zero, false, nullptr, "seen", Effect::other_answers},
+       Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
-       Range::from_zero_to_infinity, false, nullptr, nullptr, Effect::other_answers},
+       Range::from_zero_to_infinity, false, nullptr, nullptr, OptionEffect::other_answers},
       {"solid", &Q::solid, Kind::any, "", "", std::nullopt,
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
@@ -86,7 +85,7 @@ std::vector<QuestionOption> table()
        "with faces, whose triangles are asked about"},
       {"threads", &Q::threads, Kind::any, "N", "", std::nullopt,
        "0: all of the machine's; the result is the same for any number", Range::from_zero, false, "number_of_threads",
-       nullptr, Effect::none},
+       nullptr, OptionEffect::none},
   };
 }
 
