@@ -266,6 +266,33 @@ TEST(Warnings, StreamsHearEachKindOnce)
   EXPECT_THAT(told(nothing, a), IsEmpty());
 }
 
+/// A machine in millimetres in a scan in metres: it holds the scan, and is not far from it.
+TEST(Warnings, OfUnitsThatDiffer)
+{
+  const auto scaled = [](std::vector<float> xyz, double by) {
+    for (float& x : xyz) x = static_cast<float>(by * static_cast<double>(x));
+    return Cloud(std::move(xyz));
+  };
+  const Cloud scan(plane(12)), machine = scaled(plane(3), 1000.0), small = scaled(plane(3), 0.05),
+                               smaller = scaled(plane(3), 0.06), place(std::vector<float>{1, 1, 1});
+  const auto told = [&](const Cloud& input, const Cloud& obstacle, std::optional<double> clearance = 0.5) {
+    return textsOf(warningsOf(question({at(0)}, clearance), input.named("scan.pcd"), obstacle.named("machine.off")));
+  };
+  EXPECT_THAT(told(scan, machine),
+              ElementsAre("machine.off is 182 times as large as scan.pcd: their boxes have diagonals "
+                          "of 2828.43 and 15.5564: if one is in millimetres "
+                          "and the other in metres, say, convert one of both"));
+  EXPECT_THAT(told(machine, scan), ElementsAre(HasSubstr("scan.pcd is 182 times as large as machine.off: ")));
+  EXPECT_THAT(told(scan, machine, std::nullopt), testing::SizeIs(1)) << "of distances, too";
+  EXPECT_THAT(told(scan, small), ElementsAre(HasSubstr("scan.pcd is 110 times as large as machine.off: ")));
+  EXPECT_THAT(told(scan, smaller), IsEmpty()) << "92 times";
+  EXPECT_THAT(told(scan, scan), IsEmpty());
+  EXPECT_THAT(told(scan, place), IsEmpty()) << "a place has no size";
+  EXPECT_THAT(told(place, place), IsEmpty());
+  const auto far = textsOf(warningsOf(question({at(1e6)}, 0.5), scan.named("a"), machine.named("b")));
+  EXPECT_THAT(far, ElementsAre(HasSubstr("one coordinate system and one unit"))) << "which names units";
+}
+
 NamedObject named(const std::string& name, const std::string& cloud, double x, bool fixed = false)
 {
   NamedObject made;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/warnings/scene_warnings.h>
 
+#include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/warnings/hollow.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <variant>
 
 namespace pcl_bsh {
@@ -67,6 +69,25 @@ void warnOfDensity(const Objects& objects, const Clouds& clouds, double clearanc
       if (!warning || !mayMeet(objects, a->first, b->first)) continue;
       widest = blind;
       found = std::move(warning);
+    }
+  }
+  if (found) addOnce(found->text, told);
+}
+
+/// Of the two clouds whose sizes differ most.
+void warnOfUnits(const Objects& objects, const Clouds& clouds, std::vector<std::string>& told)
+{
+  double most = 0.0;
+  std::optional<Warning> found;
+  for (auto a = clouds.begin(); a != clouds.end(); ++a) {
+    for (auto b = std::next(a); b != clouds.end(); ++b) {
+      auto warning = warningOfUnits(a->second, b->second);
+      if (!warning || !mayMeet(objects, a->first, b->first)) continue;
+      const double one = a->second.box.diagonal().norm(), other = b->second.box.diagonal().norm();
+      if (const double times = std::max(one / other, other / one); times > most) {
+        most = times;
+        found = std::move(warning);
+      }
     }
   }
   if (found) addOnce(found->text, told);
@@ -184,7 +205,9 @@ std::vector<std::string> warningsOf(const Objects& objects, const Clouds& clouds
   std::vector<std::string> told;
   for (const auto& [name, cloud] : clouds) addTexts(warningsOf(cloud, clearance), told);
   warnOfDensity(objects, clouds, clearance, told);
+  const std::size_t before = told.size();
   warnOfFrames(objects, clouds, clearance, duration, told);
+  if (told.size() == before) warnOfUnits(objects, clouds, told); // else units were named
   return told;
 }
 

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t least_samples = 100; // of a scan
 constexpr double coarse_share = 0.1;       // of the clearance
 constexpr double far_apart = 10;           // diagonals
+constexpr double far_larger = 100;         // times
 constexpr double pi = 3.14159265358979323846;
 constexpr double most_angle = 4 * pi;
 
@@ -104,6 +105,20 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
                            b, " to that of ", a)};
 }
 
+std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b)
+{
+  if (a.box.isEmpty() || b.box.isEmpty()) return std::nullopt;
+  const double size_a = a.box.diagonal().norm(), size_b = b.box.diagonal().norm();
+  const bool is_a_larger = size_a > size_b;
+  const auto [small, large] = std::minmax(size_a, size_b);
+  const bool have_sizes = small > 1e-9 * large; // of single places there is no more than rounding
+  if (!have_sizes || large < far_larger * small) return std::nullopt;
+  return Warning{WarningKind::units,
+                 plainText((is_a_larger ? a : b).name, " is ", std::round(large / small), " times as large as ",
+                           (is_a_larger ? b : a).name, ": their boxes have diagonals of ", large, " and ", small,
+                           ": if one is in millimetres and the other in metres, say, convert one of both")};
+}
+
 std::vector<Warning> warningsOf(const Question& question, const NamedCloud& input, const NamedCloud& obstacle)
 {
   const std::optional<double>& clearance = question.clearance;
@@ -118,6 +133,8 @@ std::vector<Warning> warningsOf(const Question& question, const NamedCloud& inpu
   if (auto far =
           warningOfFrames(input.name, input.box, obstacle.name, boxAlong(obstacle.box, poses), clearance.value_or(0.0)))
     warnings.push_back(std::move(*far));
+  else if (auto units = warningOfUnits(input, obstacle))
+    warnings.push_back(std::move(*units));
   if (!clearance) return warnings;
   if (auto sparse = warningOfDensity(input, obstacle, *clearance)) warnings.push_back(std::move(*sparse));
   return warnings;

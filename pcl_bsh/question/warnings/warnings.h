@@ -44,6 +44,7 @@ enum class WarningKind : std::uint8_t {
   apart,      ///< boxes far from each other: not in one frame, perhaps
   unguarded,  ///< a density guard of a surface
   hollow,     ///< faces close round what counts as free
+  units,      ///< one is hundreds of times as large as the other: millimetres and metres, perhaps
 };
 
 /// One sentence for users, which names the cloud and says what to do.
@@ -68,6 +69,9 @@ std::optional<Warning> warningOfDensity(const NamedCloud& a, const NamedCloud& b
 /// diagonal of either.
 std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::AlignedBox3d& box_a, const std::string& b,
                                        const Eigen::AlignedBox3d& box_b, double clearance);
+
+/// Two things of which the one's box is a hundred times as large as the other's, by their diagonals, or more.
+std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b);
 
 /// Angles, in radians, of more than two turns: degrees, perhaps. Without a name before it.
 std::optional<std::string> warningOfAngles(double roll, double pitch, double yaw);
