@@ -108,6 +108,7 @@ SceneResult resultOf(SharedScene& shared, Ask&& ask)
       }
     }
     warnings = warningsOf(objects, clouds, scene.options().clearance, std::nullopt);
+    if (auto untested = warningOfNoPairs(scene)) warnings.push_back(std::move(*untested));
     return answer;
   });
   for (const std::string& warning : warnings) warn(warning);

@@ -46,4 +46,9 @@ bool Effects::none() const noexcept
   return true;
 }
 
+bool Effects::ofPairs() const noexcept
+{
+  return any || flags || distance || contacts || first_contact || swept || response != Response::none || gravity;
+}
+
 } // namespace pcl_bsh

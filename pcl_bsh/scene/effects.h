@@ -71,6 +71,7 @@ struct Effects {
 
   bool has(Effect effect) const noexcept; ///< whether it is listed
   bool none() const noexcept;             ///< whether a query would compute nothing
+  bool ofPairs() const noexcept;          ///< whether one is about pairs of objects
 };
 
 /// What an effect cost. Counts are free of noise and the same for any number of threads.

@@ -301,6 +301,11 @@ void Scene::pointsChanged(ObjectId object)
   state_->pointsChanged(object);
 }
 
+bool Scene::testsPairs() const
+{
+  return state_->rules.testsAny();
+}
+
 RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView& now)
 {
   const Body& body = state_->body(object);

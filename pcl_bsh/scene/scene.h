@@ -146,6 +146,10 @@ public:
   void setRule(ObjectId a, ObjectId b, const PairRule& rule);
   void setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule);
 
+  /// Whether any two objects are tested against each other: false where there is one object, all are fixed, or rules
+  /// leave out all pairs. Then queries and steps find no pair, whatever effects the scene lists.
+  bool testsPairs() const;
+
   /// The points of a part have moved: same records, new coordinates. Its spheres follow (SphereHierarchy::refit()), in
   /// every object that shares them. `first_contact` and `swept` look at the motion of objects with their present
   /// points, not at how points got there: SceneResult::unswept.

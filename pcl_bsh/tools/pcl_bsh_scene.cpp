@@ -140,12 +140,13 @@ void check(const io::SceneFile& file, const cli::CloudNames& names, const Option
 }
 
 nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTotals& totals, std::size_t points,
-                                 double load_seconds)
+                                 double load_seconds, bool tests_pairs)
 {
   nlohmann::ordered_json json = {{"scene", file.path.string()},
                                  {"objects", file.objects.size()},
                                  {"points", points},
                                  {"steps", totals.step_seconds.size()},
+                                 {"tests_pairs", tests_pairs},
                                  {"accuracy", file.options.accuracy.text()},
                                  {"load_seconds", load_seconds},
                                  {"median_step_seconds", median(totals.step_seconds)}};
@@ -167,7 +168,7 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
   return json;
 }
 
-void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
+void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals, bool tests_pairs)
 {
   const auto counted = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
   std::printf("%-14s %10s %10s %12s %12s %12s %8s %10s\n", "effect", "queries", "reused", "node pairs", "updates",
@@ -184,7 +185,10 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals)
               counted(grid.moved), counted(grid.voxels_left), counted(grid.voxels_entered), counted(grid.box_tests),
               1e3 * grid.seconds);
   std::printf("%zu steps, median %.3f ms", totals.step_seconds.size(), 1e3 * median(totals.step_seconds));
-  if (file.options.effects.any) std::printf("; pairs collide in %zu of them", totals.colliding_steps);
+  if (!tests_pairs && file.options.effects.ofPairs())
+    std::printf("; no pair of objects was tested");
+  else if (file.options.effects.any)
+    std::printf("; pairs collide in %zu of them", totals.colliding_steps);
   if (totals.undecided_steps > 0) std::printf(", are undecided in %zu", totals.undecided_steps);
   if (totals.unswept_steps > 0)
     std::printf("; in %zu objects changed otherwise than by the motion that was swept", totals.unswept_steps);
@@ -243,12 +247,13 @@ void runScene(const io::SceneFile& file, const Options& options)
         (file.cloud_output == io::CloudOutput::last && step == file.steps))
       writeClouds(file, names, world, result, options.out, step);
   }
-  const nlohmann::ordered_json summary = summaryOf(file, totals, world.points(), load_seconds);
+  const bool tests_pairs = world.scene().testsPairs();
+  const nlohmann::ordered_json summary = summaryOf(file, totals, world.points(), load_seconds, tests_pairs);
   if (files) files->finish(summary);
   if (options.json)
     cli::writeJson(std::cout, summary);
   else
-    printSummary(file, totals);
+    printSummary(file, totals, tests_pairs);
 }
 
 void run(const Options& options)

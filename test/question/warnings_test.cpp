@@ -350,6 +350,57 @@ TEST(SceneWarnings, OfObjectsFarFromTheOthers)
   }
 }
 
+/// Of the two whose sizes differ most, where one of them moves.
+TEST(SceneWarnings, OfUnitsThatDiffer)
+{
+  WallAndCart scene;
+  const auto scaled = [](double by) {
+    std::vector<float> xyz = plane(4);
+    for (float& x : xyz) x = static_cast<float>(by * static_cast<double>(x));
+    return Cloud(std::move(xyz));
+  };
+  const Cloud large = scaled(2000.0), larger = scaled(4000.0);
+  scene.clouds["crane"] = large.named("crane.off");
+  scene.clouds["bridge"] = larger.named("bridge.off");
+  EXPECT_THAT(scene.told(), IsEmpty()) << "of clouds that no object has";
+  scene.objects.push_back(named("crane", "crane", 0));
+  EXPECT_THAT(scene.told(), ElementsAre(HasSubstr("crane.off is 2000 times as large as cart: ")));
+  scene.objects.push_back(named("bridge", "bridge", 0));
+  EXPECT_THAT(scene.told(), ElementsAre(HasSubstr("bridge.off is 4000 times as large as cart: ")));
+  for (NamedObject& object : scene.objects) object.fixed = true;
+  EXPECT_THAT(scene.told(), IsEmpty());
+}
+
+/// Where effects are about pairs.
+TEST(SceneWarnings, OfNoPairs)
+{
+  const auto told = [](const std::vector<bool>& fixed, Effects effects, const std::vector<bool>& tested = {}) {
+    SceneOptions options;
+    options.effects = effects;
+    Scene scene(options);
+    const Cloud cloud(plane(2));
+    const auto hierarchy = std::make_shared<SphereHierarchy>(viewOf(cloud.xyz.data(), cloud.xyz.size() / 3));
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      scene.add(fixed[i] ? fixedObject(std::to_string(i), hierarchy) : object(std::to_string(i), hierarchy));
+    for (const bool rule : tested) scene.setRule(0, 1, {rule, {}});
+    EXPECT_EQ(warningOfNoPairs(scene).has_value() || effects.none() || fixed.empty(), !scene.testsPairs());
+    return warningOfNoPairs(scene).value_or("");
+  };
+  Effects any, response, none;
+  any.any = true;
+  response.response = Response::slide;
+  EXPECT_EQ(told({true, true, true}, any), "no pair of objects is tested: all 3 objects are fixed: do not fix what "
+                                           "moves, or give a rule that tests them");
+  EXPECT_EQ(told({true}, response),
+            "no pair of objects is tested: there is one object, and nothing that it could meet");
+  EXPECT_EQ(told({false, true}, any, {false}),
+            "no pair of objects is tested: rules leave out all of them: give a rule that tests two objects");
+  EXPECT_EQ(told({true, true}, any, {true}), "");
+  EXPECT_EQ(told({true, false}, any), "");
+  EXPECT_EQ(told({true, true}, none), "");
+  EXPECT_EQ(told({}, any), "");
+}
+
 TEST(SceneWarnings, OfHolesBetweenPointsOfWhatMayMeet)
 {
   WallAndCart scene;

@@ -256,6 +256,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
     }
   }
   setRules(*scene_, file.rules);
+  if (auto untested = warningOfNoPairs(*scene_)) warnings_.push_back(std::move(*untested));
   deform(0.0);
 }
 

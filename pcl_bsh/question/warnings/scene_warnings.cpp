@@ -221,4 +221,15 @@ std::vector<std::string> warningsOf(const Objects& objects, std::map<std::string
   return told;
 }
 
+std::optional<std::string> warningOfNoPairs(const Scene& scene)
+{
+  if (!scene.options().effects.ofPairs() || scene.size() == 0 || scene.testsPairs()) return std::nullopt;
+  const std::string none = "no pair of objects is tested: ";
+  if (scene.size() == 1) return none + "there is one object, and nothing that it could meet";
+  for (ObjectId id = 0; id < scene.size(); ++id)
+    if (!scene[id].fixed) return none + "rules leave out all of them: give a rule that tests two objects";
+  return none +
+         plainText("all ", scene.size(), " objects are fixed: do not fix what moves, or give a rule that tests them");
+}
+
 } // namespace pcl_bsh

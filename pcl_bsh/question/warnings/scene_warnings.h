@@ -5,6 +5,7 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/question/shape.h>
 #include <pcl_bsh/scene/motion.h>
+#include <pcl_bsh/scene/scene.h>
 
 #include <map>
 #include <optional>
@@ -43,6 +44,9 @@ std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,
 /// @param shapes of the clouds. Their hierarchy() was called
 std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects, std::map<std::string, Shape>& shapes,
                                     double clearance, std::optional<double> duration);
+
+/// Where effects are about pairs of objects, and none is tested: all are fixed, say.
+std::optional<std::string> warningOfNoPairs(const Scene& scene);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -37,17 +37,47 @@ public:
   /// None: the pair is not tested.
   std::optional<double> clearanceOf(ObjectId a, ObjectId b) const
   {
-    const Object &first = objects_[a], &second = objects_[b];
-    PairRule rule{tested_ && !(first.fixed && second.fixed), clearance_};
-    if (!group_pairs_.empty()) {
-      const auto found = group_pairs_.find({std::min(first.group, second.group), std::max(first.group, second.group)});
-      if (found != group_pairs_.end()) override(rule, found->second);
-    }
+    PairRule rule = ofKinds(a, b);
     if (!pairs_.empty()) {
       const auto found = pairs_.find(pairKey(a, b));
       if (found != pairs_.end()) override(rule, found->second);
     }
     return *rule.tested ? rule.clearance : std::nullopt;
+  }
+
+  /// Whether any two objects are tested: by what holds for all of their kind, and by rules about the two.
+  bool testsAny() const
+  {
+    for (const auto& [key, rule] : pairs_)
+      if (clearanceOf(static_cast<ObjectId>(key >> 32), static_cast<ObjectId>(key & 0xffffffffu))) return true;
+    using Kind = std::pair<std::size_t, bool>; // group, where groups have rules; fixed
+    struct Members {
+      ObjectId first = 0;
+      std::uint64_t count = 0;
+    };
+    const auto kindOf = [&](ObjectId id) {
+      return Kind(group_pairs_.empty() ? 0 : objects_[id].group, objects_[id].fixed);
+    };
+    const auto ordered = [](const Kind& a, const Kind& b) { return std::pair(std::min(a, b), std::max(a, b)); };
+    std::map<Kind, Members> kinds;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      Members& members = kinds[kindOf(static_cast<ObjectId>(i))];
+      if (members.count++ == 0) members.first = static_cast<ObjectId>(i);
+    }
+    std::map<std::pair<Kind, Kind>, std::uint64_t> ruled_out; // by a rule about the two
+    for (const auto& [key, rule] : pairs_) {
+      const auto a = static_cast<ObjectId>(key >> 32), b = static_cast<ObjectId>(key & 0xffffffffu);
+      if (a != b) ++ruled_out[ordered(kindOf(a), kindOf(b))];
+    }
+    for (auto a = kinds.begin(); a != kinds.end(); ++a)
+      for (auto b = a; b != kinds.end(); ++b) {
+        const std::uint64_t pairs =
+            a == b ? a->second.count * (a->second.count - 1) / 2 : a->second.count * b->second.count;
+        const auto out = ruled_out.find(ordered(a->first, b->first));
+        if (pairs > (out == ruled_out.end() ? 0 : out->second) && *ofKinds(a->second.first, b->second.first).tested)
+          return true;
+      }
+    return false;
   }
 
   /// No pair has a larger clearance.
@@ -58,6 +88,18 @@ private:
     std::size_t group;
     bool fixed;
   };
+
+  /// But for rules about the two.
+  PairRule ofKinds(ObjectId a, ObjectId b) const
+  {
+    const Object &first = objects_[a], &second = objects_[b];
+    PairRule rule{tested_ && !(first.fixed && second.fixed), clearance_};
+    if (!group_pairs_.empty()) {
+      const auto found = group_pairs_.find({std::min(first.group, second.group), std::max(first.group, second.group)});
+      if (found != group_pairs_.end()) override(rule, found->second);
+    }
+    return rule;
+  }
 
   static void override(PairRule& rule, const PairRule& by)
   {

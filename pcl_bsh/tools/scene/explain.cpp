@@ -42,13 +42,6 @@ const char* explanationOf(Effect effect)
   return "";
 }
 
-/// Whether the grid over the scene is needed.
-bool asksForPairs(const Effects& effects)
-{
-  return effects.any || effects.flags || effects.distance || effects.contacts || effects.first_contact ||
-         effects.swept || effects.response != Response::none || effects.gravity;
-}
-
 std::size_t fixedObjects(const io::SceneFile& file)
 {
   return static_cast<std::size_t>(std::count_if(file.objects.begin(), file.objects.end(),
@@ -77,7 +70,7 @@ void explain(const io::SceneFile& file, std::ostream& out)
   for (std::size_t e = 0; e < kEffects; ++e)
     if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));
 
-  const bool pairs = asksForPairs(effects);
+  const bool pairs = effects.ofPairs();
   out << "\n\nWhat is built:\n  voxels of every cloud: points are sorted into them when the cloud is read\n";
   out << "  octree and spheres of a voxel: when an effect first visits it" << (effects.none() ? ", so never\n" : "\n");
   out << "  grid over the scene: " << (pairs ? "yes, " : "no, no effect asks for pairs of objects\n");
@@ -106,7 +99,7 @@ nlohmann::ordered_json explanationJson(const io::SceneFile& file)
     else
       json["off"].push_back(nameOf(effect));
   }
-  json["built"] = {{"voxels", true}, {"spheres", !effects.none()}, {"grid", asksForPairs(effects)}};
+  json["built"] = {{"voxels", true}, {"spheres", !effects.none()}, {"grid", effects.ofPairs()}};
   json["fixed_objects"] = fixedObjects(file);
   json["rules"] = file.rules.size();
   return json;

@@ -59,6 +59,34 @@ TEST(SceneProgram, RunsAScene)
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "steps.csv.part"));
 }
 
+TEST(SceneProgram, SaysThatNothingIsTested)
+{
+  const io::TemporaryFolder folder;
+  const auto told = [&](const std::string& objects, const std::string& more = "", const char* effect = "any") {
+    const std::string scene =
+        folder
+            .write("fixed.json", R"({"clouds": {"ball": {"sphere": {"radius": 0.5}, "spacing": 0.1}}, "objects": [)" +
+                                     objects + R"(], "clearance": 0.05, "steps": 2, "effects": {")" + effect +
+                                     R"(": true})" + more + "}")
+            .string();
+    const Outcome done = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    const bool tests = Json::parse(io::contentOf(folder / "out" / "summary.json"))["tests_pairs"];
+    EXPECT_EQ(done.out.find("; no pair of objects was tested") == std::string::npos, tests);
+    return done.err;
+  };
+  const std::string a = R"({"name": "a", "cloud": "ball", "fixed": true})",
+                    b = R"({"name": "b", "cloud": "ball", "fixed": true, "group": "doors", "pose": [0.5, 0, 0]})",
+                    c = R"({"name": "c", "cloud": "ball", "group": "doors"})";
+  EXPECT_THAT(told(a + "," + b), HasSubstr("no pair of objects is tested: all 2 objects are fixed: "));
+  EXPECT_THAT(told(a + "," + b, "", "swept"), HasSubstr("no pair of objects is tested: all 2 objects are fixed: "));
+  EXPECT_THAT(told(a), HasSubstr("no pair of objects is tested: there is one object"));
+  EXPECT_EQ(told(a + "," + b, R"(, "pairs": {"rules": [{"objects": ["a", "b"], "tested": true}]})"), "");
+  EXPECT_EQ(told(a + "," + b + "," + c), "");
+  EXPECT_THAT(told(b + "," + c, R"(, "pairs": {"rules": [{"groups": ["doors", "doors"], "tested": false}]})"),
+              HasSubstr("no pair of objects is tested: rules leave out all of them: "));
+}
+
 /// Each triangle has a flag of its own, in a format that holds faces.
 TEST(SceneProgram, SurfacesAreWrittenWithTheirFaces)
 {
