@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where do two posed clouds collide? Any pair, flags per point, smallest distance; all exact.
+// All queries of plain arrays: where do two posed clouds collide? Any pair, flags per point, distances, along paths, at
+// many poses, many objects; all exact. Each has a header of its own, too.
 //
 //   SphereHierarchy hall(viewOf(hall_xyz, n)), robot(viewOf(robot_xyz, m));
 //   FlagsRequest request;
@@ -11,6 +12,17 @@
 // given numbers decides it. The same input gives the same answer, bit for bit, for any thread count and SIMD target.
 #pragma once
 
+#include <pcl_bsh/clashes/clashes.h>
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/roadmap/collide_on_motions.h>
+#include <pcl_bsh/scene/scene.h>
+#include <pcl_bsh/seen/seen_space.h>
+#include <pcl_bsh/seen/unseen_points.h>
+#include <pcl_bsh/solid/labels.h>
+#include <pcl_bsh/trajectory/trajectory.h>

@@ -92,6 +92,8 @@ void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRe
 /// What hausdorffDistance() reads. It is exact.
 struct HausdorffRequest : Effort {
   using Effort::Effort;
+  /** All. */ HausdorffRequest(Effort effort) : Effort(std::move(effort)) {}
+  HausdorffRequest() = default;
 };
 
 /// What hausdorffDistance() found.

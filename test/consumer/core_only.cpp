@@ -6,6 +6,7 @@
 #include <pcl_bsh/version.h>
 
 #include <cstdio>
+#include <vector>
 
 static_assert(PCL_BSH_VERSION >= 100);
 
@@ -24,6 +25,21 @@ bool catchesWhatIsThrown(const pcl_bsh::SphereHierarchy& cloud)
   return false;
 }
 
+/// collide.h alone brings all of these.
+bool asksEverything(const pcl_bsh::SphereHierarchy& a, const pcl_bsh::SphereHierarchy& b)
+{
+  const pcl_bsh::Effort effort(2);
+  const double between = pcl_bsh::hausdorffDistance({a}, {b}, pcl_bsh::HausdorffRequest(effort)).distance;
+  const bool same = pcl_bsh::pointDistances({b}, {a}).distance.at(0) <= between;
+  const std::vector<Eigen::Isometry3d> path = {Eigen::Isometry3d::Identity()};
+  pcl_bsh::TrajectoryRequest along;
+  along.clearance = 0.5;
+  return same && pcl_bsh::collidingIndices({a}, {b}, {0.5}).a.size() == 1 &&
+         !pcl_bsh::pairsWithin({a}, {b}, {0.5}).pairs.empty() &&
+         pcl_bsh::collideAlong({a}, b, path, along).colliding == 1 &&
+         pcl_bsh::Scene(pcl_bsh::SceneOptions()).size() == 0;
+}
+
 int main()
 {
   const float wall[] = {0, 0, 0, 0, 1, 0, 0, 2, 0};
@@ -36,5 +52,5 @@ int main()
   const auto expected = pcl_bsh::brute_force::collisionFlags({a}, {b}, request);
   std::printf("%zu colliding point(s), smallest distance %g\n", found.colliding_a,
               pcl_bsh::closestPair({a}, {b}).distance);
-  return catchesWhatIsThrown(a) && found.colliding_a == 1 && found.a == expected.a ? 0 : 1;
+  return catchesWhatIsThrown(a) && asksEverything(a, b) && found.colliding_a == 1 && found.a == expected.a ? 0 : 1;
 }

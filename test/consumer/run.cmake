@@ -30,6 +30,38 @@ foreach(program IN ITEMS filter_chain search_chain own_stage)
   endif()
 endforeach()
 run(${CMAKE_COMMAND} --build "${WORK}/build")
+
+# The project that cmake/INSTALL.md tells to write is built, with the README's example and PCL's io.
+file(READ "${CMAKE_CURRENT_LIST_DIR}/../../cmake/INSTALL.md" install)
+file(READ "${CMAKE_CURRENT_LIST_DIR}/../../README.md" readme)
+if(NOT install MATCHES "```cmake\n([^`]*)```")
+  message(FATAL_ERROR "cmake/INSTALL.md: holds no project")
+endif()
+file(WRITE "${WORK}/told/CMakeLists.txt" "${CMAKE_MATCH_1}")
+if(NOT readme MATCHES "```cpp\n(#include[^`]*)```")
+  message(FATAL_ERROR "README.md: holds no example in C++")
+endif()
+file(WRITE "${WORK}/told/my_robot.cpp"
+     "#include <pcl/io/pcd_io.h>\n${CMAKE_MATCH_1}\nint main(int count, char** names)\n{\n"
+     "  auto scan = std::make_shared<Cloud>(), robot = std::make_shared<Cloud>();\n"
+     "  if (count < 3 || pcl::io::loadPCDFile(names[1], *scan) < 0 || pcl::io::loadPCDFile(names[2], *robot) < 0) return 2;\n"
+     "  return withoutRobot(scan, robot, Eigen::Isometry3d::Identity())->empty();\n}\n")
+run(${CMAKE_COMMAND} -S "${WORK}/told" -B "${WORK}/told/build" -G Ninja -D CMAKE_BUILD_TYPE=Debug -D
+    "CMAKE_PREFIX_PATH=${WORK}/prefix")
+run(${CMAKE_COMMAND} --build "${WORK}/told/build")
+
+# Each component but vtk is found in a project of C++ alone, which then does without PCL's io.
+foreach(component IN ITEMS core search filters pipeline sites certify)
+  file(WRITE "${WORK}/${component}/CMakeLists.txt"
+       "cmake_minimum_required(VERSION 3.16)\nproject(alone CXX)\n"
+       "find_package(pcl_bsh 0.1 REQUIRED CONFIG COMPONENTS core OPTIONAL_COMPONENTS ${component})\n"
+       "add_library(alone OBJECT alone.cpp)\nif(TARGET pcl_bsh::${component})\n"
+       "  target_link_libraries(alone PRIVATE pcl_bsh::${component})\nendif()\n")
+  file(WRITE "${WORK}/${component}/alone.cpp" "#include <pcl_bsh/collide.h>\nint one() { return 1; }\n")
+  run(${CMAKE_COMMAND} -S "${WORK}/${component}" -B "${WORK}/${component}/build" -G Ninja -D
+      "CMAKE_PREFIX_PATH=${WORK}/prefix")
+  run(${CMAKE_COMMAND} --build "${WORK}/${component}/build")
+endforeach()
 run("${WORK}/build/core_only")
 run("${WORK}/build/own_point_type")
 run("${WORK}/build/site_error")
