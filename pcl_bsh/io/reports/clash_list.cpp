@@ -6,12 +6,17 @@
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/question/options.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace pcl_bsh::io {
@@ -212,6 +217,40 @@ ClashList parseClashes(std::string_view text, const std::string& name)
   return list;
 }
 
+namespace {
+
+bool isMonth(const std::string& word)
+{
+  constexpr std::array<std::string_view, 12> months = {"january",   "february", "march",    "april",
+                                                       "may",       "june",     "july",     "august",
+                                                       "september", "october",  "november", "december"};
+  const std::string small = inSmallLetters(word);
+  return std::any_of(months.begin(), months.end(), [&](std::string_view month) {
+    return small == month || (small.size() == 3 && month.substr(0, 3) == small) || (small == "sept" && month[0] == 's');
+  });
+}
+
+/// The words of a name without numbers and months: files of one place share them from week to week.
+std::string withoutDates(const std::string& name)
+{
+  std::string words, word;
+  const auto end = [&] {
+    if (!word.empty() && !isMonth(word)) words += word + ' ';
+    word.clear();
+  };
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalpha(byte) != 0 || byte >= 0x80)
+      word += c;
+    else
+      end();
+  }
+  end();
+  return words;
+}
+
+} // namespace
+
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
                                            const ClashQuestion& now)
 {
@@ -228,13 +267,14 @@ std::vector<std::string> requireComparable(const std::filesystem::path& path, co
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& wrong) { warnings.push_back(path.string() + ": " + wrong); };
   const auto fileName = [](const std::string& name) { return std::filesystem::path(name).filename().string(); };
-  const auto compare = [&](const char* what, const std::string& was, const std::string& is) {
+  const auto compare = [&](const char* what, const std::string& was, const std::string& is, bool of_each_week) {
     if (fileName(was) == fileName(is)) return;
+    if (of_each_week && withoutDates(fileName(was)) == withoutDates(fileName(is))) return;
     warn(std::string("lists clashes of the ") + what + " '" + fileName(was) + "', now it is '" + fileName(is) +
          "': unless both show one place, what is called new or resolved means nothing");
   };
-  compare("input", before.input, now.input);
-  compare("obstacle", before.obstacle, now.obstacle);
+  compare("input", before.input, now.input, true); // where it is another place, surveyWarnings() tells
+  compare("obstacle", before.obstacle, now.obstacle, false);
   if ((before.swept > 0.0) != (now.swept > 0.0)) {
     warn(std::string("lists clashes ") +
          (before.swept > 0.0 ? "of swept motion, now poses alone are asked"

@@ -55,7 +55,8 @@ ClashList readClashes(const std::filesystem::path& path);
 ClashList parseClashes(std::string_view text, const std::string& name);
 
 /// Whether the earlier list, read from `path`, can tell what is new now.
-/// @return warnings, a line each: names of other clouds, motion between poses tested in one run only, a list of an
+/// @return warnings, a line each: names of other clouds, but of inputs that differ in numbers or months alone, as from
+///   week to week; motion between poses tested in one run only, a list of an
 ///   earlier version
 /// @throws files::FileError when options differ by which points collide, so that clashes would seem new or resolved
 ///   that are not: all but swept motion, and what is unseen, which is listed apart

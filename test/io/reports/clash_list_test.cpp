@@ -50,6 +50,41 @@ std::string refusal(const std::string& list)
 
 } // namespace
 
+TEST(ClashLists, ScansOfEachWeekAreComparedWithoutAWarning)
+{
+  ClashList earlier;
+  earlier.question.clearance = 0.3;
+  earlier.question.obstacle = "wagon_1.ply";
+  earlier.survey.emplace();
+  const auto warnings = [&](const char* was, const char* is, const char* obstacle = "wagon_1.ply") {
+    earlier.question.input = was;
+    ClashQuestion now = earlier.question;
+    now.input = is;
+    now.obstacle = obstacle;
+    return requireComparable("old.json", earlier, now);
+  };
+  for (const auto& [was, is] : {std::pair{"hall_2026-11-20.las", "hall_2026-11-27.las"},
+                                {"20261120_hall.ply", "20261127_hall.ply"},
+                                {"week 7/scan.pcd", "week 8/scan.pcd"},
+                                {"hall_w47.ptx", "hall_w48.ptx"},
+                                {"hall.las", "hall_2.las"},
+                                {"hall (9).las", "hall (10).las"},
+                                {"halle_süd_20.Nov.2026.las", "halle_süd_4.Dec.2026.las"},
+                                {"Hall-March-26.las", "Hall-april-2.las"},
+                                {"2026-11-20T10:15:00Z.pcd", "2026-11-27T09:00:01Z.pcd"}})
+    EXPECT_THAT(warnings(was, is), testing::IsEmpty()) << was << ' ' << is;
+  for (const auto& [was, is] : {std::pair{"hall_1.las", "yard_1.las"},
+                                {"north_2026-11-20.las", "south_2026-11-20.las"},
+                                {"hall_1.las", "hall_1.ply"},
+                                {"hall_a_1.las", "hall_b_1.las"},
+                                {"maybe.las", "juneau.las"},
+                                {"1_süd.las", "1_nörd.las"}})
+    EXPECT_THAT(warnings(was, is), testing::ElementsAre(HasSubstr("lists clashes of the input"))) << was << ' ' << is;
+  EXPECT_THAT(warnings("hall_1.las", "hall_2.las", "wagon_2.ply"),
+              testing::ElementsAre(HasSubstr("lists clashes of the obstacle 'wagon_1.ply', now it is 'wagon_2.ply'")))
+      << "which may be another wagon";
+}
+
 TEST(ClashLists, ListsOfOtherQuestionsAreNotCompared)
 {
   ClashList earlier;
