@@ -25,6 +25,8 @@ columns : sequence of str, optional
     read.
 threads : int, default 0
     That unpack LAZ; 0: all of the machine's. Any number gives the same result.
+allow_scale : bool, default False
+    Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
 
 Returns
 -------
@@ -92,6 +94,8 @@ path : str or path-like
     .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles.
 threads : int, default 0
     That unpack LAZ; 0: all of the machine's. Any number gives the same result.
+allow_scale : bool, default False
+    Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
 
 Returns
 -------
@@ -108,12 +112,12 @@ std::string pathOf(const PathLike& path)
 }
 
 std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns,
-                                              unsigned threads)
+                                              unsigned threads, bool allow_scale)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  pcl::PCLPointCloud2 cloud =
-      unlocked([&] { return io::readCloud(file, &header, columns.value_or(io::ColumnNames()), threads); });
+  const io::ReadSettings settings(columns.value_or(io::ColumnNames()), allow_scale);
+  pcl::PCLPointCloud2 cloud = unlocked([&] { return io::readCloud(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   return {recordsFrom(std::move(cloud)), std::move(header)};
 }
@@ -127,10 +131,13 @@ void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, c
   unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
 }
 
-std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads)
+std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale)
 {
   const std::string file = pathOf(path);
-  io::Mesh mesh = unlocked([&] { return io::readMesh(file, nullptr, {}, threads); });
+  FileHeader header;
+  const io::ReadSettings settings({}, allow_scale);
+  io::Mesh mesh = unlocked([&] { return io::readMesh(file, &header, settings, threads); });
+  for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
   std::uint32_t* corner = triangles.mutable_data();
   for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
@@ -156,13 +163,13 @@ void bindFiles(py::module_& module)
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
   module.def(
       "read",
-      [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads) {
-        return readWithHeader(path, columns, threads).first;
+      [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale) {
+        return readWithHeader(path, columns, threads, allow_scale).first;
       },
-      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0);
+      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0, "allow_scale"_a = false);
   module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(),
-             "threads"_a = 0);
-  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0);
+             "threads"_a = 0, "allow_scale"_a = false);
+  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false);
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }
 

@@ -78,8 +78,8 @@ private:
   std::unique_ptr<io::CloudStream> open(std::size_t cloud) const
   {
     const fs::path& file = clouds_[cloud];
-    return io::openCloud(file, options_.memory / 2, options_.columns ? options_.columns(file) : io::ColumnNames(),
-                         options_.threads);
+    const io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale);
+    return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 
   /// Of all clouds the fields and the numbers of points, before anything is written.

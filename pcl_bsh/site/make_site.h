@@ -32,7 +32,8 @@ struct MakeOptions {
   std::uint64_t save_points = 50'000'000;
   /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
   bool vertices_only = false;
-  unsigned threads = 0; ///< that unpack LAZ; 0: all of the machine's
+  bool allow_scale = false; ///< transforms of .ptx files may scale uniformly; else they are refused
+  unsigned threads = 0;     ///< that unpack LAZ; 0: all of the machine's
   /// Names of a cloud's columns, as readCloud() takes them; null: as the files say. A run that goes on needs the same.
   std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
   /// Called with a cloud and what users should know of how it is read; null: not told.

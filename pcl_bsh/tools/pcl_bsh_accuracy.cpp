@@ -2,11 +2,11 @@
 // What does accuracy cost in time, on these two clouds? A table, a plot, and which setting to choose.
 #include <pcl_bsh/tools/accuracy/peers.h>
 #include <pcl_bsh/tools/accuracy/report.h>
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/collide/options.h>
 
@@ -48,7 +48,7 @@ struct Options {
   unsigned poses = 1, repetitions = 5;
   std::string unit;
   bool peers = false;
-  io::ColumnChoice columns;
+  cli::ReadChoice reading;
   cli::CommandFiles files;
 };
 
@@ -77,8 +77,8 @@ std::optional<Options> parse(int argc, char** argv)
   app.add_option("--repeat", options.repetitions, "repetitions of every measurement (default: 5)")
       ->type_name("N")
       ->transform(cli::number<unsigned>("give a number, 1 or more", at_least_one));
-  cli::ColumnOptions columns;
-  columns.addTo(app);
+  cli::ReadOptions reading;
+  reading.addTo(app);
   app.add_option("--unit", options.unit, "name of the clouds' unit, for the picture")->type_name("NAME");
   cli::addQuestionOptions(app, question, {"vertices_only", "threads"});
   app.add_flag("--peers", options.peers,
@@ -95,7 +95,7 @@ std::optional<Options> parse(int argc, char** argv)
     question.pose = cli::parsePose("--pose", pose, warnings);
     cli::warn(program, warnings);
   }
-  options.columns = columns.read({options.a, options.b});
+  options.reading = reading.read({options.a, options.b});
   options.files.reads("A", options.a).reads("B", options.b).reads("--trajectory", options.trajectory);
   options.files.readsPose("--pose", pose);
   for (const char* name : results) options.files.writes("--out", options.out / name);
@@ -107,7 +107,7 @@ io::Obstacle load(const Options& options, const std::filesystem::path& path)
   double seconds = 0.0;
   const Question& question = options.question;
   io::Obstacle loaded =
-      cli::loadObstacle(path, {question.vertices_only}, seconds, options.columns.of(path), nullptr, question.threads);
+      cli::loadObstacle(path, {question.vertices_only}, seconds, options.reading.of(path), nullptr, question.threads);
   cli::warn(program, cli::warningsOf(loaded, path));
   if (options.peers && loaded.isSurface())
     throw std::runtime_error("--peers: are measured on points, and " + path.string() +

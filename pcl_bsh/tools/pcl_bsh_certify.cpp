@@ -35,7 +35,7 @@ pcl::PCLPointCloud2 load(const fs::path& path, const Options& options)
 {
   cli::Step step("Loading " + path.string());
   io::CloudFacts facts;
-  pcl::PCLPointCloud2 cloud = io::readCloud(path, &facts, options.columns.of(path), options.certify.threads);
+  pcl::PCLPointCloud2 cloud = io::readCloud(path, &facts, options.reading.of(path), options.certify.threads);
   step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
   cli::warnOfFile(program, path, facts.remarks);
   return cloud;

@@ -289,6 +289,7 @@ int collide(const Options& options)
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
   const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
                                                   options.columns.of(options.obstacle), nullptr, question.threads);
+  io::CloudFacts facts;                                                               // of the obstacle
   if (options.obstacle_out && obstacle.isSurface())
     throw cli::UsageError("--obstacle-out: " + options.obstacle.string() +
                           ": is a surface, and points are written: give --vertices-only, too");

@@ -78,7 +78,8 @@ int make(const Options& options)
   wanted.tile_points = options.tile_points;
   wanted.threads = options.make_threads;
   wanted.vertices_only = options.question.vertices_only;
-  wanted.columns = [&](const std::filesystem::path& file) { return options.columns.of(file); };
+  wanted.columns = [&](const std::filesystem::path& file) { return options.reading.columns.of(file); };
+  wanted.allow_scale = options.reading.allow_scale;
   wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {
     cli::warnOfFile(cli::site_program, file, remarks);
   };

@@ -255,5 +255,25 @@ TEST_F(FileFields, OneScanOfSeveral)
   EXPECT_THROW(read(", \"scan\": 2"), std::exception);
 }
 
+TEST_F(FileFields, TransformsOfScansMayScaleWhereThatIsAllowed)
+{
+  const std::string head = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n", end = "5 6 7 1\n1 2 3 0.5\n";
+  const auto read = [&](const std::string& rows, const std::string& option) {
+    folder.write("a.ptx", head + rows + end);
+    const PipelineResult result = Pipeline::parse("[{\"type\": \"readers.ptx\", \"filename\": \"" +
+                                                  (folder / "a.ptx").string() + "\"" + option + "}]")
+                                      .run();
+    return io::valueOf(result.clouds.begin()->second->cloud, 0, "x");
+  };
+  const std::string scaled = "1000 0 0 0\n0 1000 0 0\n0 0 1000 0\n", mirror = "-1 0 0 0\n0 1 0 0\n0 0 1 0\n";
+  for (const std::string scan : {"", ", \"scan\": 0"}) {
+    EXPECT_THAT(
+        errorOf([&] { read(scaled, scan); }),
+        testing::AllOf(HasSubstr("a.ptx: scan 0 has a transform that scales by 1000"), HasSubstr("allow_scale")));
+    EXPECT_EQ(read(scaled, scan + ", \"allow_scale\": true"), 1005);
+    EXPECT_THAT(errorOf([&] { read(mirror, scan + ", \"allow_scale\": true"); }), HasSubstr("mirrors"));
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh::pipeline

@@ -343,6 +343,34 @@ TEST(Stages, TransformWarnsWhereFloatIsCoarse)
       HasSubstr("/1/transform: flattens space"));
 }
 
+TEST(Stages, TransformTakesNoMatrixThatIsNoMotion)
+{
+  const StageCloudPtr cloud = cloudOf<double>({{1, 2, 3}});
+  const auto moved = [&](const std::string& rows, const std::string& option = "") {
+    return runStage(cloud, R"({"type": "filters.transform", "transform": [)" + rows + "]" + option + "}");
+  };
+  const auto refusal = [&](const std::string& rows, const std::string& option = "") {
+    return errorOf([&] { moved(rows, option); });
+  };
+  const std::string allowed = R"(, "allow_scale": true)";
+  const std::pair<const char*, const char*> wrong[] = {{"1,2,3,0, 4,5,6,0, 7,8,9,0", "flattens space"},
+                                                       {"1,0,0,0, 0,1,0,0, 1,1,0,0", "flattens space"},
+                                                       {"1,0,0,0, 0,-1,0,0, 0,0,1,0", "mirrors"},
+                                                       {"1,0.1,0,0, 0,1,0,0, 0,0,1,0", "shears or scales unevenly"},
+                                                       {"1,0,0,0, 0,1,0,0, 0,0,3,0", "shears or scales unevenly"}};
+  for (const auto& [rows, text] : wrong)
+    for (const std::string& option : {std::string(), allowed})
+      EXPECT_THAT(refusal(rows, option), HasSubstr(std::string("/1/transform: ") + text)) << rows;
+  const std::string millimetres = "0.001,0,0,0, 0,0.001,0,0, 0,0,0.001,5";
+  EXPECT_THAT(refusal(millimetres),
+              HasSubstr("/1/transform: scales by 0.001: give \"allow_scale\": true if that is meant"));
+  const auto scaled = moved(millimetres, allowed);
+  EXPECT_EQ(viewOf(scaled.clouds.begin()->second->cloud).point(0), (Point3{0.001, 0.002, 0.003 + 5}));
+  EXPECT_THAT(scaled.warnings, IsEmpty());
+  EXPECT_THAT(moved("0.8,-0.6,0,0, 0.60002,0.8,0,0, 0,0,1,0").warnings,
+              ElementsAre(HasSubstr("transform: |R'R - I| is ")));
+}
+
 TEST(Stages, TransformMovesTheViewpoint)
 {
   const StageCloudPtr out =

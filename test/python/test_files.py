@@ -103,6 +103,24 @@ def test_headers_are_kept(tmp_path):
     assert pcl_bsh.read_with_header(tmp_path / "again.pcd")[1].viewpoint == (1, 2, 3, 1, 0, 0, 0)
 
 
+def test_transforms_of_scans(tmp_path):
+    def scan(rows):
+        (tmp_path / "a.ptx").write_text(
+            "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + rows + "\n5 6 7 1\n1 2 3 0.5\n")
+        return tmp_path / "a.ptx"
+    readers = (pcl_bsh.read, lambda *a, **k: pcl_bsh.read_with_header(*a, **k)[0],
+               lambda *a, **k: pcl_bsh.read_mesh(*a, **k)[0])
+    for read in readers:
+        scaled = scan("1000 0 0 0\n0 1000 0 0\n0 0 1000 0")
+        with pytest.raises(pcl_bsh.FileError, match="scan 0 has a transform that scales by 1000: .*allow_scale"):
+            read(scaled)
+        assert read(scaled, allow_scale=True)["x"].ravel() == [1005]
+        with pytest.raises(pcl_bsh.FileError, match="flattens space: it is singular"):
+            read(scan("1 0 0 0\n0 1 0 0\n0 1 0 0"), allow_scale=True)
+        with pytest.warns(UserWarning, match="a.ptx: transform of scan 0: .*the nearest rotation is used"):
+            read(scan("0.8 0.60002 0 0\n-0.6 0.8 0 0\n0 0 1 0"))
+
+
 def test_meshes(tmp_path):
     (tmp_path / "square.off").write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
     vertices, triangles = pcl_bsh.read_mesh(tmp_path / "square.off")

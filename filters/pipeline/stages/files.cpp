@@ -33,7 +33,7 @@ struct FileReader : Stage {
   CloudHeader plan(const std::vector<CloudHeader>&) override
   {
     requireExtension(filename.path, extensions);
-    CloudHeader header = io::readCloudHeader(filename.path, names());
+    CloudHeader header = io::readCloudHeader(filename.path, settings());
     if (const std::string remark = io::remarkOnColours(header); !remark.empty()) warn(filename.path + ": " + remark);
     return header;
   }
@@ -42,7 +42,7 @@ struct FileReader : Stage {
   {
     auto cloud = std::make_shared<StageCloud>();
     io::CloudFacts facts;
-    io::Mesh mesh = io::readMesh(filename.path, &facts, names());
+    io::Mesh mesh = io::readMesh(filename.path, &facts, settings());
     take(facts, *cloud);
     cloud->cloud = std::move(mesh.vertices);
     if (!mesh.triangles.empty())
@@ -51,7 +51,7 @@ struct FileReader : Stage {
   }
 
 protected:
-  virtual io::ColumnNames names() const { return {}; }
+  virtual io::ReadSettings settings() const { return {}; }
 
   void take(const io::CloudFacts& facts, StageCloud& cloud)
   {
@@ -67,7 +67,7 @@ struct TextReader : FileReader {
   std::string columns;
 
 protected:
-  io::ColumnNames names() const override
+  io::ReadSettings settings() const override
   {
     try {
       return columns.empty() ? io::ColumnNames() : io::columnNamesOf(columns);
@@ -81,11 +81,12 @@ protected:
 /// A PTX file may hold several scans.
 struct PtxReader : FileReader {
   std::optional<int> scan;
+  bool allow_scale = false;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
     CloudHeader header = FileReader::plan(inputs);
-    return scan ? io::readPtxScanHeader(filename.path, static_cast<std::size_t>(*scan)) : header;
+    return scan ? io::readPtxScanHeader(filename.path, static_cast<std::size_t>(*scan), allow_scale) : header;
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
@@ -93,10 +94,13 @@ struct PtxReader : FileReader {
     if (!scan) return FileReader::run(std::move(inputs));
     auto cloud = std::make_shared<StageCloud>();
     io::CloudFacts facts;
-    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &facts);
+    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &facts, allow_scale);
     take(facts, *cloud);
     return cloud;
   }
+
+protected:
+  io::ReadSettings settings() const override { return {io::ColumnNames(), allow_scale}; }
 };
 
 struct FileWriter : Stage {
@@ -196,7 +200,10 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
       .required();
   if constexpr (std::is_same_v<S, PtxReader>) {
     description.option(&S::scan, "scan", "only that scan, from 0, as an organised cloud; all when it is not given")
-        .atLeast(0);
+        .atLeast(0)
+        .option(&S::allow_scale, "allow_scale",
+                "the scans' transforms may scale uniformly; they are refused otherwise, and whatever else is no rigid "
+                "motion always");
   }
   if constexpr (std::is_same_v<S, TextReader>) {
     description.option(&S::columns, "columns",

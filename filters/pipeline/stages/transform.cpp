@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <Eigen/Geometry>
@@ -68,19 +69,20 @@ std::optional<Triple> normalsOf(const pcl::PCLPointCloud2& cloud)
 
 struct Transform : Stage {
   Pose transform;
+  bool allow_scale = false;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    if (std::abs(transform.matrix.determinant()) < 1e-300) {
-      throw OptionError("transform", "flattens space: give a matrix that can be inverted");
-    }
+    const io::RigidPart part = rigid();
+    if (part.deviation > 0) warn("transform: " + io::nearestRotationWarning(part.deviation));
     return inputs[0];
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
     const auto output = ownCloud(std::move(inputs[0]));
-    const Eigen::Affine3d map(transform.matrix);
+    Eigen::Affine3d map(transform.matrix);
+    map.linear() = rigid().linear;
     movePoints(output->cloud, map);
     turnNormals(output->cloud, map);
     moveViewpoint(output->viewpoint, map);
@@ -89,6 +91,21 @@ struct Transform : Stage {
   }
 
 private:
+  io::RigidPart rigid() const
+  {
+    const Eigen::Affine3d map(transform.matrix);
+    if (transform.matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+      throw OptionError("transform", "has another last row than 0 0 0 1: give a rotation and a shift");
+    if (!map.translation().allFinite()) throw OptionError("transform", "is not finite: give finite numbers");
+    io::RigidPart part = io::rigidPart(map.linear(), allow_scale);
+    if (!part.wrong.empty()) {
+      throw OptionError("transform", part.wrong + ": " +
+                                         (part.scales ? "give \"allow_scale\": true if that is meant"
+                                                      : "give a rotation and a shift"));
+    }
+    return part;
+  }
+
   void movePoints(pcl::PCLPointCloud2& cloud, const Eigen::Affine3d& map)
   {
     const PointsView view = viewOf(cloud);
@@ -141,8 +158,14 @@ StageType transform()
                              "Moves points, normals and viewpoints. Computed in double; a warning tells when float32 "
                              "coordinates become too coarse.")
       .alias("pcl::transformPointCloud")
-      .option(&Transform::transform, "transform", "the motion that is applied to each point")
-      .required();
+      .option(
+          &Transform::transform, "transform",
+          "the motion that is applied to each point; a matrix of few printed digits stands for its nearest rotation")
+      .required()
+      .option(
+          &Transform::allow_scale, "allow_scale",
+          "the matrix may scale uniformly, as from millimetres to metres; it is refused otherwise, and whatever else "
+          "is no rigid motion always");
 }
 
 } // namespace pcl_bsh::pipeline

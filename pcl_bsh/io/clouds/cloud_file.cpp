@@ -66,20 +66,22 @@ struct Faces {
 };
 
 /// @param faces if not null, set where the format has some
-Contents parse(const std::string& extension, std::string_view file, const ColumnNames& columns, unsigned threads,
+Contents parse(const std::string& extension, std::string_view file, const ReadSettings& settings, unsigned threads,
                Faces* faces)
 {
-  requireColumnText(extension, columns);
+  requireColumnText(extension, settings.columns);
   if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
   Contents contents;
   if (extension == ".pcd") {
     contents.cloud = parsePcd(file, contents.facts.viewpoint);
   }
   else if (extension == ".ply") {
-    contents.cloud = parsePly(file, contents.facts.viewpoint, faces ? &faces->polygons : nullptr);
+    contents.cloud =
+        parsePly(file, contents.facts.viewpoint, faces ? &faces->polygons : nullptr, &contents.facts.remarks);
   }
   else if (extension == ".ptx") {
-    contents.cloud = parsePtx(file, contents.facts.viewpoint, {}, &contents.facts.scanners);
+    contents.cloud = parsePtx(file, contents.facts.viewpoint, {}, &contents.facts.scanners, settings.allow_scale,
+                              &contents.facts.remarks);
   }
   else if (extension == ".obj") {
     contents.cloud = parseObj(file);
@@ -96,7 +98,7 @@ Contents parse(const std::string& extension, std::string_view file, const Column
     contents.cloud = parsePts(file);
   }
   else {
-    contents.cloud = parseColumns(file, columns, &contents.facts.remarks);
+    contents.cloud = parseColumns(file, settings.columns, &contents.facts.remarks);
   }
   return contents;
 }
@@ -111,17 +113,17 @@ pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
 }
 
 pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file, bool whole,
-                                const ColumnNames& columns)
+                                const ReadSettings& settings)
 {
-  requireColumnText(extension, columns);
+  requireColumnText(extension, settings.columns);
   if (extension == ".pcd") return parsePcdHeader(file);
   if (extension == ".ply") return parsePlyHeader(file);
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
   if (extension == ".stl") return parseStlHeader(file);
   if (extension == ".pts") return parsePtsHeader(file);
-  if (extension == ".ptx") return parsePtxHeader(file);
-  return parseColumnNames(file, whole, columns);
+  if (extension == ".ptx") return parsePtxHeader(file, {}, settings.allow_scale);
+  return parseColumnNames(file, whole, settings.columns);
 }
 
 void print(const std::string& extension, std::ostream& out, const pcl::PCLPointCloud2& cloud,
@@ -208,48 +210,50 @@ pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
   return header;
 }
 
-pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ColumnNames& columns)
+pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ReadSettings& settings)
 {
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), columns)); });
+  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), settings)); });
 }
 
-pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
                          unsigned threads, Faces* faces)
 {
   if (isLasFile(path)) {
     return naming(path, [&] {
-      requireColumnText(extensionOf(path), columns);
+      requireColumnText(extensionOf(path), settings.columns);
       return checked(readAll(LasReader(openBytes(path), threads)), facts);
     });
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view(), columns, threads, faces), facts); });
+  return naming(path, [&] { return checked(parse(extension, file.view(), settings, threads, faces), facts); });
 }
 
 } // namespace
 
-pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns,
+pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
                               unsigned threads)
 {
-  return read(path, facts, columns, threads, nullptr);
+  return read(path, facts, settings, threads, nullptr);
 }
 
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts)
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts,
+                                bool allow_scale)
 {
   const FileBytes file(path);
   return naming(path, [&] {
     Contents contents;
-    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners);
+    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners, allow_scale,
+                              &contents.facts.remarks);
     return checked(std::move(contents), facts);
   });
 }
 
-Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ColumnNames& columns, unsigned threads)
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings, unsigned threads)
 {
   Faces faces;
-  Mesh mesh{read(path, facts, columns, threads, &faces), std::move(faces.triangles)};
+  Mesh mesh{read(path, facts, settings, threads, &faces), std::move(faces.triangles)};
   naming(path, [&] {
     const std::vector<Triangle> cut = trianglesOf(faces.polygons, viewOf(mesh.vertices), mesh.face_values);
     mesh.triangles.insert(mesh.triangles.end(), cut.begin(), cut.end());
@@ -257,13 +261,13 @@ Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const Column
   return mesh;
 }
 
-pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan)
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, bool allow_scale)
 {
   const FileBytes file(path);
-  return naming(path, [&] { return parsePtxHeader(file.view(), scan); });
+  return naming(path, [&] { return parsePtxHeader(file.view(), scan, allow_scale); });
 }
 
-pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns)
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings)
 {
   if (isPipe(path)) {
     throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
@@ -271,19 +275,19 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Col
   }
   if (isLasFile(path)) {
     return naming(path, [&] {
-      requireColumnText(".las", columns);
+      requireColumnText(".las", settings.columns);
       return checkedHeader(lasHeader(LasReader(openBytes(path))));
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;
   const FileBytes beginning(path, usual);
   try {
-    return headerOf(path, beginning, columns);
+    return headerOf(path, beginning, settings);
   }
   catch (const files::FileError&) {
     if (beginning.isWhole()) throw;
   }
-  return headerOf(path, FileBytes(path), columns); // a long header, or one that rows decide
+  return headerOf(path, FileBytes(path), settings); // a long header, or one that rows decide
 }
 
 void requireWritableCloud(const std::filesystem::path& path)

@@ -9,8 +9,8 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/io/clouds/read_settings.h>
 #include <pcl_bsh/io/files/file_error.h>
-#include <pcl_bsh/io/text/column_names.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -69,19 +69,20 @@ struct CloudFacts {
 /// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
 /// cloud.
 /// @param facts if not null, set to what the file says beside its points
-/// @param columns of .xyz, .txt and .csv; empty: as the file says
+/// @param settings columns of .xyz, .txt and .csv, and whether transforms may scale (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
-///   for columns of another format
+///   for columns of another format; for a matrix that is no rigid motion (rigid_pose.h), with the scan that has it
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
-                              const ColumnNames& columns = {}, unsigned threads = 0);
+                              const ReadSettings& settings = {}, unsigned threads = 0);
 
 /// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
 /// @param scan from 0
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts = nullptr);
+pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts = nullptr,
+                                bool allow_scale = false);
 
 /// The fields that readPtxScan() makes. Throws as readCloud() does.
-pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan);
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, bool allow_scale = false);
 
 /// A number of each triangle.
 struct FaceValues {
@@ -98,12 +99,12 @@ struct Mesh {
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
 /// Throws as readCloud() does, and where a face names a vertex that is not there.
-Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ColumnNames& columns = {},
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ReadSettings& settings = {},
               unsigned threads = 0);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.
-pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ColumnNames& columns = {});
+pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings = {});
 
 /// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
 /// or .obj (vertices), .pts or .ptx (scan_text.h), with the names that readers of the format expect: nx ny nz, and a

@@ -81,8 +81,8 @@ private:
 
 class HeldCloud : public CloudStream {
 public:
-  HeldCloud(const fs::path& path, const ColumnNames& columns)
-  : cloud_(readCloud(path, &facts_, columns)),
+  HeldCloud(const fs::path& path, const ReadSettings& settings)
+  : cloud_(readCloud(path, &facts_, settings)),
     header_(cloud_)
   {
     header_.data.clear();
@@ -145,17 +145,17 @@ void CloudStream::skip(std::uint64_t points)
   }
 }
 
-std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ColumnNames& columns,
+std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memory, const ReadSettings& settings,
                                        unsigned threads)
 {
-  const pcl::PCLPointCloud2 header = readCloudHeader(path, columns); // which checks that it can be read
+  const pcl::PCLPointCloud2 header = readCloudHeader(path, settings); // which checks that it can be read
   if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path, threads);
   if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
                            "give more memory, or convert it to .las or binary .pcd");
   }
-  return std::make_unique<HeldCloud>(path, columns);
+  return std::make_unique<HeldCloud>(path, settings);
 }
 
 } // namespace pcl_bsh::io

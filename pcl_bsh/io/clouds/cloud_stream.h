@@ -6,7 +6,7 @@
 //   while (std::size_t points = scan->read(batch.data(), 1000)) use(batch, points);
 #pragma once
 
-#include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/io/clouds/read_settings.h>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -45,9 +45,9 @@ public:
 
 /// Opens any file that readCloud() reads. LAS, LAZ and binary PCD are read batch by batch, the other formats at once,
 /// for which `memory`, in bytes, must hold the file and its cloud together.
-/// @param columns and @param threads as readCloud() has them
+/// @param settings and @param threads as readCloud() has them
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
-                                       const ColumnNames& columns = {}, unsigned threads = 0);
+                                       const ReadSettings& settings = {}, unsigned threads = 0);
 
 } // namespace pcl_bsh::io

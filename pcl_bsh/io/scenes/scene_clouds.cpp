@@ -40,7 +40,8 @@ void parseUncertainty(const JsonReader& reader, CloudSource& cloud)
 
 void parseSurface(const JsonReader& reader, CloudSource& cloud)
 {
-  for (const auto& [key, what] : {std::pair{"vertices_only", "faces"}, {"columns", "files"}}) {
+  for (const auto& [key, what] :
+       {std::pair{"vertices_only", "faces"}, {"columns", "files"}, {"allow_scale", "files"}}) {
     if (reader.has(key) && !cloud.shape.empty())
       reader.at(key).fail(std::string("is about ") + what + ", and a " + cloud.shape + " is points", "leave it out");
   }
@@ -52,6 +53,7 @@ void parseSurface(const JsonReader& reader, CloudSource& cloud)
       reader.at("columns").fail(error.what(), error.remedy());
     }
   }
+  read(reader, "allow_scale", cloud.allow_scale);
   read(reader, "vertices_only", cloud.surface.vertices_only);
 }
 

@@ -33,6 +33,7 @@ struct CloudSource {
   Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
   SurfaceSettings surface;           ///< of a file with faces
   ColumnNames columns;               ///< of a file of columns; empty: as it says
+  bool allow_scale = false;          ///< of a .ptx, whose transforms may scale uniformly then
   std::string place;                 ///< in the document
 };
 

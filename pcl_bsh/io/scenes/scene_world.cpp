@@ -267,7 +267,7 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
   if (!source.shape.empty())
     mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
   else
-    mesh = readMesh(source.file, source.surface, &facts, source.columns, file.options.threads);
+    mesh = readMesh(source.file, source.surface, &facts, {source.columns, source.allow_scale}, file.options.threads);
   for (const std::string& remark : facts.remarks) warnings_.push_back(source.file.string() + ": " + remark);
   scaleAndShift(mesh.vertices, source, file.path.string());
   HierarchyOptions options;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 
 #include <cstdint>
@@ -47,13 +46,13 @@ std::optional<CertifyProgramOptions> parseCertifyOptions(int argc, char** argv)
                  "0: all of the machine's (default); any number gives the same result")
       ->type_name("N")
       ->transform(number<unsigned>(give_threads));
-  ColumnOptions columns;
-  columns.addTo(app);
+  ReadOptions reading;
+  reading.addTo(app);
   app.add_option("--report", options.report, "JSON file for the results")->type_name("FILE");
   if (!understood(app, certify_program, argc, argv)) return std::nullopt;
 
   if (fit) std::erase_if(options.wanted, [&](const auto& named) { return named.second != *fit; });
-  options.columns = columns.read({options.cloud});
+  options.reading = reading.read({options.cloud});
   options.files.reads("CLOUD", options.cloud).writes("--report", options.report.value_or(""));
   return options;
 }

@@ -2,10 +2,10 @@
 // The command line of pcl_bsh_certify.
 #pragma once
 
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/certify/certify.h>
-#include <pcl_bsh/io/text/column_names.h>
 
 #include <filesystem>
 #include <optional>
@@ -26,7 +26,7 @@ struct CertifyProgramOptions {
   std::optional<std::filesystem::path> report;
   std::vector<std::pair<std::string, SphereFit>> wanted = fits;
   CertifyOptions certify;
-  io::ColumnChoice columns;
+  ReadChoice reading;
   CommandFiles files;
 };
 

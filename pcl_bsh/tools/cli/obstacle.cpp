@@ -4,20 +4,40 @@
 #include "command_line.h"
 #include "step.h"
 
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/geometry/counted.h>
 
 namespace pcl_bsh::cli {
 
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
-                          const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads)
+                          const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads)
 {
   Step step("Loading " + path.string());
-  io::Obstacle obstacle = io::readObstacle(path, settings, columns, facts, threads);
+  io::Obstacle obstacle = io::readObstacle(path, settings, reading, facts, threads);
   const pcl::PCLPointCloud2& points = obstacle.points();
   std::string result = counted(std::size_t{points.width} * points.height, "point");
   if (obstacle.isSurface()) result += ", " + counted(obstacle.triangles()->size(), "triangle");
   seconds += step.done(result);
   return obstacle;
+}
+
+void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle& obstacle)
+{
+  if (obstacle.isSurface()) return io::requireWritableMesh(file);
+  io::requireWritableCloud(file);
+  withField(withoutRecords(obstacle.points()), collision_field_name, {});
+}
+
+void writeFlags(const std::filesystem::path& file, const io::Obstacle& obstacle, const std::vector<Verdict>& flags,
+                const io::CloudFacts& facts)
+{
+  if (!obstacle.isSurface()) {
+    io::writeCloud(file, withField(obstacle.points(), collision_field_name, flags), facts.viewpoint, facts.las);
+    return;
+  }
+  const std::vector<std::uint8_t> values = numbersOf(flags);
+  io::writeMesh(file, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &values}}, facts.viewpoint);
 }
 
 std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path)

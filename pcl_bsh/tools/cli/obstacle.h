@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/query/result.h>
 
 #include <filesystem>
 #include <string>
@@ -14,7 +15,16 @@ namespace pcl_bsh::cli {
 /// @param seconds that it took are added
 /// @throws as io::readObstacle() does, whose last arguments these are
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
-                          const io::ColumnNames& columns, io::CloudFacts* facts, unsigned threads);
+                          const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads);
+
+/// Fails unless a file can hold the obstacle and which of its points, or of its triangles, collide. Surfaces are .ply.
+/// @throws files::FileError; std::invalid_argument for a cloud whose field `collision` is of another type
+void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle& obstacle);
+
+/// Writes them, where the obstacle's own file has it, with a field `collision`. Throws as requireWritableFlags() does.
+/// @param flags one for each record of its view
+void writeFlags(const std::filesystem::path& file, const io::Obstacle& obstacle, const std::vector<Verdict>& flags,
+                const io::CloudFacts& facts);
 
 /// What users should know of the obstacle, a line each, with the file's name.
 std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "columns.h"
+#include "reading.h"
 
 #include "program.h"
 
@@ -7,7 +7,7 @@
 
 namespace pcl_bsh::cli {
 
-void ColumnOptions::addTo(CLI::App& app)
+void ReadOptions::addTo(CLI::App& app)
 {
   app.add_option("--columns", given_,
                  "names of the columns of .xyz, .txt and .csv, as x,y,z,_,intensity (_ is\n"
@@ -15,9 +15,12 @@ void ColumnOptions::addTo(CLI::App& app)
                  "may be given more than once")
       ->type_name("NAMES")
       ->allow_extra_args(false);
+  app.add_flag("--allow-scale", allow_scale_,
+               "transforms of .ptx files may scale uniformly; they are refused\notherwise, and whatever else is no "
+               "rigid motion always");
 }
 
-io::ColumnChoice ColumnOptions::read(const std::vector<std::filesystem::path>& files) const
+ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) const
 {
   io::ColumnChoice choice;
   std::string text;
@@ -28,7 +31,7 @@ io::ColumnChoice ColumnOptions::read(const std::vector<std::filesystem::path>& f
   catch (const io::FormatError& error) {
     throw UsageError("--columns: " + text + ": " + error.what() + ": " + error.remedy());
   }
-  return choice;
+  return {choice, allow_scale_};
 }
 
 } // namespace pcl_bsh::cli

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How command lines say what the columns of text files are.
+// How command lines say how files of points are read.
 #pragma once
 
-#include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/io/clouds/read_settings.h>
 
 #include <CLI/CLI.hpp>
 
@@ -12,17 +12,26 @@
 
 namespace pcl_bsh::cli {
 
-/// --columns as it is written.
-class ColumnOptions {
+/// The settings of each file that a program reads.
+struct ReadChoice {
+  io::ColumnChoice columns;
+  bool allow_scale = false;
+
+  io::ReadSettings of(const std::filesystem::path& file) const { return {columns.of(file), allow_scale}; }
+};
+
+/// --columns and --allow-scale as they are written.
+class ReadOptions {
 public:
   void addTo(CLI::App& app);
 
   /// @param files that the program reads clouds from
   /// @throws UsageError for what is no list of names, and for names that none of the files can have
-  io::ColumnChoice read(const std::vector<std::filesystem::path>& files) const;
+  ReadChoice read(const std::vector<std::filesystem::path>& files) const;
 
 private:
   std::vector<std::string> given_;
+  bool allow_scale_ = false;
 };
 
 } // namespace pcl_bsh::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
@@ -100,8 +99,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "OBSTACLE's points with all their fields, and a field 'collision': 1\n"
                  "collides, 0 is free, 2 is undecided, 4 is unseen; with --seen")
       ->type_name("FILE");
-  ColumnOptions columns;
-  columns.addTo(app);
+  ReadOptions reading;
+  reading.addTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,
@@ -123,7 +122,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
-  options.columns = columns.read({options.input, options.obstacle});
+  options.reading = reading.read({options.input, options.obstacle});
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;

@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_collide.
 #pragma once
 
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
@@ -34,7 +35,7 @@ struct CollideOptions {
   bool distances = false; ///< of every point
   std::optional<std::filesystem::path> distance_page;
   std::string unit; ///< of the clouds, for reports; empty: not known
-  io::ColumnChoice columns;
+  ReadChoice reading;
   std::vector<std::string> warnings;       ///< of the options themselves
   std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
   CommandFiles files;                      ///< all that are read or written

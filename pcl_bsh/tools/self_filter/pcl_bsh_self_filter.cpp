@@ -4,6 +4,7 @@
 #include "self_filter.h"
 #include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
@@ -58,7 +59,7 @@ struct Options {
   self_filter::Settings settings;
   bool flag = false;
   std::optional<fs::path> report;
-  io::ColumnChoice columns;
+  cli::ReadChoice reading;
   cli::CommandFiles files;
 };
 
@@ -124,7 +125,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
                  self_filter::SelfFilter& filter, WarningsOnce& once)
 {
   io::CloudFacts facts;
-  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.columns.of(name), options.settings.threads);
+  const pcl::PCLPointCloud2 cloud = io::readCloud(name, &facts, options.reading.of(name), options.settings.threads);
   std::vector<std::string> warnings;
   for (const std::string& remark : facts.remarks) warnings.push_back(name + ": " + remark);
   const PointsView view = viewOf(cloud);
@@ -232,8 +233,8 @@ int main(int argc, char** argv)
         ->capture_default_str();
     app.add_option("--report", options.report, "JSON file for the results and what they cost;\n- is standard output")
         ->type_name("FILE");
-    cli::ColumnOptions columns;
-    columns.addTo(app);
+    cli::ReadOptions reading;
+    reading.addTo(app);
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.columns = columns.read({options.clouds.begin(), options.clouds.end()});
     check(options);

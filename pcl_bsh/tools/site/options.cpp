@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
@@ -228,8 +227,8 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   make->add_option("--out", options.site, "folder of the site: a new one, or one that was begun")
       ->type_name("SITE")
       ->required();
-  ColumnOptions columns;
-  columns.addTo(*make);
+  ReadOptions reading;
+  reading.addTo(*make);
   addMemory(*make, options);
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
@@ -258,16 +257,16 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   add_site(collide);
   CollideTexts texts;
   texts.addTo(*collide, options);
-  columns.addTo(*collide);
+  reading.addTo(*collide);
   addMemory(*collide, options);
 #endif
   if (!understood(app, site_program, argc, argv)) return std::nullopt;
-  if (options.command == SiteCommand::make) options.columns = columns.read(options.clouds);
+  if (options.command == SiteCommand::make) options.reading = reading.read(options.clouds);
   if (options.command == SiteCommand::write) requireExport(options);
 #ifdef PCL_BSH_SITE_QUERIES
   if (options.command == SiteCommand::collide) {
     texts.read(options);
-    options.columns = columns.read({options.obstacle});
+    options.reading = reading.read({options.obstacle});
   }
 #endif
   return options;

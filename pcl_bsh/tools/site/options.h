@@ -2,9 +2,9 @@
 // The command line of pcl_bsh_site.
 #pragma once
 
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/io/text/column_names.h>
 #include <pcl_bsh/question/question.h>
 
 #include <cstdint>
@@ -49,8 +49,8 @@ struct SiteOptions {
   unsigned make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
-  io::ColumnChoice columns; ///< of `make` and `collide`
-  CommandFiles files;       ///< that `collide` reads and writes
+  ReadChoice reading; ///< of `make` and `collide`
+  CommandFiles files; ///< that `collide` reads and writes
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError

@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/question/options.h>
 
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>
@@ -112,7 +113,7 @@ site::ResultField collisionField()
 ObstacleFile::ObstacleFile(const SiteOptions& options)
 {
   double seconds = 0.0;
-  const io::ColumnNames columns = options.columns.of(options.obstacle);
+  const io::ReadSettings reading = options.reading.of(options.obstacle);
   const Question& question = options.question;
   const io::SurfaceSettings surface = {question.vertices_only};
   if (site::rankHere() == 0)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
 
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
@@ -237,8 +236,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
   cli::addQuestionOptions(
       app, options.question,
       {"clearance", "solid", "input_solid", "seen", "origin", "seen_angle", "vertices_only", "threads"});
-  cli::ColumnOptions columns;
-  columns.addTo(app);
+  cli::ReadOptions reading;
+  reading.addTo(app);
   app.add_option("--color", options.color,
                  "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
                  "--clearance is of all points,\nwith a histogram")
@@ -306,7 +305,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   for (const std::filesystem::path& cloud : options.clouds) options.files.reads("CLOUD", cloud);
   std::vector<std::filesystem::path> read = options.clouds;
   if (options.model) read.push_back(*options.model);
-  options.columns = columns.read(read);
+  options.reading = reading.read(read);
   options.files.reads("--scene", path(options.scene)).reads("--model", path(options.model));
   options.files.reads("--trajectory", path(options.trajectory)).readsPose("--pose", pose);
   options.files.writes("--screenshot", path(options.screenshot)).writes("--export", path(options.export_to));

@@ -2,9 +2,9 @@
 // The command line of pcl_bsh_view.
 #pragma once
 
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
-#include <pcl_bsh/io/text/column_names.h>
 #include <pcl_bsh/question/question.h>
 
 #include <array>
@@ -53,7 +53,7 @@ struct Options {
   int width = 1280, height = 960;
   Camera camera;
   std::optional<std::filesystem::path> export_to;
-  io::ColumnChoice columns;
+  cli::ReadChoice reading;
   cli::CommandFiles files; ///< but for a scene's clouds
 };
 

@@ -231,4 +231,18 @@ TEST(Pcd, ReadsAsciiWithPadding)
             "line 3 has the type 'FF', which is none of F I U");
 }
 
+TEST(Pcd, RefusesAViewpointThatIsNotFinite)
+{
+  const auto with = [](const std::string& viewpoint) {
+    std::string file = xyzHeader(1, "ascii") + "1 2 3\n";
+    const std::string line = "VIEWPOINT 0 0 0 1 0 0 0";
+    return file.replace(file.find(line), line.size(), "VIEWPOINT " + viewpoint);
+  };
+  for (const char* endless : {"nan 2 3 1 0 0 0", "1 inf 3 1 0 0 0", "1 2 3 nan 0 0 0", "1 2 3 1 0 0 -inf"})
+    EXPECT_EQ(defect(with(endless)), "has a VIEWPOINT that is not finite") << endless;
+  Viewpoint viewpoint;
+  parsePcd(with("1 2 3 0 0 0 0"), viewpoint);
+  EXPECT_EQ(viewpoint, (Viewpoint{1, 2, 3, 0, 0, 0, 0})) << "which says where, and not how it is turned";
+}
+
 } // namespace pcl_bsh::io

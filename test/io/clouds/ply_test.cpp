@@ -175,15 +175,41 @@ TEST(Ply, ACameraThatMakesNoSenseIsNoViewpoint)
   const std::string axes = position + "x_axisx x_axisy x_axisz y_axisx y_axisy y_axisz z_axisx z_axisy z_axisz";
   EXPECT_EQ(viewpointOf(position, "1 2 3"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
   EXPECT_EQ(viewpointOf("view_px view_py", "1 2"), no_viewpoint);
-  EXPECT_EQ(viewpointOf(position, "1 nan 3"), no_viewpoint);
   EXPECT_EQ(viewpointOf(position, "1 1e300 3"), no_viewpoint);
   EXPECT_EQ(viewpointOf(axes, "1 2 3 0 0 0 0 0 0 0 0 0"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
-  EXPECT_EQ(viewpointOf(axes, "1 2 3 1 0 0 0 1 0 0 0 -1"), (Viewpoint{1, 2, 3, 1, 0, 0, 0})) << "a mirror";
-  EXPECT_EQ(viewpointOf(axes, "1 2 3 nan 0 0 0 1 0 0 0 1"), (Viewpoint{1, 2, 3, 1, 0, 0, 0}));
+  const std::string rows[][2] = {{"1 2 3 1 0 0 0 1 0 0 0 -1", "mirrors"},
+                                 {"1 2 3 nan 0 0 0 1 0 0 0 1", "is not finite"},
+                                 {"1 2 3 1 0 0 0 1 0 0 1 0", "flattens space"},
+                                 {"1 2 3 2 0 0 0 2 0 0 0 2", "scales by 2"},
+                                 {"1 2 3 1 0 0.01 0 1 0 0 0 1", "shears or scales unevenly"}};
+  for (const auto& [row, wrong] : rows) {
+    EXPECT_THAT(defectOf([&, row = row] { viewpointOf(axes, row); }),
+                testing::HasSubstr("has a camera whose rotation " + wrong));
+  }
+  for (const char* row : {"1 nan 3", "inf 2 3"})
+    EXPECT_EQ(defectOf([&] { viewpointOf(position, row); }), "has a camera whose position is not finite");
   Viewpoint viewpoint;
   const std::string lists = "element camera 2\nproperty list uchar float view_px\nproperty float k1\n" + xyz(1);
   EXPECT_EQ(parsePly(ascii(lists, "2 1 1 0\n0 0\n1 2 3\n"), viewpoint).width, 1U);
   EXPECT_EQ(viewpoint, no_viewpoint);
+}
+
+TEST(Ply, ACameraOfFewDigitsIsTurnedByTheNearestRotation)
+{
+  std::string camera = "element camera 1\n";
+  for (const char* name : {"view_px", "view_py", "view_pz", "x_axisx", "x_axisy", "x_axisz", "y_axisx", "y_axisy",
+                           "y_axisz", "z_axisx", "z_axisy", "z_axisz"})
+    camera += std::string("property float ") + name + "\n";
+  for (const auto& [rows, told] :
+       {std::pair{"0.8 -0.6 0 0.60002 0.8 0 0 0 1", true}, {"0.8 -0.6 0 0.6 0.8 0 0 0 1", false}}) {
+    Viewpoint viewpoint;
+    std::vector<std::string> remarks;
+    parsePly(ascii(camera + xyz(1), std::string("1 2 3 ") + rows + "\n1 2 3\n"), viewpoint, nullptr, &remarks);
+    EXPECT_NEAR(viewpoint[6], std::sqrt(0.1), 1e-5) << rows;
+    EXPECT_EQ(remarks.size(), told ? 1U : 0U) << rows;
+    if (!told) continue;
+    EXPECT_THAT(remarks.at(0), testing::HasSubstr("camera: |R'R - I| is "));
+  }
 }
 
 TEST(Ply, FacesMayHaveMoreValuesThanTheHeaderSays)

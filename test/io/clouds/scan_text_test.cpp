@@ -101,6 +101,75 @@ TEST(Ptx, TransformsAndPoses)
   for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(viewpoint[k], wanted[k], 1e-6) << k;
 }
 
+/// A scan of one point whose transform has that linear part, as rows are applied from the left.
+std::string scanOf(const std::string& rows, const std::string& position = "5 6 7")
+{
+  return "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + rows + "\n" + position + " 1\n1 2 3 0.25\n";
+}
+
+TEST(Ptx, RefusesTransformsThatAreNoMotions)
+{
+  const std::string sound = scanOf("1 0 0 0\n0 1 0 0\n0 0 1 0");
+  const std::pair<const char*, const char*> wrong[] = {
+      {"1 0 0 0\n0 1 0 0\n0 0 0 0", "flattens space: it is singular"},
+      {"0 0 0 0\n0 0 0 0\n0 0 0 0", "flattens space: it is singular"},
+      {"1 2 3 0\n4 5 6 0\n7 8 9 0", "flattens space: it is singular"},
+      {"-1 0 0 0\n0 1 0 0\n0 0 1 0", "mirrors"},
+      {"0 1 0 0\n1 0 0 0\n0 0 1 0", "mirrors"},
+      {"1 0.1 0 0\n0 1 0 0\n0 0 1 0", "shears or scales unevenly"},
+      {"1 0 0 0\n0 1 0 0\n0 0 2 0", "shears or scales unevenly"},
+  };
+  for (const auto& [rows, text] : wrong) {
+    for (const bool allow_scale : {false, true}) {
+      Viewpoint viewpoint;
+      const auto read = [&](const std::string& file, std::optional<std::size_t> scan = {}) {
+        return defectOf([&] { parsePtx(file, viewpoint, scan, nullptr, allow_scale); });
+      };
+      EXPECT_THAT(read(scanOf(rows)), testing::HasSubstr(std::string("scan 0 has a transform that ") + text));
+      EXPECT_THAT(read(sound + scanOf(rows)), testing::HasSubstr(std::string("scan 1 has a transform that ") + text));
+      EXPECT_NO_THROW(parsePtx(sound + scanOf(rows), viewpoint, 0)) << "that scan alone is read";
+      EXPECT_THAT(defectOf([&, rows = rows] { parsePtxHeader(scanOf(rows), {}, allow_scale); }),
+                  testing::HasSubstr(text));
+    }
+  }
+}
+
+TEST(Ptx, ScalesWhereThatIsAllowed)
+{
+  const std::string file = scanOf("0 0.001 0 0\n-0.001 0 0 0\n0 0 0.001 0");
+  Viewpoint viewpoint;
+  EXPECT_EQ(defectOf([&] { parsePtx(file, viewpoint); }), "scan 0 has a transform that scales by 0.001");
+  try {
+    parsePtx(file, viewpoint);
+    ADD_FAILURE() << "it scales";
+  }
+  catch (const FormatError& error) {
+    EXPECT_THAT(error.remedy(), testing::HasSubstr("give --allow-scale if that is meant"));
+  }
+  std::vector<std::string> remarks;
+  const pcl::PCLPointCloud2 cloud = parsePtx(file, viewpoint, {}, nullptr, true, &remarks);
+  EXPECT_EQ(placeOf(cloud, 0), (Place{5 - 0.002, 6 + 0.001, 7 + 0.003}));
+  EXPECT_NEAR(viewpoint[3], std::sqrt(0.5), 1e-15) << "a rotation without scale";
+  EXPECT_NEAR(viewpoint[6], std::sqrt(0.5), 1e-15);
+  EXPECT_TRUE(remarks.empty());
+}
+
+TEST(Ptx, PrintedDigitsStandForTheNearestRotation)
+{
+  const std::string turn = "0.8 0.60002 0 0\n-0.6 0.8 0 0\n0 0 1 0",
+                    six = "0.877583 0.479426 0 0\n-0.479426 0.877583 0 0\n0 0 1 0";
+  std::vector<std::string> remarks;
+  Viewpoint viewpoint;
+  const pcl::PCLPointCloud2 cloud = parsePtx(scanOf(six) + scanOf(turn) + scanOf("1 0 0 0\n0 1 0 0\n0 0 1 0"),
+                                             viewpoint, {}, nullptr, false, &remarks);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_THAT(remarks[0], testing::HasSubstr("transform of scan 1, the worst of 2: |R'R - I| is "));
+  EXPECT_THAT(remarks[0], testing::HasSubstr("the nearest rotation is used"));
+  const Place p = placeOf(cloud, 1);
+  EXPECT_NEAR(std::hypot(p[0] - 5, p[1] - 6, p[2] - 7), std::sqrt(14.0), 1e-14) << "nothing is stretched";
+  EXPECT_EQ(placeOf(cloud, 2), (Place{6, 8, 10}));
+}
+
 TEST(Ptx, SeveralScans)
 {
   const std::string moved = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 7 1\n";
@@ -252,11 +321,23 @@ TEST(ScanText, RealFiles)
   EXPECT_NEAR(viewpoint[0], -3.028748, 1e-6);
   EXPECT_NEAR(viewpoint[3], 1, 1e-4);
 
-  const pcl::PCLPointCloud2 two = readCloud(samples / "multiple-and-transform.ptx", &facts);
+  for (const bool allow_scale : {false, true}) { // of z alone
+    try {
+      readCloud(samples / "multiple-and-transform.ptx", &facts, {{}, allow_scale});
+      ADD_FAILURE() << "it scales unevenly";
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("multiple-and-transform.ptx: scan 0 has a transform that shears or "
+                                                   "scales unevenly: |R'R - I| is 3: export it again"));
+    }
+  }
+  std::string even = contentOf(samples / "multiple-and-transform.ptx");
+  for (const std::string uneven : {"0 0 2 0\n", "0 0 2 0\r\n"})
+    for (std::size_t at = even.find(uneven); at != std::string::npos; at = even.find(uneven)) even[at + 4] = '1';
+  Viewpoint first;
+  const pcl::PCLPointCloud2 two = parsePtx(even, first);
   ASSERT_EQ(two.width, 8U);
-  for (std::size_t i = 0; i < 4; ++i) // the same points in both, if the transform is applied
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(placeOf(two, i)[k], placeOf(two, i + 4)[k], 1e-6);
-  EXPECT_EQ(viewpoint[0], 600000);
+  EXPECT_EQ(first[0], 600000);
 }
 
 TEST(Pts, HeadersHaveTheFields)

@@ -295,4 +295,72 @@ TEST(PoseText, SixNumbersArePlaceAndAngles)
   EXPECT_THROW(poseFrom({1, 2, 3}), FormatError);
 }
 
+namespace {
+
+Eigen::Matrix3d turned(double angle)
+{
+  return Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+}
+
+} // namespace
+
+TEST(RigidPart, TakesWhatPrintedDigitsLeave)
+{
+  for (const double angle : {0.0, 0.3, 1.7, 3.1, M_PI}) {
+    const Eigen::Matrix3d exact = turned(angle);
+    EXPECT_EQ(rigidPart(exact).linear, exact) << "to the bit";
+    EXPECT_EQ(rigidPart(exact).deviation, 0.0);
+    Eigen::Matrix3d printed = exact;
+    printed(1, 2) += 2e-5;
+    for (const bool allow_scale : {false, true}) {
+      const RigidPart part = rigidPart(printed, allow_scale);
+      EXPECT_EQ(part.wrong, "");
+      EXPECT_GT(part.deviation, 1e-6);
+      EXPECT_TRUE(part.rotation.isApprox(exact, 2e-5));
+      EXPECT_LT((part.rotation.transpose() * part.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    }
+  }
+}
+
+TEST(RigidPart, SaysWhyAMatrixIsRefused)
+{
+  const Eigen::Matrix3d r = turned(0.7);
+  Eigen::Matrix3d flat = r, zero = Eigen::Matrix3d::Zero(), mirror = r, shear = r, uneven = r, endless = r, counted;
+  flat.col(2) = flat.col(0) + flat.col(1);
+  counted << 1, 2, 3, 4, 5, 6, 7, 8, 9; // whose determinant rounds to 7e-16
+  mirror.col(1) *= -1;
+  shear.col(1) += 0.01 * shear.col(0);
+  uneven.col(2) *= 1.001;
+  endless(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  for (const bool allow_scale : {false, true}) {
+    for (const Eigen::Matrix3d& singular : {flat, zero, counted, Eigen::Matrix3d(flat * 1e150)})
+      EXPECT_EQ(rigidPart(singular, allow_scale).wrong, "flattens space: it is singular");
+    for (const double scale : {1.0, 1000.0, 1e-150})
+      EXPECT_EQ(rigidPart(scale * mirror, allow_scale).wrong, "mirrors") << scale;
+    EXPECT_THAT(rigidPart(shear, allow_scale).wrong, HasSubstr("shears or scales unevenly"));
+    EXPECT_THAT(rigidPart(uneven, allow_scale).wrong, HasSubstr("shears or scales unevenly"));
+    EXPECT_EQ(rigidPart(endless, allow_scale).wrong, "is not finite");
+    EXPECT_FALSE(rigidPart(uneven, allow_scale).scales);
+  }
+}
+
+TEST(RigidPart, TakesAUniformScaleWhereItIsAllowed)
+{
+  for (const double scale : {1000.0, 0.0254, 1.0001, 0.9996, 1e-150, 1e150}) {
+    const Eigen::Matrix3d scaled = scale * turned(0.7);
+    const RigidPart refused = rigidPart(scaled);
+    EXPECT_TRUE(refused.scales) << scale;
+    EXPECT_THAT(refused.wrong, HasSubstr("scales by ")) << scale;
+    const RigidPart part = rigidPart(scaled, true);
+    EXPECT_EQ(part.wrong, "");
+    EXPECT_EQ(part.linear, scaled) << "to the bit";
+    EXPECT_TRUE(part.rotation.isApprox(turned(0.7), 1e-14)) << scale;
+    Eigen::Matrix3d printed = scaled;
+    printed(0, 1) += 2e-5 * scale;
+    EXPECT_GT(rigidPart(printed, true).deviation, 1e-6) << scale;
+    EXPECT_TRUE(rigidPart(printed, true).linear.isApprox(scaled, 3e-5)) << scale;
+  }
+  EXPECT_EQ(rigidPart(1000.0 * turned(0.7)).wrong, "scales by 1000");
+}
+
 } // namespace pcl_bsh::io

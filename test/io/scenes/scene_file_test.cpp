@@ -616,6 +616,20 @@ TEST(SceneFile, NamesThatMissOrMeetAreRefused)
          "pairs.rules[0]: has both or none of 'objects' and 'groups': give one");
 }
 
+TEST(SceneFile, TransformsOfAScanMayScaleWhereThatIsAllowed)
+{
+  const TemporaryFolder folder;
+  folder.write("a.ptx", "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n1 2 3 0.5\n");
+  const auto scene = [&](const std::string& option) {
+    return SceneWorld(
+        readSceneFile(folder.write("scene.json", R"({"clouds": {"a": {"file": "a.ptx")" + option +
+                                                     R"(}}, "objects": [{"name": "A", "cloud": "a"}]})")));
+  };
+  EXPECT_THAT([&] { scene(""); },
+              testing::ThrowsMessage<files::FileError>(HasSubstr("a.ptx: scan 0 has a transform that scales by 2")));
+  EXPECT_EQ(scene(R"(, "allow_scale": true)").scene()[0].parts[0].hierarchy->view().point(0), (Point3{2, 4, 6}));
+}
+
 TEST(SceneFile, ColumnsOfACloudMayBeNamed)
 {
   const TemporaryFolder folder;

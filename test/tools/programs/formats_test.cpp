@@ -89,6 +89,35 @@ TEST_F(EveryFormat, IsTakenByAccuracy)
   });
 }
 
+/// Each program that reads a cloud refuses a transform that scales, unless that is allowed.
+TEST_F(EveryFormat, ATransformThatScalesIsRefusedUnlessAllowed)
+{
+  const std::string axes = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  folder.write("s.ptx", "1\n2\n" + axes + "2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n1 0 0 0.2\n0 1 0 0.2\n");
+  folder.write("m.ptx", "1\n1\n" + axes + "1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n1 0 0 0.2\n");
+  expectDone("pcl_bsh_site", "make c.pcd --out site");
+  const std::pair<const char*, const char*> commands[] = {
+      {"pcl_bsh_collide", "s.ptx c.pcd out.pcd --clearance 0.05"},
+      {"pcl_bsh_collide", "c.pcd s.ptx out.pcd --clearance 0.05"},
+      {"pcl_bsh_accuracy", "c.pcd s.ptx --clearance 0.05 --repeat 1 --out study"},
+      {"pcl_bsh_certify", "s.ptx --sample 1 --fit box"},
+      {"pcl_bsh_view", "s.ptx --size 160x120 --screenshot out.png"},
+      {"pcl_bsh_site", "make c.pcd s.ptx --out scaled"},
+      {"pcl_bsh_site", "collide site s.ptx --clearance 0.05 --report report.json"}};
+  for (const auto& [program, arguments] : commands) {
+    if (!std::filesystem::exists(std::string(PCL_BSH_PROGRAM_DIR "/") + program)) continue;
+    const Outcome refused = run(program, arguments, folder.path());
+    EXPECT_EQ(refused.exit_code, 1) << program << ' ' << arguments << '\n' << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("s.ptx: scan 0 has a transform that scales by 2: give --allow-scale"));
+    expectDone(program, std::string(arguments) + " --allow-scale");
+    std::string mirrored = std::string(arguments) + " --allow-scale";
+    mirrored.replace(mirrored.find("s.ptx"), 1, "m");
+    EXPECT_THAT(run(program, mirrored, folder.path()).err,
+                HasSubstr("m.ptx: scan 0 has a transform that mirrors: export it again"))
+        << program << ' ' << mirrored;
+  }
+}
+
 TEST_F(EveryFormat, IsTakenByCertify)
 {
   if (!std::filesystem::exists(PCL_BSH_PROGRAM_DIR "/pcl_bsh_certify")) GTEST_SKIP() << "built without CGAL";

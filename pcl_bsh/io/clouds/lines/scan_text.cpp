@@ -2,9 +2,9 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
@@ -121,6 +121,7 @@ PointLine ptsLine(const TextCursor& text, std::uint64_t promised)
 struct PtxScan {
   std::uint64_t columns = 0, rows = 0;
   Eigen::Matrix<double, 4, 3> transform = Eigen::Matrix<double, 4, 3>::Zero(); ///< (x y z 1) times this
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< the scanner's, once the transform is taken
 };
 
 /// Reads a scan's ten lines. @return false at the end of the text
@@ -153,13 +154,46 @@ bool readPtxScan(TextCursor& text, PtxScan& scan)
   return true;
 }
 
+/// Makes the transform the motion that it stands for. @return how far the given one was off, where that is another one
+/// @throws FormatError for one that is no rigid motion
+double takeTransform(PtxScan& scan, std::size_t number, bool allow_scale)
+{
+  const RigidPart part = rigidPart(scan.transform.topRows<3>().transpose(), allow_scale);
+  if (!part.wrong.empty()) {
+    throw FormatError("scan " + std::to_string(number) + " has a transform that " + part.wrong,
+                      part.scales ? remedy_for_scale
+                                  : "export it again with the scanner's pose, a rotation and a position");
+  }
+  scan.transform.topRows<3>() = part.linear.transpose();
+  scan.turn = part.rotation;
+  return part.deviation;
+}
+
+/// Transforms that others took the place of.
+struct ReplacedTransforms {
+  std::size_t count = 0, worst = 0;
+  double deviation = 0; ///< of the worst
+
+  void add(std::size_t scan, double off)
+  {
+    if (off > 0) ++count;
+    if (off <= deviation) return;
+    worst = scan;
+    deviation = off;
+  }
+
+  void tell(std::vector<std::string>* remarks) const
+  {
+    if (!remarks || count == 0) return;
+    remarks->push_back("transform of scan " + std::to_string(worst) +
+                       (count > 1 ? ", the worst of " + std::to_string(count) : "") + ": " +
+                       nearestRotationWarning(deviation));
+  }
+};
+
 Viewpoint scannerPose(const PtxScan& scan)
 {
-  Eigen::Matrix3d turn = scan.transform.topRows<3>().transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d sides(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  turn = svd.matrixU() * sides.asDiagonal() * svd.matrixV().transpose();
-  const Eigen::Quaterniond q(turn);
+  const Eigen::Quaterniond q(scan.turn);
   const Eigen::Vector3d at = scan.transform.row(3);
   return {at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z()};
 }
@@ -181,10 +215,11 @@ struct PtxContents {
   std::size_t scans = 0;
   std::optional<PointLine> line;
 
-  PtxContents(std::string_view file, std::optional<std::size_t> wanted)
+  PtxContents(std::string_view file, std::optional<std::size_t> wanted, bool allow_scale)
   {
     TextCursor text(file);
     for (PtxScan scan; readPtxScan(text, scan); ++scans) {
+      if (wanted.value_or(scans) == scans) takeTransform(scan, scans, allow_scale);
       const std::vector<std::string_view> words = nextWords(text);
       const bool empty = scan.columns * scan.rows == 0;
       if (!empty && words.size() < 3) text.fail("is followed by no point");
@@ -265,9 +300,9 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file)
 }
 
 pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> wanted,
-                             std::vector<Viewpoint>* scanners)
+                             std::vector<Viewpoint>* scanners, bool allow_scale, std::vector<std::string>* remarks)
 {
-  const PtxContents contents(file, wanted);
+  const PtxContents contents(file, wanted, allow_scale);
   const bool several = contents.scans > 1 && !wanted;
   TextRows rows(contents.values(several));
   rows.reserveLines(file);
@@ -275,8 +310,10 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
   viewpoint = no_viewpoint;
   TextCursor text(file);
   PtxScan scan, only;
+  ReplacedTransforms replaced;
   for (std::size_t number = 0; readPtxScan(text, scan); ++number) {
     const bool kept = wanted.value_or(number) == number;
+    if (kept) replaced.add(number, takeTransform(scan, number, allow_scale));
     if (number == wanted.value_or(0)) viewpoint = scannerPose(scan);
     if (kept) only = scan;
     if (scanners && kept) scanners->push_back(scannerPose(scan));
@@ -292,14 +329,15 @@ pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::o
       if (several) rows.put(rows.size() - 1, numbers.size(), static_cast<double>(number));
     }
   }
+  replaced.tell(remarks);
   pcl::PCLPointCloud2 cloud = std::move(rows).finished();
   if (!several && only.columns > 0 && only.rows > 0) transpose(cloud, only);
   return cloud;
 }
 
-pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> wanted)
+pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> wanted, bool allow_scale)
 {
-  const PtxContents contents(file, wanted);
+  const PtxContents contents(file, wanted, allow_scale);
   return TextRows(contents.values(contents.scans > 1 && !wanted)).finished();
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 #include <ostream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,15 +32,19 @@ pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
 /// One scan is an organised cloud of its columns and rows. Several scans are one row of their points, in the file's
 /// order, with a field `scan` (uint16, from 0). x y z are float64, intensity float32, colours are packed as rgb.
 /// @param scan only that one, from 0
-/// @param viewpoint the scanner's pose in the common frame: the transform's position, and the rotation that is nearest
-///   to it; of several scans, the first one's
-/// @throws FormatError
+/// @param viewpoint the scanner's pose in the common frame: the transform's position, and its rotation; of several
+/// scans, the first one's
 /// @param scanners null, or gets the pose of each scan that is read
+/// @param allow_scale transforms may scale uniformly
+/// @param remarks null, or gets a line where the nearest rotation took the place of a transform's (rigid_pose.h)
+/// @throws FormatError; for a transform that is no rigid motion, with the scan's number
 pcl::PCLPointCloud2 parsePtx(std::string_view file, Viewpoint& viewpoint, std::optional<std::size_t> scan = {},
-                             std::vector<Viewpoint>* scanners = nullptr);
+                             std::vector<Viewpoint>* scanners = nullptr, bool allow_scale = false,
+                             std::vector<std::string>* remarks = nullptr);
 
-/// Only the fields that parsePtx() makes; looks how many scans there are.
-pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> scan = {});
+/// Only the fields that parsePtx() makes; looks how many scans there are. Throws as it does for transforms.
+pcl::PCLPointCloud2 parsePtxHeader(std::string_view file, std::optional<std::size_t> scan = {},
+                                   bool allow_scale = false);
 
 /// The fields that scans have a place for: x y z, intensity, rgb, columns that readers number; of PTX also `scan`.
 std::vector<pcl::PCLPointField> fieldsForScans(const pcl::PCLPointCloud2& cloud, bool several_scans);

@@ -38,18 +38,18 @@ std::string promiseOf(const Obstacle& surface, bool solid)
 }
 
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
-              const ColumnNames& columns, unsigned threads)
+              const ReadSettings& reading, unsigned threads)
 {
-  if (settings.vertices_only) return {readCloud(path, facts, columns, threads), {}};
-  return readMesh(path, facts, columns, threads);
+  if (settings.vertices_only) return {readCloud(path, facts, reading, threads), {}};
+  return readMesh(path, facts, reading, threads);
 }
 
-Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, const ColumnNames& columns,
+Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings, const ReadSettings& reading,
                       CloudFacts* facts, unsigned threads)
 {
   CloudFacts own;
   CloudFacts& told = facts != nullptr ? *facts : own;
-  Mesh mesh = readMesh(path, settings, &told, columns, threads);
+  Mesh mesh = readMesh(path, settings, &told, reading, threads);
   Obstacle obstacle = obstacleOf(path, std::move(mesh), settings);
   obstacle.addRemarks(told.remarks);
   return obstacle;

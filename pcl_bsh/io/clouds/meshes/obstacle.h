@@ -71,13 +71,13 @@ std::string promiseOf(const Obstacle& surface, bool solid);
 
 /// What readMesh() reads, without faces where the settings take a mesh for its vertices. Arguments and errors are its.
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
-              const ColumnNames& columns, unsigned threads);
+              const ReadSettings& reading, unsigned threads);
 
 /// Reads any file that readCloud() reads.
-/// @param columns, @param facts and @param threads as readCloud() takes them
+/// @param reading, @param facts and @param threads as readCloud() takes them
 /// @throws files::FileError as readMesh() does, and where its faces are no surface
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings,
-                      const ColumnNames& columns = {}, CloudFacts* facts = nullptr, unsigned threads = 0);
+                      const ReadSettings& reading = {}, CloudFacts* facts = nullptr, unsigned threads = 0);
 
 /// That of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces are no surface

@@ -8,6 +8,7 @@
 #include <pcl/io/lzf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -70,6 +71,10 @@ PcdHeader readPcdHeader(TextCursor& text)
     }
     else if (key == "VIEWPOINT") {
       for (double& value : header.viewpoint) value = text.number<double>();
+      if (!std::all_of(header.viewpoint.begin(), header.viewpoint.end(), [](double v) { return std::isfinite(v); })) {
+        throw FormatError("has a VIEWPOINT that is not finite",
+                          "write VIEWPOINT 0 0 0 1 0 0 0 where the sensor's pose is not known");
+      }
     }
     else if (key == "DATA") {
       header.storage = text.word();

@@ -2,6 +2,8 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/ply/camera.h>
+#include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/number_text.h>
 
 #include <Eigen/Geometry>
@@ -15,6 +17,7 @@ namespace pcl_bsh::io {
 namespace {
 
 constexpr std::size_t pose_values = 12; // of a camera: position and rotation
+constexpr auto remedy_for_camera = "export it again with the sensor's pose, or without a camera";
 
 std::array<float, pose_values> poseInFloats(const Viewpoint& viewpoint)
 {
@@ -43,7 +46,7 @@ void PlyCamera::take(const std::string& name, std::uint8_t datatype, const std::
   }
 }
 
-Viewpoint PlyCamera::viewpoint(const std::optional<Viewpoint>& in_full) const
+Viewpoint PlyCamera::viewpoint(const std::optional<Viewpoint>& in_full, std::vector<std::string>& remarks) const
 {
   if (in_full) {
     const std::array<float, pose_values> floats = poseInFloats(*in_full);
@@ -52,7 +55,9 @@ Viewpoint PlyCamera::viewpoint(const std::optional<Viewpoint>& in_full) const
   constexpr double limit = 3.4e38; // of PCL's
   Viewpoint viewpoint = no_viewpoint;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!values_[k] || !(std::abs(*values_[k]) <= limit)) return no_viewpoint;
+    if (!values_[k]) return no_viewpoint;
+    if (!std::isfinite(*values_[k])) throw FormatError("has a camera whose position is not finite", remedy_for_camera);
+    if (std::abs(*values_[k]) > limit) return no_viewpoint;
     viewpoint[k] = *values_[k];
   }
   Eigen::Matrix3d rotation;
@@ -60,9 +65,11 @@ Viewpoint PlyCamera::viewpoint(const std::optional<Viewpoint>& in_full) const
     if (!values_[3 + i]) return viewpoint;
     rotation(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = *values_[3 + i];
   }
-  const bool rigid = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-3;
-  if (!rigid || !(rotation.determinant() > 0)) return viewpoint;
-  const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
+  if (rotation.isZero(0.0)) return viewpoint;
+  const RigidPart part = rigidPart(rotation);
+  if (!part.wrong.empty()) throw FormatError("has a camera whose rotation " + part.wrong, remedy_for_camera);
+  if (part.deviation > 0) remarks.push_back("camera: " + nearestRotationWarning(part.deviation));
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(part.rotation).normalized();
   const double quaternion[] = {turn.w(), turn.x(), turn.y(), turn.z()};
   std::copy(std::begin(quaternion), std::end(quaternion), viewpoint.begin() + 3);
   return viewpoint;

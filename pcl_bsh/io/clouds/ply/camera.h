@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -33,9 +34,12 @@ class PlyCamera {
 public:
   void take(const std::string& name, std::uint8_t datatype, const std::uint8_t* bytes);
 
-  /// no_viewpoint without a finite position; not turned without a rotation.
+  /// no_viewpoint without a position, or with one that float32 cannot hold; not turned without a rotation, or by nine
+  /// zeros.
   /// @param in_full what a comment says, which holds where it rounds to this camera
-  Viewpoint viewpoint(const std::optional<Viewpoint>& in_full) const;
+  /// @param remarks gets a line where the nearest rotation took the place of the camera's
+  /// @throws FormatError for what is no rigid motion (rigid_pose.h)
+  Viewpoint viewpoint(const std::optional<Viewpoint>& in_full, std::vector<std::string>& remarks) const;
 
 private:
   std::array<std::optional<double>, 12> values_; ///< the first of ply_camera_values

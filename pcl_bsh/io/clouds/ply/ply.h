@@ -6,7 +6,9 @@
 #include <pcl_bsh/io/clouds/meshes/polygons.h>
 
 #include <ostream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -14,8 +16,10 @@ namespace pcl_bsh::io {
 /// @param viewpoint set to what an element `camera` says, as PCL's writer has it, or to no_viewpoint
 /// @param faces if not null, gets the polygons of elements `face` and the numbers beside their corners, and the
 ///   triangles of `tristrips`
-/// @throws FormatError
-pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces = nullptr);
+/// @param remarks if not null, gets what users should know of how it was read
+/// @throws FormatError; for a camera that is no rigid motion, too
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces = nullptr,
+                             std::vector<std::string>* remarks = nullptr);
 
 /// The vertices' fields and the number of them that the header promises, without the points. @throws FormatError
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);

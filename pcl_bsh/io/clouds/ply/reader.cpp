@@ -210,7 +210,8 @@ pcl::PCLPointCloud2 readVertices(Rows& rows, const Element& vertices, Part part)
 
 /// Takes what an element `camera` says in its first row.
 template <typename Rows>
-void readCamera(Rows& rows, Element camera, const std::optional<Viewpoint>& in_full, Viewpoint& viewpoint)
+void readCamera(Rows& rows, Element camera, const std::optional<Viewpoint>& in_full, Viewpoint& viewpoint,
+                std::vector<std::string>& remarks)
 {
   PlyCamera read;
   rows.begin();
@@ -225,7 +226,7 @@ void readCamera(Rows& rows, Element camera, const std::optional<Viewpoint>& in_f
     rows.skip(property.datatype, length);
   }
   rows.end();
-  viewpoint = read.viewpoint(in_full);
+  viewpoint = read.viewpoint(in_full, remarks);
   --camera.count;
   skipElement(rows, camera);
 }
@@ -304,12 +305,13 @@ void readFaces(Rows& rows, const Element& element, Polygons& faces)
 
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
-pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint, Polygons* faces)
+pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint, Polygons* faces,
+                                 std::vector<std::string>& remarks)
 {
   std::optional<pcl::PCLPointCloud2> cloud;
   for (const Element& element : header.elements) {
     if (element.name == "camera" && element.count > 0 && !element.properties.empty()) {
-      readCamera(rows, element, header.viewpoint, viewpoint);
+      readCamera(rows, element, header.viewpoint, viewpoint, remarks);
     }
     else if (faces != nullptr && isFaces(element)) {
       readFaces(rows, element, *faces);
@@ -329,20 +331,21 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, 
   return std::move(*cloud);
 }
 
-pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint, Polygons* faces)
+pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint, Polygons* faces,
+                          std::vector<std::string>& remarks)
 {
   viewpoint = no_viewpoint;
   TextCursor text(file);
   const PlyHeader header = readPlyHeader(text);
   pcl::PCLPointCloud2 cloud;
   if (header.format == "ascii") {
-    cloud = readElements(AsciiRows(text), header, part, viewpoint, faces);
+    cloud = readElements(AsciiRows(text), header, part, viewpoint, faces, remarks);
   }
   else if (header.format == "binary_little_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part, viewpoint, faces);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::little), header, part, viewpoint, faces, remarks);
   }
   else if (header.format == "binary_big_endian") {
-    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part, viewpoint, faces);
+    cloud = readElements(BinaryRows(text.rest(), std::endian::big), header, part, viewpoint, faces, remarks);
   }
   else {
     throw FormatError("has the unknown format '" + header.format + "'",
@@ -358,15 +361,18 @@ pcl::PCLPointCloud2 parse(std::string_view file, Part part, Viewpoint& viewpoint
 
 } // namespace
 
-pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces)
+pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces,
+                             std::vector<std::string>* remarks)
 {
-  return parse(file, Part::all, viewpoint, faces);
+  std::vector<std::string> untold;
+  return parse(file, Part::all, viewpoint, faces, remarks ? *remarks : untold);
 }
 
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file)
 {
   Viewpoint ignored;
-  return parse(file, Part::header, ignored, nullptr);
+  std::vector<std::string> untold;
+  return parse(file, Part::header, ignored, nullptr, untold);
 }
 
 } // namespace pcl_bsh::io

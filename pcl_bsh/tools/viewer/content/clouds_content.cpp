@@ -34,7 +34,7 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   cli::Step step("Loading " + file.string());
   const io::SurfaceSettings settings = {options.question.vertices_only};
   io::CloudFacts facts;
-  io::Mesh mesh = io::readMesh(file, settings, &facts, options.columns.of(file), options.question.threads);
+  io::Mesh mesh = io::readMesh(file, settings, &facts, options.reading.of(file), options.question.threads);
   viewed.face_values = std::move(mesh.face_values);
   const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings);
   HierarchyOptions how;
