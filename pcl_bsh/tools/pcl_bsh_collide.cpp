@@ -211,7 +211,8 @@ void check(const Options& options, const Question& question)
 {
   cli::requireAccepted(question, options.names_of_poses);
   io::requireWritableCloud(options.output);
-  if (options.obstacle_out) io::requireWritableCloud(*options.obstacle_out);
+  if (options.obstacle_out && (question.vertices_only || !io::mayHaveFaces(options.obstacle)))
+    io::requireWritableCloud(*options.obstacle_out); // of what may be a surface, once that is known
   if (options.report) files::requireWritable(*options.report);
   for (const fs::path& list : options.clashes) {
     try {
@@ -232,7 +233,8 @@ void check(const Options& options, const Question& question)
 
 /// From two things to all that is told of them.
 int tell(const Options& options, const Scan& input, Shape& scan, const io::Obstacle& obstacle,
-         const std::optional<io::ClashList>& earlier, cli::CollisionReport& report)
+         const io::CloudFacts& facts_of_obstacle, const std::optional<io::ClashList>& earlier,
+         cli::CollisionReport& report)
 {
   const Question& question = report.question;
   Shape other = obstacle.shape(options.obstacle.string());
@@ -259,9 +261,9 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
 
   write(options, input, report.answer, report.seconds.write);
   if (options.obstacle_out) {
-    const std::vector<std::uint8_t> flags = numbersOf(report.answer.obstacle_flags);
-    io::writeCloud(*options.obstacle_out,
-                   marked(options.obstacle, obstacle.points(), {{collision_field_name, &flags}}));
+    cli::Step step("Writing " + options.obstacle_out->string());
+    cli::writeFlags(*options.obstacle_out, obstacle, report.answer.obstacle_flags, facts_of_obstacle);
+    report.seconds.write += step.done(counted(obstacle.view().count, obstacle.partName()));
   }
   const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, b, earlier, report);
   const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, report);
@@ -287,13 +289,11 @@ int collide(const Options& options)
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
-  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
-                                                  options.columns.of(options.obstacle), nullptr, question.threads);
   io::CloudFacts facts;                                                               // of the obstacle
-  if (options.obstacle_out && obstacle.isSurface())
-    throw cli::UsageError("--obstacle-out: " + options.obstacle.string() +
-                          ": is a surface, and points are written: give --vertices-only, too");
-  return cli::named([&] { return tell(options, input, scan, obstacle, earlier, report); }, question,
+  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
+                                                  options.reading.of(options.obstacle), &facts, question.threads);
+  if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, obstacle);
+  return cli::named([&] { return tell(options, input, scan, obstacle, facts, earlier, report); }, question,
                     options.names_of_poses);
 }
 

@@ -51,8 +51,8 @@ void requireConsistent(const CollideOptions& options)
   if (options.distances && options.moves())
     refuse("--distances",
            "are of one pose; along a path the output has the smallest within the clearance: leave it out");
-  if (options.obstacle_out && !options.question.seen)
-    refuse("--obstacle-out", "is of what was seen of OBSTACLE: give --seen, or leave it out");
+  if (options.obstacle_out && !options.question.seen && (options.moves() || !options.clashes.empty()))
+    refuse("--obstacle-out", "are flags at one pose: leave out the path and --clashes, or give --seen");
   if (!options.unit.empty() && !options.distances && options.clashes.empty())
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
   if (!options.question.clearance && !options.distances)
@@ -97,7 +97,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("FILE.html");
   app.add_option("--obstacle-out", options.obstacle_out,
                  "OBSTACLE's points with all their fields, and a field 'collision': 1\n"
-                 "collides, 0 is free, 2 is undecided, 4 is unseen; with --seen")
+                 "collides, 0 is free, 2 is undecided, 4 is unseen; of a mesh its\n"
+                 "triangles, as .ply; with a path or --clashes only with --seen")
       ->type_name("FILE");
   ReadOptions reading;
   reading.addTo(app);
@@ -132,6 +133,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.swept = path.swept.value_or(0.0);
   requireConsistent(options);
   question.wanted.flags = question.wanted.closest = true;
+  question.wanted.obstacle_flags = options.obstacle_out && !question.seen; // which brings them
   question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
   question.wanted.poses = question.wanted.contacts && !path.swept; // swept motion is of what lies between poses
   question.wanted.distances = question.wanted.both_ways = options.distances;

@@ -65,6 +65,10 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["undecided"] = undecided;
   json["sparse"] = answer.sparse;
   json["free"] = report.input.finite - colliding - undecided - answer.sparse;
+  if (!answer.obstacle_flags.empty()) {
+    json["colliding_of_obstacle"] = countOf(answer.obstacle_flags, Verdict::colliding);
+    json["undecided_of_obstacle"] = countOf(answer.obstacle_flags, Verdict::undecided);
+  }
   json["unseen"] = nullptr;
   if (question.seen) json["unseen"] = io::unseenJson(answer.unseen);
   json["options"] = io::optionsJson(question);

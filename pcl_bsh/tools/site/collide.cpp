@@ -121,6 +121,7 @@ public:
   void finish(Asking& asking, const site::SitePassage& found) const
   {
     const std::optional<site::SiteUnseen> unseen = lookAround(asking);
+    if (unseen) file_.write(unseen->verdicts, asking.options);
     if (!asking.clashes.isWanted()) return;
     asking.clashes.finish(hierarchy_, surface_, asking.poses, found, unseen ? &unseen->unseen : nullptr, asking.report);
   }

@@ -108,7 +108,8 @@ struct CollideTexts {
     app.add_option(
            "--obstacle-out", options.obstacle_out,
            "OBSTACLE's points with all their fields, and which of them collide with SITE in a field 'collision'; "
-           "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; not with --trajectory or --clashes")
+           "of a mesh its triangles, as .ply; a new site where OBSTACLE is one; with --trajectory or --clashes only "
+           "with --seen")
         ->type_name("FILE");
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
     addQuestionOptions(app, options.question,
@@ -158,8 +159,8 @@ struct CollideTexts {
     question.wanted.distances = distances;
     requireAccepted(question);
     if (question.seen) requireSight(options);
-    if (!options.obstacle_out.empty() && (moves || lists || any || closest || distances))
-      throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked");
+    if (!options.obstacle_out.empty() && (any || closest || distances || ((moves || lists) && !question.seen)))
+      throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked, or give --seen");
     if (!needs_clearance && question.isUncertain())
       throw UsageError("--uncertainty: distances are those of the measured places: leave it out");
     if (needs_clearance && !question.clearance) throw UsageError("--clearance: is missing: give a length");

@@ -117,31 +117,16 @@ ObstacleFile::ObstacleFile(const SiteOptions& options)
   const Question& question = options.question;
   const io::SurfaceSettings surface = {question.vertices_only};
   if (site::rankHere() == 0)
-    obstacle = loadObstacle(options.obstacle, surface, seconds, columns, &facts, question.threads);
+    obstacle = loadObstacle(options.obstacle, surface, seconds, reading, &facts, question.threads);
   else
-    obstacle = io::readObstacle(options.obstacle, surface, columns, &facts, question.threads);
-  if (options.obstacle_out.empty()) return;
-  if (obstacle.isSurface()) {
-    io::requireWritableMesh(options.obstacle_out);
-  }
-  else {
-    io::requireWritableCloud(options.obstacle_out);
-    withField(withoutRecords(obstacle.points()), collision_field_name, {}); // fails now
-  }
+    obstacle = io::readObstacle(options.obstacle, surface, reading, &facts, question.threads);
+  if (!options.obstacle_out.empty()) requireWritableFlags(options.obstacle_out, obstacle);
 }
 
 void ObstacleFile::write(const std::vector<Verdict>& flags, const SiteOptions& options) const
 {
   if (options.obstacle_out.empty() || site::rankHere() != 0) return;
-  if (obstacle.isSurface()) {
-    const std::vector<std::uint8_t> values = numbersOf(flags);
-    io::writeMesh(options.obstacle_out, obstacle.points(), *obstacle.triangles(), {{collision_field_name, &values}},
-                  facts.viewpoint);
-  }
-  else {
-    io::writeCloud(options.obstacle_out, withField(obstacle.points(), collision_field_name, flags), facts.viewpoint,
-                   facts.las);
-  }
+  writeFlags(options.obstacle_out, obstacle, flags, facts);
 }
 
 std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,

@@ -74,6 +74,72 @@ TEST_F(CollideSurface, TheMiddleOfAFaceCollides)
   EXPECT_EQ(json("report.json")["surface"], nullptr);
 }
 
+/// A mesh of a machine comes back as a mesh, with what each of its triangles does.
+TEST_F(CollideSurface, MarksTheObstaclesTriangles)
+{
+  const auto values = [&](const std::string& file) {
+    const io::Mesh mesh = io::readMesh(folder / file);
+    EXPECT_EQ(mesh.triangles.size(), 12U) << file;
+    EXPECT_EQ(mesh.face_values.size(), 1U) << file;
+    EXPECT_EQ(mesh.face_values.at(0).name, "collision") << file;
+    return mesh.face_values.at(0).values;
+  };
+  io::writeMesh(folder / "crate.ply", io::readMesh(crate).vertices, io::readMesh(crate).triangles);
+  for (const std::string obstacle : {"crate.off", "crate.ply"}) {
+    const std::string said = collideOutput("scan.xyz " + obstacle +
+                                           " out.pcd --clearance 0.2 --pose 0,0,0.03,0,0,0 "
+                                           "--obstacle-out marked.ply --report report.json");
+    EXPECT_THAT(said, Not(HasSubstr("--vertices-only")));
+    collideOutput(obstacle + " scan.xyz expected.ply --clearance 0.2 --pose 0,0,-0.03,0,0,0");
+    const std::vector<double> found = values("marked.ply");
+    EXPECT_EQ(found, values("expected.ply")) << "as of the input of the question the other way round";
+    const auto colliding = std::count(found.begin(), found.end(), 1.0);
+    EXPECT_GT(colliding, 1);
+    EXPECT_EQ(json("report.json")["colliding_of_obstacle"], colliding);
+  }
+  collideOutput("scan.xyz crate.off out.pcd --clearance 0.2 --vertices-only --obstacle-out marked.pcd");
+  EXPECT_EQ(column("collision", "marked.pcd").size(), 8U);
+  collideOutput("scan.xyz scan.xyz out.pcd --clearance 0.2 --pose 0,0,1,0,0,0 --obstacle-out marked.pcd");
+  EXPECT_THAT(column("collision", "marked.pcd"), ElementsAre(0, 0, 1, 0, 0));
+}
+
+TEST_F(CollideSurface, MarksWhichTrianglesNobodySaw)
+{
+  std::string points; // of a scanner amid a ball, with a pillar before what is at x = 3
+  for (double elevation = -1.55; elevation <= 1.55; elevation += 0.02) {
+    for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.02) {
+      const double right = std::cos(elevation) * std::cos(azimuth), range = right > 0.5 ? 2.0 : 5.0;
+      points += std::to_string(range * right) + ' ' + std::to_string(range * std::cos(elevation) * std::sin(azimuth)) +
+                ' ' + std::to_string(range * std::sin(elevation)) + '\n';
+    }
+  }
+  folder.write("ball.xyz", points);
+  folder.write("parts.off", "OFF\n9 3 0\n3 0 0\n3 0.1 0\n3 0 0.1\n-3 0 0\n-3 0.1 0\n-3 0 0.1\n"
+                            "-5 0 0\n-5 0.1 0\n-5 0 0.1\n3 0 1 2\n3 3 4 5\n3 6 7 8\n");
+  for (const std::string rest : {"", "--from 0,0,0,0,0,0 --to 0,0,0.01,0,0,0 --steps 1", "--clashes c.json"}) {
+    collideOutput("ball.xyz parts.off out.pcd --clearance 0.1 --seen --origin 0,0,0 --obstacle-out marked.ply " + rest);
+    EXPECT_THAT(io::readMesh(folder / "marked.ply").face_values.at(0).values, ElementsAre(4, 0, 1)) << rest;
+  }
+}
+
+TEST_F(CollideSurface, RefusesFilesThatHaveNoPlaceForFlagsOfTriangles)
+{
+  for (const char* file : {"marked.pcd", "marked.las", "marked.stl", "marked.obj", "marked.off", "marked.xyz"}) {
+    const Outcome refused = collide(std::string("scan.xyz crate.off out.pcd --clearance 0.2 --obstacle-out ") + file);
+    EXPECT_EQ(refused.exit_code, 1) << file;
+    EXPECT_THAT(refused.err, HasSubstr(std::string(file) + ": has no place for what is known of triangles: write a "
+                                                           ".ply file"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.pcd")) << file;
+    EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
+  }
+  for (const char* rest : {"--clashes c.json", "--from 0,0,0,0,0,0 --to 0,0,1,0,0,0 --steps 2"}) {
+    const Outcome refused =
+        collide(std::string("scan.xyz crate.off out.pcd --clearance 0.2 --obstacle-out marked.ply ") + rest);
+    EXPECT_EQ(refused.exit_code, 2) << rest;
+    EXPECT_THAT(refused.err, HasSubstr("--obstacle-out: are flags at one pose")) << rest;
+  }
+}
+
 TEST_F(CollideSurface, DistancesAreThoseOfTheTriangles)
 {
   collideOutput(

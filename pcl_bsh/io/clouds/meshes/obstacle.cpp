@@ -55,11 +55,16 @@ Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& 
   return obstacle;
 }
 
-bool hasFaces(const std::filesystem::path& path)
+bool mayHaveFaces(const std::filesystem::path& path)
 {
   const std::string extension = extensionOf(path);
-  if (extension != ".obj" && extension != ".off" && extension != ".ply" && extension != ".stl") return false;
-  if (extension == ".ply") {
+  return extension == ".obj" || extension == ".off" || extension == ".ply" || extension == ".stl";
+}
+
+bool hasFaces(const std::filesystem::path& path)
+{
+  if (!mayHaveFaces(path)) return false;
+  if (extensionOf(path) == ".ply") {
     constexpr std::size_t usual = std::size_t{1} << 16; // bytes of a header
     const FileBytes beginning(path, usual);
     const std::string_view header = beginning.view().substr(0, beginning.view().find("end_header"));

@@ -83,6 +83,9 @@ Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& 
 /// @throws files::FileError naming the file, where its faces are no surface
 Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings);
 
+/// Whether files of that name's extension may have faces.
+bool mayHaveFaces(const std::filesystem::path& path);
+
 /// Whether readMesh() finds triangles in a file, which it reads where a beginning cannot tell. Throws as it does.
 bool hasFaces(const std::filesystem::path& path);
 
