@@ -2,10 +2,9 @@
 // Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
 #include "joint_values.h"
 #include "self_filter.h"
-#include <pcl_bsh/tools/cli/columns.h>
 #include <pcl_bsh/tools/cli/command_line.h>
-#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
@@ -17,15 +16,19 @@
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/question/text_numbers.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
 namespace {
 
@@ -55,7 +58,7 @@ struct Options {
   std::string joints;
   fs::path states;
   std::string frame;
-  std::vector<std::string> packages;
+  std::vector<std::string> packages, paddings;
   self_filter::Settings settings;
   bool flag = false;
   std::optional<fs::path> report;
@@ -73,6 +76,38 @@ std::map<std::string, fs::path> packagesOf(const Options& options)
     packages[package.substr(0, equals)] = package.substr(equals + 1);
   }
   return packages;
+}
+
+/// Sets the padding of all links, and those of links that have their own.
+void takePaddings(const std::vector<std::string>& texts, self_filter::Settings& settings)
+{
+  const auto refuse = [](const std::string& text, const char* wrong) {
+    throw cli::UsageError("--padding: '" + text + "' " + wrong + ": give M, or LINK=M, in metres");
+  };
+  bool all = false;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    const std::optional<std::vector<double>> number =
+        numbersOf(text.substr(equals == std::string::npos ? 0 : equals + 1));
+    if (!number || number->size() != 1 || !(number->front() >= 0.0) || equals == 0) refuse(text, "is no padding");
+    const bool first = equals == std::string::npos
+                           ? !std::exchange(all, true)
+                           : settings.paddings.emplace(text.substr(0, equals), number->front()).second;
+    if (!first)
+      refuse(text, equals == std::string::npos ? "is a second one for all links" : "is a second one of that link");
+    if (equals == std::string::npos) settings.padding = number->front();
+  }
+}
+
+/// Refuses paddings of what is no link. @throws std::runtime_error naming the option
+void requireLinks(const self_filter::Settings& settings, const self_filter::Robot& robot)
+{
+  try {
+    for (const auto& [link, padding] : settings.paddings) robot.linkNamed(link);
+  }
+  catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string("--padding: ") + error.what());
+  }
 }
 
 /// One for each cloud.
@@ -135,7 +170,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   NamedCloud scan = filter.scan();
   scan.name = name;
-  addTexts(once.unheard(warningsOf(scan, options.settings.padding)), warnings);
+  addTexts(once.unheard(warningsOf(scan, filter.leastPadding())), warnings);
   cli::warn(program, warnings);
   std::size_t robot = 0, no_returns = 0;
   for (std::uint32_t i = 0; i < view.count; ++i) {
@@ -168,7 +203,10 @@ void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot
 int run(const Options& options)
 {
   const std::vector<JointValues> states = statesOf(options);
-  const self_filter::Robot robot = self_filter::readRobot(options.urdf, packagesOf(options));
+  const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
+  const self_filter::Robot robot =
+      self_filter::readRobot(options.urdf, packagesOf(options), package_path ? package_path : "");
+  requireLinks(options.settings, robot);
   requireMeshesApart(options.files, robot);
   for (const JointValues& values : states) robot.requireValues(values);
   const std::size_t frame = options.frame.empty() ? 0 : robot.linkNamed(options.frame);
@@ -182,6 +220,7 @@ int run(const Options& options)
   Json report = {{"robot", robot.name},       {"links", robot.links.size()},         {"triangles", filter.triangles()},
                  {"solids", filter.solids()}, {"padding", options.settings.padding}, {"warnings", filter.warnings()},
                  {"clouds", Json::array()}};
+  if (!options.settings.paddings.empty()) report["paddings"] = options.settings.paddings;
   WarningsOnce once;
   for (std::size_t i = 0; i < options.clouds.size(); ++i) {
     report["clouds"].push_back(filterCloud(options, options.clouds[i], states[i], frame, filter, once));
@@ -216,14 +255,19 @@ int main(int argc, char** argv)
         ->excludes(joints);
     app.add_option("--frame", options.frame, "link in whose frame the clouds are (default: the root)")
         ->type_name("LINK");
-    app.add_option("--padding", options.settings.padding, "points this near to the robot are cut out, too, in metres")
-        ->type_name("M")
-        ->transform(
-            cli::number<double>("give a length in metres", [](double m) { return std::isfinite(m) && m >= 0.0; }))
-        ->capture_default_str();
+    app.add_option(
+           "--padding", options.paddings,
+           "points this near to the robot are cut out, too, in metres; LINK=M: of that\nlink alone, in place of "
+           "it; several with commas between them (default: 0.02)")
+        ->type_name("M,LINK=M,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->take_all();
     app.add_flag("--flag", options.flag,
                  "keep all points, with a field 'collision' that is 1 where the robot or no return is");
-    app.add_option("--package", options.packages, "folder that package://NAME/ stands for; may be given several times")
+    app.add_option("--package", options.packages,
+                   "folder that package://NAME/ stands for; may be given several times;\nothers are looked for in "
+                   "ROS_PACKAGE_PATH")
         ->type_name("NAME=DIR")
         ->expected(1)
         ->take_all();
@@ -236,7 +280,8 @@ int main(int argc, char** argv)
     cli::ReadOptions reading;
     reading.addTo(app);
     if (!cli::understood(app, program, argc, argv)) return 0;
-    options.columns = columns.read({options.clouds.begin(), options.clouds.end()});
+    options.reading = reading.read({options.clouds.begin(), options.clouds.end()});
+    takePaddings(options.paddings, options.settings);
     check(options);
     return run(options);
   });

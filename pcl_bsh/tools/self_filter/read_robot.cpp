@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // URDF by urdfdom. What that lets pass and forward kinematics cannot bear is refused here.
 #include "robot.h"
+#include "ros_packages.h"
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
@@ -51,7 +52,12 @@ Eigen::Isometry3d poseOf(const urdf::Pose& pose)
 
 class Reader {
 public:
-  Reader(const fs::path& path, const Packages& packages) : path_(path), packages_(packages) {}
+  Reader(const fs::path& path, const Packages& packages, const std::string& package_path)
+  : path_(path),
+    packages_(packages),
+    package_path_(package_path)
+  {
+  }
 
   Robot read()
   {
@@ -152,11 +158,12 @@ private:
     if (name.starts_with(package)) {
       const std::string rest = name.substr(package.size());
       const std::size_t slash = std::min(rest.find('/'), rest.size());
+      const fs::path inside = rest.substr(std::min(slash + 1, rest.size()));
       const auto found = packages_.find(rest.substr(0, slash));
-      if (found == packages_.end())
-        fail("link '" + link + "' has a mesh " + name,
-             "say where that package is: --package " + rest.substr(0, slash) + "=FOLDER");
-      return found->second / fs::path(rest.substr(std::min(slash + 1, rest.size())));
+      if (found != packages_.end()) return found->second / inside;
+      if (const auto folder = packageIn(package_path_, rest.substr(0, slash))) return *folder / inside;
+      fail("link '" + link + "' has a mesh " + name,
+           "say where that package is: --package " + rest.substr(0, slash) + "=FOLDER, or in ROS_PACKAGE_PATH");
     }
     if (name.starts_with(file)) return name.substr(file.size());
     return path_.parent_path() / name;
@@ -192,15 +199,16 @@ private:
 
   fs::path path_;
   const Packages& packages_;
+  const std::string& package_path_;
   urdf::ModelInterfaceSharedPtr model_;
   Robot robot_;
 };
 
 } // namespace
 
-Robot readRobot(const fs::path& urdf, const Packages& packages)
+Robot readRobot(const fs::path& urdf, const Packages& packages, const std::string& package_path)
 {
-  return Reader(urdf, packages).read();
+  return Reader(urdf, packages, package_path).read();
 }
 
 } // namespace pcl_bsh::self_filter

@@ -85,7 +85,9 @@ private:
 /// Reads a URDF: its joints and, of each link, the bodies for collisions or, where there are none, those to look at.
 /// Joints are fixed, revolute, continuous or prismatic.
 /// @param packages where `package://NAME/...` leads: the folder of each package
+/// @param package_path where the others are looked for: folders as ROS_PACKAGE_PATH has them (ros_packages.h)
 /// @throws files::FileError where it cannot be read, is no tree of such joints, or names a mesh that is not there
-Robot readRobot(const std::filesystem::path& urdf, const std::map<std::string, std::filesystem::path>& packages = {});
+Robot readRobot(const std::filesystem::path& urdf, const std::map<std::string, std::filesystem::path>& packages = {},
+                const std::string& package_path = {});
 
 } // namespace pcl_bsh::self_filter

@@ -33,8 +33,9 @@ SelfFilter::SelfFilter(Robot robot, const Settings& settings) : robot_(std::move
     throw std::runtime_error(
         "robot '" + robot_.name +
         "': has no body, so that nothing would be cut out: give its links <collision> or <visual>");
-  request_.clearance = settings.padding;
   request_.threads = settings.threads;
+  paddings_.assign(robot_.links.size(), settings.padding);
+  for (const auto& [link, padding] : settings.paddings) paddings_[robot_.linkNamed(link)] = padding;
   for (const Link& link : robot_.links)
     parts_.push_back(std::make_unique<const Part>(bodyOf(link), link.name, settings.threads, warnings_));
 }
@@ -51,6 +52,11 @@ std::size_t SelfFilter::solids() const
   std::size_t sum = 0;
   for (const auto& part : parts_) sum += part->body.solids.size() + part->enclosed.size();
   return sum;
+}
+
+double SelfFilter::leastPadding() const
+{
+  return *std::min_element(paddings_.begin(), paddings_.end());
 }
 
 void SelfFilter::flagSolids(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link)
@@ -87,6 +93,7 @@ const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eige
   flags_.assign(scan.count, Verdict::free);
   for (std::size_t link = 0; link < parts_.size(); ++link) {
     const Part& part = *parts_[link];
+    request_.clearance = paddings_[link];
     const Eigen::Isometry3d T_scan_link = T_scan_root * poses[link];
     flagSolids(points, part, T_scan_link);
     flagEnclosed(points, part, T_scan_link);

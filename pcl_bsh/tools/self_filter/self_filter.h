@@ -4,7 +4,7 @@
 //   SelfFilter filter(readRobot("arm.urdf"), {});
 //   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
-// A point is flagged where it is within the padding of the robot, or inside of it. Boxes, cylinders, spheres and meshes
+// A point is flagged where it is within the padding of a link, or inside of it. Boxes, cylinders, spheres and meshes
 // that close are solid. A mesh that does not close is its surface, and a warning.
 #pragma once
 
@@ -18,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,19 +26,22 @@
 namespace pcl_bsh::self_filter {
 
 struct Settings {
-  double padding = 0.02; ///< m, finite and >= 0
-  unsigned threads = 1;  ///< 0: all of the machine's
+  double padding = 0.02;                       ///< m, finite and >= 0
+  unsigned threads = 1;                        ///< 0: all of the machine's
+  std::map<std::string, double> paddings = {}; ///< of links by their names, m, in place of `padding`
 };
 
 /// Reads all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
 class SelfFilter {
 public:
-  /// @throws as bodyOf() does; std::runtime_error for a robot without a body
+  /// @throws as bodyOf() does; std::runtime_error for a robot without a body, and for the padding of a link that is not
+  ///   there, naming it
   SelfFilter(Robot robot, const Settings& settings);
 
   const Robot& robot() const { return robot_; }
   std::size_t triangles() const; ///< of the meshes of all links
   std::size_t solids() const;    ///< of all links: boxes, cylinders, spheres and meshes that close
+  double leastPadding() const;   ///< of all links
 
   /// What users should know of the links, a sentence each: meshes that do not close.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -68,6 +72,7 @@ private:
   Robot robot_;
   FlagsRequest request_;
   std::vector<std::unique_ptr<const Part>> parts_; ///< for each link
+  std::vector<double> paddings_;                   ///< for each link
   std::vector<std::string> warnings_;
   CollidingIndices hit_;
   LabelsResult labels_;

@@ -122,6 +122,57 @@ TEST_F(RobotTest, FindsMeshesBesideTheUrdfAndInPackages)
   expectRefused(mesh("package://arm/m/a.stl"), "--package arm=FOLDER");
 }
 
+/// As catkin_make lays packages out, and as people copy them.
+TEST_F(RobotTest, FindsPackagesInRosPackagePath)
+{
+  namespace fs = std::filesystem;
+  const auto put = [&](const std::string& file, const std::string& text) {
+    fs::create_directories((folder / file).parent_path());
+    std::ofstream(folder / file) << text;
+  };
+  const auto named = [](const std::string& name) {
+    return "<?xml version=\"1.0\"?>\n<!-- <name>other</name> --><package format=\"2\">\n <name> " + name +
+           "\n</name></package>";
+  };
+  put("ws/src/group/folder_of_arm/package.xml", named("arm"));
+  put("ws/src/group/folder_of_arm/m/a.stl", "");
+  put("ws/src/group/folder_of_arm/below/package.xml", named("hidden_in_arm"));
+  put("ws/src/left_out/CATKIN_IGNORE", "");
+  put("ws/src/left_out/package.xml", named("left_out_pkg"));
+  put("ws/src/left_out/deep/package.xml", named("ignored"));
+  put("ws/src/.git/package.xml", named("git"));
+  put("old/hand/manifest.xml", "<package/>");
+  put("old/hand/m/a.stl", "");
+  put("plain/gripper/m/a.stl", "");
+  put("second/arm/package.xml", named("arm"));
+  put("second/arm/m/a.stl", "");
+  fs::create_directory_symlink(folder / "ws/src", folder / "ws/src/group/round"); // does not end in circles
+  const std::string path = (folder / "missing").string() + "::" + (folder / "ws/src/").string() + ":" +
+                           (folder / "old").string() + ":" + (folder / "plain").string() + ":" +
+                           (folder / "second").string();
+  const auto meshOf = [&](const std::string& package, const std::map<std::string, fs::path>& packages = {}) {
+    std::ofstream(urdf) << "<robot name=\"r\">"
+                        << link("a", "<collision><geometry><mesh filename=\"package://" + package +
+                                         "/m/a.stl\"/></geometry></collision>")
+                        << "</robot>";
+    return fs::canonical(std::get<MeshFile>(readRobot(urdf, packages, path).links[0].shapes[0].form).path);
+  };
+  EXPECT_EQ(meshOf("arm"), fs::canonical(folder / "ws/src/group/folder_of_arm/m/a.stl")) << "the first that has it";
+  EXPECT_EQ(meshOf("hand"), fs::canonical(folder / "old/hand/m/a.stl"));
+  EXPECT_EQ(meshOf("gripper"), fs::canonical(folder / "plain/gripper/m/a.stl"));
+  EXPECT_EQ(meshOf("arm", {{"arm", folder / "second/arm"}}), fs::canonical(folder / "second/arm/m/a.stl"))
+      << "--package comes first";
+  for (const char* none : {"other", "hidden_in_arm", "ignored", "git", "nowhere", "folder_of_arm"}) {
+    try {
+      meshOf(none);
+      ADD_FAILURE() << none;
+    }
+    catch (const files::FileError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string("--package ") + none + "=FOLDER, or in ROS_PACKAGE_PATH"));
+    }
+  }
+}
+
 TEST_F(RobotTest, RefusesWhatIsNoTree)
 {
   expectRefused(ab + link("c") + joint("j", "fixed", "a", "c") + joint("k", "fixed", "b", "c") +

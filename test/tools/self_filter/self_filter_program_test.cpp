@@ -87,6 +87,39 @@ TEST_F(SelfFilterProgram, SeesFromALink)
   EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n0,0.1,0,7\n");
 }
 
+TEST_F(SelfFilterProgram, LinksMayHaveAPaddingOfTheirOwn)
+{
+  const std::string job = "ball.urdf a.csv --joints slide=6.5 --out out --report report.json --padding ";
+  for (const char* padding : {"0.6", "0,ball=0.6", "ball=0.6", "0 --padding ball=0.6", "rail=9,ball=0.6"}) {
+    EXPECT_EQ(filter(job + padding).exit_code, 0) << padding;
+    EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n0,0.1,0,7\n") << padding;
+  }
+  EXPECT_EQ(filter(job + "0.6,ball=0.4").exit_code, 0);
+  EXPECT_EQ(written("out/a.csv"), "x,y,z,time\n0,0.1,0,7\n5,0,0,8\n");
+  const Json report = Json::parse(written("report.json"));
+  EXPECT_EQ(report["padding"], 0.6);
+  EXPECT_EQ(report["paddings"], Json({{"ball", 0.4}}));
+  for (const char* wrong : {"x", "=1", "ball=", "ball=x", "ball=-1", "1,2", "ball=1,ball=1", "nan", "ball=inf"})
+    expectFailure(std::string("ball.urdf a.csv --out none --padding ") + wrong, 2, "--padding: ");
+  expectFailure("ball.urdf a.csv --out none --padding nose=1", 1, "--padding: link 'nose': is not one of ball");
+}
+
+TEST_F(SelfFilterProgram, FindsPackagesByTheEnvironment)
+{
+  std::filesystem::create_directories(folder / "src/arm/m");
+  std::ofstream(folder / "src/arm/package.xml") << "<package><name>arm_description</name></package>";
+  std::ofstream(folder / "src/arm/m/a.off")
+      << "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+  std::ofstream(folder / "arm.urdf") << R"(<robot name="arm"><link name="a"><visual><geometry>
+      <mesh filename="package://arm_description/m/a.off"/></geometry></visual></link></robot>)";
+  expectFailure("arm.urdf a.csv --out none", 1, "say where that package is: --package arm_description=FOLDER");
+  ::setenv("ROS_PACKAGE_PATH", ("/opt/nothing:" + (folder / "src").string()).c_str(), 1);
+  const Outcome found = filter("arm.urdf a.csv --out out");
+  ::unsetenv("ROS_PACKAGE_PATH");
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, StartsWith("a.csv: 1 of 4 points"));
+}
+
 TEST_F(SelfFilterProgram, DropsWhatDidNotReturn)
 {
   // The ball is elsewhere: what stands at the sensor's own origin is no obstacle, whatever the zero's sign.

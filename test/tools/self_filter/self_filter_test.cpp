@@ -90,13 +90,37 @@ protected:
     robot = readRobot(folder / "robot.urdf");
   }
 
+  /// Holds flags of points about the robot against distances to its true shapes.
+  void expectFlagged(const Settings& settings) const;
+
   const io::TemporaryFolder folder;
   Robot robot;
 };
 
 TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
 {
-  const Settings settings{0.03, 1};
+  expectFlagged({0.03, 1});
+}
+
+TEST_F(SelfFilterTest, LinksMayHaveAPaddingOfTheirOwn)
+{
+  Settings settings{0.03, 1};
+  for (std::size_t link = 0; link < robot.links.size(); ++link)
+    if (link % 3 != 0) settings.paddings[robot.links[link].name] = link % 3 == 1 ? 0.05 : 0.0;
+  expectFlagged(settings);
+  EXPECT_EQ(SelfFilter(robot, settings).leastPadding(), 0.0);
+  EXPECT_EQ(SelfFilter(robot, {0.03, 1}).leastPadding(), 0.03);
+  try {
+    SelfFilter(robot, {0.03, 1, {{"nose", 0.1}}});
+    ADD_FAILURE() << "there is none";
+  }
+  catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("link 'nose': is not one of "));
+  }
+}
+
+void SelfFilterTest::expectFlagged(const Settings& settings) const
+{
   SelfFilter filter(robot, settings);
   std::mt19937 random(3);
   const auto uniform = [&](double low, double high) {
@@ -129,18 +153,21 @@ TEST_F(SelfFilterTest, FlagsWhatIsWithinThePaddingOfALink)
     const std::vector<Verdict>& flags = filter.flags(viewOf(scan.data(), points.size()), T_scan_root, values);
     ASSERT_EQ(flags.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      double distance = std::numeric_limits<double>::infinity();
-      for (const auto& [link, shape] : shapes)
-        distance = std::min(distance, shape.distanceFrom(poses[link].inverse() * points[i]));
+      double distance = std::numeric_limits<double>::infinity(); // less the padding of the link
+      for (const auto& [link, shape] : shapes) {
+        const auto own = settings.paddings.find(robot.links[link].name);
+        const double padding = own == settings.paddings.end() ? settings.padding : own->second;
+        distance = std::min(distance, shape.distanceFrom(poses[link].inverse() * points[i]) - padding);
+      }
       constexpr double rounding = 1e-12;
-      if (distance <= settings.padding - rounding) {
+      if (distance <= -rounding) {
         EXPECT_EQ(flags[i], Verdict::colliding) << distance;
       }
-      if (distance > settings.padding + rounding) {
+      if (distance > rounding) {
         EXPECT_EQ(flags[i], Verdict::free) << distance;
       }
       flagged += flags[i] == Verdict::colliding;
-      near += std::abs(distance - settings.padding) < 0.003;
+      near += std::abs(distance) < 0.003;
     }
   }
   EXPECT_GT(flagged, 150U);
