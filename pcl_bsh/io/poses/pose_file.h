@@ -11,10 +11,11 @@
 
 namespace pcl_bsh::io {
 
-/// Reads a pose from each line; numbers are separated as numbersOfLine() has it, the rest of a line from '#' on is
-/// ignored, and so are lines without a number. A first line without numbers, or a comment before the first pose, may
-/// name the columns: then position and quaternion are where it says, and other columns are not read.
-/// Otherwise how a pose is written is told by how many numbers a line has, the same in the whole file:
+/// Reads a pose from each line; numbers are separated as numbersOfLine() has it. A '#' that begins a line, or
+/// stands behind a blank, begins a comment; lines without a number are ignored. A first line without numbers, or a
+/// comment before the first pose, may name the columns: then position and quaternion are where it says, and other
+/// columns are not read. Otherwise how a pose is written is told by how many numbers a line has, the same in the whole
+/// file:
 ///
 ///   12  the upper three rows of its matrix, row by row (KITTI)
 ///   16  all four rows

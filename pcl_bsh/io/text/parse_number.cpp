@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/text/parse_number.h>
 
+#include <pcl_bsh/io/text/small_letters.h>
+
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
 
 namespace pcl_bsh::io {
 
@@ -24,6 +29,36 @@ bool isBelowOne(std::string_view digits)
   // The power of ten of the first digit that counts.
   const long long power = static_cast<long long>(point) - static_cast<long long>(first) - (first < point ? 1 : 0);
   return power + exponent < 0;
+}
+
+std::optional<double> notFiniteNumber(std::string_view digits)
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  constexpr std::size_t longest = 64; // Microsoft's C fills up with zeros to the digits asked for
+  const bool negative = digits.starts_with('-');
+  if (negative) digits.remove_prefix(1);
+  if (digits.size() > longest) return std::nullopt;
+  const std::string word = inSmallLetters(std::string(digits));
+  for (const char* name : {"nanq", "nans", "qnan", "snan"})
+    if (word == name) return nan;
+  constexpr std::string_view mark = "1.#";
+  if (!word.starts_with(mark)) return std::nullopt;
+  std::string_view rest = std::string_view(word).substr(mark.size());
+  rest = rest.substr(0, rest.find_last_not_of('0') + 1);
+  if (rest == "inf") return negative ? -infinity : infinity;
+  constexpr std::array said = {"ind", "nan", "qnan", "snan", "io", "j", "qnb", "qo", "r", "snb", "so", "t"};
+  return std::find(said.begin(), said.end(), rest) != said.end() ? std::optional(nan) : std::nullopt;
+}
+
+FormatError noNumber(std::string_view word, bool whole)
+{
+  const std::string wrong = "'" + std::string(word.substr(0, 40)) + "' is not ";
+  const bool commented = word.find('#') != std::string_view::npos;
+  const bool mixed = word.find_first_of(",; \t") != std::string_view::npos;
+  return FormatError(wrong + (whole ? "a whole number in the range of its type" : "a number"),
+                     mixed       ? "write a decimal point, and one separator in all lines"
+                     : commented ? "put a blank before a comment"
+                                 : remedy_for_damage);
 }
 
 bool looksLikeNumber(std::string_view word)

@@ -5,7 +5,7 @@
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <charconv>
-#include <string>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 
@@ -15,37 +15,45 @@ namespace pcl_bsh::io {
 /// the C library, for it reads a decimal comma where the program's language has one.
 bool isBelowOne(std::string_view digits);
 
-/// The number nearest to what the word says.
-/// @throws FormatError when it says no number, or one that T cannot hold
+/// The value of a word that says NaN or infinity where from_chars() reads none: 1.#QNAN, -1.#IND, 1.#SNAN, 1.#INF0 and
+/// what their rounding leaves (1.#QO, 1.#R, 1.#J), of Microsoft's C; NaNQ, NaNS, QNAN, SNAN; in any case of letters.
+/// `1.#INF...` is infinity, all others are NaN.
+/// @param digits without a leading '+'
+std::optional<double> notFiniteNumber(std::string_view digits);
+
+/// The number nearest to what the word says; none when it says no number, or one that T cannot hold. Each word of a
+/// text becomes a number here, or by readNumberLine(), which reads fewer.
 template <typename T>
-T parseNumber(std::string_view word)
+std::optional<T> numberOf(std::string_view word)
 {
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   T value{};
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
-  if (error == std::errc::result_out_of_range && std::is_floating_point_v<T> && whole && isBelowOne(digits)) {
-    return T{0}; // too large is an error; too small is zero
+  if (error == std::errc() && whole) return value;
+  if constexpr (std::is_floating_point_v<T>) {
+    const bool tiny = error == std::errc::result_out_of_range && whole && isBelowOne(digits);
+    if (tiny) return T{0}; // too large is an error; too small is zero
+    if (const auto special = notFiniteNumber(digits)) return static_cast<T>(*special);
   }
-  if (error != std::errc() || !whole) {
-    const std::string wrong = "'" + std::string(word.substr(0, 40)) + "' is not ";
-    const bool mixed = word.find_first_of(",; \t") != std::string_view::npos;
-    throw FormatError(wrong + (std::is_floating_point_v<T> ? "a number" : "a whole number in the range of its type"),
-                      mixed ? "write a decimal point, and one separator in all lines" : remedy_for_damage);
-  }
-  return value;
+  return std::nullopt;
+}
+
+/// What is wrong with a word that says no number. @param whole a whole number was meant
+FormatError noNumber(std::string_view word, bool whole);
+
+/// The same number. @throws FormatError where there is none
+template <typename T>
+T parseNumber(std::string_view word)
+{
+  if (const std::optional<T> value = numberOf<T>(word)) return *value;
+  throw noNumber(word, !std::is_floating_point_v<T>);
 }
 
 /// Whether the word says a number.
 inline bool isNumber(std::string_view word)
 {
-  try {
-    parseNumber<double>(word);
-    return true;
-  }
-  catch (const FormatError&) {
-    return false;
-  }
+  return numberOf<double>(word).has_value();
 }
 
 /// Whether the word is a number or meant for one, as with a decimal comma: it cannot be a name.

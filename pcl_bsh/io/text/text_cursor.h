@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/text/number_line.h>
 #include <pcl_bsh/io/text/parse_number.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -35,9 +36,17 @@ inline bool isUtf16(std::string_view text)
 /// UTF-8 at the beginning is skipped.
 class TextCursor {
 public:
-  /// @param comment the rest of a line from this character on is ignored; 0: none
+  /// Whether a backslash at the end of a line joins the next line to it, as a blank would. One that no line follows is
+  /// a word.
+  enum class Lines : bool { single, continued };
+
+  /// @param comment the rest of a line is ignored from this character on, where it begins the line or a blank or a tab
+  ///   stands before it: within a word, as in 1.#QNAN, it is a character of the word. 0: none
   /// @throws FormatError when the text is marked as UTF-16
-  explicit TextCursor(std::string_view text, char comment = 0) : text_(text), comment_(comment)
+  explicit TextCursor(std::string_view text, char comment = 0, Lines lines = Lines::single)
+  : text_(text),
+    comment_(comment),
+    continued_(lines == Lines::continued)
   {
     if (text.starts_with(utf8_mark)) text_.remove_prefix(utf8_mark.size());
     if (isUtf16(text)) throw FormatError("is UTF-16 text", "save it as UTF-8");
@@ -65,7 +74,7 @@ public:
     const std::size_t bytes = readNumberLine(text_.substr(end_), separator_, values);
     if (bytes == 0) return false;
     end_ += bytes;
-    ++line_number_;
+    line_number_ += std::exchange(lines_joined_, 0) + 1;
     line_ = {};
     ends_with_separator_ = false;
     return true;
@@ -79,7 +88,7 @@ public:
   {
     if (separator_ != ' ') return wordBeforeSeparator();
     std::size_t length = 0;
-    while (length < line_.size() && !isBlank(line_[length])) ++length;
+    while (length < line_.size() && !separates(line_, length)) ++length;
     const std::string_view taken = line_.substr(0, length);
     line_.remove_prefix(length);
     skipBlanks();
@@ -145,10 +154,19 @@ private:
 
   std::string named(const std::string& wrong) const { return "line " + std::to_string(line_number_) + " " + wrong; }
 
+  /// Whether a character of the line is a blank, or belongs to what joins two lines.
+  bool separates(std::string_view line, std::size_t at) const noexcept
+  {
+    if (isBlank(line[at])) return true;
+    if (!continued_) return false;
+    const auto ends = [&](std::size_t i) { return i < line.size() && (line[i] == '\n' || line[i] == '\r'); };
+    return ends(at) || (line[at] == '\\' && ends(std::min(line.find_first_not_of(" \t", at + 1), line.size())));
+  }
+
   /// A tab that separates is no blank.
   void skipBlanks() noexcept
   {
-    while (!line_.empty() && isBlank(line_.front()) && (line_.front() != separator_ || separator_ == ' ')) {
+    while (!line_.empty() && separates(line_, 0) && (line_.front() != separator_ || separator_ == ' ')) {
       line_.remove_prefix(1);
     }
   }
@@ -169,16 +187,50 @@ private:
     return quoted ? word.substr(1, word.size() - 2) : word;
   }
 
-  void readLine() noexcept
+  std::size_t commentAt(std::string_view line) const noexcept
+  {
+    std::size_t at = line.find(comment_);
+    while (at != std::string_view::npos && at > 0 && !isBlank(line[at - 1])) at = line.find(comment_, at + 1);
+    return at;
+  }
+
+  /// The next line of the text, without its end and a comment.
+  std::string_view takeLine() noexcept
   {
     const std::size_t begin = end_;
-    ends_with_separator_ = false;
     while (end_ < text_.size() && text_[end_] != '\n' && text_[end_] != '\r') ++end_;
-    line_ = text_.substr(begin, end_ - begin);
+    const std::string_view line = text_.substr(begin, end_ - begin);
     if (end_ < text_.size()) end_ += text_.substr(end_).starts_with("\r\n") ? 2 : 1;
-    ++line_number_;
-    if (comment_ != 0) line_ = line_.substr(0, line_.find(comment_));
-    line_ = line_.substr(0, line_.find_last_not_of(" \t") + 1); // nothing at all where there are but blanks
+    return comment_ != 0 ? line.substr(0, commentAt(line)) : line;
+  }
+
+  /// From the first word of a line to its last; nothing at all where there are but blanks.
+  static std::string_view withoutBlanksBehind(std::string_view line) noexcept
+  {
+    return line.substr(0, line.find_last_not_of(" \t") + 1);
+  }
+
+  /// Whether the line that was taken last ends with a backslash, which joins the next to it. No comment stands behind
+  /// it.
+  bool goesOn() const noexcept
+  {
+    if (!continued_ || !line_.ends_with('\\')) return false;
+    const auto* const behind = line_.data() + line_.size();
+    const auto rest = static_cast<std::size_t>(text_.data() + end_ - behind);
+    return std::string_view(behind, rest).find_first_not_of(" \t\r\n") == std::string_view::npos;
+  }
+
+  void readLine() noexcept
+  {
+    line_number_ += lines_joined_ + 1;
+    lines_joined_ = 0;
+    ends_with_separator_ = false;
+    line_ = withoutBlanksBehind(takeLine());
+    while (goesOn() && end_ < text_.size()) {
+      const std::string_view next = withoutBlanksBehind(takeLine());
+      ++lines_joined_;
+      line_ = {line_.data(), static_cast<std::size_t>(next.data() + next.size() - line_.data())};
+    }
     skipBlanks();
   }
 
@@ -192,11 +244,13 @@ private:
 
   std::string_view text_;
   char comment_;
+  bool continued_;
   char separator_ = ' ';
   std::string_view line_;
   bool ends_with_separator_ = false; ///< the word taken last is followed by nothing but a separator
   std::size_t end_ = 0;              ///< where the next line begins
-  std::size_t line_number_ = 0;
+  std::size_t line_number_ = 0;      ///< of the line, or of the first that is joined to it
+  std::size_t lines_joined_ = 0;     ///< to that one
 };
 
 } // namespace pcl_bsh::io

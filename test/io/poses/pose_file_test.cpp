@@ -277,6 +277,17 @@ TEST_F(PoseFile, OddNamesOfColumnsAreNoFault)
       read("[a] t tx ty tz q qx qy qz qw pos\n9 9 0 0 0 9 0 0 0 1 9\n9 9 1 2 3 9 0 0 " + half + " " + half + " 9\n"));
 }
 
+/// Read as the number before its '#', a pose would be a metre off.
+TEST_F(PoseFile, RefusesWhatProgramsWriteForNaN)
+{
+  for (const std::string nan : {"1.#QNAN", "-1.#IND", "1.#SNAN", "1.#INF", "nan(ind)"}) {
+    expectRefused("1 0 0 " + nan + " 0 1 0 0 0 0 1 0\n", "line 1 holds no pose");
+    expectRefused("1 0 0 0 0 1 0 0 0 0 1 " + nan + "\n", "line 1 holds no pose");
+    expectRefused("0 1 2 3 0 0 0 " + nan + "\n", "line 1 has a quaternion of length");
+    EXPECT_EQ(read(nan + " 1 2 3 0 0 0 1 # a time is not used\n").size(), 1U) << nan;
+  }
+}
+
 TEST_F(PoseFile, NobodyHasToAskForWarnings)
 {
   EXPECT_EQ(readPoses(folder.write("poses.txt", printed(5, 6))).size(), 5U);

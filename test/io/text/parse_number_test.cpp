@@ -24,6 +24,27 @@ TEST(ParseNumber, NumbersRoundOnce)
   EXPECT_EQ(parseNumber<std::uint64_t>("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
 }
 
+TEST(ParseNumber, KnowsWhatProgramsWriteForNaNAndInfinity)
+{
+  for (const char* nan : {"1.#QNAN", "-1.#IND",  "1.#SNAN",   "-1.#QNAN0", "1.#IND00", "+1.#QNAN",    "1.#NAN",
+                          "1.#qnan", "nan(ind)", "-nan(ind)", "nan(snan)", "NaN(IND)", "nan(0x7ff8)", "NaNQ",
+                          "NANS",    "-nanq",    "QNaN",      "1.#QO",     "1.#R",     "-1.#J"}) {
+    EXPECT_TRUE(std::isnan(parseNumber<double>(nan))) << nan;
+    EXPECT_TRUE(std::isnan(parseNumber<float>(nan))) << nan;
+    EXPECT_TRUE(looksLikeNumber(nan)) << nan;
+    EXPECT_THROW(parseNumber<std::int32_t>(nan), FormatError) << nan << " in a type that has no NaN";
+  }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const char* positive : {"1.#INF", "1.#INF00", "+1.#INF", "1.#inf", "inf", "Infinity"})
+    EXPECT_EQ(parseNumber<double>(positive), infinity) << positive;
+  for (const char* negative : {"-1.#INF", "-1.#INF000", "-inf"})
+    EXPECT_EQ(parseNumber<double>(negative), -infinity) << negative;
+  for (const char* other :
+       {"1.#", "1.#X", "1.#0", "2.#QNAN", "1#QNAN", "1.#QNAN5", "1.5#QNAN", "--1.#IND", "nan(ind", "nan)", "nan(i-d)"})
+    EXPECT_THROW(parseNumber<double>(other), FormatError) << other;
+  EXPECT_THROW(parseNumber<double>("1.#INF" + std::string(100'000, '0')), FormatError);
+}
+
 TEST(ParseNumber, TellsTooSmallFromTooLarge)
 {
   for (const char* tiny : {"1e-400", "-1e-99999999999999999999", "0.5e-400", "123456e-5000", "0e99999999999999999999"})
@@ -99,6 +120,7 @@ TEST(ParseNumber, TellsWhatToDo)
   };
   for (const char* mixed : {"1,5", "1;5", "1 5", "1\t5"})
     EXPECT_EQ(remedyOf(mixed), "write a decimal point, and one separator in all lines") << mixed;
+  EXPECT_EQ(remedyOf("3#note"), "put a blank before a comment");
   for (const char* damaged : {"abc", "1.5x", "", "1e400"}) EXPECT_EQ(remedyOf(damaged), remedy_for_damage) << damaged;
 }
 

@@ -21,6 +21,17 @@ TEST(TextCursor, WalksWordsOfLinesOfAllSystems)
   EXPECT_TRUE(text.word().empty());
 }
 
+TEST(TextCursor, ACommentBeginsBehindWhiteSpace)
+{
+  TextCursor text("1.#QNAN 2 # 3\n#4\n \t# 5\na#b#c\t#d e#f\n6 ## 7\n8#\n#", '#');
+  std::string words;
+  while (text.nextLine()) {
+    while (!text.line().empty()) words += std::string(text.word()) + ' ';
+    words += '/';
+  }
+  EXPECT_EQ(words, "1.#QNAN 2 /a#b#c /6 /8# /");
+}
+
 TEST(TextCursor, SkipsTheMarkOfUtf8AtItsBeginningAlone)
 {
   TextCursor text("\xef\xbb\xbf"

@@ -19,7 +19,8 @@ TEST(JointValuesText, IsNamesWithNumbers)
 {
   EXPECT_EQ(parseJointValues("a=1,b_2=-0.5e-1"), (JointValues{{"a", 1}, {"b_2", -0.05}}));
   EXPECT_EQ(parseJointValues(""), JointValues());
-  for (const char* wrong : {"a", "=1", "a=", "a=x", "a=nan", "a=inf", "a=1,a=2", "a=1 b=2", "a=1,,b=2"})
+  for (const char* wrong : {"a", "=1", "a=", "a=x", "a=nan", "a=inf", "a=1.#QNAN", "a=-1.#IND", "a=1.#INF",
+                            "a=nan(ind)", "a=1,a=2", "a=1 b=2", "a=1,,b=2"})
     EXPECT_THROW(parseJointValues(wrong), io::FormatError) << wrong;
 }
 
@@ -57,6 +58,9 @@ TEST_F(JointStates, NameTheLineThatIsWrong)
   EXPECT_THAT(wrong("a,b\n1,2,3\n"), HasSubstr("line 2 has more values"));
   EXPECT_THAT(wrong("a,b\n1,x\n"), HasSubstr("'x' is not a number"));
   EXPECT_THAT(wrong("a,b\n1,inf\n"), HasSubstr("not finite"));
+  for (const char* none : {"1.#QNAN", "-1.#IND", "1.#SNAN", "nan(ind)", "1.#INF"})
+    EXPECT_THAT(wrong(std::string("a b\n1 2\n3 ") + none + '\n'),
+                HasSubstr(std::string("line 3 is damaged: '") + none + "' is not finite"));
   EXPECT_THAT(wrong("1,2\n3,4\n"), HasSubstr("where a name should be"));
   EXPECT_THAT(wrong("a,a\n1,2\n"), HasSubstr("names joint 'a' twice"));
   EXPECT_THAT(wrong("a,b\n"), HasSubstr("no line of values"));
