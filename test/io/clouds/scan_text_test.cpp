@@ -48,6 +48,23 @@ TEST(Pts, ColumnsFollowFromTheirNumber)
   EXPECT_EQ(colourOf(cloud, 1), 0xff0001U);
 }
 
+TEST(ScanText, TakesWhatProgramsWriteForNaNAsNaN)
+{
+  for (const std::string nan : {"1.#QNAN", "-1.#IND", "1.#SNAN", "nan(ind)"}) {
+    const pcl::PCLPointCloud2 pts = parsePts("2\n1 2 " + nan + " 4\n1 2 3 " + nan + "\n");
+    ASSERT_EQ(pts.width, 2U) << nan;
+    EXPECT_TRUE(std::isnan(valueOf(pts, 0, "z")) && std::isnan(valueOf(pts, 1, "intensity"))) << nan;
+    const pcl::PCLPointCloud2 ptx = readPtx("1\n2\n" + identity + "1 2 3 0.5\n" + nan + " 2 3 0.5\n");
+    EXPECT_TRUE(std::isnan(valueOf(ptx, 1, "x"))) << nan;
+    const std::string head = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 ";
+    EXPECT_EQ(defectOf([&] { readPtx(head + nan + " 1\n1 2 3\n"); }), "line 10 ends a transform that is not finite")
+        << nan;
+    EXPECT_EQ(defectOf([&] { parsePts("1\n1 2 3 4 5 6 " + nan + "\n"); }),
+              "line 2 has a colour that is no whole number from 0 to 255")
+        << nan;
+  }
+}
+
 TEST(Pts, BlocksFollowEachOther)
 {
   const pcl::PCLPointCloud2 cloud = parsePts("1\n1 2 3\n2\n4 5 6\n7 8 9\n0\n");
@@ -431,6 +448,21 @@ TEST(Pts, TellsWhichFieldsHaveAPlace)
   };
   EXPECT_EQ(held(false), "x y z intensity rgb column_8 ");
   EXPECT_EQ(held(true), "x y z intensity rgb column_8 scan ");
+}
+
+TEST(Pts, MayBeColumns)
+{
+  for (const char* file : {"x,y,z\n1.5,2,3\n4,5,6\n", "X Y Z\n1.5 2 3\n4 5 6\n", "//X;Y;Z\n2\n1.5;2;3\n4;5;6\n",
+                           "1.5,2,3\n4,5,6\n", "# made\n1.5 2 3\n4 5 6\n", "x,y,z\r\n2\r\n1.5,2,3\r\n4,5,6"}) {
+    const pcl::PCLPointCloud2 cloud = parsePts(file);
+    ASSERT_EQ(cloud.width, 2U) << file;
+    EXPECT_EQ(placeOf(cloud, 0), (Place{1.5, 2, 3})) << file;
+    EXPECT_EQ(namesOf(parsePtsHeader(file)), "x y z") << file;
+  }
+  EXPECT_EQ(namesOf(parsePts("x,y,z,intensity,r,g,b\n1,2,3,0.5,4,5,6\n")), "x y z intensity rgb");
+  const TemporaryFolder folder;
+  EXPECT_EQ(readCloud(folder.write("a.pts", "x,y,z\n1,2,3\n")).width, 1U);
+  EXPECT_EQ(readCloudHeader(folder / "a.pts").fields.size(), 3U);
 }
 
 } // namespace pcl_bsh::io

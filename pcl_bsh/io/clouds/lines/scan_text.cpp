@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
+#include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/text/header_count.h>
 
 #include <Eigen/Geometry>
 
@@ -90,22 +92,29 @@ private:
 
 std::optional<std::uint64_t> countOf(const std::vector<std::string_view>& words)
 {
-  std::uint64_t count = 0;
-  if (words.size() != 1) return std::nullopt;
-  const auto [end, error] = std::from_chars(words[0].data(), words[0].data() + words[0].size(), count);
-  if (error != std::errc() || end != words[0].data() + words[0].size()) return std::nullopt;
-  return count;
+  return words.size() == 1 ? numberOf<std::uint64_t>(words[0]) : std::nullopt;
 }
 
-/// Reads a block's count, if there is one. @return the number of its points at least
-std::uint64_t readPtsCount(TextCursor& text)
+/// Reads a block's count, if there is one.
+std::optional<std::uint64_t> readPtsCount(TextCursor& text)
 {
   const std::optional<std::uint64_t> count = countOf(nextWords(text));
-  if (!count) return 0;
+  if (!count) return std::nullopt;
   text.nextLine();
   constexpr std::uint64_t least_bytes = 6; // three digits and their separators
   requireBytes(*count, least_bytes, text.rest().size() + 1);
-  return *count;
+  return count;
+}
+
+/// Whether the first line is a comment, names columns or separates values otherwise than PTS: then all lines are
+/// columns.
+bool isPtsOfColumns(std::string_view file)
+{
+  TextCursor text(file);
+  if (!text.nextLine()) return false;
+  const std::string_view line = text.line();
+  return line.starts_with('#') || line.starts_with("//") || separatorOf(line) == ',' || separatorOf(line) == ';' ||
+         !looksLikeNumber(TextCursor(text).word());
 }
 
 PointLine ptsLine(const TextCursor& text, std::uint64_t promised)
@@ -118,16 +127,37 @@ PointLine ptsLine(const TextCursor& text, std::uint64_t promised)
   return PointLine({"", "", ""});
 }
 
+/// Whether a line has more than one word, as those of points have and those of counts have not.
+bool isOfSeveralWords(std::string_view line)
+{
+  return line.find_first_of(" \t,;") != std::string_view::npos;
+}
+
 struct PtxScan {
+  bool has_header = false;
   std::uint64_t columns = 0, rows = 0;
   Eigen::Matrix<double, 4, 3> transform = Eigen::Matrix<double, 4, 3>::Zero(); ///< (x y z 1) times this
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< the scanner's, once the transform is taken
 };
 
-/// Reads a scan's ten lines. @return false at the end of the text
+/// Refuses points behind the last that a scan's header counts. The text is at the line behind that.
+void requireNoMorePoints(TextCursor text, const PtxScan& scan)
+{
+  std::uint64_t there = scan.columns * scan.rows;
+  do {
+    if (!isOfSeveralWords(text.line())) break;
+    ++there;
+  } while (text.nextLine());
+  requireNoMore({scan.columns * scan.rows}, there);
+}
+
+/// Reads a scan's ten lines. @param scan the one before, or none of points
+/// @return false at the end of the text
 bool readPtxScan(TextCursor& text, PtxScan& scan)
 {
   if (!text.nextLine()) return false;
+  if (scan.has_header) requireNoMorePoints(text, scan);
+  scan.has_header = true;
   const auto next = [&](bool there) {
     if (!there) throw FormatError("is truncated: it ends within a scan's header");
   };
@@ -225,7 +255,7 @@ struct PtxContents {
       if (!empty && words.size() < 3) text.fail("is followed by no point");
       if (!empty && !line && wanted.value_or(scans) == scans) line = PointLine(words);
       for (std::uint64_t i = 0; i < scan.columns * scan.rows; ++i)
-        if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its points");
+        if (!text.nextLine() || !isOfSeveralWords(text.line())) requireNoFewer({scan.columns * scan.rows}, i);
     }
     if (scans == 0) throw FormatError("is not a PTX file: it has no scan");
     if (wanted && *wanted >= scans) {
@@ -262,23 +292,30 @@ void transpose(pcl::PCLPointCloud2& cloud, const PtxScan& scan)
 
 pcl::PCLPointCloud2 parsePts(std::string_view file)
 {
+  std::vector<std::string> ignored;
+  return parsePtsTelling(file, ignored);
+}
+
+pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::string>& remarks)
+{
+  if (isPtsOfColumns(file)) return parseColumns(file, {}, &remarks);
   TextCursor text(file);
-  std::uint64_t promised = readPtsCount(text);
-  const PointLine line = ptsLine(text, promised);
+  std::optional<std::uint64_t> promised = readPtsCount(text);
+  const PointLine line = ptsLine(text, promised.value_or(0));
   TextRows rows(line.values);
   rows.reserveLines(text.rest());
   PointReader reader(line);
-  std::uint64_t points = 0; // of the block
-  const auto requirePromised = [&] {
-    if (points < promised) {
-      throw FormatError("is truncated: " + std::to_string(points) + " of " +
-                        counted(promised, "point is", "points are") + " there");
-    }
+  std::uint64_t points = 0, all_promised = 0, all_points = 0; // of the block, of blocks that promise some
+  const auto endBlock = [&] {
+    if (!promised) return;
+    requireNoFewer({*promised}, points);
+    all_promised += *promised;
+    all_points += points;
   };
   for (;;) {
     if (!reader.nextPlain(text)) {
       if (countOf(nextWords(text))) {
-        requirePromised();
+        endBlock();
         promised = readPtsCount(text);
         points = 0;
         continue;
@@ -288,14 +325,21 @@ pcl::PCLPointCloud2 parsePts(std::string_view file)
     rows.add(reader.numbers());
     ++points;
   }
-  requirePromised();
+  endBlock();
+  if (const auto other = remarkOnCount({all_promised}, all_points)) remarks.push_back(*other);
   return std::move(rows).finished();
 }
 
 pcl::PCLPointCloud2 parsePtsHeader(std::string_view file)
 {
+  return parsePtsBeginning(file, true);
+}
+
+pcl::PCLPointCloud2 parsePtsBeginning(std::string_view file, bool whole)
+{
+  if (isPtsOfColumns(file)) return parseColumnNames(file, whole);
   TextCursor text(file);
-  const std::uint64_t promised = readPtsCount(text);
+  const std::uint64_t promised = readPtsCount(text).value_or(0);
   return TextRows(ptsLine(text, promised).values).finished();
 }
 

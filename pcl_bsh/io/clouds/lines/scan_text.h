@@ -18,12 +18,19 @@ namespace pcl_bsh::io {
 /// .pts: a line with the number of points, then a point per line: x y z, x y z intensity, x y z r g b or x y z
 /// intensity r g b; more values are column_8 ... Several such blocks may follow each other. A block may have more
 /// points than it says, as some writers' do, but no fewer. x y z are float64, intensity float32, colours are packed as
-/// rgb.
+/// rgb. A file whose first line names columns, is a comment, or has commas or semicolons is one of columns
+/// (parseColumns()).
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePts(std::string_view file);
 
+/// The same. @param remarks what users should know is appended: blocks of more points than they say
+pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::string>& remarks);
+
 /// Only the fields that parsePts() makes. @throws FormatError
 pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
+
+/// The same of a file's beginning. @param whole as of parseColumnNames()
+pcl::PCLPointCloud2 parsePtsBeginning(std::string_view file, bool whole);
 
 /// .ptx: scans, each of ten lines (columns, rows, the scanner's registered position and axes, a 4 x 4 transform whose
 /// rows are applied to a point from the left) and columns x rows points, column by column. All points are transformed

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/lines/column_kinds.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
 
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/text/header_count.h>
 #include <pcl_bsh/io/text/small_letters.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace pcl_bsh::io {
 
@@ -23,16 +26,8 @@ Words wordsOf(TextCursor line)
   return words;
 }
 
+constexpr std::size_t most_columns_of_example = 16;
 constexpr auto name_the_columns = "name the columns (--columns of programs, columns of readers), as ";
-
-/// Goes to the next line that is no comment of the // kind.
-bool nextRow(TextCursor& text)
-{
-  do {
-    if (!text.nextLine()) return false;
-  } while (text.line().starts_with("//"));
-  return true;
-}
 
 /// x y z column_4 column_5 ...
 Words defaultNames(std::size_t columns)
@@ -76,8 +71,10 @@ Words namesInComments(std::string_view file)
 
 struct Columns {
   Fields values;
-  bool at_row = false;    ///< the text is at the first point; false when there is none
-  bool rows_tell = false; ///< the values depend on all rows
+  bool at_row = false;                   ///< the text is at the first point; false when there is none
+  bool rows_tell = false;                ///< the values depend on all rows
+  bool named = true;                     ///< not by their numbers
+  std::optional<std::uint64_t> promised; ///< points, by a line of its own
   std::vector<std::string> remarks;
 };
 
@@ -87,10 +84,8 @@ void forEachRow(TextCursor text, std::size_t columns, const Use& use)
 {
   std::vector<double> numbers(columns);
   do {
-    for (double& number : numbers) {
-      const std::string_view word = text.word();
-      number = isNumber(word) ? parseNumber<double>(word) : std::numeric_limits<double>::quiet_NaN();
-    }
+    for (double& number : numbers)
+      number = numberOf<double>(text.word()).value_or(std::numeric_limits<double>::quiet_NaN());
     if (!use(numbers)) return;
     while (text.nextNumbers(numbers))
       if (!use(numbers)) return;
@@ -205,12 +200,44 @@ void requireAxes(const Words& given)
   }
 }
 
-/// Goes to the first row.
-Columns readColumns(TextCursor& text, std::string_view file, const ColumnNames& given)
+/// Takes a line that counts the points, as CloudCompare writes it before the first of them. The text is at a row, if
+/// `columns` says so.
+void takeCount(TextCursor& text, Columns& columns)
+{
+  if (!columns.at_row || columns.promised) return;
+  TextCursor line = text;
+  const auto count = numberOf<std::uint64_t>(line.word());
+  if (!count || !line.line().empty()) return;
+  columns.promised = count;
+  columns.at_row = nextRow(text);
+}
+
+/// What users can say of columns of which some are no numbers: a name for each, `_` for those. Empty: all are.
+std::string exampleOf(TextCursor row, const Columns& columns)
+{
+  std::string example;
+  std::size_t axes = 0;
+  bool words = false;
+  for (std::size_t i = 0; i < std::min(columns.values.size(), most_columns_of_example) && !row.line().empty(); ++i) {
+    const bool number = isNumber(row.word());
+    std::string name(skipped_column);
+    if (number && columns.named)
+      name = columns.values[i].name;
+    else if (number)
+      name = axes < 3 ? std::string(1, "xyz"[axes++]) : "column_" + std::to_string(i + 1);
+    words = words || !number;
+    example += (i > 0 ? "," : "") + name;
+  }
+  return words ? example : "";
+}
+
+/// Goes to the first row. @param whole whether the file is all there
+Columns readColumns(TextCursor& text, std::string_view file, bool whole, const ColumnNames& given)
 {
   Words in_comments = namesInComments(file);
   Columns columns;
   columns.at_row = nextRow(text);
+  takeCount(text, columns);
   text.separateBy(separatorOf(text.line()));
   Words words = wordsOf(text);
   const std::size_t count = words.size();
@@ -220,6 +247,7 @@ Columns readColumns(TextCursor& text, std::string_view file, const ColumnNames& 
               "name all columns: _ for one that is not read");
   if (headed) {
     columns.at_row = nextRow(text);
+    takeCount(text, columns);
     if (columns.at_row) text.separateBy(separatorOf(text.line()));
   }
   else if (lined && count < 3) {
@@ -233,6 +261,7 @@ Columns readColumns(TextCursor& text, std::string_view file, const ColumnNames& 
   }
   else if (given.empty()) {
     nameByNumbers(text, words, columns);
+    columns.named = false;
   }
   if (!given.empty()) words = given;
   requireAxes(words);
@@ -243,6 +272,11 @@ Columns readColumns(TextCursor& text, std::string_view file, const ColumnNames& 
   findBytes(text, columns.at_row, columns.values);
   for (const pcl::PCLPointField& value : columns.values)
     if (value.datatype == pcl::PCLPointField::UINT8) columns.rows_tell = true;
+  if (columns.at_row) {
+    const ColumnKinds kinds(text, whole, columns.values);
+    columns.rows_tell = columns.rows_tell || kinds.rows_tell;
+    columns.remarks.insert(columns.remarks.end(), kinds.remarks.begin(), kinds.remarks.end());
+  }
   return columns;
 }
 
@@ -252,7 +286,7 @@ pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole, const Co
 {
   if (!whole) file = file.substr(0, file.find_last_of("\r\n") + 1); // no part of a row
   TextCursor text(file, '#');
-  const Columns columns = readColumns(text, file, given);
+  const Columns columns = readColumns(text, file, whole, given);
   if (!whole && columns.rows_tell) throw FormatError("is known in part, and all of its rows tell what they are");
   return TextRows(columns.values).finished();
 }
@@ -260,16 +294,30 @@ pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole, const Co
 pcl::PCLPointCloud2 parseColumns(std::string_view file, const ColumnNames& given, std::vector<std::string>* remarks)
 {
   TextCursor text(file, '#');
-  const Columns columns = readColumns(text, file, given);
+  const Columns columns = readColumns(text, file, true, given);
   if (remarks) remarks->insert(remarks->end(), columns.remarks.begin(), columns.remarks.end());
   TextRows rows(columns.values);
   std::vector<double> numbers(columns.values.size());
   rows.reserveLines(text.rest());
   for (bool at_row = columns.at_row; at_row; at_row = nextRow(text)) {
     rows.add();
-    rows.take(text, rows.size() - 1, 0, columns.values.size());
+    const TextCursor row_begins = text;
+    try {
+      rows.take(text, rows.size() - 1, 0, columns.values.size());
+    }
+    catch (const FormatError& error) {
+      const std::string example = exampleOf(row_begins, columns);
+      if (error.remedy() != remedy_for_damage || example.empty()) throw;
+      throw FormatError(error.what(), "where a column holds no numbers, " + std::string(name_the_columns) + example +
+                                          ": _ is not read");
+    }
     text.requireEndOfLine();
-    for (TextCursor row = text; row.nextNumbers(numbers) && rows.add(numbers);) text = row;
+    for (TextCursor row = text; rows.takesDoubles() && row.nextNumbers(numbers) && rows.add(numbers);) text = row;
+  }
+  if (columns.promised) {
+    requireNoFewer({*columns.promised}, rows.size());
+    const auto more = remarkOnCount({*columns.promised}, rows.size());
+    if (remarks && more) remarks->push_back(*more);
   }
   return std::move(rows).finished();
 }

@@ -2,15 +2,16 @@
 // A cloud that grows by a record per line of text.
 #pragma once
 
+#include <pcl_bsh/io/clouds/lines/column_kinds.h>
 #include <pcl_bsh/io/clouds/lines/field_text.h>
 #include <pcl_bsh/io/clouds/pcl_names.h>
 #include <pcl_bsh/io/clouds/records.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -38,10 +39,8 @@ inline bool isByte(double number)
 /// Whether the word says a whole number from 0 to 255, also as 52.0 or 5.2e1: its notation says nothing of its type.
 inline bool isByte(std::string_view word)
 {
-  std::uint8_t byte = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte);
-  if (error == std::errc() && end == word.data() + word.size()) return true;
-  return isNumber(word) && isByte(parseNumber<double>(word));
+  const std::optional<double> number = numberOf<double>(word);
+  return number && isByte(*number);
 }
 
 /// Records of the values of lines. No point yet.
@@ -83,12 +82,23 @@ public:
         put(record, i, std::numeric_limits<double>::quiet_NaN());
         continue;
       }
+      if (isTextField(values_[i]) && text.takeEmptyWord()) continue;
       text.parseWord([&](std::string_view word) {
+        if (isTextField(values_[i])) return putText(record, i, word);
         const bool byte = values_[i].datatype == pcl::PCLPointField::UINT8;
         if (byte && isByte(word)) return put(record, i, parseNumber<double>(word));
         parseNumber(word, values_[i].datatype, at(record, i));
       });
     }
+  }
+
+  /// Whether doubles say all values of a row: none is a text, or a whole number that they do not hold.
+  bool takesDoubles() const
+  {
+    return std::none_of(values_.begin(), values_.end(), [](const pcl::PCLPointField& value) {
+      return isTextField(value) || value.datatype == pcl::PCLPointField::INT64 ||
+             value.datatype == pcl::PCLPointField::UINT64;
+    });
   }
 
   /// Adds a record of these values. @return false, and nothing has happened, if one cannot be of its type
@@ -124,6 +134,12 @@ public:
   }
 
 private:
+  /// Sets a value that is a text; zeros stand behind it. @pre one of them at least
+  void putText(std::size_t record, std::size_t i, std::string_view word)
+  {
+    std::memcpy(at(record, i), word.data(), std::min<std::size_t>(word.size(), values_[i].count - 1));
+  }
+
   bool isSkipped(std::size_t i) const { return values_[i].count == 0; }
 
   bool isCoordinate(std::size_t i) const { return coordinates_.count(offsets_[i]) > 0; }

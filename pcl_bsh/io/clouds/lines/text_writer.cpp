@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/lines/column_kinds.h>
 #include <pcl_bsh/io/clouds/lines/field_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/pcl_names.h>
@@ -19,6 +20,7 @@ struct TextValue {
   pcl::PCLPointField field;
   std::string before;
   bool share = false; ///< a byte, as a share of 1
+  char text = 0;      ///< what separates columns, where it is a text
 };
 
 void appendShare(std::string& text, std::uint8_t byte)
@@ -27,6 +29,16 @@ void appendShare(std::string& text, std::uint8_t byte)
   constexpr int enough = 6; // digits, to tell 255ths apart
   const auto end = std::to_chars(digits.begin(), digits.end(), byte / 255.0, std::chars_format::general, enough).ptr;
   text.append(digits.begin(), end);
+}
+
+void appendText(std::string& line, const TextValue& value, const char* bytes)
+{
+  const std::string_view text = textOf(value.field, bytes);
+  if (!canBeColumn(text, value.text))
+    throw FormatError("field '" + value.field.name + "' has the text '" + std::string(text.substr(0, 40)) +
+                          "', which cannot stand between separators",
+                      value.text == ' ' ? "write a .csv or .pcd instead" : "write a .pcd instead");
+  line += text;
 }
 
 void writeRows(std::ostream& out, const pcl::PCLPointCloud2& cloud, const std::vector<TextValue>& values)
@@ -39,7 +51,10 @@ void writeRows(std::ostream& out, const pcl::PCLPointCloud2& cloud, const std::v
     for (const char* bytes = block.data(); bytes != block.data() + block.size();) {
       for (const TextValue& value : values) {
         lines += value.before;
-        if (value.share) {
+        if (value.text != 0) {
+          appendText(lines, value, bytes);
+        }
+        else if (value.share) {
           appendShare(lines, static_cast<std::uint8_t>(*bytes));
         }
         else {
@@ -81,7 +96,7 @@ void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud, char sepa
   const Fields fields = namedForFiles(namedFields(cloud), text_channels);
   std::vector<TextValue> values;
   for (const pcl::PCLPointField& field : fields) {
-    if (field.count > 1) {
+    if (field.count > 1 && !isTextField(field)) {
       throw FormatError("field '" + field.name + "' has " + counted(field.count, "value") + " per point",
                         "write a .pcd instead");
     }
@@ -90,7 +105,7 @@ void writeColumns(std::ostream& out, const pcl::PCLPointCloud2& cloud, char sepa
       throw FormatError("field '" + field.name + "' cannot name a column", "rename the field");
     }
     out << (values.empty() ? "" : between) << field.name;
-    values.push_back({field, values.empty() ? "" : between});
+    values.push_back({field, values.empty() ? "" : between, false, isTextField(field) ? separator : '\0'});
   }
   out << '\n';
   writeRows(out, cloud, values);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Columns of text that float64 does not hold: names, codes, times of day, time stamps of 19 digits.
+#pragma once
+
+#include <pcl_bsh/io/clouds/pcl_names.h>
+#include <pcl_bsh/io/text/text_cursor.h>
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Goes to the next line that is no comment of the // kind. False when there is none.
+bool nextRow(TextCursor& text);
+
+/// Whether float64 says as many digits of a number as the word does, so that these are not lost.
+bool float64Holds(std::string_view word);
+
+/// Whether a field is a column of words: INT8, more than one, each ends with a zero.
+bool isTextField(const pcl::PCLPointField& field);
+
+/// Text of a record's field. @throws FormatError where its bytes are none
+std::string_view textOf(const pcl::PCLPointField& field, const char* bytes);
+
+/// Whether a word can stand between separators, and is read as it was. @param separator ' ': blanks
+bool canBeColumn(std::string_view word, char separator);
+
+/// Finds the columns that are not float64, but coordinates, colours and those that are not read: whole numbers beyond
+/// 2^53 are INT64 or UINT64; what is no number, or has more digits than float64 holds, is text, as wide as its longest
+/// word. The first 1000 rows, of the first 48 KiB, tell what a column is, and for texts all rows how wide.
+struct ColumnKinds {
+  /// @param rows at the first row
+  /// @param whole false: these are not all rows
+  /// @param values gets their types and counts
+  /// @throws FormatError where texts would take much more room than the file, or `whole` is false and more rows tell
+  ColumnKinds(const TextCursor& rows, bool whole, Fields& values);
+
+  std::vector<std::string> remarks; ///< for users, on columns that are kept as text
+  bool rows_tell = false;           ///< all rows tell how wide a field is
+};
+
+} // namespace pcl_bsh::io
