@@ -38,6 +38,8 @@ struct StageCloud {
   std::vector<std::array<double, 7>> scanners = {};
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
+  /// Of a file that joins its points by lines, edges ... and has no faces: why its points say less. Empty else.
+  std::string corners_alone = {};
 };
 
 /// Several stages may read one cloud, so it does not change.

@@ -91,7 +91,8 @@ constexpr auto kReadMesh = R"(The vertices and faces of a mesh, for `SphereHiera
 Parameters
 ----------
 path : str or path-like
-    .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles.
+    .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles. Lines, edges and
+    free-form surfaces are warned of; a file of these without faces is refused: `read` gives its vertices.
 threads : int, default 0
     That unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False

@@ -45,6 +45,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
     fuzz::requireSound(vertices, file.size());
     if (vertices.width == 0) return 0;
     const PointsView view = viewOf(vertices);
+    const io::LeftOuts left_out = io::leftOutOf(faces);
+    fuzz::require(left_out.empty() || left_out.text().size() < 2000,
+                  "more kinds of what is left out than a sentence has");
     std::vector<io::FaceValues> values;
     for (const Triangle& triangle : io::trianglesOf(faces, view, values)) triangles.push_back(triangle);
     fuzz::require(triangles.size() <= file.size(), "more triangles than the file has bytes");

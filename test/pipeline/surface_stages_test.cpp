@@ -63,6 +63,32 @@ protected:
   TemporaryFolder folder_;
 };
 
+/// Lines join the corners, and nothing but these would be compared.
+TEST_F(SurfaceStages, CornersAloneAreNoObstacle)
+{
+  folder_.write("lines.obj", "v 1 1 2\nv 1 1 1\nl 1 2\n");
+  const std::string lines =
+      R"({"type": "readers.mesh", "tag": "lines", "filename": ")" + (folder_ / "lines.obj").string() + R"("}, )";
+  const std::string flag = R"({"type": "filters.bsh_flag", "tag": "f", "clearance": 0.01, "inputs": ["scan"],
+      "obstacle": "lines")";
+  const auto refusal = [&](const std::string& stages) -> std::string {
+    try {
+      runAll(lines + stages);
+    }
+    catch (const std::exception& error) {
+      return error.what();
+    }
+    return "ran";
+  };
+  EXPECT_THAT(refusal(flag + "}"), HasSubstr("lines.obj: holds 1 line (l) and no faces"));
+  EXPECT_THAT(refusal(flag + "}"), HasSubstr("`vertices_only`: true"));
+  EXPECT_THAT(refusal(R"({"type": "filters.bsh_flag", "clearance": 0.01, "inputs": ["lines"], "obstacle": "scan"})"),
+              HasSubstr("and no faces"));
+  const PipelineResult corners = runAll(lines + flag + R"(, "vertices_only": true})");
+  EXPECT_THAT(flagsOf(corners, "f"), ElementsAre(1, 0, 1, 0));
+  EXPECT_THAT(corners.warnings, Contains(HasSubstr("its 1 line (l) is not compared")));
+}
+
 TEST_F(SurfaceStages, FlagWhatIsNearTheFaces)
 {
   const PipelineResult surface = runAll(R"({"type": "filters.bsh_flag", "tag": "f", "inputs": ["scan"],

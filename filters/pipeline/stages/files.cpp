@@ -42,8 +42,9 @@ struct FileReader : Stage {
   {
     auto cloud = std::make_shared<StageCloud>();
     io::CloudFacts facts;
-    io::Mesh mesh = io::readMesh(filename.path, &facts, settings());
+    io::Mesh mesh = io::readMeshOrCorners(filename.path, &facts, settings());
     take(facts, *cloud);
+    if (!mesh.corners_alone.empty()) cloud->corners_alone = filename.path + ": " + mesh.corners_alone;
     cloud->cloud = std::move(mesh.vertices);
     if (!mesh.triangles.empty())
       cloud->triangles = std::make_shared<const std::vector<Triangle>>(std::move(mesh.triangles));

@@ -65,6 +65,9 @@ void warnOfUndecided(const Answer& answer, const Question& question, const char*
 /// What a cloud is compared as. @param option of what it is made of, in errors
 io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const char* option)
 {
+  if (!cloud->corners_alone.empty() && !question.vertices_only)
+    throw OptionError(option,
+                      "is of " + cloud->corners_alone + ": give `vertices_only`: true to compare its corners alone");
   try {
     return {{cloud, &cloud->cloud}, cloud->triangles, {question.vertices_only}};
   }

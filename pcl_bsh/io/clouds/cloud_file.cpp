@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/coordinates.h>
 #include <pcl_bsh/io/clouds/las/las.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
+#include <pcl_bsh/io/clouds/meshes/off_header.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
@@ -47,7 +49,7 @@ Contents readAll(LasReader reader)
   Contents contents = {readLas(reader)};
   const auto header = std::make_shared<const LasHeader>(reader.header());
   contents.facts.coordinate_system = coordinateSystemOf(*header);
-  contents.facts.remarks = remarksOn(header->block, header->block.endOfPoints() + header->behind_points.size());
+  contents.facts.remarks = reader.remarks();
   contents.facts.las = header;
   return contents;
 }
@@ -73,7 +75,7 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
   if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
   Contents contents;
   if (extension == ".pcd") {
-    contents.cloud = parsePcd(file, contents.facts.viewpoint);
+    contents.cloud = parsePcdTelling(file, contents.facts.viewpoint, contents.facts.remarks);
   }
   else if (extension == ".ply") {
     contents.cloud =
@@ -84,8 +86,8 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
                               &contents.facts.remarks);
   }
   else if (extension == ".obj") {
-    contents.cloud = parseObj(file);
-    if (faces) faces->polygons = parseObjFaces(file);
+    contents.cloud = parseObjTelling(file, contents.facts.remarks);
+    if (faces) faces->polygons = parseObjFaces(file, &contents.facts.remarks);
   }
   else if (extension == ".off") {
     contents.cloud = parseOff(file);
@@ -95,7 +97,7 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
     contents.cloud = parseStl(file, faces ? &faces->triangles : nullptr);
   }
   else if (extension == ".pts") {
-    contents.cloud = parsePts(file);
+    contents.cloud = parsePtsTelling(file, contents.facts.remarks);
   }
   else {
     contents.cloud = parseColumns(file, settings.columns, &contents.facts.remarks);
@@ -121,7 +123,7 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
   if (extension == ".stl") return parseStlHeader(file);
-  if (extension == ".pts") return parsePtsHeader(file);
+  if (extension == ".pts") return parsePtsBeginning(file, whole);
   if (extension == ".ptx") return parsePtxHeader(file, {}, settings.allow_scale);
   return parseColumnNames(file, whole, settings.columns);
 }
@@ -138,30 +140,13 @@ void print(const std::string& extension, std::ostream& out, const pcl::PCLPointC
   writeColumns(out, cloud, extension == ".csv" ? ',' : ' ');
 }
 
-/// That the points have usable x y z.
-void requireCoordinates(const pcl::PCLPointCloud2& cloud)
-{
-  for (const char* axis : {"x", "y", "z"}) {
-    const auto is_axis = [&](const pcl::PCLPointField& field) { return field.name == axis; };
-    if (std::count_if(cloud.fields.begin(), cloud.fields.end(), is_axis) > 1) {
-      throw FormatError("has two fields named '" + std::string(axis) + "'", "rename one");
-    }
-  }
-  try {
-    viewOf(cloud);
-  }
-  catch (const std::invalid_argument& error) {
-    throw FormatError(error.what(), "export it with float x y z");
-  }
-}
-
 /// The format of the bytes of a pipe, by their beginning: the name of a pipe says nothing.
 std::string extensionByContent(std::string_view file)
 {
   const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };
   if (begins("ply")) return ".ply";
   if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return ".pcd";
-  if (begins("OFF")) return ".off";
+  if (beginsAsOff(file)) return ".off";
   if (begins("LASF")) return ".las";
   return ".txt";
 }
@@ -196,6 +181,7 @@ bool isLasFile(const std::filesystem::path& path)
 /// The cloud, once it is known to be usable.
 pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
 {
+  makeCoordinatesPlain(contents.cloud);
   requireCoordinates(contents.cloud);
   setDense(contents.cloud);
   if (facts != nullptr) *facts = std::move(contents.facts);
@@ -204,6 +190,7 @@ pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
 
 pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
 {
+  makeCoordinatesPlain(header);
   pcl::PCLPointCloud2 fields = header;
   fields.width = fields.height = fields.row_step = 0; // the records are not there
   requireCoordinates(fields);
@@ -250,14 +237,25 @@ pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t s
   });
 }
 
-Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings, unsigned threads)
+Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
+                       unsigned threads)
 {
   Faces faces;
   Mesh mesh{read(path, facts, settings, threads, &faces), std::move(faces.triangles)};
   naming(path, [&] {
     const std::vector<Triangle> cut = trianglesOf(faces.polygons, viewOf(mesh.vertices), mesh.face_values);
+    const LeftOuts left_out = leftOutOf(faces.polygons);
     mesh.triangles.insert(mesh.triangles.end(), cut.begin(), cut.end());
+    if (mesh.triangles.empty() && left_out.joinVertices()) mesh.corners_alone = left_out.refusal();
+    if (facts != nullptr && !left_out.empty()) facts->remarks.push_back(left_out.remark());
   });
+  return mesh;
+}
+
+Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings, unsigned threads)
+{
+  Mesh mesh = readMeshOrCorners(path, facts, settings, threads);
+  if (!mesh.corners_alone.empty()) throw files::FileError(path, mesh.corners_alone, give_corners);
   return mesh;
 }
 

@@ -59,15 +59,17 @@ struct CloudFacts {
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
 ///             x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a comment before
-///             it names the columns (column_names.h); comments start with # or //
+///             it names the columns (column_names.h); lines that start with // are comments, and what follows a # that
+///             begins a line or stands behind a blank; columns that float64 does not hold are whole numbers of 64 bits
+///             or text (column_kinds.h), which .csv has again as they were
 ///
 /// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS or LAZ file does, and
 /// columns otherwise.
 ///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
-/// x y z, at most 2^31 - 1 points, and is_dense as PCL defines it. A file that says it holds no points is an empty
-/// cloud.
+/// x y z (integers become float64), at most 2^31 - 1 points, and is_dense as PCL defines
+/// it. A file that says it holds no points is an empty cloud.
 /// @param facts if not null, set to what the file says beside its points
 /// @param settings columns of .xyz, .txt and .csv, and whether transforms may scale (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
@@ -95,12 +97,20 @@ struct Mesh {
   pcl::PCLPointCloud2 vertices;
   std::vector<Triangle> triangles;          ///< empty where the file has no faces
   std::vector<FaceValues> face_values = {}; ///< the properties of a .ply's faces that are numbers
+  /// Why its vertices alone are less than what the file says, where it has no triangles, but lines, edges, free-form
+  /// surfaces ...: what is wrong, to be followed by give_corners. Otherwise empty.
+  std::string corners_alone = {};
 };
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
-/// Throws as readCloud() does, and where a face names a vertex that is not there.
+/// What else the file holds beside faces (lines, edges, points of no face ...) is counted in the remarks of `facts`.
+/// Throws as readCloud() does, where a face names a vertex that is not there, and for a mesh of corners_alone.
 Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ReadSettings& settings = {},
               unsigned threads = 0);
+
+/// The same, also of corners_alone, for who compares nothing, or asks about vertices.
+Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts = nullptr,
+                       const ReadSettings& settings = {}, unsigned threads = 0);
 
 /// The fields of a file's cloud and, where its header says so, the number of its points; the points are not read.
 /// Throws as readCloud() does for what a header can tell, and for a pipe.

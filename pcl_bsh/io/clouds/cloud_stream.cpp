@@ -2,12 +2,14 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/coordinates.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/reader.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/text/byte_source.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/header_count.h>
 #include <pcl_bsh/io/text/small_letters.h>
 
 #include <algorithm>
@@ -26,7 +28,7 @@ public:
 
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
-  std::vector<std::string> remarks() const override { return remarksOn(reader_.block(), fs::file_size(path_)); }
+  std::vector<std::string> remarks() const override { return reader_.remarks(); }
   std::string coordinateSystem() const override { return coordinateSystemOf(reader_.header()); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
@@ -57,11 +59,16 @@ public:
                                  std::to_string(there / header_.point_step) + " are there",
                              remedy_for_damage);
     }
+    const std::uint64_t left = there - wanted;
+    const std::string first =
+        file_->text(at_ + wanted, static_cast<std::size_t>(std::min<std::uint64_t>(left, most_padding)));
+    if (const auto more = remarkOnMoreBytes({size_}, left, first, header_.point_step)) remarks_.push_back(*more);
     header_.width = header_.height = 0;
   }
 
   const pcl::PCLPointCloud2& header() const override { return header_; }
   std::uint64_t size() const override { return size_; }
+  std::vector<std::string> remarks() const override { return remarks_; }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
     const auto points = static_cast<std::size_t>(std::min<std::uint64_t>(most, size_ - next_));
@@ -77,6 +84,7 @@ private:
   std::unique_ptr<ByteSource> file_;
   pcl::PCLPointCloud2 header_;
   std::uint64_t at_, size_ = 0, next_ = 0;
+  std::vector<std::string> remarks_;
 };
 
 class HeldCloud : public CloudStream {
@@ -108,7 +116,7 @@ private:
   std::uint64_t next_ = 0;
 };
 
-/// Where the points of a binary PCD file are; none for other files.
+/// Where the points of a binary PCD file are; none for other files, and where x y z are to be converted.
 std::optional<PcdBody> binaryBody(const fs::path& path)
 {
   if (extensionOf(path) != ".pcd") return std::nullopt;
@@ -116,7 +124,7 @@ std::optional<PcdBody> binaryBody(const fs::path& path)
   const FileBytes beginning(path, usual);
   try {
     PcdBody body = findPcdBody(beginning.view());
-    if (body.storage == "binary") return body;
+    if (body.storage == "binary" && !hasIntegerCoordinates(body.header)) return body;
   }
   catch (const FormatError&) { // a longer header, or a defect that readCloud() tells
   }

@@ -66,6 +66,38 @@ TEST(Laz, FilesGiveWhatTheirLasGives)
   }
 }
 
+/// As of LAS, whose records behind the points are counted.
+TEST(Laz, TellsPointsThatItsHeaderDoesNotCount)
+{
+  const TemporaryFolder folder;
+  const auto remarksOf = [&](const std::string& laz) {
+    const auto file = folder.write("a.laz", laz);
+    CloudFacts facts;
+    readCloud(file, &facts);
+    EXPECT_EQ(openCloud(file, 1 << 20)->remarks(), facts.remarks);
+    return facts.remarks;
+  };
+  LasSample sample(2, 1);
+  addScan(sample, 250);
+  laz_test::LazOptions differing;
+  differing.chunks = {100, 120, 30};
+  const std::string alike = laz_test::compressed(sample.text()),
+                    different = laz_test::compressed(sample.text(), differing);
+  EXPECT_TRUE(remarksOf(alike).empty()) << "also where it is far shorter than its points";
+  EXPECT_TRUE(remarksOf(different).empty());
+  for (const std::uint32_t told : {1U, 99U, 100U, 101U, 200U}) {
+    const auto remarkOn = [&](std::string laz) {
+      put(laz, 107, told);
+      return remarksOf(laz);
+    };
+    const std::string begin = "its header counts " + std::to_string(told) + " of at least ";
+    EXPECT_THAT(remarkOn(alike),
+                testing::ElementsAre(begin + "201 points that its chunks have: the others are left out"));
+    EXPECT_THAT(remarkOn(different),
+                testing::ElementsAre(begin + "250 points that its chunks have: the others are left out"));
+  }
+}
+
 TEST(Laz, IsReadOnAsManyThreadsAsAreAskedFor)
 {
   static const TemporaryFolder folder;

@@ -10,12 +10,17 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh::io {
 namespace {
@@ -86,6 +91,54 @@ TEST(MeshFile, ReadsCornersOfObj)
   EXPECT_EQ(areaOf(readMesh(folder.write("c.obj", vertices + "f 1 2 \\\n 3 4 # a square\n"))), 1.0);
   EXPECT_THAT(readMesh(folder.write("d.obj", "f 1 2 3\n" + vertices)).triangles, ElementsAre(Triangle{0, 1, 2}));
   EXPECT_THAT(readMesh(folder.write("e.obj", vertices + "fo 1 2 3\n")).triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
+/// How many directed edges no opposite one cancels.
+std::size_t openEdges(const Mesh& mesh)
+{
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
+  std::size_t open = 0;
+  for (const auto& [edge, count] : edges)
+    if (edge.first != edge.second && edges[{edge.second, edge.first}] != count) ++open;
+  return open;
+}
+
+TEST(MeshFile, StripsOfPlyAreWoundAlternately)
+{
+  const TemporaryFolder folder;
+  const auto meshOf = [&](const std::string& vertices, const std::vector<std::string>& strips) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex " + std::to_string(std::count(vertices.begin(), vertices.end(), '\n')) +
+        "\nproperty float x\nproperty float y\nproperty float z\nelement tristrips " + std::to_string(strips.size()) +
+        "\nproperty list int int vertex_indices\nend_header\n" + vertices;
+    for (const std::string& strip : strips) text += strip + '\n';
+    return readMesh(folder.write("s.ply", text));
+  };
+  const std::string cube = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
+  for (const std::vector<std::string>& strips :
+       {std::vector<std::string>{"14 0 1 4 5 7 1 3 0 2 4 6 7 2 3"},                     // one strip
+        {"29 0 2 1 3 -1 4 5 6 7 -1 0 1 4 5 -1 2 6 3 7 -1 0 4 2 6 -1 1 3 5 7"},          // begun anew by -1
+        {"4 0 2 1 3", "4 4 5 6 7", "4 0 1 4 5", "4 2 6 3 7", "4 0 4 2 6", "4 1 3 5 7"}, // a row for each
+        {"9 0 2 1 3 -1 4 5 6 7", "10 2 6 3 7 -1 1 3 5 7 -1", "3 0 1 4", "3 4 1 5", "6 -1 -1 0 4 2 6"},
+        {"10 0 2 1 3 3 5 5 7 4 6", "4 0 1 4 5", "4 2 6 3 7", "4 0 4 2 6", "4 1 3 5 7"}}) { // without area between
+    const Mesh mesh = meshOf(cube, strips);
+    EXPECT_EQ(openEdges(mesh), 0u) << strips[0];
+    EXPECT_EQ(areaOf(mesh), 6.0) << strips[0];
+    double volume = 0; // six times that
+    const PointsView view = viewOf(mesh.vertices);
+    for (const Triangle& t : mesh.triangles) {
+      Eigen::Matrix3d corners;
+      for (int k = 0; k < 3; ++k) {
+        const Point3 p = view.point(t[static_cast<std::size_t>(k)]);
+        corners.col(k) = Eigen::Vector3d(p[0], p[1], p[2]);
+      }
+      volume += corners.determinant();
+    }
+    EXPECT_EQ(volume, 6.0) << "outwards: " << strips[0];
+  }
+  EXPECT_EQ(openEdges(meshOf("0 0 0\n1 1 0\n0 1 1\n1 0 1\n", {"6 0 1 2 3 0 1"})), 0u) << "a tetrahedron";
 }
 
 TEST(MeshFile, CutsPolygonsIntoTheirArea)
@@ -159,7 +212,7 @@ TEST(MeshFile, ReadsFacesOfOffAndPly)
   const std::string strips = "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\n"
                              "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   EXPECT_THAT(readMesh(folder.write("b.ply", strips + "8 0 1 3 2 -1 0 1 2\n" + rows)).triangles,
-              ElementsAre(Triangle{0, 1, 3}, Triangle{1, 3, 2}, Triangle{0, 1, 2}));
+              ElementsAre(Triangle{0, 1, 3}, Triangle{3, 1, 2}, Triangle{0, 1, 2}));
   std::string binary = "ply\nformat binary_little_endian 1.0\n" + square_ply;
   const float places[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   binary.append(reinterpret_cast<const char*>(places), sizeof places);
@@ -305,6 +358,37 @@ TEST(MeshFile, TellsWhatAFacetLacks)
   }
   EXPECT_THAT(refusalOf("solid a\nendsolid\n" + facet), HasSubstr("line 3 starts with 'facet', which no STL file"));
   EXPECT_THAT(refusalOf("solid a\nthing\nendsolid\n"), HasSubstr("line 2 starts with 'thing', which no STL file"));
+}
+
+TEST(MeshFile, StlMayEndWithTwoWords)
+{
+  const TemporaryFolder folder;
+  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n";
+  for (const char* end : {"end loop\nend facet\nend solid\n", "endloop\nendfacet\nend solid a b\n",
+                          "END LOOP\nEndFacet\n end\tsolid\n", "end loop\nendfacet\nendsolid\n"})
+    EXPECT_EQ(readMesh(folder.write("a.stl", "solid a\n" + facet + end)).triangles.size(), 1u) << end;
+  EXPECT_THAT(failureOf(folder.write("a.stl", "solid a\n" + facet + "end facet\nend loop\nend solid\n")),
+              HasSubstr("has no 'endloop' where a facet needs one"));
+  EXPECT_THAT(failureOf(folder.write("a.stl", "solid a\n" + facet + "end loop\nend facet\nend\n")),
+              HasSubstr("starts with 'end', which no STL file has there"));
+}
+
+TEST(MeshFile, ABackslashJoinsLinesOfObj)
+{
+  const TemporaryFolder folder;
+  const Mesh square = readMesh(
+      folder.write("a.obj", "# C:\\made\\\nmtllib C:\\a\\b.mtl\nv 0 \\\n0 0\r\nv 1 0 0 \\\r\n\nv\\\n1\\\n1\\\n0 # c\n"
+                            "v 0 1 0\nvn 0 0 \\\n1\nf \\\n1 2 \\  \n3\\\n4 # a square\n"));
+  ASSERT_EQ(square.vertices.width, 4u);
+  EXPECT_EQ(areaOf(square), 1.0);
+  const Mesh coloured = readMesh(folder.write("b.obj", "v 1 2 3 \\\n 1 0 \\\n 1\nvn 0 \\\n0 1\n"));
+  EXPECT_EQ(namesOf(coloured.vertices), "x y z normal_x normal_y normal_z rgb");
+  EXPECT_EQ(colourOf(coloured.vertices, 0), 0xff00ffU);
+  EXPECT_THAT(failureOf(folder.write("c.obj", "v 0 0 \\\n x\nv 1 1 1\n")),
+              HasSubstr("line 1 is damaged: 'x' is not a number"));
+  EXPECT_THAT(failureOf(folder.write("c.obj", "v 0 0 0 \\\n\nv 1 1 1 \\\n\nv 2 2\n")),
+              HasSubstr("line 5 has fewer values"));
+  EXPECT_THAT(failureOf(folder.write("c.obj", "v 0 0 \\")), HasSubstr("'\\' is not a number"));
 }
 
 TEST(MeshFile, HeadersOfStlAreOfTextOrLongEnough)

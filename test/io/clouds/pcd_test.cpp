@@ -245,4 +245,42 @@ TEST(Pcd, RefusesAViewpointThatIsNotFinite)
   EXPECT_EQ(viewpoint, (Viewpoint{1, 2, 3, 0, 0, 0, 0})) << "which says where, and not how it is turned";
 }
 
+TEST(Pcd, TakesWhatProgramsWriteForNaNAsNaN)
+{
+  for (const std::string nan : {"1.#QNAN", "-1.#IND", "1.#SNAN0", "nan(ind)"}) {
+    const pcl::PCLPointCloud2 cloud = parse(xyzHeader(2, "ascii") + "5 6 " + nan + "\n7 8 9 # seen\n");
+    EXPECT_EQ(valueOf(cloud, 0, "y"), 6) << nan;
+    EXPECT_TRUE(std::isnan(valueOf(cloud, 0, "z"))) << nan;
+    EXPECT_EQ(valueOf(cloud, 1, "z"), 9) << nan;
+    EXPECT_EQ(defect(header("x y z ring", "4 4 4 1", "F F F U", 1, "ascii") + "1 2 3 " + nan + "\n"),
+              "line 11 is damaged: '" + nan + "' is not a whole number in the range of its type");
+  }
+  EXPECT_EQ(valueOf(parse(xyzHeader(1, "ascii") + "5 6 -1.#INF\n"), 0, "z"), -std::numeric_limits<double>::infinity());
+}
+
+/// As PCL writes padding that takes no room.
+TEST(Pcd, PaddingMayHaveNoCount)
+{
+  const auto counted = [](const std::string& counts, const std::string& storage) {
+    std::string text = header("x y z _ ring _", "4 4 4 1 2 1", "F F F U U U", 1, storage);
+    text.insert(text.find("WIDTH"), "COUNT " + counts + "\n");
+    return text;
+  };
+  const float place[] = {1, 2, 3};
+  const std::string xyz(reinterpret_cast<const char*>(place), sizeof place);
+  const std::string ring("\7\1", 2);
+  const std::pair<std::string, std::string> files[] = {{counted("1 1 1 0 1 0", "ascii"), "1 2 3 263\n"},
+                                                       {counted("1 1 1 2 1 0", "ascii"), "1 2 3 9 9 263\n"},
+                                                       {counted("1 1 1 0 1 0", "binary"), xyz + ring},
+                                                       {counted("1 1 1 4 1 2", "binary"), xyz + "xxxx" + ring + "yy"}};
+  for (const auto& [head, body] : files) {
+    const pcl::PCLPointCloud2 cloud = parse(head + body);
+    EXPECT_EQ(namesOf(cloud), "x y z ring") << head;
+    EXPECT_EQ(valueOf(cloud, 0, "z"), 3) << head;
+    EXPECT_EQ(valueOf(cloud, 0, "ring"), 263) << head;
+  }
+  EXPECT_EQ(defect(counted("1 1 1 1 0 1", "ascii") + "1 2 3\n"),
+            "field 'ring' has type U, size 2 and count 0, which is no PCD field");
+}
+
 } // namespace pcl_bsh::io

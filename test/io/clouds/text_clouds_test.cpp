@@ -2,6 +2,7 @@
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 
 #include <gmock/gmock.h>
 
@@ -61,6 +62,27 @@ TEST(TextClouds, TheFirstRowDecidesTheSeparator)
   }
   const pcl::PCLPointCloud2 named = parseColumns("x y z\n1;2;3\n");
   EXPECT_EQ(valueOf(named, 0, "z"), 3) << "the names' line may have its own";
+}
+
+TEST(TextClouds, TakesWhatProgramsWriteForNaNAsNaN)
+{
+  for (const std::string nan : {"1.#QNAN", "-1.#IND", "1.#SNAN", "-1.#IND00", "nan(ind)", "NaN"}) {
+    const pcl::PCLPointCloud2 points = parseColumns("1 2 3\n5 6 " + nan + "\n7 8 9 # seen\n");
+    ASSERT_EQ(points.width, 3U) << nan;
+    EXPECT_EQ(valueOf(points, 1, "y"), 6) << nan;
+    EXPECT_TRUE(std::isnan(valueOf(points, 1, "z"))) << nan;
+    EXPECT_EQ(valueOf(points, 2, "z"), 9) << nan;
+    const pcl::PCLPointCloud2 named = parseColumns("x;i;y;z\n" + nan + ";" + nan + ";2;3\n");
+    EXPECT_TRUE(std::isnan(valueOf(named, 0, "x")) && std::isnan(valueOf(named, 0, "i"))) << nan;
+    EXPECT_TRUE(std::isnan(valueOf(parseColumns(nan + " 1 2\n"), 0, "x"))) << nan << " is a point, not names";
+    EXPECT_TRUE(std::isnan(valueOf(parseObj("v 1 2 3\nv 1 2 " + nan + "\nf 1 1 1\n"), 1, "z"))) << nan;
+    EXPECT_TRUE(std::isnan(valueOf(parseOff("OFF\n1 0 0\n1 " + nan + " 3\n"), 0, "y"))) << nan;
+    const pcl::PCLPointCloud2 coloured = parseObj("v 1 2 3 0.2 0.4 " + nan + "\n");
+    EXPECT_EQ(namesOf(coloured), "x y z red green blue") << nan << " is no share of 1";
+    EXPECT_TRUE(std::isnan(valueOf(coloured, 0, "blue"))) << nan;
+  }
+  EXPECT_EQ(valueOf(parseColumns("1 2 -1.#INF\n"), 0, "z"), -std::numeric_limits<double>::infinity());
+  EXPECT_THAT(defectOf([] { parseColumns("1 2 3#note\n"); }), HasSubstr("'3#note' is not a number"));
 }
 
 TEST(TextClouds, TakesAnEmptyValueForNaN)
@@ -309,6 +331,48 @@ TEST(TextClouds, OffVertices)
   EXPECT_EQ(parseOff("OFF 0 0 0\n").width, 0U);
 }
 
+TEST(TextClouds, OffKeywordsHaveManyForms)
+{
+  const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+  for (const char* head :
+       {"OFF4 1 0\n", "OFF 4 1 0\n", "OFF\n4 1 0\n", "OFF4\t1\n", "# made\nOFF4 1 4 # counts\n", "4 1 0\n", "4 1\n"}) {
+    EXPECT_EQ(parseOff(head + rows).width, 4U) << head;
+    EXPECT_EQ(parseOffHeader(head + rows).fields.size(), 3U) << head;
+    const Polygons faces = parseOffFaces(head + rows);
+    ASSERT_EQ(faces.size(), 1U) << head;
+    EXPECT_EQ(faces[0].size(), 4U) << head;
+  }
+  for (const char* keyword : {"CNOFF", "NCOFF"}) {
+    const pcl::PCLPointCloud2 cloud =
+        parseOff(keyword + std::string("\n2 0 0\n1 2 3 0 0 1 255 0 7 9\n4 5 6 0.6 0 0.8 1 2 3 4\n"));
+    EXPECT_EQ(namesOf(cloud), "x y z normal_x normal_y normal_z rgba") << keyword;
+    EXPECT_EQ(valueOf(cloud, 1, "normal_x"), 0.6) << keyword;
+    EXPECT_EQ(colourOf(cloud, 0, "rgba"), 0x09ff0007U) << keyword;
+  }
+  const pcl::PCLPointCloud2 other = parseOff("NCOFF2 0 0\n1 2 3 255 0 7 9 0 0 1\n4 5 6 1 2 3 4 0.6 0 0.8\n");
+  EXPECT_EQ(valueOf(other, 1, "normal_x"), 0.6) << "as MeshLab writes it: colours first";
+  EXPECT_EQ(colourOf(other, 0, "rgba"), 0x09ff0007U);
+  const pcl::PCLPointCloud2 all = parseOff("NCSTOFF\n1 0 0\n1 2 3 255 0 7 9 0 0 1 0.5 0.25\n");
+  EXPECT_EQ(valueOf(all, 0, "normal_z"), 1);
+  EXPECT_EQ(colourOf(all, 0, "rgba"), 0x09ff0007U);
+  EXPECT_EQ(namesOf(parseOff("STNOFF 1 0 0\n1 2 3 0 0 1 0.5 0.5\n")), "x y z normal_x normal_y normal_z");
+  EXPECT_EQ(namesOf(parseOff("NSTOFF1 0 0\n1 2 3 0 0 1 0.5 0.5\n")), "x y z normal_x normal_y normal_z");
+  EXPECT_EQ(namesOf(parseOff("COFF1 0 0\n1 2 3 255 0 0 255\n")), "x y z rgba");
+  for (const char* keyword : {"4OFF", "nOFF", "4nOFF", "C4OFF", "STn4OFF", "N4nOFF", "TOFF", "CCOFF"}) {
+    try {
+      parseOff(keyword + std::string("\n1 0 0\n1 2 3 4\n"));
+      ADD_FAILURE() << keyword;
+    }
+    catch (const FormatError& error) {
+      EXPECT_STREQ(error.what(), "is not an OFF file: it does not start with 'OFF'");
+      EXPECT_THAT(error.remedy(), HasSubstr(std::string("its keyword is ") + keyword + ", ")) << keyword;
+    }
+  }
+  for (const char* wrong :
+       {"OFFICE\n1 0 0\n1 2 3\n", "off\n1 0 0\n1 2 3\n", "OFF4x 1 0\n", "SKEL\n1 0\n", "", "-1 0 0\n"})
+    EXPECT_THROW(parseOff(wrong), FormatError) << wrong;
+}
+
 TEST(TextClouds, RefusesDamagedOff)
 {
   EXPECT_EQ(defectOf([] { parseOff("4OFF\n1 0 0\n1 2 3 4\n"); }), "is not an OFF file: it does not start with 'OFF'");
@@ -416,6 +480,51 @@ TEST(TextClouds, ObjPromisesAreWholeNumbersAlone)
   for (const char* other : {"# Vertices: 2x\n", "# Vertices: 2 of many\n", "# Vertices: many\n", "# Vertices:\n",
                             "# Vertices: 99999999999999999999\n", "# Vertice: 2\n", "#Vertices: 2\n"})
     EXPECT_EQ(parseObj(other + vertex).width, 1U) << other;
+}
+
+TEST(TextClouds, ReadsWhatCloudCompareExports)
+{
+  const std::string rows = "1.5;2;3;200;100;50;0.25\n4;5;6;1;2;3;nan\n";
+  for (const std::string& file :
+       {"//X;Y;Z;R;G;B;Scalar field\n2\n" + rows, "2\n" + rows, "X;Y;Z;R;G;B;Scalar_field\n2\n" + rows,
+        "// made by hand\n //X;Y;Z;R;G;B;C\n 2 \r\n\n" + rows}) {
+    const pcl::PCLPointCloud2 cloud = parseColumns(file);
+    ASSERT_EQ(cloud.width, 2U) << file;
+    EXPECT_EQ(valueOf(cloud, 0, "x"), 1.5) << file;
+    EXPECT_EQ(valueOf(cloud, 1, "z"), 6) << file;
+    EXPECT_EQ(namesOf(parseColumnNames(file)), namesOf(cloud)) << file;
+  }
+  EXPECT_EQ(namesOf(parseColumns("//X;Y;Z;R;G;B;Scalar_field\n2\n" + rows)), "x y z rgb Scalar_field");
+  EXPECT_EQ(namesOf(parseColumns("//X Y Z R G B Nx Ny Nz\n1\n1 2 3 4 5 6 0 0 1\n")),
+            "x y z rgb normal_x normal_y normal_z");
+  EXPECT_EQ(parseColumns("//X,Y,Z\n0\n").width, 0U);
+  EXPECT_EQ(valueOf(parseColumns("//X,Y,Z\n1\n1,2,3\n", {"z", "y", "x"}), 0, "x"), 3);
+  std::vector<std::string> remarks;
+  EXPECT_EQ(parseColumns("1\n1 2 3\n4 5 6\n", {}, &remarks).width, 2U);
+  EXPECT_THAT(remarks,
+              ::testing::ElementsAre("its header counts 1 point, and 2 are there: all that are there are read"));
+  EXPECT_EQ(defectOf([] { parseColumns("3\n1 2 3\n"); }), "is truncated: 1 of 3 points are there");
+  EXPECT_EQ(defectOf([] { parseColumns("1\n2\n3\n"); }), "line 2 is no point: it has fewer than three numbers");
+  EXPECT_EQ(defectOf([] { parseColumns("1.5\n1 2 3\n"); }), "line 1 is no point: it has fewer than three numbers");
+}
+
+TEST(TextClouds, NamesTheOptionForColumnsOfNames)
+{
+  const auto remedyOf = [](const std::string& file, const ColumnNames& names = {}) -> std::string {
+    try {
+      parseColumns(file, names);
+    }
+    catch (const FormatError& error) {
+      return error.remedy();
+    }
+    return "was read";
+  };
+  EXPECT_THAT(remedyOf("P1 1 2 3\nP2 4 5 6\n"),
+              HasSubstr("name the columns (--columns of programs, columns of readers), as _,x,y,z: _ is not read"));
+  EXPECT_THAT(remedyOf("P1;TREE;1;2;3;7\n"), HasSubstr(", as _,_,x,y,z,column_6: _"));
+  EXPECT_THAT(remedyOf("1,2,3\n4,tree,6\n"), HasSubstr("--columns"));
+  EXPECT_THAT(remedyOf("1,5 2,5 3,5\n"), ::testing::Not(HasSubstr("--columns"))) << "decimal commas";
+  EXPECT_EQ(valueOf(parseColumns("P1 1 2 3 tree\n", {"_", "x", "y", "z", "_"}), 0, "z"), 3);
 }
 
 } // namespace pcl_bsh::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/text/header_count.h>
 
 #include <algorithm>
 #include <optional>
@@ -143,10 +144,10 @@ std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_byt
   std::uint64_t end = file_bytes; // of what can be records
   if (block.extended_records > 0) end = std::min(end, block.extended_at);
   if (block.waveforms_at >= points_end) end = std::min(end, block.waveforms_at);
-  const std::uint64_t more = (end - points_end) / block.record_length;
-  if (more == 0) return {};
-  return {"its header counts " + std::to_string(block.points) + " of the " + counted(block.points + more, "record") +
-          " there is room for: " + std::to_string(more) + nounOf(more, " is", " are") + " left out"};
+  const HeaderCount told{block.points, "record", "records"};
+  constexpr std::string_view any = "any"; // zeros are records, too
+  const auto more = remarkOnMoreBytes(told, end - points_end, any, block.record_length);
+  return more ? std::vector<std::string>{*more} : std::vector<std::string>();
 }
 
 } // namespace pcl_bsh::io

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/unpacked_laz.h>
 #include <pcl_bsh/io/clouds/records.h>
 
@@ -34,7 +36,7 @@ std::vector<LasField> lasFieldsOf(const LasBlock& block, std::string_view descri
 }
 
 LasReader::LasReader(std::unique_ptr<ByteSource> file, unsigned threads)
-: file_(unpackedLaz(std::move(file), threads)),
+: file_(unpackedLaz(std::move(file), threads, &left_out_)),
   block_(readLasBlock(*file_))
 {
   header_.block = block_;
@@ -43,6 +45,15 @@ LasReader::LasReader(std::unique_ptr<ByteSource> file, unsigned threads)
   fields_ = lasFieldsOf(block_, header_.descriptors);
   offsets_ = layOutLas(fields_, cloud_);
   cloud_.height = 1;
+}
+
+std::vector<std::string> LasReader::remarks() const
+{
+  std::vector<std::string> remarks = remarksOn(block_, file_->size());
+  if (left_out_ > 0)
+    remarks.push_back("its header counts " + std::to_string(block_.points) + " of at least " +
+                      counted(block_.points + left_out_, "point") + " that its chunks have: the others are left out");
+  return remarks;
 }
 
 void LasReader::findDescriptors()

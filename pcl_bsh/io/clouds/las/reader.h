@@ -40,6 +40,9 @@ public:
   /// Everything beside the points. Takes as much memory as that does in the file.
   LasHeader header() const;
 
+  /// What users should know: points or records that the header does not count, a line each.
+  std::vector<std::string> remarks() const;
+
   /// Leaves out the next points.
   void skip(std::uint64_t points) noexcept { next_ += std::min(points, block_.points - next_); }
 
@@ -57,6 +60,7 @@ private:
   void findDescriptors();
   unsigned colourShift();
 
+  std::uint64_t left_out_ = 0; ///< points of chunks that the header does not count
   std::unique_ptr<ByteSource> file_;
   LasBlock block_;
   LasHeader header_; ///< all but what is behind the points

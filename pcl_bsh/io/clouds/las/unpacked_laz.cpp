@@ -68,9 +68,13 @@ public:
     scheme_ = std::move(head.scheme);
     laz::ChunkTable table = laz::readChunkTable(*file_, block, scheme_);
     chunks_ = std::move(table.chunks);
+    left_out_ = table.more;
     points_end_ = head_.size() + block.points * length_;
     keepBehind(block, table.end);
   }
+
+  /// Points of chunks that the header does not count.
+  std::uint64_t pointsLeftOut() const noexcept { return left_out_; }
 
   std::uint64_t size() const override { return placeOf(std::numeric_limits<std::uint64_t>::max()); }
 
@@ -238,6 +242,7 @@ private:
   std::string head_;
   laz::Scheme scheme_;
   std::vector<laz::Chunk> chunks_;
+  std::uint64_t left_out_ = 0;
   std::uint64_t points_end_ = 0;             ///< unpacked
   std::vector<Range> behind_;                ///< what is kept of the compressed file behind its points
   std::uint64_t first_ = 0;                  ///< point of records_
@@ -248,11 +253,13 @@ private:
 
 } // namespace
 
-std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads)
+std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads, std::uint64_t* more)
 {
   const LasBlock block = readLasBlock(*file);
   if (!block.compressed) return file;
-  return std::make_unique<UnpackedLaz>(std::move(file), block, threads);
+  auto unpacked = std::make_unique<UnpackedLaz>(std::move(file), block, threads);
+  if (more != nullptr) *more = unpacked->pointsLeftOut();
+  return unpacked;
 }
 
 } // namespace pcl_bsh::io

@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/clouds/las/header.h>
 #include <pcl_bsh/io/text/byte_source.h>
 
+#include <cstdint>
 #include <memory>
 
 namespace pcl_bsh::io {
@@ -15,8 +16,10 @@ namespace pcl_bsh::io {
 /// takes memory for a chunk per thread, compressed, and at most 4 MB of its points; where chunks have no table, for all
 /// that is compressed.
 /// @param threads 0: as many as the caller's oneTBB arena has
+/// @param more null, or gets how many points the chunks have at least that the header does not count
 /// @throws FormatError as readLasBlock(); for a compression that is not read; for a table of chunks that the file has
 ///   no room for. read() does so for chunks that are damaged
-std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads);
+std::unique_ptr<ByteSource> unpackedLaz(std::unique_ptr<ByteSource> file, unsigned threads,
+                                        std::uint64_t* more = nullptr);
 
 } // namespace pcl_bsh::io

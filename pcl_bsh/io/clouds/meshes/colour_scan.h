@@ -2,8 +2,9 @@
 // Which colours the vertices of a mesh file (.obj, .off) have, seen over all of them before the first is stored.
 #pragma once
 
+#include <pcl_bsh/io/text/parse_number.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -23,12 +24,8 @@ public:
     if (words.size() < 3 || words.size() > 4) return;
     channels_ = std::max(channels_, words.size());
     for (const std::string_view word : words) {
-      const char* const end = word.data() + word.size();
-      double value = -1; // a word that is no number is refused when it is read
-      std::from_chars(word.data(), end, value);
-      std::uint8_t byte = 0;
-      const auto [at, error] = std::from_chars(word.data(), end, byte);
-      if (error != std::errc() || at != end) bytes_ = false;
+      const double value = numberOf<double>(word).value_or(-1); // no number: is refused when it is read
+      if (!numberOf<std::uint8_t>(word)) bytes_ = false;
       constexpr double three_digits = 0.15; // how far a 255th written with three digits is from a whole one
       if (!(value >= 0 && value <= 1 && std::abs(value * 255 - std::round(value * 255)) <= three_digits))
         shares_ = false;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
+#include <pcl_bsh/io/clouds/meshes/off_header.h>
+#include <pcl_bsh/io/text/header_count.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <string>
 
 namespace pcl_bsh::io {
 
@@ -21,39 +26,82 @@ std::uint64_t vertexOf(std::string_view corner, std::uint64_t vertices)
   return vertices - back;
 }
 
+/// Whether a line `l` has two different vertices; one of the same is a point.
+bool joinsVertices(TextCursor line)
+{
+  const auto next = [&] {
+    const std::string_view corner = line.word();
+    return corner.substr(0, corner.find('/'));
+  };
+  for (const std::string_view first = next(); !line.line().empty();)
+    if (next() != first) return true;
+  return false;
+}
+
+/// Lines of an .obj, by their keyword, that say something of a shape beside vertices and faces.
+struct ObjKind {
+  std::string_view keyword, one, many;
+};
+
+constexpr std::array<ObjKind, 8> obj_kinds = {{
+    {"l", "line (l)", "lines (l)"},
+    {"curv", "free-form curve (curv)", "free-form curves (curv)"},
+    {"surf", "free-form surface (surf)", "free-form surfaces (surf)"},
+    {"bsp", "B-spline patch (bsp)", "B-spline patches (bsp)"},
+    {"bzp", "Bezier patch (bzp)", "Bezier patches (bzp)"},
+    {"cdc", "Cardinal curve (cdc)", "Cardinal curves (cdc)"},
+    {"cdp", "Cardinal patch (cdp)", "Cardinal patches (cdp)"},
+    {"call", "file that it calls (call)", "files that it calls (call)"},
+}};
+
 } // namespace
 
-Polygons parseObjFaces(std::string_view file)
+std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view what)
+{
+  std::optional<std::uint64_t> promise;
+  for (TextCursor comments(file); comments.nextLine() && comments.line().starts_with('#');) {
+    if (comments.word() != "#" || inSmallLetters(std::string(comments.word().substr(0, 40))) != what) continue;
+    const auto count = numberOf<std::uint64_t>(comments.word());
+    if (count && comments.line().empty()) promise = count;
+  }
+  return promise;
+}
+
+Polygons parseObjFaces(std::string_view file, std::vector<std::string>* remarks)
 {
   Polygons polygons;
-  std::uint64_t vertices = 0;
-  for (TextCursor text(file, '#'); text.nextLine();) {
+  std::uint64_t vertices = 0, fan = 0;
+  for (TextCursor text = objText(file); text.nextLine();) {
     const std::string_view kind = text.word();
     if (kind == "v") ++vertices;
-    if (kind != "f" && kind != "fo") continue; // "fo": what old programs write
-    while (!text.line().empty()) {
-      if (text.line() == "\\") { // the face goes on in the next line
-        if (!text.nextLine()) throw FormatError("is truncated: it ends in a face");
-        continue;
+    if (kind == "f" || kind == "fo") { // "fo": what old programs write
+      while (!text.line().empty()) {
+        if (text.line() == "\\") throw FormatError("is truncated: it ends in a face");
+        polygons.addCorner(text.parseWord([&](std::string_view corner) { return vertexOf(corner, vertices); }));
       }
-      polygons.addCorner(text.parseWord([&](std::string_view corner) { return vertexOf(corner, vertices); }));
+      polygons.end();
+      fan += std::max<std::size_t>(polygons[polygons.size() - 1].size(), 2) - 2;
+      continue;
     }
-    polygons.end();
+    const auto left_out =
+        std::find_if(obj_kinds.begin(), obj_kinds.end(), [&](const ObjKind& known) { return known.keyword == kind; });
+    if (left_out != obj_kinds.end() && (kind != "l" || joinsVertices(text)))
+      polygons.leftOut().add(left_out->one, left_out->many, true);
   }
+  const std::optional<std::uint64_t> promised = objPromise(file, "faces:");
+  if (remarks != nullptr && promised && *promised != fan)
+    if (const auto other = remarkOnCount({*promised, "face", "faces"}, polygons.size())) remarks->push_back(*other);
   return polygons;
 }
 
 Polygons parseOffFaces(std::string_view file)
 {
   TextCursor text(file, '#');
-  text.nextLine();
-  text.word(); // OFF and its relatives; the counts stand here or in the next line
-  if (text.line().empty()) text.nextLine();
-  const auto vertices = text.number<std::uint64_t>(), faces = text.number<std::uint64_t>();
-  for (std::uint64_t i = 0; i < vertices; ++i)
+  const OffHeader header(text);
+  for (std::uint64_t i = 0; i < header.vertices; ++i)
     if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its vertices");
   Polygons polygons;
-  for (std::uint64_t i = 0; i < faces; ++i) {
+  for (std::uint64_t i = 0; i < header.faces; ++i) {
     if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its faces");
     const auto corners = text.number<std::uint64_t>();
     for (std::uint64_t k = 0; k < corners; ++k) polygons.addCorner(text.number<std::uint64_t>());

@@ -3,8 +3,12 @@
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
 #include <pcl_bsh/io/clouds/meshes/colour_scan.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
+#include <pcl_bsh/io/clouds/meshes/off_header.h>
+#include <pcl_bsh/io/text/header_count.h>
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 namespace pcl_bsh::io {
@@ -14,10 +18,12 @@ namespace {
 /// Vertices of a mesh file, with what the format has beside coordinates.
 class Vertices {
 public:
-  Vertices(bool normals, const ColourScan& colours)
+  /// @param colour_first whether colours stand before normals in a line that has both
+  Vertices(bool normals, const ColourScan& colours, bool colour_first = false)
   : colours_(colours),
     rows_(valuesOf(normals, colours)),
-    first_channel_(normals ? 6 : 3)
+    first_channel_(normals ? 6 : 3),
+    colour_first_(colour_first)
   {
   }
 
@@ -31,10 +37,11 @@ public:
     const std::size_t record = rows_.size();
     rows_.add();
     const std::size_t before = with_normal ? first_channel_ : 3;
-    rows_.take(text, record, 0, before);
+    rows_.take(text, record, 0, colour_first_ ? 3 : before);
     const std::size_t left = given > before ? given - before : 0;
     const std::size_t channels = left == 3 || left == 4 ? left : 0;
     for (std::size_t i = 0; i < colours_.channels(); ++i) addChannel(text, record, i, i < channels);
+    if (colour_first_) rows_.take(text, record, 3, before);
   }
 
 private:
@@ -65,6 +72,7 @@ private:
   ColourScan colours_;
   TextRows rows_;
   std::size_t first_channel_;
+  bool colour_first_;
 };
 
 std::size_t countWords(TextCursor line)
@@ -103,27 +111,11 @@ bool namesItsOwnNormal(std::string_view corner)
   return corner.substr(last + 1) == corner.substr(0, corner.find('/'));
 }
 
-/// How many vertices a comment like MeshLab's `# Vertices: 8` promises.
-std::optional<std::uint64_t> promiseOf(TextCursor comment)
-{
-  if (comment.word() != "#") return std::nullopt;
-  const std::string_view what = comment.word();
-  if (what != "Vertices:" && what != "vertices:") return std::nullopt;
-  const std::string_view number = comment.word();
-  std::uint64_t count = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count);
-  const bool whole = error == std::errc() && end == number.data() + number.size() && comment.line().empty();
-  return whole ? std::optional(count) : std::nullopt;
-}
-
 ObjScan scanObj(std::string_view file)
 {
   ObjScan scan;
-  TextCursor comments(file);
-  while (comments.nextLine() && comments.line().starts_with('#')) {
-    if (const auto promised = promiseOf(comments)) scan.promised = promised;
-  }
-  TextCursor text(file, '#');
+  scan.promised = objPromise(file, "vertices:");
+  TextCursor text = objText(file);
   while (text.nextLine()) {
     const std::string_view kind = text.word();
     if (kind == "v") {
@@ -142,39 +134,34 @@ ObjScan scanObj(std::string_view file)
   return scan;
 }
 
-/// What an .off says before its vertices; the text is then at the last line of that.
-struct OffHeader {
-  bool normals = false, colours = false, texture = false;
-  std::uint64_t vertices = 0, faces = 0;
-
-  explicit OffHeader(TextCursor& text)
-  {
-    std::string_view kind = text.nextLine() ? text.word() : std::string_view();
-    const auto takeOff = [&](std::string_view prefix) {
-      const bool there = kind.starts_with(prefix);
-      if (there) kind.remove_prefix(prefix.size());
-      return there;
-    };
-    texture = takeOff("ST");
-    colours = takeOff("C");
-    normals = takeOff("N");
-    if (kind != "OFF") throw FormatError("is not an OFF file: it does not start with 'OFF'", "save it as text OFF");
-    if (text.line().starts_with("BINARY")) throw FormatError("is a binary OFF file", "save it as text OFF");
-    if (text.line().empty() && !text.nextLine()) throw FormatError("is truncated: it has no counts");
-    vertices = text.number<std::uint64_t>();
-    faces = text.number<std::uint64_t>();
-    constexpr std::uint64_t least_bytes = 6; // three digits and their separators
-    requireBytes(vertices, least_bytes, text.rest().size() + 1);
-  }
-};
-
-Vertices verticesOf(const OffHeader& header, TextCursor text)
+/// Whether three words of a vertex line from `at` on are a direction: of length 1 to a few digits, or 0.
+bool isDirection(TextCursor line, std::size_t at)
 {
-  ColourScan colours;
-  for (std::uint64_t i = 0; header.colours && i < header.vertices && text.nextLine(); ++i) {
-    seeColour(text, header.normals ? 6 : 3, header.texture ? 2 : 0, colours);
+  std::array<double, 3> n{};
+  for (std::size_t i = 0; i < at; ++i) line.word();
+  for (double& value : n) value = numberOf<double>(line.word()).value_or(9);
+  const double length = std::hypot(n[0], n[1], n[2]);
+  constexpr double few_digits = 1e-3;
+  return length == 0 || std::abs(length - 1) <= few_digits;
+}
+
+/// Normals stand before colours; some programs that name them first in the keyword have them last in the lines.
+Vertices verticesOf(const OffHeader& header, const TextCursor& text)
+{
+  const std::size_t texture = header.texture ? 2 : 0;
+  bool colour_first = header.normals_named_first && header.colours;
+  TextCursor lines = text;
+  for (std::uint64_t i = 0; colour_first && i < header.vertices && lines.nextLine(); ++i) {
+    const std::size_t words = countWords(lines);
+    colour_first = words >= 9 + texture && !isDirection(lines, 3) && isDirection(lines, words - texture - 3);
   }
-  return {header.normals, colours};
+  lines = text;
+  ColourScan colours;
+  for (std::uint64_t i = 0; header.colours && i < header.vertices && lines.nextLine(); ++i) {
+    const std::size_t normals = header.normals ? 3 : 0;
+    seeColour(lines, colour_first ? 3 : 3 + normals, texture + (colour_first ? normals : 0), colours);
+  }
+  return {header.normals, colours, colour_first && header.vertices > 0};
 }
 
 } // namespace
@@ -187,20 +174,28 @@ pcl::PCLPointCloud2 parseObjHeader(std::string_view file)
 
 pcl::PCLPointCloud2 parseObj(std::string_view file)
 {
+  std::vector<std::string> ignored;
+  return parseObjTelling(file, ignored);
+}
+
+pcl::PCLPointCloud2 parseObjTelling(std::string_view file, std::vector<std::string>& remarks)
+{
   const ObjScan scan = scanObj(file);
   if (scan.vertices == 0 && scan.promised != 0) throw FormatError("has no vertices", "give it lines 'v x y z'");
   if (scan.vertices < scan.promised.value_or(0)) {
     throw FormatError("is truncated: it has " + std::to_string(scan.vertices) + " of the " +
                       counted(*scan.promised, "vertex", "vertices") + " that a comment promises");
   }
+  const HeaderCount told{scan.promised.value_or(scan.vertices), "vertex", "vertices"};
+  if (const auto more = remarkOnCount(told, scan.vertices)) remarks.push_back(*more);
   Vertices vertices(scan.hasNormals(), scan.colours);
   TextRows& rows = vertices.rows();
   rows.reserve(scan.vertices);
-  for (TextCursor text(file, '#'); text.nextLine();) {
+  for (TextCursor text = objText(file); text.nextLine();) {
     if (text.word() == "v") vertices.add(text, false, countWords(text));
   }
   std::size_t next = 0;
-  for (TextCursor text(file, '#'); scan.hasNormals() && text.nextLine();) {
+  for (TextCursor text = objText(file); scan.hasNormals() && text.nextLine();) {
     if (text.word() == "vn") rows.take(text, next++, 3, 6);
   }
   return std::move(rows).finished();
@@ -210,6 +205,7 @@ pcl::PCLPointCloud2 parseOffHeader(std::string_view file)
 {
   TextCursor text(file, '#');
   const OffHeader header(text);
+  header.requireRoom(text);
   return std::move(verticesOf(header, text).rows()).finished();
 }
 
@@ -217,6 +213,7 @@ pcl::PCLPointCloud2 parseOff(std::string_view file)
 {
   TextCursor text(file, '#');
   const OffHeader header(text);
+  header.requireRoom(text);
   Vertices vertices = verticesOf(header, text);
   vertices.rows().reserve(header.vertices);
   for (std::uint64_t i = 0; i < header.vertices; ++i) {
@@ -228,6 +225,7 @@ pcl::PCLPointCloud2 parseOff(std::string_view file)
   for (std::uint64_t i = 0; i < header.faces; ++i) {
     if (!text.nextLine()) throw FormatError("is truncated: it ends before the last of its faces");
   }
+  requireNoMoreLines({header.faces, "face", "faces"}, text);
   return std::move(vertices.rows()).finished();
 }
 

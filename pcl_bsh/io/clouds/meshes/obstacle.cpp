@@ -4,6 +4,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/small_letters.h>
@@ -66,10 +67,7 @@ bool hasFaces(const std::filesystem::path& path)
   if (!mayHaveFaces(path)) return false;
   if (extensionOf(path) == ".ply") {
     constexpr std::size_t usual = std::size_t{1} << 16; // bytes of a header
-    const FileBytes beginning(path, usual);
-    const std::string_view header = beginning.view().substr(0, beginning.view().find("end_header"));
-    const auto names = [&](const char* element) { return header.find(element) != std::string_view::npos; };
-    if (header.size() < beginning.view().size() && !names("face") && !names("tristrips")) return false;
+    if (isPlyOfPoints(FileBytes(path, usual).view())) return false;
   }
   return !readMesh(path).triangles.empty();
 }

@@ -86,7 +86,8 @@ Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceS
 /// Whether files of that name's extension may have faces.
 bool mayHaveFaces(const std::filesystem::path& path);
 
-/// Whether readMesh() finds triangles in a file, which it reads where a beginning cannot tell. Throws as it does.
+/// Whether readMesh() finds triangles in a file, which it reads where a beginning cannot tell. Throws as it does, also
+/// for a file of which nothing but corners would be compared.
 bool hasFaces(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

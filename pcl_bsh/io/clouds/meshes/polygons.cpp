@@ -38,4 +38,17 @@ std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& ve
   return triangles;
 }
 
+LeftOuts leftOutOf(const Polygons& polygons)
+{
+  LeftOuts left_out = polygons.leftOut();
+  std::uint64_t thin = 0;
+  bool joins = false;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    if (!polygons[i].empty() && polygons[i].size() < 3) ++thin;
+    if (polygons[i].size() == 2) joins = true;
+  }
+  left_out.add("face of fewer than three corners", "faces of fewer than three corners", joins, thin);
+  return left_out;
+}
+
 } // namespace pcl_bsh::io

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/left_out.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,10 @@ public:
   std::vector<FaceValues>& values() { return values_; }
   const std::vector<FaceValues>& values() const { return values_; }
 
+  /// What the file holds that is neither vertex nor face.
+  LeftOuts& leftOut() { return left_out_; }
+  const LeftOuts& leftOut() const { return left_out_; }
+
   std::size_t size() const { return ends_.size(); }
   std::span<const std::uint64_t> operator[](std::size_t i) const
   {
@@ -33,6 +38,7 @@ private:
   std::vector<std::uint64_t> corners_;
   std::vector<std::size_t> ends_;
   std::vector<FaceValues> values_;
+  LeftOuts left_out_;
 };
 
 /// Those of addTriangles().
@@ -40,5 +46,9 @@ private:
 /// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices,
                                   std::vector<FaceValues>& values);
+
+/// What is not compared of a mesh: what the file holds beside faces, and faces of fewer than three corners. Vertices
+/// that no face has are counted by looseVertices().
+LeftOuts leftOutOf(const Polygons& polygons);
 
 } // namespace pcl_bsh::io

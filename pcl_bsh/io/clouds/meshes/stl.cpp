@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/text/header_count.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
@@ -66,10 +66,12 @@ std::optional<std::uint64_t> countOf(std::string_view file)
   return count;
 }
 
-/// The next word; some programs write capitals.
+/// The next word; some programs write capitals, and "end loop" for "endloop".
 std::string keyword(TextCursor& text)
 {
-  return inSmallLetters(std::string(text.word().substr(0, 40)));
+  const auto next = [&] { return inSmallLetters(std::string(text.word().substr(0, 40))); };
+  std::string word = next();
+  return word == "end" ? word + next() : word;
 }
 
 /// Less the bytes that some programs end a text with: zeros, and the sign that DOS ends files with.
@@ -92,10 +94,9 @@ void readBinary(std::string_view file, Places& places, std::vector<Triangle>& tr
   const auto count = countOf(file);
   if (!count) throw FormatError("is not an STL file: it is shorter than a header, and does not start with 'solid'");
   const std::size_t left = file.size() - header_bytes - count_bytes;
-  if (left / triangle_bytes != *count) {
-    throw FormatError("has " + counted(left / triangle_bytes, "triangle") + ", and its header counts " +
-                      std::to_string(*count));
-  }
+  const HeaderCount told{*count, "triangle", "triangles"};
+  if (left / triangle_bytes < *count) throw otherCount(told, left / triangle_bytes);
+  requireNoMoreBytes(told, left - *count * triangle_bytes, triangle_bytes);
   triangles.reserve(*count);
   for (std::size_t t = 0; t < *count; ++t) {
     std::array<Place, 4> values; // a normal and three corners

@@ -3,6 +3,7 @@
 #include <pcl_bsh/io/clouds/lines/field_text.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/text/header_count.h>
 
 #include <pcl/common/io.h>
 #include <pcl/io/lzf.h>
@@ -88,7 +89,7 @@ PcdHeader readPcdHeader(TextCursor& text)
 }
 
 /// Field by field, with its place in the record; X Y Z are x y z. Fields named "_" are padding, which only binary
-/// records have to keep.
+/// records have to keep; PCL gives some a count of 0, which takes no room.
 void layOut(const PcdHeader& header, pcl::PCLPointCloud2& cloud)
 {
   const std::size_t fields = header.names.size();
@@ -100,12 +101,13 @@ void layOut(const PcdHeader& header, pcl::PCLPointCloud2& cloud)
     const std::uint32_t count = counted ? header.counts[i] : 1;
     const int datatype =
         header.sizes[i] <= 8 ? pcl::getFieldType(static_cast<int>(header.sizes[i]), header.types[i]) : -1;
-    if (datatype < 0 || count == 0) {
+    const bool padding = header.names[i] == "_";
+    if (!padding && (datatype < 0 || count == 0)) {
       throw FormatError("field '" + header.names[i] + "' has type " + header.types[i] + ", size " +
                         std::to_string(header.sizes[i]) + " and count " + std::to_string(count) +
                         ", which is no PCD field");
     }
-    if (header.names[i] == "_") {
+    if (padding) {
       if (header.storage == "binary") addPadding(cloud, std::uint64_t{count} * header.sizes[i]);
     }
     else {
@@ -159,7 +161,7 @@ void readAscii(TextCursor& text, pcl::PCLPointCloud2& cloud, const PcdHeader& he
     }
     text.requireEndOfLine();
   }
-  if (text.nextLine()) text.fail("is one more point than the header promises");
+  requireNoMoreLines({std::uint64_t{cloud.width} * cloud.height}, text);
 }
 
 std::uint32_t readSize(std::string_view bytes)
@@ -230,15 +232,30 @@ pcl::PCLPointCloud2 parsePcdHeader(std::string_view file)
 
 pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
 {
+  std::vector<std::string> ignored;
+  return parsePcdTelling(file, viewpoint, ignored);
+}
+
+pcl::PCLPointCloud2 parsePcdTelling(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>& remarks)
+{
   TextCursor text(file, '#');
   const PcdHeader header = readPcdHeader(text);
   viewpoint = header.viewpoint;
 
   pcl::PCLPointCloud2 cloud = promised(header);
   const std::size_t points = std::size_t{cloud.width} * cloud.height;
-  if (points == 0) return cloud;
-
   const std::string_view body = text.rest();
+  const auto remarkOn = [&](std::string_view left) {
+    const auto more = remarkOnMoreBytes({points}, left.size(), left.substr(0, most_padding), cloud.point_step);
+    if (more) remarks.push_back(*more);
+  };
+  if (points == 0) {
+    if (header.storage == "ascii")
+      requireNoMoreLines({}, text);
+    else
+      remarkOn(body);
+    return cloud;
+  }
   if (header.storage == "ascii") {
     std::uint64_t values = 0;
     for (std::size_t i = 0; i < header.names.size(); ++i) values += header.counts.empty() ? 1 : header.counts[i];
@@ -250,9 +267,11 @@ pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
     requireBytes(points, cloud.point_step, body.size());
     allocate(cloud, cloud.width, cloud.height);
     std::memcpy(cloud.data.data(), body.data(), cloud.data.size());
+    remarkOn(body.substr(cloud.data.size()));
   }
   else if (header.storage == "binary_compressed") {
     readCompressed(body, cloud, points);
+    remarkOn(body.substr(2 * sizeof(std::uint32_t) + readSize(body)));
   }
   else {
     throw FormatError("its points are stored as '" + header.storage + "'", "use ascii, binary or binary_compressed");

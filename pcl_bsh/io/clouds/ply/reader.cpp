@@ -1,111 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/pcl_names.h>
 #include <pcl_bsh/io/clouds/ply/camera.h>
+#include <pcl_bsh/io/clouds/ply/header.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/clouds/ply/rows.h>
-#include <pcl_bsh/io/clouds/ply/types.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <string>
 
 namespace pcl_bsh::io {
 
 namespace {
 
+using Property = PlyProperty;
+using Element = PlyElement;
+
 /// How much of a file is read.
 enum class Part : std::uint8_t { all, header };
-
-struct Property {
-  std::string name;
-  std::uint8_t datatype = 0;
-  std::optional<std::uint8_t> length_type; ///< of a list
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-struct PlyHeader {
-  std::string format;
-  std::vector<Element> elements; ///< in the order of the file
-  std::uint64_t columns = 0;     ///< of an organised cloud, else 0
-  std::uint64_t rows = 0;
-  std::optional<Viewpoint> viewpoint; ///< of a comment
-};
-
-std::uint8_t readType(TextCursor& text)
-{
-  const std::string_view word = text.word();
-  for (const PlyType& type : ply_types) {
-    if (word == type.name || word == type.sized_name) return type.datatype;
-  }
-  text.fail("has the type '" + std::string(word.substr(0, 40)) + "', which PLY does not know");
-}
-
-Property readProperty(TextCursor& text)
-{
-  Property property;
-  if (TextCursor(text).word() == "list") {
-    text.word();
-    property.length_type = readType(text);
-  }
-  property.datatype = readType(text);
-  property.name = text.word();
-  if (property.name.empty()) text.fail("names no property");
-  return property;
-}
-
-/// What a comment says, if it is of cameraComment()'s form.
-std::optional<Viewpoint> readViewpoint(TextCursor comment)
-{
-  if (comment.word() != ply_viewpoint_comment) return std::nullopt;
-  Viewpoint viewpoint;
-  for (double& value : viewpoint) {
-    const std::string_view word = comment.word();
-    if (!isNumber(word)) return std::nullopt;
-    value = parseNumber<double>(word);
-  }
-  return viewpoint;
-}
-
-/// Reads up to and including end_header.
-PlyHeader readPlyHeader(TextCursor& text)
-{
-  PlyHeader header;
-  if (!text.nextLine() || text.word() != "ply") throw FormatError("is not a PLY file: it does not start with 'ply'");
-  while (text.nextLine()) {
-    const std::string_view key = text.word();
-    if (key == "comment") {
-      if (const auto viewpoint = readViewpoint(text)) header.viewpoint = viewpoint;
-      continue;
-    }
-    if (key == "end_header") return header;
-    if (key == "format") {
-      header.format = text.word();
-    }
-    else if (key == "obj_info") {
-      const std::string_view what = text.word();
-      if (what == "num_cols") header.columns = text.number<std::uint32_t>();
-      if (what == "num_rows") header.rows = text.number<std::uint32_t>();
-    }
-    else if (key == "element") {
-      const std::string name(text.word());
-      header.elements.push_back({name, text.number<std::uint64_t>(), {}});
-    }
-    else if (key == "property" && !header.elements.empty()) {
-      header.elements.back().properties.push_back(readProperty(text));
-    }
-    else {
-      text.fail("starts with '" + std::string(key.substr(0, 40)) + "', which no PLY header has there");
-    }
-  }
-  throw FormatError("is truncated: its header does not end");
-}
 
 /// A number of any type.
 template <typename Rows>
@@ -241,7 +156,8 @@ std::int64_t readIndex(Rows& rows, const Property& property)
   return static_cast<std::int64_t>(index);
 }
 
-/// Takes the corners of a row: of a face, or of a strip of triangles, in which -1 begins another.
+/// Takes the corners of a row: of a face, or of a strip of triangles, in which -1 begins another. Each triangle of a
+/// strip shares an edge with the one before it, which goes along it the other way: every second one is turned round.
 template <typename Rows>
 void readCorners(Rows& rows, const Property& property, bool strips, Polygons& faces)
 {
@@ -258,7 +174,10 @@ void readCorners(Rows& rows, const Property& property, bool strips, Polygons& fa
       faces.addCorner(strip.back());
     }
     else if (strip.size() >= 3) {
-      for (std::size_t k = strip.size() - 3; k < strip.size(); ++k) faces.addCorner(strip[k]);
+      const std::size_t last = strip.size() - 1;
+      const bool turned = last % 2 != 0;
+      for (const std::size_t k : {turned ? last - 1 : last - 2, turned ? last - 2 : last - 1, last})
+        faces.addCorner(strip[k]);
       faces.end();
     }
   }
@@ -281,6 +200,9 @@ bool tellsOfPolygons(const Element& element, const Polygons& before)
 template <typename Rows>
 void readFaces(Rows& rows, const Element& element, Polygons& faces)
 {
+  if (std::none_of(element.properties.begin(), element.properties.end(), isCorners))
+    faces.leftOut().add("'" + element.name + "' without a list vertex_indices",
+                        "'" + element.name + "' without a list vertex_indices", true, element.count);
   std::vector<FaceValues>& values = faces.values();
   const bool tells = tellsOfPolygons(element, faces);
   for (const Property& property : element.properties)
@@ -303,6 +225,24 @@ void readFaces(Rows& rows, const Element& element, Polygons& faces)
   }
 }
 
+/// Refuses rows behind the last that the header counts.
+template <typename Rows>
+void requireEnd(Rows& rows, const PlyHeader& header)
+{
+  const auto last = std::find_if(header.elements.rbegin(), header.elements.rend(),
+                                 [](const Element& element) { return !element.properties.empty(); });
+  if (last == header.elements.rend()) return rows.requireNoMore({0, "row", "rows"}, 1, true);
+  std::uint64_t record = 0;
+  bool exact = true;
+  for (const Property& property : last->properties) {
+    const std::uint64_t values = !property.length_type ? 1 : isCorners(property) ? 3 : 0;
+    record += values * sizeOf(property.datatype) + (property.length_type ? sizeOf(*property.length_type) : 0);
+    if (property.length_type) exact = false;
+  }
+  const std::string name = " '" + last->name.substr(0, 40) + "'";
+  rows.requireNoMore({last->count, "row" + name, "rows" + name}, record, exact);
+}
+
 /// Reads all elements, also those that are not wanted: a file cut off behind its vertices is damaged, too.
 template <typename Rows>
 pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, Viewpoint& viewpoint, Polygons* faces,
@@ -317,6 +257,7 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, 
       readFaces(rows, element, *faces);
     }
     else if (element.name != "vertex") {
+      if (faces != nullptr) leaveOut(element, faces->leftOut());
       skipElement(rows, element);
     }
     else if (!cloud) {
@@ -328,6 +269,7 @@ pcl::PCLPointCloud2 readElements(Rows rows, const PlyHeader& header, Part part, 
     }
   }
   if (!cloud) throw FormatError("has no 'vertex' element", "export it with vertices");
+  if (part == Part::all) requireEnd(rows, header);
   return std::move(*cloud);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/lines/field_text.h>
+#include <pcl_bsh/io/text/header_count.h>
 
 #include <algorithm>
 #include <bit>
@@ -31,6 +32,9 @@ public:
   }
   void end() const { text_.requireEndOfLine(); }
 
+  /// That no row follows. @param last what the header counts of the last element
+  void requireNoMore(const HeaderCount& last, std::uint64_t, bool) { requireNoMoreLines(last, text_); }
+
   std::uint64_t bytesLeft() const { return text_.rest().size() + 1; } // the last line may lack its end
   static std::uint64_t leastBytes(std::uint8_t) { return 2; }         // a digit and a separator
 
@@ -56,6 +60,12 @@ public:
   }
   void skip(std::uint8_t datatype, std::uint64_t count) { take(count * sizeOf(datatype)); }
   void end() {}
+
+  /// The same. @param record bytes of a row; at least, where `exact` is false
+  void requireNoMore(const HeaderCount& last, std::uint64_t record, bool exact) const
+  {
+    requireNoMoreBytes(last, bytes_.size(), record, exact);
+  }
 
   std::uint64_t bytesLeft() const { return bytes_.size(); }
   static std::uint64_t leastBytes(std::uint8_t datatype) { return sizeOf(datatype); }

@@ -48,7 +48,7 @@ void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t reco
 /// Of compressor 1, or where no table tells them apart: one, to the end of the file or to the records behind it.
 ChunkTable oneChunk(ByteSource& file, const LasBlock& block, std::uint64_t at)
 {
-  ChunkTable table{{}, file.size()};
+  ChunkTable table{{}, file.size(), 0};
   std::uint64_t end = file.size();
   if (block.extended_records > 0 && block.extended_at >= at) end = std::min(end, block.extended_at);
   table.chunks.push_back({0, block.points, at, end - at});
@@ -61,7 +61,7 @@ ChunkTable oneChunk(ByteSource& file, const LasBlock& block, std::uint64_t at)
 ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme& scheme)
 {
   if (!scheme.in_chunks) return oneChunk(file, block, block.points_at);
-  ChunkTable table{{}, file.size()};
+  ChunkTable table{{}, file.size(), 0};
   if (block.points == 0) return table;
   const std::optional<std::uint64_t> place = placeOfTable(file, block, table.end);
   if (!place && scheme.chunk_points == 0) {
@@ -85,10 +85,13 @@ ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme&
   ArithmeticDecoder in(bytes);
   IntegerDecompressor counts(32, 2);
   std::int32_t points = 0, size = 0;
-  for (std::uint32_t i = 0; i < count && chunk.first < block.points; ++i) {
+  std::uint32_t i = 0;
+  std::uint64_t told = 0; // points, by the table
+  for (; i < count && chunk.first < block.points; ++i) {
     if (scheme.chunk_points == 0) points = counts.read(in, points, 0);
     size = counts.read(in, size, 1);
     chunk.points = scheme.chunk_points != 0 ? scheme.chunk_points : static_cast<std::uint32_t>(points);
+    told += chunk.points;
     chunk.points = std::min(chunk.points, block.points - chunk.first);
     chunk.bytes = static_cast<std::uint32_t>(size);
     if (chunk.bytes > table_at - chunk.at || (chunk.points > 0 && chunk.bytes < block.record_length)) {
@@ -101,6 +104,14 @@ ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme&
     chunk.first += chunk.points;
     chunk.at += chunk.bytes;
   }
+  // Of chunks of one size, all but the last are full.
+  if (scheme.chunk_points != 0) told = i < count ? (count - 1) * std::uint64_t{scheme.chunk_points} + 1 : block.points;
+  for (; i < count && scheme.chunk_points == 0; ++i) {
+    points = counts.read(in, points, 0);
+    size = counts.read(in, size, 1);
+    told += static_cast<std::uint32_t>(points);
+  }
+  table.more = told - std::min(told, block.points);
   if (chunk.first < block.points) {
     throw FormatError("is truncated: its header promises " + std::to_string(block.points) +
                       " points, its chunks have " + std::to_string(chunk.first));

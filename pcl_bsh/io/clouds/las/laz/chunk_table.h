@@ -22,6 +22,7 @@ struct Chunk {
 struct ChunkTable {
   std::vector<Chunk> chunks; ///< those that have points, which together have all of the header's
   std::uint64_t end;         ///< of what belongs to the points in the file, but for records that lie before
+  std::uint64_t more = 0;    ///< points that chunks have at least, and the header does not count
 };
 
 /// The most bytes of points that are taken from one compressed byte. Points of a scan take some ten, points that are
