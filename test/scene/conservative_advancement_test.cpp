@@ -150,6 +150,42 @@ TEST(ConservativeAdvancement, StraightWaysAreJudgedExactly)
   EXPECT_GT(passed, 3000);
 }
 
+/// Pairs that begin and end a rounding of their coordinates beyond the reach, and are nearer between.
+TEST(ConservativeAdvancement, StraightWaysNextToTheReachAreJudgedExactly)
+{
+  int met = 0, passed = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    Random random(seed);
+    const double away = random.pick({0.0, 1.0, 1e3, 5e6}), reach = random.pick({0.05, 1.0, 3.0});
+    const Eigen::Vector3d middle = random.uniform(0.1, 1.0) * away * direction(random), across = direction(random);
+    const Eigen::Vector3d way = across.cross(direction(random)).normalized() * std::exp(random.uniform(-17.0, -9.0));
+    Passing pair(random, 1.0, 1.0, reach, 1e-4);
+    pair.p = pair.q = Eigen::Vector3d::Zero();
+    const double unit = std::nextafter(std::max(away, reach), 1e300) - std::max(away, reach);
+    const Eigen::Vector3d beyond = (reach + random.integer(-2, 4) * unit) * across;
+    pair.a.from.translation() = middle + beyond - way;
+    pair.a.to.translation() = middle + beyond + way;
+    pair.b.from.translation() = pair.b.to.translation() = middle;
+    const StraightPair exact = pair.exact();
+    if (!exact.staysBeyond(reach, 0.0) || exact.isWithin(reach, 1.0)) continue;
+    const auto s = timeOfContact(ObjectMotion(pair.a, Box3()), pointAt(pair.p), ObjectMotion(pair.b, Box3()),
+                                 pointAt(pair.q), pair.zone, 0, 1);
+    ASSERT_TRUE(exact.staysBeyond(reach, s.value_or(1.0))) << seed;
+    const Eigen::Vector3d back = 2 * across + 0.3 * way.normalized(), aside = 2 * across.cross(way).normalized();
+    const Corners tip =
+        Corners::of(std::array<Point3, 3>{Point3{0, 0, 0},
+                                          {back.x(), back.y(), back.z()},
+                                          {back.x() + aside.x(), back.y() + aside.y(), back.z() + aside.z()}});
+    const auto of_triangle = timeOfContact(ObjectMotion(pair.a, Box3()), tip, ObjectMotion(pair.b, Box3()),
+                                           pointAt(pair.q), pair.zone, 0, 1);
+    ASSERT_TRUE(exact.staysBeyond(reach, of_triangle.value_or(1.0))) << seed << ", of a triangle's corner";
+    if (!exact.staysBeyond(reach, 1.0)) ++met;
+    if (!s) ++passed;
+  }
+  EXPECT_GT(met, 150);
+  EXPECT_GT(passed, 150);
+}
+
 // --- turning ---
 
 using Real = long double;

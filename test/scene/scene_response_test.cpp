@@ -57,6 +57,76 @@ std::vector<Point3> wall()
   return sheet({0, -2, -2}, {0, 0.1, 0}, {0, 0, 0.1}, 41, 41);
 }
 
+/// A dot passes a post: half-way it is nearer than the clearance by a rounding, and it is farther at both ends.
+TEST(SceneResponse, StopsAndFirstContactsSeeWhatIsARoundingDeep)
+{
+  struct Pass {
+    double way, offset;
+    std::size_t along, across; ///< axes
+  };
+  for (const Pass& pass : {Pass{7e-8, 0, 0, 1},
+                           {3e-8, 0, 1, 2},
+                           {1e-7, 0, 2, 0},
+                           {1e-6, 1000, 1, 0},
+                           {5e-5, 5e6, 0, 1},
+                           {6e-5, 5e6, 2, 1}}) {
+    SCOPED_TRACE(testing::Message() << pass.way << " at " << pass.offset);
+    Shelf shelf;
+    const auto dot = shelf.add({{0, 0, 0}});
+    const auto placed = [&](double along, double across) {
+      Eigen::Vector3d at = Eigen::Vector3d::Zero();
+      at[static_cast<Eigen::Index>(pass.along)] = pass.offset + along;
+      at[static_cast<Eigen::Index>(pass.across)] = across;
+      return Eigen::Isometry3d(Eigen::Translation3d(at));
+    };
+    const Eigen::Isometry3d post = placed(0, pass.offset);
+    const auto collidesAt = [&](double along, double across) {
+      return brute_force::anyCollision({*dot, post}, {*dot, placed(along, across)}, {1.0, {}}).pair.has_value();
+    };
+    double near = pass.offset + 0.5, across = pass.offset + 1.5; // the least place that is free at both ends
+    for (double middle = near + 0.5; middle > near && middle < across; middle = near + 0.5 * (across - near))
+      (collidesAt(-pass.way, middle) || collidesAt(pass.way, middle) ? near : across) = middle;
+    ASSERT_TRUE(collidesAt(0.0, across));
+
+    SceneOptions options = responding(Response::none, 1.0);
+    options.effects.first_contact = options.effects.swept = true;
+    Scene watched(options);
+    watched.add(fixedObject("post", dot, post));
+    const ObjectId passing = watched.add(object("dot", dot, placed(-pass.way, across)));
+    watched.query();
+    watched.setPose(passing, placed(pass.way, across));
+    const SceneResult seen = watched.query();
+    EXPECT_EQ(seen.first_contact.size(), 1u);
+    EXPECT_EQ(seen.swept.size(), 2u);
+
+    for (const Response response : {Response::stop, Response::slide}) {
+      Scene scene(responding(response, 1.0));
+      scene.add(fixedObject("post", dot, post));
+      SceneObject mover = object("dot", dot, placed(-pass.way, across));
+      Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+      velocity[static_cast<Eigen::Index>(pass.along)] = 2 * pass.way;
+      mover.motion = VelocityMotion{velocity};
+      const ObjectId id = scene.add(mover);
+      const SceneResult stepped = scene.step(1);
+      EXPECT_TRUE(stepped.outcomes.at(0).touched);
+      EXPECT_FALSE(stepped.outcomes.at(0).stuck);
+      EXPECT_FALSE(collides(scene, 0, id));
+      if (response == Response::stop) {
+        EXPECT_EQ(place(scene, id), placed(-pass.way, across).translation());
+      }
+    }
+  }
+  // The nearest place is a rounding beyond the clearance: nothing is met.
+  Shelf shelf;
+  const auto dot = shelf.add({{0, 0, 0}});
+  Scene scene(responding(Response::stop, 1.0));
+  scene.add(fixedObject("post", dot));
+  SceneObject mover = object("dot", dot, at(-7e-8, std::nextafter(1.0, 2.0), 0));
+  mover.motion = VelocityMotion{{1.4e-7, 0, 0}};
+  scene.add(mover);
+  EXPECT_FALSE(scene.step(1).outcomes.at(0).touched);
+}
+
 TEST(SceneResponse, StopHaltsAtTheFirstContact)
 {
   Shelf shelf;

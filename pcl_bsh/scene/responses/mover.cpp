@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace pcl_bsh {
 namespace {
@@ -134,8 +133,10 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
     ahead.translation() += part;
     const RigidMotion motion(pose(), ahead, body_.center(), Eigen::Vector3d::Zero());
     for (const Encounter& e : encounters_) {
-      const auto s =
-          e.of_points ? timeOfContact(e.apart + gone, part, {e.reach, tolerance_}) : contactOn(motion, e, 0.0, end);
+      const ContactZone zone{e.reach, tolerance_};
+      const Eigen::Vector3d apart = e.apart + gone;
+      const bool is_quick = e.of_points && !zone.isNext(apart.norm() - tolerance_ / 16); // more than rounding takes
+      const auto s = is_quick ? timeOfContact(apart, part, zone) : contactOn(motion, e, 0.0, end);
       if (!s || (met && *s >= end)) continue;
       end = *s;
       met = &e;
@@ -219,8 +220,7 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
       const bool of_points = !a.triangles && !b.triangles;
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
-        const RecordDistance::Sum terms = reach_of_pairs.of(pair);
-        Encounter e{pair, i, other, j, std::accumulate(terms.begin(), terms.end(), 0.0), clearance, of_points, {}};
+        Encounter e{pair, i, other, j, reachOf(reach_of_pairs.of(pair)), clearance, of_points, {}};
         e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
         if ((of_points ? e.apart.norm() : separationOf(e).high) <= e.reach + 0.125 * tolerance_) {
           ++cost_.work.exact_decisions;

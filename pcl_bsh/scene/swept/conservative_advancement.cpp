@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/scene/swept/conservative_advancement.h>
 
+#include <pcl_bsh/geometry/exact/dyadic.h>
+#include <pcl_bsh/geometry/triangle/vector3.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -223,11 +226,50 @@ private:
   Separation apart_;
 };
 
-/// In steps that are safe.
+/// What rounding may take of a distance of places that are moved: some forty roundings of the largest coordinate that
+/// goes into each, as ObjectMotion::rounding() has it.
+double roundingOf(const RigidMotion& motion, const Corners& corners)
+{
+  double largest = std::max({motion.from().translation().lpNorm<1>(), motion.to().translation().lpNorm<1>(),
+                             motion.pivot().lpNorm<1>(), motion.shift().lpNorm<1>()});
+  for (std::uint32_t i = 0; i < corners.count; ++i) largest = std::max(largest, vectorOf(corners.at[i]).lpNorm<1>());
+  return 64 * kDoubleUnit * largest;
+}
+
+/// Whether two points that go straight come nearer, and within the reach at any s from `begin` to `end`, in exact
+/// arithmetic.
+bool comeWithin(const RigidMotion& motion_a, const Point3& p, const RigidMotion& motion_b, const Point3& q,
+                double reach, double begin, double end)
+{
+  using Vector = Vector3<Dyadic>;
+  const auto first = [](const RigidMotion& motion, const Point3& at) {
+    const auto pose = [&](std::size_t row, std::size_t column) {
+      return motion.from().matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+    };
+    return placedBy<Dyadic>(pose, at);
+  };
+  const auto way = [](const RigidMotion& motion) {
+    Vector shift;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      shift[k] = Dyadic(motion.to().translation()[axis]) - Dyadic(motion.from().translation()[axis]);
+    }
+    return shift;
+  };
+  const Vector shift = way(motion_a) - way(motion_b), start = first(motion_a, p) - first(motion_b, q);
+  const Vector apart = start + Dyadic(begin) * shift, last = start + Dyadic(end) * shift;
+  const Dyadic square = Dyadic(reach) * Dyadic(reach), along = dot(apart, shift);
+  if (along.sign() >= 0) return false;
+  if (dot(last, shift).sign() <= 0) return (dot(last, last) - square).sign() <= 0; // nearest at the end
+  return ((dot(apart, apart) - square) * dot(shift, shift) - along * along).sign() <= 0;
+}
+
+/// In steps that are safe. @param rounding of a distance
 template <class MovingPair>
-std::optional<double> advance(MovingPair& moving, const ContactZone& zone, double begin, double end)
+std::optional<double> advance(MovingPair& moving, const ContactZone& zone, double rounding, double begin, double end)
 {
   moving.look(begin);
+  if (moving.distance <= zone.reach + rounding && moving.closing > 0.0) return begin;
   bool inside = moving.distance <= zone.outer(); // from the start
   // Steps lead to between this and outer, so that a halted pair still has some distance to inner.
   const double halt = zone.reach + 0.4375 * zone.tolerance;
@@ -283,21 +325,25 @@ Corners placedBy(const Eigen::Isometry3d& pose, const Corners& corners)
 std::optional<double> timeOfContact(const RigidMotion& motion_a, const Corners& a, const RigidMotion& motion_b,
                                     const Corners& b, const ContactZone& zone, double begin, double end)
 {
+  const double rounding = roundingOf(motion_a, a) + roundingOf(motion_b, b);
   if (a.count > 1 || b.count > 1) {
     const CornersMotion moving_a(motion_a, a), moving_b(motion_b, b);
     MovingCornersPair moving(moving_a, moving_b);
-    return advance(moving, zone, begin, end);
+    return advance(moving, zone, rounding, begin, end);
   }
   const Eigen::Vector3d p = vectorOf(a.at[0]), q = vectorOf(b.at[0]);
   if (!motion_a.turns() && !motion_b.turns()) {
     const Eigen::Vector3d apart = motion_a.at(begin) * p - motion_b.at(begin) * q;
+    if (zone.isNext(apart.norm() - rounding) &&
+        comeWithin(motion_a, a.at[0], motion_b, b.at[0], zone.reach, begin, end))
+      return begin;
     const auto s = timeOfContact(apart, (end - begin) * (motion_a.shift() - motion_b.shift()), zone);
     if (!s) return std::nullopt;
     return begin + *s * (end - begin);
   }
   const PointMotion course_a = motion_a.motionOf(p), course_b = motion_b.motionOf(q);
   MovingPointPair moving(course_a, course_b, end);
-  return advance(moving, zone, begin, end);
+  return advance(moving, zone, rounding, begin, end);
 }
 
 } // namespace pcl_bsh

@@ -6,6 +6,8 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/separation.h>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace pcl_bsh {
@@ -23,17 +25,33 @@ struct ContactZone {
   double outer() const { return reach + 0.5 * tolerance; }
   double inner() const { return reach + 0.25 * tolerance; }
 
+  /// Next to the reach, the distance to a collision is no longer far above what rounding takes.
+  bool isNext(double now) const { return now <= reach + 0.125 * tolerance; }
+
   /// How near a pair may come that is within outer from the start: to inner, or, if it is hardly farther than that, a
   /// little nearer than now; next to the reach no nearer than rounding has it. There the pair may still move along and
-  /// away, but the distance to a collision is no longer above rounding: only the exact test of poses guards it.
+  /// away, and whether it collides on its way is another question (timeOfContact()).
   double floor(double now) const
   {
-    if (now > reach + 0.125 * tolerance) return std::min(inner(), now - 0.0625 * tolerance);
+    if (!isNext(now)) return std::min(inner(), now - 0.0625 * tolerance);
     return now * (1.0 - kNowRounding);
   }
 };
 
-/// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1.
+/// The reach of a zone: no less than the sum of its terms, of which rounding may take something.
+template <class Terms>
+double reachOf(const Terms& terms)
+{
+  double reach = 0.0;
+  for (const double term : terms) {
+    const WithError sum = twoSum(reach, term);
+    reach = sum.error > 0.0 ? std::nextafter(sum.value, std::numeric_limits<double>::infinity()) : sum.value;
+  }
+  return reach;
+}
+
+/// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1. Of a
+/// pair that is next to the reach from the start, rounding decides.
 /// @return s of the contact, in [0, 1]
 std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift,
                                     const ContactZone& zone);
@@ -41,6 +59,10 @@ std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::V
 /// Points or triangles, given in their objects' frames, on their motions, for s from `begin` to `end`. Conservative
 /// advancement (Mirtich and Canny, Impulse-based Simulation of Rigid Bodies, 1995) with a bound of second order: where
 /// two of them hardly come nearer, steps grow with the square root of what is left.
+///
+/// Two points that go straight and are next to the reach from the start have a contact, at once, if they come nearer
+/// and within the reach at any instant, in exact arithmetic on the corners and the poses. Others that are next to the
+/// reach, by no more than rounding may take, have one at once if they come nearer.
 std::optional<double> timeOfContact(const RigidMotion& motion_a, const Corners& a, const RigidMotion& motion_b,
                                     const Corners& b, const ContactZone& zone, double begin, double end);
 

@@ -10,7 +10,6 @@
 #include <pcl_bsh/scene/swept/sweep.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace pcl_bsh {
 namespace {
@@ -86,8 +85,7 @@ private:
   /// covers that.
   std::optional<ContactZone> zone(PointPair pair) const
   {
-    const RecordDistance::Sum terms = reach_of_pairs_.of(pair);
-    const double reach = std::accumulate(terms.begin(), terms.end(), 0.0);
+    const double reach = reachOf(reach_of_pairs_.of(pair));
     if (reach < -0.25 * tolerance_) return std::nullopt;
     return ContactZone{std::max(0.0, reach), tolerance_};
   }
