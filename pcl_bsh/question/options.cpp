@@ -66,8 +66,9 @@ std::vector<QuestionOption> table()
        "the field that numbers them; without it, what the input's file says",
        Range::from_zero, false, nullptr, "seen", OptionEffect::other_answers},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
-       "with `seen`: up to this angle from its own direction a beam tells what is empty, from 0.0001 to 0.25; without "
-       "it, one and a half times the angle between the scan's beams as measured",
+       "with `seen`: a direction counts only if beams within this angle lie on all sides of it: none beyond the "
+       "outermost beam, none in a gap; from 0.0001 to 0.25; without it, one and a half times the angle between the "
+       "scan's beams as measured",
        Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",

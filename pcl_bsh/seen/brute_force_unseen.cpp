@@ -29,6 +29,23 @@ void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t 
 namespace brute_force {
 namespace {
 
+/// Whether a beam is seen on a side of a cell from each of its corners.
+bool isOnSide(const Eigen::Vector3d& beam, std::size_t side, const DirectionCell& cell)
+{
+  const auto axis = static_cast<Eigen::Index>(cell.face / 2), u = (axis + 1) % 3, w = (axis + 2) % 3;
+  const Eigen::Vector3d at = beam / std::abs(beam[axis]);
+  constexpr int turns[] = {1, 1, 0, -1, -1, -1, 0, 1}; // cosines of eighths of a turn; sines are six on
+  const auto is_left_of = [&](std::size_t eighth, const Eigen::Vector3d& corner) {
+    const int cosine = turns[eighth % 8], sine = turns[(eighth + 6) % 8];
+    const double left = cosine * (at[w] - corner[w]) - sine * (at[u] - corner[u]);
+    return left >= kBesideCell * (std::abs(cosine) + std::abs(sine));
+  };
+  const std::array<Eigen::Vector3d, 4> corners = cell.corners();
+  return std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector3d& corner) {
+    return is_left_of(side, corner) && is_left_of(side + 7, corner); // right of its end: left of half a turn on
+  });
+}
+
 std::vector<DirectionCell> holesOf(const ScanBeams& scan, double angle)
 {
   const double cosine = std::cos(cellAngle(angle));
@@ -40,13 +57,14 @@ std::vector<DirectionCell> holesOf(const ScanBeams& scan, double angle)
     for (std::uint32_t u = 0; u < 1u << level; ++u) {
       for (std::uint32_t w = 0; w < 1u << level; ++w) {
         const DirectionCell cell{face, level, u, w};
-        std::array<Eigen::Vector3d, 4> corners = cell.corners();
-        for (Eigen::Vector3d& corner : corners) corner.normalize();
-        const auto covers = [&](const Eigen::Vector3d& beam) {
-          return beam.dot(corners[0]) >= cosine && beam.dot(corners[1]) >= cosine && beam.dot(corners[2]) >= cosine &&
-                 beam.dot(corners[3]) >= cosine;
-        };
-        if (std::none_of(beams.begin(), beams.end(), covers)) holes.push_back(cell);
+        const Eigen::Vector3d middle = cell.middle().normalized();
+        std::array<bool, kBeamSides> has_beam{};
+        for (const Eigen::Vector3d& beam : beams) {
+          if (beam.dot(middle) < cosine) continue;
+          for (std::size_t side = 0; side < kBeamSides; ++side)
+            has_beam[side] = has_beam[side] || isOnSide(beam, side, cell);
+        }
+        if (!std::all_of(has_beam.begin(), has_beam.end(), [](bool has) { return has; })) holes.push_back(cell);
       }
     }
   }

@@ -48,6 +48,12 @@ struct DirectionCell {
 
   DirectionCell quarter(std::uint32_t q) const { return {face, level + 1, 2 * u + (q & 1), 2 * w + (q >> 1)}; }
 
+  Eigen::Vector3d middle() const
+  {
+    const double half = std::ldexp(1.0, -static_cast<int>(level));
+    return directionOf({face, -1.0 + half * (2 * u + 1), -1.0 + half * (2 * w + 1)});
+  }
+
   /// One after the other around it.
   std::array<Eigen::Vector3d, 4> corners() const
   {
@@ -64,7 +70,7 @@ struct CellSphere {
   explicit CellSphere(const DirectionCell& cell)
   {
     const double half = std::ldexp(1.0, -static_cast<int>(cell.level));
-    center = directionOf({cell.face, -1.0 + half * (2 * cell.u + 1), -1.0 + half * (2 * cell.w + 1)});
+    center = cell.middle();
     const double length = center.norm(), farthest = 1.4142135623730952 * half; // of the face's places from its middle
     center /= length;
     // |x / |x| - y / |y|| <= 2 |x - y| / (|x| + |y|), and no place of a face is nearer than 1 (Dunkl, Williams, 1964).
@@ -96,10 +102,21 @@ struct Cone {
   bool meets(const DirectionCell& cell) const;
 };
 
+/// A cell lies between beams if on each of its eight sides is a beam within the angle of its middle. A side is a sector
+/// of 135 degrees on the cell's face: side i goes from i to i + 3 eighths of a turn, from u towards w; a beam is in it
+/// if it is seen there from each place of the cell. Each half-plane about a place of the cell holds one of the sectors,
+/// so that the place is in a triangle of such beams, and great circles are straight lines there.
+inline constexpr std::size_t kBeamSides = 8;
+
+/// A beam is in a sector by this length at least, on the cube; twice as far on u + w and u - w. More than what
+/// directions are off as stored, at up to 70 degrees from the middle of a face.
+inline constexpr double kBesideCell = 0x1p-19;
+
 /// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most a quarter of the angle.
 unsigned cellLevels(double angle);
 
-/// Up to this angle a beam speaks for a cell: less than its own by rounding and by what directions are off as stored.
+/// Up to this angle a beam is near a cell's middle: less than its own by rounding and by what directions are off as
+/// stored.
 inline double cellAngle(double angle)
 {
   return angle * (1.0 - 0x1p-10) - 0x1p-22;

@@ -9,15 +9,59 @@
 namespace pcl_bsh {
 namespace {
 
-/// Corners of a row of cells that are within a beam's angle: [first, last], none where first > last.
-struct CornerRange {
+/// Cells of a row whose middles are within a beam's angle: [first, last], none where first > last.
+struct MiddleRange {
   int first = 1, last = 0;
 };
 
-/// The corners of a tile: 65 x 65 places of a face.
-class TileCorners {
+/// Bits [first, last), 0 <= first, last <= 64.
+std::uint64_t bitsBetween(int first, int last)
+{
+  if (first >= last) return 0;
+  const std::uint64_t up_to = last == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << last) - 1;
+  return up_to & ~((std::uint64_t{1} << first) - 1);
+}
+
+using Sides = std::array<std::uint64_t, kBeamSides>;
+
+/// Of the cells of a tile, on which sides of each a beam lies (direction_cells.h).
+class BeamSides {
 public:
-  TileCorners(const DirectionCell& tile, unsigned cell_level)
+  /// @param x, y where it is, and @param off by how much it is beside a cell at least; lengths of a cell's edge
+  BeamSides(double x, double y, double off)
+  : east_(static_cast<int>(std::floor(x - off))),
+    west_(static_cast<int>(std::ceil(x + off))),
+    north_(static_cast<int>(std::floor(y - off))),
+    south_(static_cast<int>(std::ceil(y + off))),
+    southeast_(static_cast<int>(std::floor(x - y - 2.0 * off))),
+    northwest_(static_cast<int>(std::ceil(x - y + 2.0 * off))),
+    northeast_(static_cast<int>(std::floor(x + y - 2.0 * off))),
+    southwest_(static_cast<int>(std::ceil(x + y + 2.0 * off)))
+  {
+  }
+
+  /// Of the cells of one row, among these.
+  void add(int row, std::uint64_t cells, Sides& sides) const
+  {
+    const std::array<std::uint64_t, kBeamSides> half_planes = {
+        row < north_ ? cells : 0,  from(northwest_ + row + 1) & cells,
+        from(west_) & cells,       from(southwest_ - row) & cells,
+        row >= south_ ? cells : 0, upTo(southeast_ + row) & cells,
+        upTo(east_) & cells,       upTo(northeast_ - row - 1) & cells};
+    for (std::size_t i = 0; i < kBeamSides; ++i) sides[i] |= half_planes[i] & half_planes[(i + 7) % kBeamSides];
+  }
+
+private:
+  static std::uint64_t upTo(int last) { return bitsBetween(0, std::clamp(last, 0, 64)); }
+  static std::uint64_t from(int first) { return bitsBetween(std::clamp(first, 0, 64), 64); }
+
+  int east_, west_, north_, south_, southeast_, northwest_, northeast_, southwest_;
+};
+
+/// The middles of a tile's cells: 64 x 64 places of a face.
+class TileMiddles {
+public:
+  TileMiddles(const DirectionCell& tile, unsigned cell_level)
   : face_(tile.face),
     edge_(std::ldexp(2.0, -static_cast<int>(cell_level))),
     u0_(-1.0 + 64.0 * edge_ * tile.u),
@@ -25,19 +69,26 @@ public:
   {
   }
 
-  /// Rows that the beam's cone may touch.
-  CornerRange rows(const Eigen::Vector3d& beam, const BeamAngle& speaks) const
+  /// Rows that may have a middle within a beam's angle.
+  MiddleRange rows(const Eigen::Vector3d& beam, double sine) const
   {
     const Place d = placeOf(beam);
-    return within(d.w, d.up, 1.0, 1.0 - speaks.sine * speaks.sine - d.u * d.u, w0_, true);
+    return within(d.w, d.up, 1.0, 1.0 - sine * sine - d.u * d.u, w0_, true);
   }
 
   /// Of one row.
-  CornerRange row(int row, const Eigen::Vector3d& beam, const BeamAngle& speaks) const
+  MiddleRange row(int row, const Eigen::Vector3d& beam, double sine) const
   {
     const Place d = placeOf(beam);
-    const double w = w0_ + edge_ * row;
-    return within(d.u, d.w * w + d.up, w * w + 1.0, 1.0 - speaks.sine * speaks.sine, u0_, false);
+    const double w = w0_ + edge_ * (row + 0.5);
+    return within(d.u, d.w * w + d.up, w * w + 1.0, 1.0 - sine * sine, u0_, false);
+  }
+
+  /// On which sides of the cells a beam lies. @pre it is less than a quarter turn from the middle of the face
+  BeamSides sidesOf(const Eigen::Vector3d& beam) const
+  {
+    const Place d = placeOf(beam);
+    return {(d.u / d.up - u0_) / edge_, (d.w / d.up - w0_) / edge_, kBesideCell / edge_};
   }
 
 private:
@@ -51,38 +102,29 @@ private:
     return {d[(axis + 1) % 3], d[(axis + 2) % 3], face_ % 2 == 0 ? d[axis] : -d[axis]};
   }
 
-  /// Places x with du x + k >= sqrt(share (x^2 + m)): all between two roots. With `outward` one place more on either
-  /// side.
-  CornerRange within(double du, double k, double m, double share, double x0, bool outward) const
+  /// Middles x with du x + k >= sqrt(share (x^2 + m)): all between two roots. With `outward` one more on either side.
+  MiddleRange within(double du, double k, double m, double share, double x0, bool outward) const
   {
-    const double q = share - du * du; // > 0 of each beam that speaks for a place of the face
+    const double q = share - du * du; // > 0 of each beam that is within the angle of a place of the face
     const double under = k * k - m * q;
     if (!(q > 0.0 && under >= 0.0)) return {};
     const double middle = du * k / q, half = std::sqrt(share * under) / q;
     if (du * middle + k <= 0.0) return {};
-    const double from = (middle - half - x0) / edge_, to = (middle + half - x0) / edge_;
-    if (!(to >= -1.0 && from <= 65.0)) return {};
+    const double from = (middle - half - x0) / edge_ - 0.5, to = (middle + half - x0) / edge_ - 0.5;
+    if (!(to >= -1.0 && from <= 64.0)) return {};
     const double first = outward ? std::floor(from) - 1.0 : std::ceil(from), last = outward ? to + 1.0 : std::floor(to);
-    return {static_cast<int>(std::clamp(first, 0.0, 65.0)), static_cast<int>(std::clamp(last, -1.0, 64.0))};
+    return {static_cast<int>(std::clamp(first, 0.0, 64.0)), static_cast<int>(std::clamp(last, -1.0, 63.0))};
   }
 
   std::size_t face_;
   double edge_, u0_, w0_;
 };
 
-/// Bits [first, last), 0 <= first, last <= 64.
-std::uint64_t bitsBetween(int first, int last)
-{
-  if (first >= last) return 0;
-  const std::uint64_t up_to = last == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << last) - 1;
-  return up_to & ~((std::uint64_t{1} << first) - 1);
-}
-
 } // namespace
 
 HoleMap::HoleMap(const BeamTree& beams, double angle, unsigned threads)
 : beams_(&beams),
-  speaks_(cellAngle(angle)),
+  angle_(cellAngle(angle)),
   levels_(angle == 0.0 ? kTileLevels : cellLevels(angle)),
   root_level_(std::min(2u, levels_ - kTileLevels))
 {
@@ -103,7 +145,7 @@ HoleMap::HoleMap(const BeamTree& beams, double angle, unsigned threads)
 std::uint32_t HoleMap::make(Tree& tree, const DirectionCell& cell) const
 {
   const CellSphere sphere(cell);
-  const double chord = sphere.chord + chordOf(speaks_.angle) + kDirectionError;
+  const double chord = sphere.chord + chordOf(angle_) + kDirectionError;
   const bool has_beam = beams_->any([&](const BeamNode& node) { return !areDisjoint(sphere.center, chord, node); },
                                     [&](const Beam& beam) { return !isBeyond(sphere.center, chord, beam); });
   if (!has_beam) return kHole;
@@ -118,33 +160,34 @@ std::uint32_t HoleMap::make(Tree& tree, const DirectionCell& cell) const
 
 std::uint32_t HoleMap::makeTile(Tree& tree, const DirectionCell& cell, const CellSphere& sphere) const
 {
-  Tile covered{};
-  const TileCorners corners(cell, levels_);
-  const double chord = sphere.chord + chordOf(speaks_.angle) + kDirectionError;
+  std::array<Sides, 64> sides{}; // of each row
+  const TileMiddles middles(cell, levels_);
+  const double sine = std::sin(angle_), chord = sphere.chord + chordOf(angle_) + kDirectionError;
   beams_->any([&](const BeamNode& node) { return !areDisjoint(sphere.center, chord, node); },
               [&](const Beam& beam) {
                 if (isBeyond(sphere.center, chord, beam)) return false;
                 const Eigen::Vector3d direction = beam.direction();
-                const CornerRange rows = corners.rows(direction, speaks_);
-                CornerRange before;
+                const MiddleRange rows = middles.rows(direction, sine);
+                if (rows.first > rows.last) return false;
+                const BeamSides beside = middles.sidesOf(direction);
                 for (int row = rows.first; row <= rows.last; ++row) {
-                  const CornerRange here = corners.row(row, direction, speaks_);
-                  if (row > rows.first) // a cell's four corners, and so the cell, are within the angle
-                    covered[static_cast<std::size_t>(row - 1)] |=
-                        bitsBetween(std::max(before.first, here.first), std::min(before.last, here.last));
-                  before = here;
+                  const MiddleRange near = middles.row(row, direction, sine);
+                  beside.add(row, bitsBetween(near.first, near.last + 1), sides[static_cast<std::size_t>(row)]);
                 }
                 return false;
               });
+  Tile holes{};
   std::uint64_t any = 0, all = ~std::uint64_t{0};
-  for (std::uint64_t& row : covered) {
-    any |= row;
-    all &= row;
-    row = ~row;
+  for (std::size_t row = 0; row < holes.size(); ++row) {
+    std::uint64_t covered = ~std::uint64_t{0};
+    for (const std::uint64_t side : sides[row]) covered &= side;
+    any |= covered;
+    all &= covered;
+    holes[row] = ~covered;
   }
   if (any == 0) return kHole;
   if (all == ~std::uint64_t{0}) return kCovered;
-  tree.tiles.push_back(covered);
+  tree.tiles.push_back(holes);
   return static_cast<std::uint32_t>(tree.tiles.size() - 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The directions of a scan that no beam speaks for, in cells.
+// The directions of a scan that are not between beams, in cells.
 #pragma once
 
 #include <pcl_bsh/seen/beam_tree.h>
@@ -13,7 +13,7 @@ namespace pcl_bsh {
 
 class HoleMap {
 public:
-  /// @param angle that beams speak for; 0: for none, and nothing is looked at
+  /// @param angle as SeenOptions has it; 0: nothing is looked at
   HoleMap(const BeamTree& beams, double angle, unsigned threads);
 
   /// Whether a hole shares a direction with the cone. @param tested counts the cells looked at
@@ -43,7 +43,7 @@ private:
   bool meetsTile(const Tile& tile, const DirectionCell& part, const Cone& cone, std::uint64_t& tested) const;
 
   const BeamTree* beams_ = nullptr; ///< while it is built
-  BeamAngle speaks_;
+  double angle_;                    ///< cellAngle()
   unsigned levels_;
   unsigned root_level_;     ///< trees are built side by side
   std::vector<Tree> trees_; ///< of its cells that have holes

@@ -91,10 +91,11 @@ private:
       looked_.all_ = true;
       return;
     }
-    anyCell(Cone(ball.direction, ball.coneAngle() + looked_.angle_ + kSlack), [&](const DirectionCell& cell) {
-      looked_.cells_[numberOf(cell)] = true;
-      return false;
-    });
+    anyCell(Cone(ball.direction, ball.coneAngle() + kReachOfAngle * looked_.angle_ + kSlack),
+            [&](const DirectionCell& cell) {
+              looked_.cells_[numberOf(cell)] = true;
+              return false;
+            });
   }
 
   LookedAt& looked_;

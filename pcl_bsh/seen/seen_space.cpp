@@ -69,7 +69,7 @@ bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
   if (!ball.is_around) {
     const double cone = ball.coneAngle();
     if (holes_.meets(Cone(ball.direction, cone), tested)) return false;
-    chord = chordOf(cone + angle_) + 2.0 * kDirectionError;
+    chord = chordOf(cone + speaks_.reach) + 2.0 * kDirectionError;
   }
   else if (holes_.hasAny()) {
     return false;
@@ -91,10 +91,10 @@ bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested
 {
   if (angle_ == 0.0) return true;
   if (ball.is_around || !ball.isMeasured()) return false;
-  // Each direction to a place in it is in a hole, or has a beam within the angle that ends before the nearest one.
+  // Each direction to a place in it is in a hole, or has a beam within the reach that ends before the nearest one.
   const double nearest = (ball.distance - ball.radius + least) * (1.0 - 0x1p-20);
   if (!(nearest < std::numeric_limits<float>::max())) return false; // ranges are stored no greater
-  const double chord = chordOf(ball.coneAngle() + angle_) + 2.0 * kDirectionError;
+  const double chord = chordOf(ball.coneAngle() + speaks_.reach) + 2.0 * kDirectionError;
   return !beams_.any(
       [&](const BeamNode& node) {
         ++tested;

@@ -5,23 +5,29 @@
 //   std::vector<Verdict> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Side::b}).b;
 //   UnseenResult found = markUnseen(seen, {robot, T_scans_robot}, {0.05}, verdicts); // what is free, but was not seen
 //
-// A beam speaks for the directions within an angle of its own: it says that they are empty up to its return, less the
-// return's uncertainty and radius, and less the angle's share of that (0.002 of it at 0.002 radians), for edges of
-// right angles and blunter ones come nearer than that between beams. A ball is seen by a scanner if for each direction
-// in which it can be looked at (the directions of its cone; all, where the scanner is in the ball) there is such a
-// beam, and each such beam is empty up to where this direction leaves the ball. One scanner that sees the whole ball
-// suffices.
+// A direction lies between beams if beams lie on all sides of it: it is in a triangle of three beams within 1.2 angles.
+// Nothing is known of other directions: beyond the outermost beams, in gaps, beside a single beam or row. A beam
+// counts for the directions within 1.2 angles of its own: it says that they are empty up to its return, less the
+// return's uncertainty and radius, and less the angle's share of that (0.002 of it at 0.002 radians). A ball is seen by
+// a scanner if each direction in which it can be looked at (the directions of its cone; all, where the scanner is in
+// the ball) lies between beams, and each beam that counts for such a direction is empty up to where the direction
+// leaves the ball. One scanner that sees the whole ball suffices.
 //
-// So beams beside the cone count, and a share of each range does not. Of beams in the cone alone, and of their whole
-// ranges, balls would be seen into which an edge comes between two beams.
+// For which worlds that holds. In a direction between beams a plane that they met, at any slant, is no nearer than the
+// nearest place where they met it, but for 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer:
+// a sphere by less than the angle's share if the beams round the direction are within the angle of it, an edge of a
+// right angle or blunter if they are within 0.87 angles, a corner of three right angles if they are within two thirds:
+// those of an even grid are, at the angle that is measured. Beams have to meet things: one that is at least two angles
+// wide as a scanner sees it, even at its corners, is met by a beam of an even grid beside each of its places.
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
-// grid over the sphere, each of which one beam must speak for as a whole, so that a cell is a hole for certain where
-// the angle to the nearest beam exceeds the given one, perhaps where it exceeds 0.6 of that, and else never; and a
-// length of 2^-40 times the coordinates may decide either way.
+// grid over the sphere, with edges of a quarter of the angle at most. A cell lies between beams if, of the beams within
+// the angle of its middle, one is in each of eight sectors of 135 degrees that all of its places see; a length of 2^-40
+// times the coordinates may decide either way.
 //
-// What the beams do not tell: things thinner than the angle leaves between beams, edges sharper than right angles,
-// glass, and mixed pixels at edges, whose returns lie behind what was there.
+// What the beams do not tell: things thinner than that, edges and corners sharper than right angles, things that throw
+// nothing back between beams that are neighbours, glass, and mixed pixels at edges, whose returns lie behind what was
+// there.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -47,8 +53,9 @@ struct ScanBeams {
 
 /// How scans are read.
 struct SeenOptions {
-  /// For which directions beside its own a beam speaks, in radians, in [1e-4, 0.25]. None: measured of each scan, one
-  /// and a half times the median, over its beams, of how far the nearest beams above, below and beside are.
+  /// How far a direction may be from the beams that it lies between, in radians, in [1e-4, 0.25]. None: measured of
+  /// each scan, one and a half times the median, over its beams, of how far the nearest beams above, below and beside
+  /// are.
   std::optional<double> angle = {};
   unsigned threads = 1; ///< 0: all of the machine's
 };

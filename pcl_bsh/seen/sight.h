@@ -11,16 +11,20 @@
 
 namespace pcl_bsh {
 
-/// The directions that a beam speaks for, and the share of its range that it is sure of.
+/// A beam counts for directions up to this many angles from its own: the angle, from the middle of a cell of directions
+/// (direction_cells.h), and half the diagonal of a cell, which is less than 0.18 of the angle.
+inline constexpr double kReachOfAngle = 1.2;
+
+/// The directions that a beam counts for, and the share of its range that it is sure of.
 struct BeamAngle {
   explicit BeamAngle(double radians)
-  : angle(radians),
-    sine(std::sin(radians)),
-    cosine(std::cos(radians)),
+  : reach(kReachOfAngle * radians),
+    sine(std::sin(reach)),
+    cosine(std::cos(reach)),
     sure(1.0 - radians)
   {
   }
-  double angle, sine, cosine, sure;
+  double reach, sine, cosine, sure;
 };
 
 /// Lengths are enlarged by this share of all coordinates that they were computed of: more than the some thirty
@@ -61,8 +65,8 @@ inline double chordOf(double angle)
   return 2.0 * std::sin(0.5 * angle) * (1.0 + 0x1p-40);
 }
 
-/// Whether a beam speaks for a direction in which something may be in the ball: the nearest such direction to the
-/// ball's centre is the beam's own, turned towards it by at most the angle, and it leaves the ball last.
+/// Whether a beam counts for a direction in which something may be in the ball: the nearest such direction to the
+/// ball's centre is the beam's own, turned towards it by at most the reach, and it leaves the ball last.
 /// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
 inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {

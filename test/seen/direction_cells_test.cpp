@@ -71,7 +71,7 @@ TEST(Cone, MeetsTheCellsThatItSharesADirectionWith)
   EXPECT_GT(by_an_edge, 50);
 }
 
-/// The beam of a cell's middle speaks for all of the cell where it is a quarter of the angle wide.
+/// A beam within the angle of a cell's middle is within 1.2 angles of all of the cell.
 TEST(DirectionCell, OfTheLastLevelIsAQuarterOfTheAngleWide)
 {
   for (const double angle : {1e-4, 0.01, 0.1, 0.25}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is called seen and what unseen, against the definition of seen_space.h in numbers of 50 digits, beam by beam.
-// Directions without a beam are found where circles about beams meet. Shares no code with either form of markUnseen().
+// Whether beams lie round a direction is tried in many directions of each cone. Shares no code with either form of
+// markUnseen().
 #include <pcl_bsh/seen/seen_space.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
@@ -47,44 +48,28 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Whether a direction of a cone (all, from half a turn on) is farther than `angle` from each of these.
-bool hasHole(const std::vector<Eigen::Vector3d>& all, const Eigen::Vector3d& axis, double cone, double angle)
+/// Whether beams lie round a direction: of those from `least` to `most` radians from it no two neighbours are farther
+/// apart than `gap`, as seen from it.
+bool areRound(const std::vector<Eigen::Vector3d>& beams, const Eigen::Vector3d& at, double least, double most,
+              double gap)
 {
-  constexpr double slack = 1e-9;
-  std::vector<Eigen::Vector3d> beams;
-  for (const Eigen::Vector3d& beam : all)
-    if (angleBetween(beam, axis) <= cone + angle + slack) beams.push_back(beam);
-  const auto isHole = [&](const Eigen::Vector3d& at) {
-    if (angleBetween(at, axis) > cone + slack) return false;
-    const double cosine = std::cos(angle - slack);
-    return std::none_of(beams.begin(), beams.end(), [&](const Eigen::Vector3d& beam) { return beam.dot(at) > cosine; });
-  };
-  /// Where the circles about two directions meet.
-  const auto meet = [&](const Eigen::Vector3d& a, double radius_a, const Eigen::Vector3d& b, double radius_b) {
-    const double c = a.dot(b), det = 1.0 - c * c;
-    if (det < 1e-12) return false;
-    const double x = (std::cos(radius_a) - c * std::cos(radius_b)) / det;
-    const double y = (std::cos(radius_b) - c * std::cos(radius_a)) / det;
-    const double left = 1.0 - x * x - y * y - 2.0 * x * y * c;
-    if (left < 0.0) return false;
-    const Eigen::Vector3d middle = x * a + y * b, up = std::sqrt(left / det) * a.cross(b);
-    return isHole((middle + up).normalized()) || isHole((middle - up).normalized());
-  };
-  const auto onCircle = [&](const Eigen::Vector3d& about, double radius) {
-    return isHole((std::cos(radius) * about + std::sin(radius) * about.unitOrthogonal()).normalized());
-  };
-  if (isHole(axis) || onCircle(axis, std::min(cone, test::kPi))) return true;
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (onCircle(beams[i], angle) || meet(beams[i], angle, axis, cone)) return true;
-    for (std::size_t j = 0; j < i; ++j)
-      if (beams[i].dot(beams[j]) > std::cos(2.0 * angle + slack) && meet(beams[i], angle, beams[j], angle)) return true;
+  const Eigen::Vector3d side = at.unitOrthogonal(), up = at.cross(side);
+  std::vector<double> turns;
+  for (const Eigen::Vector3d& beam : beams) {
+    const double off = angleBetween(beam, at);
+    if (least <= off && off <= most) turns.push_back(std::atan2(beam.dot(up), beam.dot(side)));
   }
-  return false;
+  if (turns.empty()) return false;
+  std::sort(turns.begin(), turns.end());
+  double widest = turns.front() + 2.0 * test::kPi - turns.back();
+  for (std::size_t i = 1; i < turns.size(); ++i) widest = std::max(widest, turns[i] - turns[i - 1]);
+  return widest <= gap;
 }
 
-/// How far the answer may be off: 0 and 1, or what not seen allows.
+/// How far the answer may be off: nothing is, or what not seen allows.
 struct Tolerance {
-  double length = 0.0, hole = 1.0;
+  double length = 0.0;
+  bool ample = false; ///< only where many beams lie round a direction it must be seen
 };
 
 class Definition {
@@ -110,22 +95,22 @@ public:
 
   bool sees(const Point3& place, double ball, const Tolerance& tolerance)
   {
-    if (beams_.size() < 2) return false;
+    if (beams_.size() < 3) return false;
     const Vector way = difference(place, origin_);
     const Number distance = length(way), radius = Number(ball) + tolerance.length;
     const bool around = distance <= radius;
     const Eigen::Vector3d axis = around ? Eigen::Vector3d::UnitX().eval() : unitOf(way);
     const double cone = around ? test::kPi : static_cast<double>(asin(radius / distance));
-    if (around ? hasHoleAnywhere(tolerance.hole) : hasHole(directions_, axis, cone, grown(tolerance.hole)))
-      return false;
-    const Number cosine_angle = cos(Number(angle_)), sine_angle = sin(Number(angle_)), sure = Number(1) - angle_;
+    if (!isBetweenBeams(axis, cone, tolerance.ample)) return false;
+    const double reach = 1.2 * angle_;
+    const Number cosine_angle = cos(Number(reach)), sine_angle = sin(Number(reach)), sure = Number(1) - angle_;
     for (const Beam& beam : beams_) {
-      if (!around && angleBetween(beam.direction, axis) > cone + angle_ + 1e-9) continue;
+      if (!around && angleBetween(beam.direction, axis) > cone + reach + 1e-9) continue;
       Number along = distance, off = 0;
       if (distance > 0) {
         const Number cosine = dot(way, beam.way) / (distance * beam.range);
         const Number sine = sqrt(std::max(Number(0), Number(1 - cosine * cosine)));
-        if (cosine < cosine_angle) { // turned towards the centre by the angle
+        if (cosine < cosine_angle) { // turned towards the centre by the reach
           along = distance * (cosine * cosine_angle + sine * sine_angle);
           off = distance * (sine * cosine_angle - cosine * sine_angle);
         }
@@ -143,20 +128,28 @@ private:
     Eigen::Vector3d direction;
   };
 
-  double grown(double share) const { return share * angle_ * (share == 1.0 ? 1.0 + 1e-6 : 1.0); }
-
-  bool hasHoleAnywhere(double share)
+  /// In so many directions of the cone.
+  bool isBetweenBeams(const Eigen::Vector3d& axis, double cone, bool ample) const
   {
-    int& known = anywhere_[share == 1.0 ? 0 : 1];
-    if (known < 0) known = hasHole(directions_, Eigen::Vector3d::UnitX(), test::kPi, grown(share)) ? 1 : 0;
-    return known == 1;
+    constexpr int kDirections = 60;
+    const Eigen::Vector3d side = axis.unitOrthogonal(), up = axis.cross(side);
+    std::vector<Eigen::Vector3d> near;
+    for (const Eigen::Vector3d& beam : directions_)
+      if (angleBetween(beam, axis) <= cone + 1.3 * angle_) near.push_back(beam);
+    for (int i = 0; i <= kDirections; ++i) {
+      const double off = cone * std::sqrt(static_cast<double>(i) / kDirections), turn = 2.399963 * i;
+      const Eigen::Vector3d at = std::cos(off) * axis + std::sin(off) * (std::cos(turn) * side + std::sin(turn) * up);
+      if (ample ? !areRound(near, at, 0.6 * angle_, 0.8 * angle_, 0.5)
+                : !areRound(near, at, 0.0, 1.2 * angle_, test::kPi + 1e-6))
+        return false;
+    }
+    return true;
   }
 
   Point3 origin_;
   double angle_;
   std::vector<Beam> beams_;
   std::vector<Eigen::Vector3d> directions_;
-  int anywhere_[2] = {-1, -1};
 };
 
 /// Scans, and places among them.
@@ -236,7 +229,7 @@ protected:
         EXPECT_TRUE(seesAny({})) << what << ": place " << i << " is called seen";
       }
       else {
-        EXPECT_FALSE(seesAny({0x1p-40 * far, 0.6})) << what << ": place " << i << " is called unseen";
+        EXPECT_FALSE(seesAny({0x1p-40 * far, true})) << what << ": place " << i << " is called unseen";
       }
       ++(seen ? seen_ : unseen_);
     }
@@ -268,6 +261,26 @@ TEST_F(SeenByDefinition, OfUnevenBeams)
   }
   EXPECT_GT(seen_, 100u);
   EXPECT_GT(unseen_, 300u);
+}
+
+/// So dense that all of it is seen but what its beams tell of: a place is unseen for no other reason.
+TEST_F(SeenByDefinition, OfDenseBeams)
+{
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    test::Random random(100 + seed);
+    Asked asked;
+    asked.angle = 0.25;
+    asked.scans.push_back({{random.uniform(-1, 1), 2, 3}, {}, {}});
+    const double near = random.uniform(0.5, 6.0);
+    asked.addBeams(
+        random, 0.04, random.uniform(0, 1), [&] { return random.chance(0.001) ? near : random.uniform(7, 9); },
+        random.pick({-1.57, -0.4}), 0.0, random.uniform(3, 6.28));
+    asked.clearance = random.pick({0.0, 0.05, 0.4});
+    asked.addPlaces(random, 60, asked.scans.front().origin, 6.0);
+    expectAnswers(asked, "seed " + std::to_string(seed));
+  }
+  EXPECT_GT(seen_, 50u);
+  EXPECT_GT(unseen_, 50u);
 }
 
 TEST_F(SeenByDefinition, OfTwoScannersWhoseConesOverlapInPart)
@@ -319,7 +332,7 @@ TEST_F(SeenByDefinition, OfBeamsThatAreNone)
   }
 }
 
-TEST_F(SeenByDefinition, OfOneBeamAndOfTwoAlike)
+TEST_F(SeenByDefinition, OfOneBeamOfTwoAlikeAndOfARow)
 {
   Asked asked;
   asked.scans.push_back({{0, 0, 0}, {9, 0, 0}, {}});
@@ -329,7 +342,9 @@ TEST_F(SeenByDefinition, OfOneBeamAndOfTwoAlike)
   EXPECT_EQ(seen_, 0u) << "of one beam no spacing is known";
   asked.scans[0].returns = {9, 0, 0, 9, 0, 0};
   expectAnswers(asked, "two");
-  EXPECT_EQ(seen_, 2u) << "before their return, within the angle";
+  asked.scans[0].returns = {9, 0, 0, 9, 0.4, 0, 9, -0.4, 0, 9, 0.8, 0};
+  expectAnswers(asked, "a row");
+  EXPECT_EQ(seen_, 0u) << "no direction lies between them";
 }
 
 TEST_F(SeenByDefinition, AtTheAntipodeAndAHalfTurnAway)

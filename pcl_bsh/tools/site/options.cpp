@@ -134,7 +134,7 @@ struct CollideTexts {
       throw UsageError("--origin: is missing: give X,Y,Z of the scanner, or of several scans FIELD:N=X,Y,Z;N=X,Y,Z by "
                        "the field that numbers them, as source, which numbers the clouds of SITE from 0");
     if (!options.question.seen_angle)
-      throw UsageError("--seen-angle: is missing: give what a beam speaks for, one and a half times the angle between "
+      throw UsageError("--seen-angle: is missing: give one and a half times the angle between "
                        "neighbouring beams");
   }
 
