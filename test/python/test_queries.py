@@ -385,7 +385,11 @@ def test_warnings_of_scenes():
     assert told(2.0, (floor, {}), (floor, {})) == []
     (holes,) = told(1.0, (floor, {}), (floor, {}))
     assert holes.startswith("points lie 1 apart in object 0 and 1 in object 1: surfaces may touch")
-    assert told(1.0, (floor, {"fixed": True}), (floor, {"fixed": True})) == []  # never tested
+    (untested,) = told(1.0, (floor, {"fixed": True}), (floor, {"fixed": True}))
+    assert untested.startswith("no pair of objects is tested: all 2 objects are fixed")
+    small = pcl_bsh.SphereHierarchy(np.array([[i, j, 0.0] for i in range(20) for j in range(20)]) / 1000)
+    (units,) = told(2.0, (floor, {}), (small, {}))
+    assert units.startswith("object 0 is 1000 times as large as object 1: ")
     nothing = pcl_bsh.SphereHierarchy(np.zeros((0, 3)))
     assert told(2.0, (floor, {}), (nothing, {})) == ["object 1: has no finite point: nothing collides with it"]
     (apart,) = told(2.0, (floor, {}), (floor, {"pose": far}))
