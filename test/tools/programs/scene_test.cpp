@@ -81,8 +81,9 @@ TEST(SceneProgram, SaysThatNothingIsTested)
   EXPECT_THAT(told(a + "," + b), HasSubstr("no pair of objects is tested: all 2 objects are fixed: "));
   EXPECT_THAT(told(a + "," + b, "", "swept"), HasSubstr("no pair of objects is tested: all 2 objects are fixed: "));
   EXPECT_THAT(told(a), HasSubstr("no pair of objects is tested: there is one object"));
-  EXPECT_EQ(told(a + "," + b, R"(, "pairs": {"rules": [{"objects": ["a", "b"], "tested": true}]})"), "");
-  EXPECT_EQ(told(a + "," + b + "," + c), "");
+  const auto is_tested = testing::Not(HasSubstr("no pair"));
+  EXPECT_THAT(told(a + "," + b, R"(, "pairs": {"rules": [{"objects": ["a", "b"], "tested": true}]})"), is_tested);
+  EXPECT_THAT(told(a + "," + b + "," + c), is_tested);
   EXPECT_THAT(told(b + "," + c, R"(, "pairs": {"rules": [{"groups": ["doors", "doors"], "tested": false}]})"),
               HasSubstr("no pair of objects is tested: rules leave out all of them: "));
 }
