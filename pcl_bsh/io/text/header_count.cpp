@@ -2,8 +2,6 @@
 #include <pcl_bsh/io/text/header_count.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
-#include <pcl_bsh/geometry/counted.h>
-
 namespace pcl_bsh::io {
 
 namespace {
@@ -12,7 +10,12 @@ constexpr auto mend_the_count = "mend the count in its header, or export the fil
 
 std::string namedCount(const HeaderCount& count, std::uint64_t number)
 {
-  return counted(number, count.one, count.many);
+  return std::to_string(number) + ' ' + (number == 1 ? count.one : count.many);
+}
+
+const char* verbOf(std::uint64_t number)
+{
+  return number == 1 ? " is" : " are";
 }
 
 } // namespace
@@ -21,7 +24,7 @@ void requireNoFewer(const HeaderCount& count, std::uint64_t there)
 {
   if (there >= count.told) return;
   throw FormatError("is truncated: " + std::to_string(there) + " of " + namedCount(count, count.told) +
-                    nounOf(count.told, " is", " are") + " there");
+                    verbOf(count.told) + " there");
 }
 
 FormatError otherCount(const HeaderCount& count, std::uint64_t there)
@@ -49,8 +52,8 @@ void requireNoMoreBytes(const HeaderCount& count, std::uint64_t left, std::uint6
 {
   if (left < record) return;
   if (exact) throw otherCount(count, count.told + left / record);
-  throw FormatError("has " + counted(left, "byte") + " behind the " + namedCount(count, count.told) +
-                        " that its header counts",
+  throw FormatError("has " + std::to_string(left) + (left == 1 ? " byte" : " bytes") + " behind the " +
+                        namedCount(count, count.told) + " that its header counts",
                     mend_the_count);
 }
 
@@ -60,14 +63,14 @@ std::optional<std::string> remarkOnMoreBytes(const HeaderCount& count, std::uint
   if (left < record || first.find_first_not_of('\0') == std::string_view::npos) return std::nullopt;
   const std::uint64_t more = left / record;
   return "its header counts " + std::to_string(count.told) + " of the " + namedCount(count, count.told + more) +
-         " there is room for: " + std::to_string(more) + nounOf(more, " is", " are") + " left out";
+         " there is room for: " + std::to_string(more) + verbOf(more) + " left out";
 }
 
 std::optional<std::string> remarkOnCount(const HeaderCount& count, std::uint64_t there)
 {
   if (there == count.told) return std::nullopt;
-  return "its header counts " + namedCount(count, count.told) + ", and " + std::to_string(there) +
-         nounOf(there, " is", " are") + " there: all that are there are read";
+  return "its header counts " + namedCount(count, count.told) + ", and " + std::to_string(there) + verbOf(there) +
+         " there: all that are there are read";
 }
 
 } // namespace pcl_bsh::io
