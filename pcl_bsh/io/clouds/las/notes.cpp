@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/text/header_count.h>
 
