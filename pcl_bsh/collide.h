@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All queries of plain arrays: where do two posed clouds collide? Any pair, flags per point, distances, along paths, at
-// many poses, many objects; all exact. Each has a header of its own, too.
+// All queries of two clouds: where do they collide? Any pair, flags per point, distances, along paths, at many poses;
+// all exact. Each has a header of its own, too. Many objects: scene/scene.h.
 //
 //   SphereHierarchy hall(viewOf(hall_xyz, n)), robot(viewOf(robot_xyz, m));
 //   FlagsRequest request;
@@ -21,7 +21,6 @@
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
-#include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/seen/seen_space.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/solid/labels.h>

@@ -36,8 +36,7 @@ bool asksEverything(const pcl_bsh::SphereHierarchy& a, const pcl_bsh::SphereHier
   along.clearance = 0.5;
   return same && pcl_bsh::collidingIndices({a}, {b}, {0.5}).a.size() == 1 &&
          !pcl_bsh::pairsWithin({a}, {b}, {0.5}).pairs.empty() &&
-         pcl_bsh::collideAlong({a}, b, path, along).colliding == 1 &&
-         pcl_bsh::Scene(pcl_bsh::SceneOptions()).size() == 0;
+         pcl_bsh::collideAlong({a}, b, path, along).colliding == 1;
 }
 
 int main()
