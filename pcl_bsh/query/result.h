@@ -19,7 +19,7 @@ namespace pcl_bsh {
 /// scanner saw that there is nothing. Both only where a request asks for that.
 enum class Verdict : std::uint8_t { free, colliding, undecided, sparse, unseen };
 
-/// Of two verdicts: colliding before undecided before sparse before free.
+/// The graver of two verdicts: colliding, then undecided, sparse, unseen, and at last free.
 constexpr Verdict graver(Verdict one, Verdict other) noexcept
 {
   if (one == Verdict::free || other == Verdict::free) return one == Verdict::free ? other : one;
@@ -41,7 +41,7 @@ inline std::vector<std::uint8_t> maskOf(const std::vector<Verdict>& verdicts, bo
 }
 
 /// Verdicts as fields of files and arrays of other libraries have them: a byte each, 0 free, 1 colliding, 2 undecided,
-/// 3 sparse. In the memory of the verdicts.
+/// 3 sparse, 4 unseen. In the memory of the verdicts.
 inline const std::uint8_t* bytesOf(const std::vector<Verdict>& verdicts) noexcept
 {
   return reinterpret_cast<const std::uint8_t*>(verdicts.data());
