@@ -53,6 +53,18 @@ distances : ndarray of float64, (m,)
     Of what a solid holds, negative: the depth of the deepest.
 pairs : ndarray of int32, (m, 2)
     Rows of a and b; -1 when a cloud is empty.
+
+See Also
+--------
+collide_along : of each point that collides, its smallest distance over all poses.
+
+Examples
+--------
+>>> import numpy as np, pcl_bsh
+>>> a, b = pcl_bsh.SphereHierarchy(np.zeros((1, 3))), pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
+>>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 1, 2]
+>>> pcl_bsh.closest_pair_at_poses(a, b, poses)[0]
+array([0., 1., 2.])
 )";
 
 constexpr auto kOnMotions =

@@ -36,7 +36,8 @@ clearance : float, default 0
 pose_scan : array_like, (4, 4) or (3, 4), optional
     Of the scan in the world.
 flags, distances, first_poses, closest_poses, pose_summaries : bool
-    What to compute; arrays that are not asked for are None.
+    What to compute; arrays that are not asked for are None. `distances` and `closest_poses` measure each point that
+    collides; one distance for each pose is told by `closest_pair_at_poses`, for less.
 swept : float, optional
 pivot : array_like, (3,), optional
     Swept: the point of the model that moves in straight lines; default its origin.
@@ -51,6 +52,11 @@ progress : callable, optional
 Returns
 -------
 Trajectory
+
+See Also
+--------
+any_collision_at_poses : a verdict of each pose.
+closest_pair_at_poses : the smallest distance at each pose, and its pair.
 
 Raises
 ------

@@ -6,6 +6,8 @@ import doctest
 import enum
 import inspect
 import os
+import pathlib
+import re
 import time
 
 import numpy as np
@@ -36,6 +38,22 @@ def test_all_have_docstrings_whose_examples_run():
         if ">>>" in text:
             runner.run(doctest.DocTestParser().get_doctest(text, {}, name, None, None), out=said.append)
     assert runner.tries > 80 and runner.failures == 0, "".join(said)
+
+
+def test_the_page_says_which_call_is_for_what():
+    page = (pathlib.Path(__file__).parents[2] / "pcl_bsh/python/PYTHON.md").read_text()
+    table = [line for line in page.splitlines() if line.startswith("| ")]
+    calls = set(re.findall(r"`([a-zA-Z_]+)`", " ".join(line.split("|")[2] for line in table)))
+    assert {"closest_pair_at_poses", "any_collision_at_poses", "collide_along", "point_distances"} <= calls
+    for call in calls:
+        owner = pcl_bsh if hasattr(pcl_bsh, call) else pcl_bsh.SphereHierarchy
+        assert call in inspect.signature(pcl_bsh.collide_along).parameters or callable(getattr(owner, call)), call
+    for line in table:
+        for given in re.findall(r"`([a-z_]+)=True`", line):
+            assert given in inspect.signature(pcl_bsh.collide_along).parameters, given
+    for name in ("closest_pair_at_poses", "any_collision_at_poses"):
+        assert name in pcl_bsh.collide_along.__doc__
+    assert "collide_along" in pcl_bsh.closest_pair_at_poses.__doc__
 
 
 def test_options_of_questions_have_the_words_of_all_faces():
