@@ -281,7 +281,8 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("FILE.png");
   app.add_option("--size", size, "of the picture or window (default: 1280x960)")->type_name("WxH");
   app.add_option("--camera", camera,
-                 "slanted (default), top, front, side, colliding (close to what\ncollides), or eye x,y,z, focus x,y,z"
+                 "slanted (default), top, front, side, colliding (close to what\ncollides, from where it is seen), or "
+                 "eye x,y,z,\nfocus x,y,z"
                  "[, up x,y,z]")
       ->type_name("HOW");
   app.add_option("--export", options.export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace pcl_bsh::viewer {
@@ -193,8 +194,32 @@ vtkBoundingBox RenderView::collidingBounds() const
   return bounds;
 }
 
+/// All that is drawn, with what collides of the scan or, where nothing of it does, of anything.
+std::vector<Drawn> RenderView::drawnAbout(const vtkBoundingBox& seen) const
+{
+  constexpr double steps = 200.0;
+  const double step = std::max(seen.GetDiagonalLength() / steps, std::numeric_limits<double>::min());
+  const std::optional<Cut>& cut = content_.options().cut;
+  const auto isCut = [&](const Eigen::Vector3d& place) {
+    return (place - Eigen::Vector3d(cut->point.data())).dot(Eigen::Vector3d(cut->normal.data())) > 0.0;
+  };
+  std::vector<Drawn> things;
+  bool of_scan = false;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    const Eigen::Isometry3d pose = content_.poseOf(i, step_);
+    const std::function<bool(const Eigen::Vector3d&)> left_out = i == 0 && cut ? isCut : decltype(left_out)();
+    things.push_back({placesOf(clouds_[i]->data(), pose, step, left_out), {}});
+    if (collisions_.known) things[i].marks = placesOf(clouds_[i]->marked(), pose, step, left_out);
+    of_scan |= content_.viewedClouds()[i].role == ViewedCloud::Role::scan && !things[i].marks.empty();
+  }
+  for (std::size_t i = 0; i < clouds_.size() && of_scan; ++i)
+    if (content_.viewedClouds()[i].role != ViewedCloud::Role::scan) things[i].marks.clear();
+  return things;
+}
+
 void RenderView::look(const Camera& camera)
 {
+  std::vector<Drawn> things;
   vtkBoundingBox seen;
   for (std::size_t i = 0; i < clouds_.size(); ++i) seen.AddBox(boundsOf(i));
   if (camera.kind == Camera::Kind::colliding) {
@@ -203,9 +228,10 @@ void RenderView::look(const Camera& camera)
       near.Inflate(std::max(0.01 * seen.GetDiagonalLength(), 0.25 * near.GetDiagonalLength()));
       seen = near;
     }
+    things = drawnAbout(seen);
   }
   const Options& options = content_.options();
-  viewer::look(renderer_, camera, seen, static_cast<double>(options.width) / options.height, bar_.freeWidth());
+  viewer::look(renderer_, camera, seen, static_cast<double>(options.width) / options.height, bar_.freeWidth(), things);
 }
 
 void RenderView::setMoving(bool moving)

@@ -6,6 +6,7 @@
 #include <pcl_bsh/tools/viewer/actors/caption.h>
 #include <pcl_bsh/tools/viewer/actors/cloud_actor.h>
 #include <pcl_bsh/tools/viewer/actors/extras.h>
+#include <pcl_bsh/tools/viewer/actors/sight.h>
 #include <pcl_bsh/tools/viewer/actors/tile_actors.h>
 #include <pcl_bsh/tools/viewer/actors/value_bar.h>
 #include <pcl_bsh/tools/viewer/actors/value_histogram.h>
@@ -59,6 +60,7 @@ private:
   std::vector<LegendEntry> legend() const;
   vtkBoundingBox boundsOf(std::size_t cloud) const;
   vtkBoundingBox collidingBounds() const;
+  std::vector<Drawn> drawnAbout(const vtkBoundingBox& seen) const;
 
   const ViewContent& content_;
   vtkRenderer& renderer_;

@@ -5,50 +5,100 @@
 #include <vtkCamera.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace pcl_bsh::viewer {
 
-void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& seen, double aspect, double free_width)
+namespace {
+
+/// A side from which a box is looked at.
+struct Side {
+  Eigen::Vector3d toward_eye, up;
+};
+
+Side sideOf(Camera::Kind kind)
 {
-  vtkCamera& eye = *renderer.GetActiveCamera();
+  if (kind == Camera::Kind::top) return {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY()};
+  if (kind == Camera::Kind::front) return {-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+  if (kind == Camera::Kind::side) return {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()};
+  return {Eigen::Vector3d(-0.55, -1.0, 0.7).normalized(), Eigen::Vector3d::UnitZ()};
+}
+
+/// Slanted, the same turned about z, from above; then the same from below.
+std::vector<Side> allSides()
+{
+  constexpr int turns = 8;
+  const Side slanted = sideOf(Camera::Kind::slanted), top = sideOf(Camera::Kind::top);
+  std::vector<Side> sides;
+  for (const double height : {1.0, -1.0}) {
+    const Eigen::Vector3d flip(1.0, 1.0, height);
+    for (int turn = 0; turn < turns; ++turn) {
+      const Eigen::AngleAxisd about_z(turn * 2.0 * std::numbers::pi / turns, Eigen::Vector3d::UnitZ());
+      sides.push_back({(about_z * slanted.toward_eye).cwiseProduct(flip), slanted.up});
+    }
+    sides.push_back({height * top.toward_eye, top.up});
+  }
+  return sides;
+}
+
+/// Where the whole box is seen from.
+Gaze gazeAt(const Side& side, const vtkBoundingBox& seen, double tall, double aspect, double free_width)
+{
+  Gaze gaze;
+  gaze.toward = side.toward_eye;
+  gaze.right = side.up.cross(side.toward_eye).normalized();
+  gaze.up = side.toward_eye.cross(gaze.right);
+  gaze.tall = tall;
+  gaze.wide = tall * aspect;
+  Eigen::Vector3d focus;
+  seen.GetCenter(focus.data());
+  double away = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d at;
+    seen.GetCorner(corner, at.data());
+    const Eigen::Vector3d p = at - focus;
+    away = std::max({away, std::abs(p.dot(gaze.right)) / (free_width * gaze.wide) + p.dot(gaze.toward),
+                     std::abs(p.dot(gaze.up)) / gaze.tall + p.dot(gaze.toward)});
+  }
+  // Of a single place any distance will do that the graphics card's floats tell from none.
+  away = away > 0.0 ? std::max(away, 1e-6) : std::max(1.0, 1e-3 * focus.norm());
+  gaze.at = focus + 1.1 * away * gaze.toward;
+  return gaze;
+}
+
+} // namespace
+
+void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& seen, double aspect, double free_width,
+          std::span<const Drawn> things)
+{
+  vtkCamera& view = *renderer.GetActiveCamera();
   if (camera.kind == Camera::Kind::given) {
-    eye.SetPosition(camera.eye.data());
-    eye.SetFocalPoint(camera.focus.data());
-    eye.SetViewUp(camera.up.data());
+    view.SetPosition(camera.eye.data());
+    view.SetFocalPoint(camera.focus.data());
+    view.SetViewUp(camera.up.data());
     renderer.ResetCameraClippingRange();
     return;
   }
-  std::array<double, 3> from = {-0.55, -1.0, 0.7}, up = {0, 0, 1};
-  if (camera.kind == Camera::Kind::top) {
-    from = {0, 0, 1};
-    up = {0, 1, 0};
+  const double tall = std::tan(view.GetViewAngle() * std::numbers::pi / 360.0);
+  Side side = sideOf(camera.kind);
+  if (camera.kind == Camera::Kind::colliding) {
+    constexpr double clearly = 1.1;
+    double most = 0.0;
+    for (const Side& other : allSides()) {
+      const double share = shareSeen(gazeAt(other, seen, tall, aspect, free_width), things);
+      if (!(share > clearly * most)) continue;
+      most = share;
+      side = other;
+    }
   }
-  if (camera.kind == Camera::Kind::front) from = {0, -1, 0};
-  if (camera.kind == Camera::Kind::side) from = {1, 0, 0};
-
+  const Gaze gaze = gazeAt(side, seen, tall, aspect, free_width);
   double focus[3];
   seen.GetCenter(focus);
-  const Eigen::Vector3d toward_eye = Eigen::Vector3d(from.data()).normalized();
-  const Eigen::Vector3d right = Eigen::Vector3d(up.data()).cross(toward_eye).normalized();
-  const double tall = std::tan(eye.GetViewAngle() * std::numbers::pi / 360.0);
-  const double wide = free_width * tall * aspect;
-  double away = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double at[3];
-    seen.GetCorner(corner, at);
-    const Eigen::Vector3d p = Eigen::Vector3d(at) - Eigen::Vector3d(focus);
-    away = std::max({away, std::abs(p.dot(right)) / wide + p.dot(toward_eye),
-                     std::abs(p.dot(toward_eye.cross(right))) / tall + p.dot(toward_eye)});
-  }
-  // Of a single place any distance will do that the graphics card's floats tell from none.
-  away = away > 0.0 ? std::max(away, 1e-6) : std::max(1.0, 1e-3 * Eigen::Vector3d(focus).norm());
-  const Eigen::Vector3d position = Eigen::Vector3d(focus) + 1.1 * away * toward_eye;
-  eye.SetFocalPoint(focus);
-  eye.SetPosition(position.data());
-  eye.SetViewUp(up.data());
+  view.SetFocalPoint(focus);
+  view.SetPosition(gaze.at.data());
+  view.SetViewUp(side.up.data());
   renderer.ResetCameraClippingRange();
 }
 

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "sight.h"
+
 #include <pcl_bsh/tools/viewer/options.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkRenderer.h>
 
+#include <span>
+
 namespace pcl_bsh::viewer {
 
 /// Puts the camera where it sees the whole box, or where it is given.
 /// @param aspect width of the picture divided by its height, of which the box may take `free_width`
-void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& seen, double aspect, double free_width);
+/// @param things of Camera::Kind::colliding: it looks from the side from which most of their marks are seen, slanted
+///   where no other side shows clearly more
+void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& seen, double aspect, double free_width,
+          std::span<const Drawn> things = {});
 
 } // namespace pcl_bsh::viewer

@@ -16,6 +16,7 @@ vtkSmartPointer<vtkTextActor> textAt(double x, double y)
   text->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   text->SetPosition(x, y);
   setLook(*text->GetTextProperty(), text_size);
+  setBacking(*text->GetTextProperty());
   return text;
 }
 
@@ -33,6 +34,14 @@ void setLook(vtkTextProperty& look, int size)
   look.SetColor(c[0], c[1], c[2]);
 }
 
+void setBacking(vtkTextProperty& look)
+{
+  const std::array<double, 3> c = fractions(ground);
+  look.SetBackgroundColor(c[0], c[1], c[2]);
+  constexpr double mostly = 0.9;
+  look.SetBackgroundOpacity(mostly);
+}
+
 Caption::Caption(vtkRenderer& renderer, int width, int height)
 : title_(textAt(0.012, 0.985)),
   note_(textAt(0.5, 0.02)),
@@ -44,6 +53,7 @@ Caption::Caption(vtkRenderer& renderer, int width, int height)
   note_->GetTextProperty()->SetVerticalJustificationToBottom();
   note_->GetTextProperty()->SetJustificationToCentered();
   legend_->BorderOff();
+  setBacking(*legend_->GetEntryTextProperty()); // VTK draws the box's own background over its entries
   legend_->SetPadding(4);
   legend_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   legend_->GetPosition2Coordinate()->SetCoordinateSystemToNormalizedViewport();

@@ -196,6 +196,7 @@ void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::str
   const std::array<double, 3> c = fractions(segment_color);
   label->GetTextProperty()->SetColor(c[0], c[1], c[2]);
   label->GetTextProperty()->SetFontSize(text_size);
+  setBacking(*label->GetTextProperty());
   group.add(label.Get());
 }
 

@@ -42,6 +42,7 @@ ValueBar::ValueBar(vtkRenderer& renderer, int width)
   bar_->SetVerticalTitleSeparation(10);
   for (vtkTextProperty* look : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
     setLook(*look, text_size - 2);
+    setBacking(*look);
     look->SetVerticalJustificationToTop();
   }
   hide();
