@@ -25,6 +25,7 @@
 namespace pcl_bsh {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -184,6 +185,35 @@ TEST_F(Unseen, ReportsAtEachPoseAndCanBeCancelledThere)
   for (last = 1; last <= all; ++last) EXPECT_THROW(reportsOf(true), Cancelled) << last << " of " << all;
 }
 
+/// An origin in another frame than the scan: as two clouds whose boxes never meet.
+TEST_F(Unseen, AnOriginFarFromTheScanIsToldOf)
+{
+  std::vector<Record> some;
+  for (std::size_t i = 0; i < both_.size(); i += 101) some.push_back(both_[i]);
+  question.seen_angle = 0.2;
+  const auto warned = [&] {
+    std::string all;
+    for (const Warning& warning : asked(some).warnings) all += warning.text + "\n";
+    return all;
+  };
+  for (const char* const origin : {"1,3,1.5", "100,3,1.5", "-40,50,0", "scan:5=1,3,1.5;6=7,3,1.5"}) {
+    question.origin = ScanOrigins::parse(origin); // as far as ten times the room's 10.4 m
+    EXPECT_EQ(warned(), "") << origin;
+  }
+  for (const char* const origin :
+       {"431234.5,5412345.25,300", "1000,3000,1500", "-200,0,0", "scan:6=7000,3000,1500", "0,0,1e9"}) {
+    const bool of_one = origin[0] == 's';
+    question.origin = ScanOrigins::parse(of_one ? "scan:5=1,3,1.5;6=7000,3000,1500" : origin);
+    EXPECT_THAT(warned(), AllOf(HasSubstr("`origin` " + std::string(of_one ? origin : "")),
+                                HasSubstr("box of room.ptx"), HasSubstr("one coordinate system and one unit")))
+        << origin;
+  }
+  question.seen = false;
+  question.origin = {};
+  question.seen_angle = {};
+  EXPECT_EQ(warned(), "");
+}
+
 /// It saw nothing: above all not what the other one did.
 TEST_F(Unseen, AScannerWithoutPointsSeesNothing)
 {
@@ -266,7 +296,7 @@ TEST_F(Unseen, HoldsWhereverTheScanTrulyIs)
   EXPECT_EQ(flags()[1], Verdict::undecided);
   model_[3] = 2.6; // scanner, beams and pillar move together: 0.3 of the 0.4 to the pillar are taken
   question.input_pose_uncertainty = {0.2};
-  question.seen_angle = 0.02; // which takes 0.04
+  question.seen_angle = 0.03; // which takes 0.06
   EXPECT_EQ(flags()[1], Verdict::free);
 }
 

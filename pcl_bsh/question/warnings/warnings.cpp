@@ -119,6 +119,28 @@ std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b)
                            ": if one is in millimetres and the other in metres, say, convert one of both")};
 }
 
+namespace {
+
+/// Of a scanner that stood, as its origin says, farther from all that it scanned than ten times the size of that.
+std::optional<Warning> warningOfOrigins(const Question& question, const NamedCloud& input)
+{
+  if (!question.seen || input.box.isEmpty()) return std::nullopt;
+  const double size = input.box.diagonal().norm();
+  for (const ScanOrigins::Entry& entry : question.origin.entries) {
+    const double apart = input.box.exteriorDistance(Eigen::Vector3d(entry.origin.data()));
+    if (!(size > 1e-12 * apart && apart > far_apart * size)) continue;
+    ScanOrigins one = question.origin;
+    one.entries = {entry};
+    return Warning{WarningKind::apart, plainText("`origin` ", one.text(), " is ", apart, " from the box of ",
+                                                 input.name, ", which is no larger than ", size,
+                                                 ": check that both have one coordinate system and one unit, and that ",
+                                                 input.name, " is the whole scan: else hardly anything is seen")};
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
 std::vector<Warning> warningsOf(const Question& question, const NamedCloud& input, const NamedCloud& obstacle)
 {
   const std::optional<double>& clearance = question.clearance;
@@ -135,6 +157,7 @@ std::vector<Warning> warningsOf(const Question& question, const NamedCloud& inpu
     warnings.push_back(std::move(*far));
   else if (auto units = warningOfUnits(input, obstacle))
     warnings.push_back(std::move(*units));
+  if (auto far = warningOfOrigins(question, input)) warnings.push_back(std::move(*far));
   if (!clearance) return warnings;
   if (auto sparse = warningOfDensity(input, obstacle, *clearance)) warnings.push_back(std::move(*sparse));
   return warnings;
