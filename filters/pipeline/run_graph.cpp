@@ -3,6 +3,7 @@
 #include <pcl_bsh/filters/pipeline/option_json.h>
 
 #include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/geometry/counted.h>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -242,6 +243,34 @@ private:
     }
   }
 
+  static bool asksWhatIsSeen(const Node& node)
+  {
+    const std::vector<Option>& options = node.type->options;
+    const auto seen = std::find_if(options.begin(), options.end(), [](const Option& o) { return o.name == "seen"; });
+    if (seen == options.end()) return false;
+    const bool* const is_asked = std::get_if<bool>(&node.options[static_cast<std::size_t>(seen - options.begin())]);
+    return is_asked && *is_asked;
+  }
+
+  /// A point that a stage before this one removed has no beam any more.
+  void addLostBeams(const Node& node, std::vector<std::string>& warnings) const
+  {
+    std::set<std::size_t> before;
+    for (std::vector<std::size_t> open = node.inputs; !open.empty();) {
+      const std::size_t i = open.back();
+      open.pop_back();
+      if (before.insert(i).second)
+        open.insert(open.end(), graph_.nodes[i].inputs.begin(), graph_.nodes[i].inputs.end());
+    }
+    for (const std::size_t i : before) {
+      const Cost& cost = costs_[i];
+      if (cost.points_out >= cost.points_in) continue;
+      warnings.push_back("`seen` is asked of beams, and " + graph_.nodes[i].tag + " removed " +
+                         counted(cost.points_in - cost.points_out, "point") +
+                         " with theirs: what these beams passed through is unseen: ask before points are removed");
+    }
+  }
+
   PipelineResult resultAfter(double seconds)
   {
     PipelineResult result;
@@ -252,6 +281,7 @@ private:
       std::vector<std::string> warnings = node.warnings;
       if (stages_[i]) warnings.insert(warnings.end(), stages_[i]->warnings().begin(), stages_[i]->warnings().end());
       if (costs_[i].lost_faces) warnings.emplace_back("does not keep the faces of its input: points alone go on");
+      if (asksWhatIsSeen(node)) addLostBeams(node, warnings);
       for (const std::string& warning : warnings) result.warnings.push_back(node.tag + ": " + warning);
       stages.push_back({{"tag", node.tag},
                         {"type", node.type->name},

@@ -18,6 +18,7 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -53,6 +54,37 @@ TEST_F(SeenStages, WarnOfWhatIsUnseen)
   EXPECT_THAT(runStage(scan, flag + "}", machine).warnings, Contains(HasSubstr(told)));
   EXPECT_THAT(runStage(scanFrom(1, io::no_viewpoint), flag + R"(, "origin": "1,0,1"})", machine).warnings,
               Contains(HasSubstr(told)));
+}
+
+/// Stages that remove points before it is asked, alone, one after the other, and of one of two inputs that are merged.
+TEST_F(SeenStages, WarnOfBeamsThatWereRemovedBefore)
+{
+  const auto warned = [&](const std::string& before, const std::string& seen = "true") {
+    std::string all;
+    for (const std::string& warning :
+         runStage(scan,
+                  before +
+                      R"({"type": "filters.bsh_flag", "tag": "ask", "obstacle": "other", "clearance": 0.1, "seen": )" +
+                      seen + "}",
+                  machine)
+             .warnings)
+      if (warning.find("beams") != std::string::npos) all += warning + "\n";
+    return all;
+  };
+  const std::string crop = R"({"type": "filters.crop_box", "tag": "crop", "min": [-1, -5, 0], "max": [9, 5, 3]},)";
+  const std::string thin = R"({"type": "filters.voxel_grid", "tag": "thin", "leaf_size": 0.5},)";
+  const std::string pass =
+      R"({"type": "filters.pass_through", "tag": "pass", "filter_field_name": "z", "filter_limits": [0.1, 9]},)";
+  EXPECT_EQ(warned(""), "");
+  EXPECT_EQ(warned(R"({"type": "filters.transform", "transform": [0, 0, 0, 0, 0, 0]},)"), "");
+  for (const auto& [before, tag] : {std::pair(crop, "crop"), {thin, "thin"}, {pass, "pass"}}) {
+    EXPECT_THAT(warned(before),
+                testing::StartsWith("ask: `seen` is asked of beams, and " + std::string(tag) + " removed "));
+    EXPECT_EQ(warned(before, "false"), "");
+  }
+  EXPECT_THAT(warned(crop + pass), AllOf(HasSubstr("and crop removed"), HasSubstr("and pass removed")));
+  EXPECT_THAT(warned(crop + R"({"type": "filters.merge", "inputs": ["in", "crop"], "number_scans": true},)"),
+              HasSubstr("and crop removed"));
 }
 
 TEST_F(SeenStages, ListWhatIsUnseen)
