@@ -3,12 +3,16 @@
 #pragma once
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/pulse.h>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
 #include <thread>
 
 namespace pcl_bsh {
@@ -21,7 +25,51 @@ inline unsigned threadCount(unsigned requested) noexcept
   return requested == 0 ? all : std::min(requested, all);
 }
 
-/// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws.
+/// The entries of a loop that several threads share.
+template <class Body>
+class SharedLoop {
+public:
+  SharedLoop(std::size_t count, const Body& body) : count_(count), body_(body) {}
+
+  /// Does one entry after another until none is left. The calling thread then asks its watcher while others work.
+  void share()
+  {
+    const DefaultFloatEnvironment environment;
+    const Watched watched(watcher_);
+    ++busy_;
+    try {
+      for (std::size_t i; (i = next_.fetch_add(1, std::memory_order_relaxed)) < count_;) body_(i);
+    }
+    catch (...) {
+      next_ = count_; // the rest is of no use
+      leave();
+      throw;
+    }
+    leave();
+    if (!watcher_ || std::this_thread::get_id() != caller_) return;
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (busy_ != 0) waitAsking(done_, lock);
+  }
+
+private:
+  void leave()
+  {
+    if (--busy_ != 0) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    done_.notify_all();
+  }
+
+  const std::size_t count_;
+  const Body& body_;
+  Watcher* const watcher_ = watcherOfThread();
+  const std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<std::size_t> next_{0}, busy_{0};
+  std::mutex mutex_;
+  std::condition_variable done_;
+};
+
+/// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws. What it computes on other threads
+/// has the watcher of this one, which is asked, too, while this one has nothing to do but wait.
 template <class Body>
 void parallelFor(std::size_t count, unsigned threads, const Body& body)
 {
@@ -29,13 +77,9 @@ void parallelFor(std::size_t count, unsigned threads, const Body& body)
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
+  SharedLoop<Body> loop(count, body);
   tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      const DefaultFloatEnvironment environment;
-      body(i);
-    });
-  });
+  arena.execute([&] { tbb::parallel_for(0u, threads, [&](unsigned) { loop.share(); }); });
 }
 
 } // namespace pcl_bsh

@@ -223,7 +223,9 @@ void number(DisjointSets sets, const PointsView& view, Clusters& result)
 {
   result.sizes.clear();
   result.of.assign(view.count, kNothing);
+  Pulse pulse;
   for (const std::uint32_t record : finiteRecords(view)) {
+    pulse.count(1);
     std::int32_t& root = result.of[sets.find(record)]; // the smallest of its set: comes first
     if (root == kNothing) {
       root = static_cast<std::int32_t>(result.sizes.size());

@@ -34,6 +34,7 @@ public:
   void consider(const NearestFound& found)
   {
     if (found.voxel == best_.voxel && found.point == best_.point) return;
+    leaf_.pulse.look();
     const RecordDistance::Pair pair = leaf_.posed(i_, found);
     if (leaf_.of_triangles && leaf_.query.pairs.distance.isSurelyBeyond(pair, most_)) return;
     const Interval gap = gapOf(pair);

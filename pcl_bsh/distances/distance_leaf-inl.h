@@ -150,6 +150,7 @@ private:
     for (const NearLeaf& candidate : near_leaves_) {
       const double farthest = bounds_points_ ? best.most() + own_radius : best.most();
       if (double{candidate.lower} * leaf_.unit > farthest + std::abs(farthest) * kDoubleMargin) continue;
+      leaf_.pulse.step();
       const DistanceObstacle& obstacle = leaf_.obstacles[candidate.obstacle];
       const LeafRange& other = candidate.range;
       const LeafPoints& points = leaf_.carried(candidate.obstacle).points;

@@ -28,12 +28,10 @@ class DistanceWalk {
   static constexpr std::uint32_t kAbove = 0; ///< the obstacle above the voxels of b
 
 public:
-  DistanceWalk(const DistancesQuery& query, const StopRule& rule, const DistanceSheet& sheet, Progress& progress,
-               DistanceScratch& scratch)
+  DistanceWalk(const DistancesQuery& query, const StopRule& rule, const DistanceSheet& sheet, DistanceScratch& scratch)
   : query_(query),
     rule_(rule),
     sheet_(sheet),
-    progress_(progress),
     scratch_(scratch),
     obstacles_(scratch.obstacles),
     a_(query.a),
@@ -112,7 +110,6 @@ private:
   void descend(const Node& node, const BoundingSphere& around, const std::vector<NearSphere>& list, float cut,
                std::size_t depth)
   {
-    if (stops()) return;
     if (rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count], list, cut);
     if (scratch_.visits.size() == depth) scratch_.visits.emplace_back();
     DistanceVisit& visit = scratch_.visits[depth];
@@ -212,6 +209,7 @@ private:
   /// Bounds the distances from the children of the visit that are in `lanes` to a sphere of b.
   DistanceRow compare(DistanceVisit& visit, const ObstacleSphere& sphere, std::uint32_t lanes)
   {
+    pulse_.step();
     const CarriedNode& own = carried(visit, sphere.obstacle);
     const DistanceObstacle& obstacle = obstacles_[sphere.obstacle];
     const Node& node = *sphere.node;
@@ -421,13 +419,6 @@ private:
     obstacles_.clear();
   }
 
-  /// Whether the caller wants the walk to end. It is asked now and then.
-  bool stops()
-  {
-    if (++steps_ % 256 == 0) progress_.pulse();
-    return progress_.stopped();
-  }
-
   template <class Visit>
   void forAll(const Visit& visit)
   {
@@ -466,7 +457,6 @@ private:
   const DistancesQuery& query_;
   const StopRule& rule_;
   const DistanceSheet& sheet_;
-  Progress& progress_;
   DistanceScratch& scratch_;
   std::vector<DistanceObstacle>& obstacles_;
   const Spaces a_, b_;
@@ -479,7 +469,7 @@ private:
   double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   const Voxel* a_voxel_ = nullptr;
-  std::uint32_t steps_ = 0;
+  WorkPulse pulse_{found.work};
 };
 
 } // namespace HWY_NAMESPACE

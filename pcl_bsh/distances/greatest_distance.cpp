@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/greatest_distance.h>
 
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
 namespace pcl_bsh {
@@ -14,6 +15,7 @@ std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const Poin
 {
   std::optional<PointPair> greatest;
   const PointPairs pairs(a, b, 0.0);
+  Pulse pulse;
   for (std::uint32_t i = 0; i < result.closest_point.size(); ++i) {
     if (result.closest_point[i] == kNothing) continue;
     const PointPair pair{i, result.closest_point[i]};
@@ -21,6 +23,7 @@ std::optional<PointPair> greatestOf(const Placed& a, const Placed& b, const Poin
       // Rounding keeps the order: only of equal doubles one may be the greater.
       if (result.distance[i] < result.distance[greatest->a]) continue;
       if (result.distance[i] == result.distance[greatest->a]) {
+        pulse.count(128);
         const int sign = pairs.distance.compareGaps(pairs.posed(pair), pairs.posed(*greatest));
         if (sign < 0 || (sign == 0 && !precedes(pair, *greatest))) continue;
       }

@@ -10,6 +10,7 @@
 
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/distance_visit-inl.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <algorithm>
 #include <limits>
@@ -55,7 +56,8 @@ struct MeasuredLeaf {
     of_triangles(asked.pairs.ofTriangles()),
     unit(asked.unit),
     largest_radius(asked.b.hierarchy().storage().largest_radius),
-    max(asked.pairs.reach.most)
+    max(asked.pairs.reach.most),
+    pulse(counted)
   {
   }
 
@@ -102,6 +104,7 @@ struct MeasuredLeaf {
   const double unit;           ///< of bounds and floats, in the clouds' unit
   const double largest_radius; ///< of b's points, in the clouds' unit
   const double max;            ///< the greatest distance that is asked for
+  WorkPulse pulse;             ///< of all that measures leaves
 
   LeafRange range;
   std::size_t lanes = kLeafPoints; ///< of the leaf's points, whole vectors

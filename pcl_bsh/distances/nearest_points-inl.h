@@ -147,6 +147,7 @@ private:
         boundSpheres(gathered_.lanes(i, obstacle.frame.stretch_b), obstacle, own, run.end - i, lower + i);
       std::fill(lower + run.end, lower + run.wholeVectors(), GatheredSpheres::kDone);
       leaf_.work.node_pairs += run.end - run.begin;
+      leaf_.pulse.look();
     }
   }
 
@@ -193,6 +194,7 @@ private:
     const std::uint32_t near = pointsNearSphere(own.points, obstacle, node, lane);
     if (near == 0) return;
     ++leaf_.work.leaf_pairs;
+    leaf_.pulse.look();
     const LeafRange other{obstacle.voxel, node.begin[lane], node.comparedPoints(lane)};
     std::uint32_t facing = firstBits(other.count);
     if constexpr (!kBalls) {

@@ -48,6 +48,7 @@ public:
     maybe_.clear();
     for (const NearSphere& candidate : near) {
       if (candidate.lower > largestOf(most_, kLeafPoints)) break;
+      leaf_.pulse.step();
       const DistanceObstacle& obstacle = leaf_.obstacles[candidate.sphere.obstacle];
       const CarriedLeaf& own = leaf_.carried(candidate.sphere.obstacle);
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
@@ -191,6 +192,7 @@ private:
   {
     NearestFound& best = leaf_.found[i];
     ++leaf_.work.exact_decisions;
+    leaf_.pulse.look();
     const auto partOf = [&](const NearestFound& of) {
       const LongTriangle& triangle = longOf(of);
       return SharedPart(nearPartOf(triangle, placeOf(i)), triangle);

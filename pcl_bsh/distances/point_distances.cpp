@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances of all points: each voxel of a is one task and owns its points.
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/distances/check_distances.h>
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/greatest_distance.h>
@@ -22,19 +23,19 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 MeasuredVoxel measureVoxelOnTarget(const DistancesQuery& query, const StopRule& rule, std::uint32_t voxel,
-                                   const DistanceSheet& sheet, Progress& progress)
+                                   const DistanceSheet& sheet)
 {
   const ScratchLease<DistanceScratch> scratch;
-  DistanceWalk walk(query, rule, sheet, progress, *scratch);
+  DistanceWalk walk(query, rule, sheet, *scratch);
   walk.run(voxel);
   return walk.found;
 }
 
 double farthestOfVoxelOnTarget(const DistancesQuery& query, const StopRule& rule, std::uint32_t voxel,
-                               const DistanceSheet& sheet, Progress& progress)
+                               const DistanceSheet& sheet)
 {
   const ScratchLease<DistanceScratch> scratch;
-  return DistanceWalk(query, rule, sheet, progress, *scratch).farthest(voxel);
+  return DistanceWalk(query, rule, sheet, *scratch).farthest(voxel);
 }
 
 } // namespace HWY_NAMESPACE
@@ -93,7 +94,6 @@ public:
            reached},
     sheet_{result.distance.data(), result.closest_point.data(),
            result.interval.empty() ? nullptr : result.interval.data()},
-    progress_(progress),
     voxels_(threadCount(request.threads), result.work, progress)
   {
     voxels_.places.resize(a.hierarchy().storage().voxel_count);
@@ -105,8 +105,11 @@ public:
   double sortFarthestFirst(const StopRule& rule)
   {
     std::vector<double> farthest(voxels_.places.size());
-    for (const std::uint32_t voxel : voxels_.places)
-      farthest[voxel] = HWY_DYNAMIC_DISPATCH(farthestOfVoxelOnTarget)(query_, rule, voxel, sheet_, progress_);
+    Pulse pulse;
+    for (const std::uint32_t voxel : voxels_.places) {
+      pulse.count(query_.b.hierarchy().storage().top.size() * kNodeChildren);
+      farthest[voxel] = HWY_DYNAMIC_DISPATCH(farthestOfVoxelOnTarget)(query_, rule, voxel, sheet_);
+    }
     std::stable_sort(voxels_.places.begin(), voxels_.places.end(),
                      [&](std::uint32_t x, std::uint32_t y) { return farthest[x] > farthest[y]; });
     return farthest[voxels_.places.front()];
@@ -117,7 +120,7 @@ public:
   void passes(const StopRule& rule, std::uint64_t tests)
   {
     voxels_.run(rule, tests, [this](const StopRule& own, std::uint32_t voxel) {
-      return HWY_DYNAMIC_DISPATCH(measureVoxelOnTarget)(query_, own, voxel, sheet_, progress_);
+      return HWY_DYNAMIC_DISPATCH(measureVoxelOnTarget)(query_, own, voxel, sheet_);
     });
   }
 
@@ -125,7 +128,6 @@ private:
   const PointPairs pairs_;
   const DistancesQuery query_;
   const DistanceSheet sheet_;
-  Progress& progress_;
   VoxelPasses<std::uint32_t, MeasuredVoxel> voxels_; ///< with points left
 };
 

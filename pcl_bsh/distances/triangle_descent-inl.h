@@ -95,6 +95,7 @@ private:
   /// Lower bounds of the distances of what is in some children of a node, of which each holds a record.
   void bound(const ObstacleSphere& sphere, std::uint32_t lanes, float* lower)
   {
+    leaf_.pulse.look();
     const LaneTag d;
     const Node& node = *sphere.node;
     const DistanceObstacle& own = frameOf(sphere.obstacle);

@@ -15,6 +15,7 @@
 #include <pcl_bsh/flags/query.h>
 #include <pcl_bsh/flags/runs-inl.h>
 #include <pcl_bsh/flags/slabs-inl.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
@@ -59,6 +60,7 @@ public:
     if (apart || reached_.empty()) return sink_.tellAll(Finding::free);
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
+      pulse_.look();
       const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
       const auto flat = [&](double length) {
         return b_.storage.view.triangles ? FlatRecord::usualBand(frame, length) : DistanceBand();
@@ -316,6 +318,7 @@ private:
   /// their own descent, or opens it.
   void take(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t lanes)
   {
+    pulse_.step();
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     const Node& node = *candidate.node;
     const std::uint32_t k = candidate.lane;
@@ -411,6 +414,7 @@ private:
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     const auto mayMatter = [&](const ObstacleSphere& candidate) {
+      pulse_.look();
       return HWY_LIKELY(!beyond_.mayKnow()) || notBeyond(visit, candidate, 1u << lane) != 0;
     };
     if (b_.storage.view.triangles && a_.storage.view.radii)
@@ -487,6 +491,7 @@ private:
   FlagSlabs slabs_;
   UncertainWalk uncertain_; ///< where points are
   const Separation separation_;
+  WorkPulse pulse_{found.work};
   BeyondReach beyond_{pairs_, a_.storage, b_.storage};
 };
 

@@ -6,6 +6,7 @@
 #include <pcl_bsh/hierarchy/view_check.h>
 #include <pcl_bsh/neighbors/neighbor_scratch.h>
 #include <pcl_bsh/neighbors/query_order.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <limits>
 
@@ -97,6 +98,7 @@ void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, doubl
   forEachQuery(cloud.storage(), queries, effort, expect, [&](std::size_t i, const Point3& query) {
     Work work;
     answer(cloud, query, radius, options, {found.indices[i], found.squared_distances[i]}, work);
+    return costInPairs(work) + found.indices[i].size();
   });
 }
 
@@ -110,6 +112,7 @@ void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std
   forEachQuery(cloud.storage(), queries, effort, expect, [&](std::size_t i, const Point3& query) {
     Work work;
     answer(cloud, query, k, {found.indices[i], found.squared_distances[i]}, work);
+    return costInPairs(work) + found.indices[i].size();
   });
 }
 
@@ -123,6 +126,7 @@ void flagAnyInRadius(const SphereHierarchy& cloud, const PointsView& queries, do
   forEachQuery(cloud.storage(), queries, effort, kUnasked, [&](std::size_t i, const Point3& query) {
     Work work;
     flags[i] = isFinite(query) && findAny(cloud.storage(), query, radius, work) ? 1 : 0;
+    return costInPairs(work);
   });
 }
 
@@ -137,6 +141,7 @@ void anyInBalls(const SphereHierarchy& cloud, const PointsView& balls, std::vect
   forEachQuery(cloud.storage(), balls, effort, kUnasked, [&](std::size_t i, const Point3& center) {
     Work work;
     flags[i] = isFinite(center) && findAny(cloud.storage(), center, balls.radius(balls.record(i)), work) ? 1 : 0;
+    return costInPairs(work);
   });
 }
 

@@ -17,8 +17,9 @@ namespace pcl_bsh {
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads);
 
-/// Calls body(i, point) for the i-th point that the view names, for all of them, in the DefaultFloatEnvironment; and
-/// expect(i, soon) twice before that, for what the answer needs to be fetched: early, and again soon before.
+/// Calls body(i, point), which returns how many pairs of nodes would have taken as long, for the i-th point that the
+/// view names, for all of them, in the DefaultFloatEnvironment; and expect(i, soon) twice before that, for what the
+/// answer needs to be fetched: early, and again soon before.
 /// @throws InvalidInput for an accuracy other than exact. Cancelled
 template <class Expect, class Body>
 void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, const Effort& effort,
@@ -37,13 +38,14 @@ void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queri
   parallelFor(shares, threads, [&](std::size_t share) {
     if (progress.stopped()) return;
     const std::size_t end = std::min(order.size(), (share + 1) * kShare);
+    Pulse pulse;
     for (std::size_t k = share * kShare; k < end; ++k) {
       if (k + kAhead < end) {
         prefetch(queries, queries.record(order[k + kAhead]));
         expect(order[k + kAhead], false);
       }
       if (k + kSoon < end) expect(order[k + kSoon], true);
-      body(order[k], queries.point(queries.record(order[k])));
+      pulse.count(body(order[k], queries.point(queries.record(order[k]))));
     }
     progress.step();
   });

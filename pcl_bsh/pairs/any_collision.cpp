@@ -59,8 +59,8 @@ private:
 /// What one of several threads does.
 class AnyShare {
 public:
-  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places, const Watch& watch)
-  : search_(a, b, request, Pausing(pause_), places, watch)
+  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+  : search_(a, b, request, Pausing(pause_), places)
   {
   }
 
@@ -89,7 +89,7 @@ AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& reque
     alone = result.work;
     shared.emplace(search.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return AnyShare(a, b, request, places, Watch{watch.progress}); });
+  shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
   return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
                   alone += shared->work());
 }

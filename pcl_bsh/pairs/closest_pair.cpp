@@ -104,7 +104,7 @@ DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Close
     work = result.work;
     shared.emplace(alone.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return ClosestSearch(a, b, goal, Sharing(nearest), Watch{&progress}); });
+  shared->visit(threads, [&] { return ClosestSearch(a, b, goal, Sharing(nearest)); });
   return ClosestSearch(a, b, goal, Sharing(nearest)).result(work += shared->work());
 }
 

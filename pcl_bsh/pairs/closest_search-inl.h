@@ -12,6 +12,7 @@
 #include <pcl_bsh/pairs/closest_goal.h>
 #include <pcl_bsh/pairs/nearest.h>
 #include <pcl_bsh/pairs/opening-inl.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/pair_queue-inl.h>
 #include <pcl_bsh/traversal/planes_between.h>
 #include <pcl_bsh/traversal/shared_stack.h>
@@ -194,7 +195,7 @@ private:
   /// Opens the pair with the least key, and every few steps dives for a near pair.
   void searchBestFirst()
   {
-    SearchPulse pulse({watch.progress}, queue_.size());
+    SearchPulse pulse({}, queue_.size(), walk_.work);
     std::optional<LanePair> next;
     std::uint32_t next_dive = 0, wait = kStepsBetweenDives;
     double high_before = kInfinity;
@@ -380,9 +381,10 @@ private:
       for (std::size_t voxel = 0; voxel < side.storage.voxel_count; ++voxel) side.storage.forEachRecord(voxel, visit);
     };
     const std::uint32_t of_a = best_.pair->a;
-    each(walk_.b, [&](std::uint32_t j) { consider({of_a, j}); });
+    WorkPulse pulse(walk_.work);
+    each(walk_.b, [&](std::uint32_t j) { pulse.look(), consider({of_a, j}); });
     const std::uint32_t of_b = best_.pair->b;
-    each(walk_.a, [&](std::uint32_t i) { consider({i, of_b}); });
+    each(walk_.a, [&](std::uint32_t i) { pulse.look(), consider({i, of_b}); });
     looked_round_ = of_b;
     planes_of_ = kInfinity;
   }

@@ -106,6 +106,7 @@ private:
   {
     for (std::uint32_t i = 0; i < a.count; ++i)
       for (std::uint32_t j = 0; j < b.count; ++j) {
+        pulse_.count(1);
         const Added added = sink_.add({a.record(i), b.record(j)}, walk_.work);
         if (added == Added::stop) return false;
         if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
@@ -116,6 +117,7 @@ private:
   PairWalk walk_;
   PointPairs pairs_;
   Sink& sink_;
+  Pulse pulse_; ///< of pairs at one place
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
 };
@@ -163,6 +165,7 @@ class NearestPairs {
   bool before(const PairGap& l, const PairGap& r) const
   {
     if (l.gap != r.gap) return l.gap < r.gap;
+    pulse_.count(128); // exact decisions are slow where they are ties
     const int sign = pairs_.distance.compareGaps(pairs_.posed(l.pair), pairs_.posed(r.pair));
     return sign != 0 ? sign < 0 : l.pair < r.pair;
   }
@@ -223,6 +226,7 @@ private:
   std::size_t most_;
   double reach_;
   bool heaped_ = false;
+  mutable Pulse pulse_; ///< of ties
   const ScratchLease<PairHeap> scratch_;
   std::vector<PairGap>& kept_ = (*scratch_).pairs;
 };

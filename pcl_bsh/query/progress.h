@@ -3,11 +3,15 @@
 #pragma once
 
 #include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/query/work.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <functional>
 #include <thread>
 
@@ -16,7 +20,9 @@ namespace pcl_bsh {
 /// What a part of the work that cannot be left half done throws when the time is over.
 struct OutOfTime {};
 
-class Progress {
+/// While it lives, its thread works for it: pulses of whatever is computed ask the caller. Without a report they ask
+/// the one that the thread worked for before, if any.
+class Progress final : public Watcher {
 public:
   /// @param report is called in the thread that made this object, with the fraction done in [0, 1], which never falls;
   ///   false: stop
@@ -48,9 +54,8 @@ public:
   /// @param steps whole ones among them. @throws Cancelled, OutOfTime
   void tick(std::size_t pieces, std::size_t steps = 0)
   {
-    constexpr std::size_t many = std::size_t{1} << 15;
     done_ += steps;
-    if ((pieces_ += pieces) < many) return;
+    if ((pieces_ += pieces) < kPairsOfPulse) return;
     pieces_ = 0;
     tell(done_);
     throwIfStopped();
@@ -64,11 +69,22 @@ public:
     throwIfStopped();
   }
 
-  /// In any thread: a step that takes long goes on. @return whether to stop
-  bool pulse()
+  /// So much of the whole is done, and no part of it begun. @throws Cancelled
+  void tellWhole(double share)
   {
-    if (std::this_thread::get_id() == caller_) tell(done_);
-    return stopped_;
+    from_ = to_ = share;
+    steps_ = 0;
+    end();
+  }
+
+  /// A step that takes long goes on. @throws Cancelled
+  void ask() override
+  {
+    if (std::this_thread::get_id() == caller_)
+      tell(done_);
+    else if (!report_ && watched_.before())
+      watched_.before()->ask();
+    throwIfStopped();
   }
 
   bool stopped() const { return stopped_; }
@@ -85,19 +101,38 @@ public:
   std::function<bool(double)> nested()
   {
     if (!report_) return {};
-    return [this](double) { return !pulse(); };
+    return [this](double) {
+      ask();
+      return true;
+    };
   }
 
+  /// @throws Cancelled, or what the report threw
   void throwIfStopped() const
   {
-    if (stopped_) throw Cancelled();
+    if (!stopped_) return;
+    if (thrown_) std::rethrow_exception(thrown_);
+    throw Cancelled();
   }
 
 private:
   void tell(std::size_t done)
   {
+    if (stopped_) return;
+    if (!report_) {
+      if (watched_.before()) watched_.before()->ask();
+      return;
+    }
     const double share = steps_ == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(steps_);
-    if (report_ && !stopped_ && !report_(from_ + (to_ - from_) * std::min(share, 1.0))) stopped_ = true;
+    const Watched nobody(nullptr); // a report may ask queries of its own
+    try {
+      if (!report_(from_ + (to_ - from_) * std::min(share, 1.0))) stopped_ = true;
+    }
+    catch (...) {
+      thrown_ = std::current_exception();
+      stopped_ = true;
+      throw;
+    }
   }
 
   const std::function<bool(double)>& report_;
@@ -106,7 +141,9 @@ private:
   std::size_t steps_ = 0, pieces_ = 0;
   double from_ = 0.0, to_ = 0.0; ///< of this part: what its first and its last step take the whole to
   std::atomic<std::size_t> done_{0};
+  std::exception_ptr thrown_; ///< by the report; set before it has stopped
   std::atomic<bool> stopped_{false};
+  const Watched watched_{this};
 };
 
 /// Who watches a search.
@@ -115,11 +152,51 @@ struct Watch {
   double end = 0.0;             ///< what the search takes the whole to; 0: it is part of a step
 };
 
+/// How many pairs of nodes take as long as some work.
+inline std::uint64_t costInPairs(const Work& work)
+{
+  return work.node_pairs + 4 * work.volumes_built + 16 * work.leaf_pairs + 64 * work.exact_decisions;
+}
+
+/// Asks whether a walk shall go on, after so much of its work.
+class WorkPulse {
+public:
+  /// @param work of the walk
+  explicit WorkPulse(const Work& work) : work_(work) {}
+
+  /// Before each small step of the walk, of a hundred pairs of nodes at most. @throws Cancelled
+  void step()
+  {
+    if (--steps_left_ == 0) look();
+  }
+
+  /// Before a step that may take long: of two leaves, say. @throws Cancelled
+  void look()
+  {
+    steps_left_ = kSteps;
+    const std::uint64_t done = costInPairs(work_);
+    if (done - asked_ < kPairsOfPulse) return;
+    asked_ = done;
+    askWatcher();
+  }
+
+private:
+  static constexpr std::uint32_t kSteps = 64;
+
+  const Work& work_;
+  std::uint64_t asked_ = 0;
+  std::uint32_t steps_left_ = kSteps;
+};
+
 /// Tells how far a depth-first search is: how many of the entries that its stack began with are done.
 class SearchPulse {
 public:
-  /// @param size entries of the stack
-  SearchPulse(const Watch& watch, std::size_t size) : watch_(watch), whole_(size), left_(size)
+  /// @param size entries of the stack @param work of the search
+  SearchPulse(const Watch& watch, std::size_t size, const Work& work)
+  : watch_(watch),
+    whole_(size),
+    left_(size),
+    pulse_(work)
   {
     if (watch_.progress && watch_.end > 0.0) watch_.progress->begin(watch_.end, size);
   }
@@ -127,22 +204,25 @@ public:
   /// Before a step of the search. @throws Cancelled
   void step(std::size_t size)
   {
-    if (!watch_.progress) return;
-    left_ = std::min(left_, size);
-    if (++steps_ % 64 == 0) tell(); // a clock, which most callers look at, costs as much as a step
+    if (watch_.progress && watch_.end > 0.0 && size < left_) advance(size);
+    pulse_.look();
   }
 
 private:
-  void tell()
+  /// Tells of each eighth of the whole: a small search ends before it has to ask.
+  void advance(std::size_t size)
   {
-    if (watch_.end > 0.0) watch_.progress->skipTo(whole_ - left_);
-    if (watch_.progress->pulse()) throw Cancelled();
+    left_ = size;
+    watch_.progress->skipTo(whole_ - left_);
+    if (8 * (told_ - left_) < whole_) return;
+    told_ = left_;
+    watch_.progress->ask();
   }
 
   const Watch watch_;
   const std::size_t whole_;
-  std::size_t left_;
-  unsigned steps_ = 0;
+  std::size_t left_, told_ = left_; ///< entries; likewise when it was told last
+  WorkPulse pulse_;
 };
 
 } // namespace pcl_bsh

@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/solids.h>
@@ -85,7 +86,10 @@ public:
     if (wanted_.indices || wanted_.obstacle_indices) list();
     if (wanted_.closest && !closest_is_known_) findClosest();
     if (wanted_.measures() && !question_.path) measure();
-    if (question_.seen && wanted_.collisions()) lookAround(question_, input_, obstacle_, answer_);
+    if (question_.seen && wanted_.collisions()) {
+      progress_.tellWhole(1.0); // all but this is done
+      lookAround(question_, input_, obstacle_, answer_);
+    }
     warn();
     return std::move(answer_);
   }
@@ -168,7 +172,10 @@ private:
     const double begun = begun_++, all = queries();
     Effort effort = question_;
     if (question_.progress)
-      effort.progress = [this, begun, all](double done) { return question_.progress((begun + done) / all); };
+      effort.progress = [this, begun, all](double done) {
+        progress_.tellWhole((begun + done) / all);
+        return true;
+      };
     return effort;
   }
 
@@ -276,6 +283,7 @@ private:
   }
 
   const Question& question_;
+  Progress progress_{question_.progress}; ///< of what is no query, too: building, and what solids hold
   const Wanted& wanted_;
   Shape& input_;
   Shape& obstacle_;

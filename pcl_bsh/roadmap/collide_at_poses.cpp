@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/roadmap/batches.h>
@@ -31,9 +32,11 @@ Work forEachPose(const PoseList& poses, unsigned threads, Progress& progress, co
 {
   return forEachBatch(poses.size(), threads, progress, [&](std::size_t begin, std::size_t end) {
     Work work;
-    for (std::size_t i = begin; i < end && !progress.stopped(); ++i) {
-      work += answer(i, poses[i]);
-      if (i % 16 == 0) progress.pulse();
+    Pulse pulse;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Work of_pose = answer(i, poses[i]);
+      work += of_pose;
+      pulse.count(costInPairs(of_pose) + 64);
     }
     return work;
   });

@@ -62,10 +62,7 @@ struct RoughMiddles {
 /// Those of a batch, of points that are where `places` says.
 class MotionsOfBatch final : public MotionsAbout {
 public:
-  MotionsOfBatch(const MotionsQuery& query, Places places, Progress& progress)
-  : query_(query),
-    places_(places),
-    progress_(progress)
+  MotionsOfBatch(const MotionsQuery& query, Places places) : query_(query), places_(places)
   {
     tolerance = query.request.swept;
   }
@@ -95,8 +92,8 @@ public:
   /// As a swept path that ends at the first witness.
   std::optional<PointPair> find(std::size_t i, Work& work) const override
   {
-    const std::function<bool(double)> goesOn = [this](double) { return !progress_.pulse(); };
-    Progress own(goesOn);
+    const std::function<bool(double)> none;
+    Progress own(none);
     TrajectoryResult counted;
     const std::vector<Eigen::Isometry3d> ends = {motions_[i].from(), motions_[i].to()};
     const TrajectoryQuery path(query_.scan, query_.model, query_.boxes, ends, query_.swept, counted, own, places_,
@@ -105,8 +102,7 @@ public:
     const std::vector<NearVoxel> near_voxels = path.nearVoxels(never, own);
     std::optional<PointPair> witness;
     for (std::span<const NearVoxel> left = near_voxels; !left.empty() && !witness;) {
-      const VoxelResult found = walkVoxel(path, never, takeVoxel(left), own);
-      own.throwIfStopped();
+      const VoxelResult found = walkVoxel(path, never, takeVoxel(left));
       counted.work += found.work;
       witness = found.witness;
     }
@@ -117,7 +113,6 @@ public:
 private:
   const MotionsQuery& query_;
   const Places places_;
-  Progress& progress_;
   std::vector<RigidMotion> motions_;
 };
 
@@ -192,7 +187,7 @@ AnyOnMotions answer(const Placed& scan, const SphereHierarchy& model, const Pose
         const std::vector<std::uint32_t> order =
             orderOf(RoughMiddles{poses, motions, open}, body, threadCount(request.threads));
         return forEachBatch(order.size(), request.threads, progress, [&](std::size_t begin, std::size_t end) {
-          MotionsOfBatch about(query, places, progress);
+          MotionsOfBatch about(query, places);
           PoseBatch middles{scan, model, body, {}, &about};
           for (std::size_t k = begin; k < end; ++k) {
             const PoseMotion& motion = motions[open[order[k]]];

@@ -3,6 +3,7 @@
 // poses, and on all motions about them. Those that are left are looked at one by one, the last witness first.
 #include <pcl_bsh/roadmap/pose_batch.h>
 
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
@@ -47,6 +48,7 @@ private:
   /// that are tried needs the motion's own search.
   void decide(std::size_t i, NodePairs& pairs, std::size_t from)
   {
+    pulse_.look();
     const MotionsAbout* const motions = batch_.motions;
     const Placed b{batch_.b, batch_.poses[i]};
     if (motions && !comeNear(b.pose, reachOfMotions() + motions->extents[i], pairs, from)) return;
@@ -95,6 +97,7 @@ private:
   std::vector<LanePair> near_;
   std::optional<PointPair> witness_; ///< of the last that collided
   Work work_;
+  WorkPulse pulse_{work_};
 };
 
 } // namespace

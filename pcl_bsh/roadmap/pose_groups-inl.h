@@ -9,6 +9,7 @@
 #define PCL_BSH_ROADMAP_POSE_GROUPS_INL_H_
 #endif
 
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/roadmap/pose_batch.h>
 #include <pcl_bsh/traversal/pair_walk-inl.h>
 
@@ -189,6 +190,7 @@ private:
   /// @param from where the pairs begin that may meet at these poses
   void visit(std::size_t begin, std::size_t end, std::size_t from)
   {
+    pulse_.look();
     if (end - begin == 1) return decide_(begin, pairs_, from);
     const std::size_t own = pairs_.size(), middle = begin + (end - begin) / 2;
     const double motion = motionAround(middle, begin, end, widest_);
@@ -240,6 +242,7 @@ private:
   const double widest_; ///< motion of a group that opens nodes
   Decide decide_;
   Work work_;
+  WorkPulse pulse_{work_};
 };
 
 } // namespace HWY_NAMESPACE

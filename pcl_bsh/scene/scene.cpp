@@ -325,7 +325,7 @@ RefitReport Scene::deform(ObjectId object, std::uint32_t part, const PointsView&
 SceneResult Scene::query()
 {
   const DefaultFloatEnvironment environment;
-  state_->progress.emplace(state_->options.progress);
+  const State::InProgress in_progress(*state_);
   try {
     return state_->query();
   }
@@ -339,7 +339,7 @@ SceneResult Scene::step(double dt)
 {
   if (!isLength(dt)) refuse("a step of " + plainText(dt) + " seconds is not finite and >= 0");
   const DefaultFloatEnvironment environment;
-  state_->progress.emplace(state_->options.progress);
+  const State::InProgress in_progress(*state_);
   return state_->step(dt);
 }
 

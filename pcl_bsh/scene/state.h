@@ -90,6 +90,16 @@ class Scene::State {
 public:
   explicit State(SceneOptions scene_options);
 
+  /// While it lives, the scene answers a query or does a step.
+  struct InProgress {
+    explicit InProgress(State& scene) : state(scene) { state.progress.emplace(state.options.progress); }
+    ~InProgress() { state.progress.reset(); }
+    InProgress(const InProgress&) = delete;
+    InProgress& operator=(const InProgress&) = delete;
+
+    State& state;
+  };
+
   Placed placed(ObjectId object, std::size_t part) const
   {
     return {*bodies[object].object.parts[part].hierarchy, bodies[object].world[part]};
@@ -131,7 +141,7 @@ public:
   Effort exactOfParts() const { return {1, progress->nested()}; }
 
   SceneOptions options;
-  mutable std::optional<Progress> progress; ///< of the query or step in progress
+  mutable std::optional<Progress> progress; ///< of the query or step in progress, and none between them
   double share = 0.0;                       ///< what the effect that is computed takes the whole to
   PairRules rules;
   SceneSolids solids;

@@ -66,6 +66,7 @@ private:
                                  : voxel->given.empty() ? storedSphere(voxel->frame, node, i)
                                                         : givenSphereOf(storage_.view, *voxel, node, i);
       Scans left;
+      pulse_.step();
       const State state = look(sphere, scans, left);
       if (state == State::seen) continue;
       if (voxel && node.isLeaf(i)) {
@@ -103,6 +104,7 @@ private:
   void point(std::uint32_t record, bool unseen, const Scans& scans)
   {
     if (verdicts_[record] != Verdict::free) return;
+    pulse_.step();
     if (!unseen) {
       const auto sees = [&](const PosedPlace& place, double radius) {
         const auto of_scan = [&](const SeenScan* scan) {
@@ -137,6 +139,7 @@ private:
   std::vector<Verdict>& verdicts_;
   Scans all_;
   const SeenScan* last_ = nullptr; ///< that saw something
+  WorkPulse pulse_{result.work};
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/work.h>
 #include <pcl_bsh/solid/point_labels.h>
 
@@ -62,6 +63,7 @@ private:
   Whole of(const PointLabels::Frame& frame, double unit, const Node& node, std::uint32_t child)
   {
     ++work_.node_pairs;
+    pulse_.step();
     const Point3 center = {static_cast<double>(node.x[child]) * unit, static_cast<double>(node.y[child]) * unit,
                            static_cast<double>(node.z[child]) * unit};
     const Point3 at = labels_.seen(frame, center);
@@ -79,6 +81,7 @@ private:
   void tell(const PointLabels::Frame& frame, std::uint32_t record, const Point3& p, Sink& sink)
   {
     if (!sink.wants(record)) return;
+    pulse_.step();
     const Label label = labels_.label(frame, p, work_.exact_decisions);
     if (label != Label::outside) sink.one(record, label);
   }
@@ -89,6 +92,7 @@ private:
   {
     const std::uint32_t record = voxel.records()[i];
     if (!sink.wants(record)) return;
+    pulse_.step();
     const LocalFrame& local = voxel.frame;
     const Point3 at = labels_.seen(frame, {static_cast<double>(voxel.x()[i]) * local.unit,
                                            static_cast<double>(voxel.y()[i]) * local.unit,
@@ -132,6 +136,7 @@ private:
   PointLabels labels_;
   PointLabels::Frame top_ = {};
   Work& work_;
+  WorkPulse pulse_{work_};
 };
 
 } // namespace pcl_bsh

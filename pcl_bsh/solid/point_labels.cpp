@@ -108,6 +108,7 @@ std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const De
   for (const std::uint32_t i : columns_.above(at, error, several_)) {
     const FloatBox& box = columns_.box(i);
     if (ray.misses(box)) continue;
+    pulse_.count(1);
     Triangle3 t = columns_.seenTriangle(i);
     for (Point3& corner : t)
       for (std::size_t k = 0; k < 3; ++k) corner[k] -= at[k];

@@ -2,6 +2,7 @@
 // Labels of single points of a cloud in a solid, at one pose of both.
 #pragma once
 
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/geometry/triangle/winding.h>
 #include <pcl_bsh/solid/columns.h>
 #include <pcl_bsh/solid/solid.h>
@@ -65,6 +66,7 @@ private:
   Eigen::Isometry3d pose_a_, pose_b_;
   std::array<Point3, 3> rotation_, inverse_; ///< rows, in the order of the columns' axes
   std::vector<std::uint32_t> several_;
+  Pulse pulse_; ///< of triangles above a place
 };
 
 } // namespace pcl_bsh

@@ -131,7 +131,6 @@ struct VoxelResult {
 
 /// Takes one voxel of the scan along its intervals. Writes what it finds of the voxel's points to the query's result.
 /// Different voxels may be walked at the same time.
-VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel,
-                      Progress& progress);
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel);
 
 } // namespace pcl_bsh

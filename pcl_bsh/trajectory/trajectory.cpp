@@ -80,9 +80,8 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
   progress.begin(1.0, voxels.steps(rule));
   const std::uint64_t tests = // those above the voxels count, too
       rule.node_pairs - (rule.node_pairs == StopRule::kNever ? 0 : std::min(rule.node_pairs, result.work.node_pairs));
-  voxels.run(rule, tests, [&](const StopRule& own, std::span<const NearVoxel> near) {
-    return walkVoxel(query, own, near, progress);
-  });
+  voxels.run(rule, tests,
+             [&](const StopRule& own, std::span<const NearVoxel> near) { return walkVoxel(query, own, near); });
   if (rule.mayStop()) countFlags(result);
   if (request.swept && std::isfinite(query.earliest)) result.first_contact = instantOf(query.path, query.earliest);
   if (request.pose_summaries) summarize(query, result);

@@ -3,6 +3,7 @@
 // poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree
 // of boxes. How thick follows from the node's sphere and from how far the interval strays from a parabola; whichever is
 // larger is divided.
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/trajectory/query.h>
 
 #include <algorithm>
@@ -48,18 +49,16 @@ struct WalkScratch {
 /// Takes one voxel of the scan along the trajectory.
 class TrajectoryWalk {
 public:
-  TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, Progress& progress,
-                 WalkScratch& scratch)
+  TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, WalkScratch& scratch)
   : query_(query),
     rule_(rule),
     index_(voxel),
     voxel_frame_(query, voxel),
     oriented_boxes_(voxel_frame_),
     results_(query),
-    progress_(progress),
     stop_check_(rule, results_.work.node_pairs),
     model_(query.boxes, rule, results_.work),
-    leaves_(query, voxel_frame_, model_, stop_check_, results_, scratch.long_triangles),
+    leaves_(query, voxel_frame_, model_, stop_check_, pulse_, results_, scratch.long_triangles),
     probing_(query, voxel_frame_, model_, results_.work),
     settled_reach_(settledReach()),
     settling_(!query.everything() && !query.first && query.of_points && voxel_frame_.frame.unit == 1.0 &&
@@ -78,6 +77,7 @@ public:
     std::vector<Siblings> candidates;
     for (const auto [voxel, interval] : near) {
       if (stop_check_.isOver() || isDone()) return leave(true);
+      pulse_.step();
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
       ++results_.work.volumes_carried;
@@ -148,21 +148,14 @@ private:
     return probe;
   }
 
-  /// Reports progress to the caller from time to time, and whether it asked to stop.
-  bool isStopped()
-  {
-    constexpr std::uint32_t often = 256;
-    if (++descents_ % often == 0) stopped_ = progress_.pulse();
-    return isDone();
-  }
-
-  bool isDone() const { return stopped_ || results_.witness; }
+  bool isDone() const { return results_.witness.has_value(); }
 
   /// Takes a node, all its children at once, through its candidates; then each child through its own.
   void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<Siblings>& candidates,
                std::size_t depth)
   {
-    if (stop_check_.isOver() || isStopped()) return;
+    if (stop_check_.isOver() || isDone()) return;
+    pulse_.step();
     const Node& node = voxel_->nodes[index];
     float largest = 0.0f;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
@@ -276,6 +269,7 @@ private:
     if (!(settled_reach_ > smallest) && query_.of_pairs.isOne()) return;
     for (const Siblings& candidate : visit.candidates)
       for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+        pulse_.step();
         settleBy(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))], visit, index, motion);
         if (open_lanes_[index] == 0) return;
       }
@@ -323,6 +317,7 @@ private:
   void take(NodeVisit& visit, const Siblings& candidate, const VoxelMotion& motion, std::uint32_t lanes)
   {
     std::uint32_t kept[kLanes] = {};
+    pulse_.step();
     for (std::uint32_t boxes = candidate.lanes; boxes != 0; boxes &= boxes - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(boxes));
       const ModelBox box = candidate[k];
@@ -357,10 +352,8 @@ private:
   const VoxelInModelFrame voxel_frame_;
   OrientedBoxes oriented_boxes_;
   VoxelResults results_;
-  Progress& progress_;
   StopCheck stop_check_;
-  std::uint32_t descents_ = 0;
-  bool stopped_ = false; // by the caller
+  WorkPulse pulse_{results_.work};
   ModelBoxes model_;
   LeafWalk leaves_;
   PointProbing probing_;
@@ -374,11 +367,10 @@ private:
 
 } // namespace
 
-VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near,
-                              Progress& progress)
+VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near)
 {
   thread_local WalkScratch scratch; // kept from voxel to voxel for its storage only
-  return TrajectoryWalk(query, rule, near.front().voxel, progress, scratch).run(near);
+  return TrajectoryWalk(query, rule, near.front().voxel, scratch).run(near);
 }
 
 } // namespace HWY_NAMESPACE
@@ -390,10 +382,9 @@ namespace pcl_bsh {
 
 HWY_EXPORT(walkVoxelOnTarget);
 
-VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel,
-                      Progress& progress)
+VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel)
 {
-  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, near_voxel, progress);
+  return HWY_DYNAMIC_DISPATCH(walkVoxelOnTarget)(query, rule, near_voxel);
 }
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/query/result.h>
 
 #include <algorithm>
@@ -63,11 +64,13 @@ public:
   template <class MakeVisitor>
   void visit(unsigned threads, const MakeVisitor& makeVisitor)
   {
+    askWatcher(); // this thread may come too late to get a piece
     parallelFor(threads, threads, [&](std::size_t) {
       try {
         auto visitor = makeVisitor();
         while (Piece* const piece = take()) {
           visitor(*piece);
+          askWatcher();
           giveBack(*piece);
         }
       }
@@ -110,9 +113,19 @@ private:
       }
       if (taken_ == 0) return nullptr;
       ++idle_;
-      changed_.wait(lock);
-      --idle_;
+      waitForChange(lock);
     }
+  }
+
+  void waitForChange(std::unique_lock<std::mutex>& lock)
+  {
+    struct Idle { // no more, should the caller want an end
+      explicit Idle(std::size_t& idle) : count(idle) { ++count; }
+      ~Idle() { --count; }
+      std::size_t& count;
+    };
+    const Idle idle(idle_);
+    waitAsking(changed_, lock);
   }
 
   void giveBack(Piece& piece)

@@ -67,7 +67,7 @@ template <class Pair, class Visitor>
 void visitPairs(PairWalk& walk, std::vector<Pair>& stack, Visitor& visitor)
 {
   PairWalk::Step step;
-  SearchPulse pulse(visitor.watch, stack.size());
+  SearchPulse pulse(visitor.watch, stack.size(), walk.work);
   while (!stack.empty()) {
     pulse.step(stack.size());
     const Pair pair = stack.back();

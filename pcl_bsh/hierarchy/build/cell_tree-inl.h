@@ -10,6 +10,7 @@
 #define PCL_BSH_HIERARCHY_BUILD_CELL_TREE_INL_H_
 #endif
 
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/hierarchy/build/cell_codes-inl.h>
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/hierarchy/build/point_bounds-inl.h>
@@ -349,6 +350,7 @@ private:
 
   std::uint32_t newNode()
   {
+    pulse_.count(kOfNode);
     nodes_.emplace_back();
     nodes_.back().count = 0;
     return static_cast<std::uint32_t>(nodes_.size() - 1);
@@ -361,6 +363,8 @@ private:
   std::vector<Node>& nodes_;
   PointRecord* given_; // the voxel's block
   double crowded_extent_;
+  static constexpr std::uint64_t kOfNode = 32; ///< pairs of nodes that take as long
+  Pulse pulse_;
   bool crowded_ = false;
   bool moved_ = false;
 };

@@ -2,6 +2,7 @@
 // A voxel's octree cells and bounding spheres, built on the voxel's first visit: sort the points by cell, fit the
 // spheres.
 #include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/geometry/enclosing_sphere.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/sphere_radius.h>
@@ -58,15 +59,21 @@ public:
     nodes_.clear();
     CellTree cells(voxel_, view_, scratch_.cells, scratch_.sorted, nodes_);
     try {
+      Pulse pulse;
+      const auto goOn = [&] { pulse.count(voxel_.count); };
       if (voxel_.isListed()) readPoints(voxel_, view_);
+      goOn();
       cells.build(split, cube);
+      goOn();
       fitBounds();
       storeAsArrays();
+      goOn();
       fitSpheres();
       voxel_.nodes.assign(nodes_.begin(), nodes_.end());
       if (cells.hasCrowdedCells()) voxel_.given = givenSpheres(voxel_, view_);
     }
-    catch (...) { // out of memory: the block has to be what a voxel that is not built has, in the cloud's order
+    catch (...) { // out of memory, or stopped: the block has to be what a voxel that is not built has, in the cloud's
+                  // order
       if (!voxel_.isListed()) {
         auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
         if (cells.hasMoved()) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), points);

@@ -3,6 +3,7 @@
 // runs, and points are read again where a voxel is built: what no query visits is never copied. Points in another order
 // are copied at once, since later each of them would be a miss of the caches.
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/build/voxel_edge.h>
 #include <pcl_bsh/hierarchy/frame_between.h>
@@ -147,7 +148,9 @@ private:
       };
       const std::int32_t* const indices = view_.indices;
       const std::size_t end = begins_[chunk + 1];
-      for (std::size_t i = first; i < end; ++i) {
+      Pulse pulse;
+      for (std::size_t i = first, ask = i; i < end; ++i) {
+        if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const GivenPoint<T> p = read_(indices ? static_cast<std::uint32_t>(indices[i]) : static_cast<std::uint32_t>(i));
         const GivenPoint<T> numbers = cell_of.numbers(p);
         if (sameXyz(numbers, cell_of_run)) {
@@ -290,8 +293,10 @@ private:
       std::vector<RunWriter> lists;
       lists.reserve(chunks_[chunk].bins.size());
       for (const Bin<T>& bin : chunks_[chunk].bins) lists.emplace_back(bin.list);
+      Pulse pulse;
       RunReader read_run(runs_.get() + begins_[chunk]);
-      for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
+      for (std::size_t i = begins_[chunk], ask = i; i < begins_[chunk + 1];) {
+        if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const Run run = read_run();
         if (run.number != kNoBin) eachRunOf(i, i + run.points, lists[run.number]);
         i += run.points;
@@ -303,6 +308,7 @@ private:
   void movePoints()
   {
     parallelFor(chunk_count_, threads_, [&](std::size_t chunk) {
+      Pulse pulse;
       std::vector<Target> targets;
       targets.reserve(chunks_[chunk].bins.size());
       for (const Bin<T>& bin : chunks_[chunk].bins) {
@@ -310,7 +316,8 @@ private:
         targets.push_back({reinterpret_cast<PointRecord*>(voxel.block) + bin.first, LocalPlace<T>(voxel.frame)});
       }
       RunReader read_run(runs_.get() + begins_[chunk]);
-      for (std::size_t i = begins_[chunk]; i < begins_[chunk + 1];) {
+      for (std::size_t i = begins_[chunk], ask = i; i < begins_[chunk + 1];) {
+        if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const Run run = read_run();
         if (run.number != kNoBin) {
           Target& target = targets[run.number];

@@ -2,7 +2,7 @@
 // One question about tiles of a site.
 #pragma once
 
-#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/tile_visitor.h>
@@ -109,7 +109,7 @@ private:
     return [this, &ask, tiles](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
       ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
       const double done = static_cast<double>(visitor_.place() + 1) / static_cast<double>(tiles);
-      if (request_.progress && !request_.progress(done)) throw Cancelled();
+      progress_.tellWhole(done);
     };
   }
 
@@ -123,6 +123,7 @@ private:
 
   const Site& site_;
   const SiteRequest& request_;
+  Progress progress_{request_.progress};
   TileVisitor visitor_;
 };
 

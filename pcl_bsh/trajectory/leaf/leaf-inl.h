@@ -8,6 +8,7 @@
 #define PCL_BSH_TRAJECTORY_LEAF_LEAF_INL_H_
 #endif
 
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/trajectory/leaf/arcs_at_poses-inl.h>
 #include <pcl_bsh/trajectory/leaf/record_leaf-inl.h>
 #include <pcl_bsh/trajectory/leaf/swept_leaf-inl.h>
@@ -25,13 +26,14 @@ inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as al
 class LeafWalk {
 public:
   LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, StopCheck& stop_check,
-           VoxelResults& results, LongTriangles& long_triangles)
+           WorkPulse& pulse, VoxelResults& results, LongTriangles& long_triangles)
   : query_(query),
     path_(query.path),
     tree_(query.boxes),
     voxel_frame_(voxel_frame),
     model_(model),
     stop_check_(stop_check),
+    pulse_(pulse),
     results_(results),
     swept_(query, voxel_frame, results, compared_),
     at_pose_(query, voxel_frame, results),
@@ -72,6 +74,7 @@ public:
     for (const Siblings& candidate : near_) {
       push(leaf, candidate, leaf.open, motion);
       while (!stack_.empty() && leaf.open != 0 && !stop_check_.isOver()) {
+        pulse_.look();
         const PointsNearBoxes next = stack_.back();
         stack_.pop_back();
         if (motion.at_rest)
@@ -212,6 +215,7 @@ private:
   {
     for (std::uint32_t k = ranges.begin; k < ranges.end && (ranges.lanes & leaf.open) != 0 && !stop_check_.isOver();
          ++k) {
+      pulse_.step();
       std::uint32_t here = ranges.at(k, leaf.open);
       if (query_.first && !query_.everything())
         for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
@@ -241,6 +245,7 @@ private:
   const VoxelInModelFrame& voxel_frame_;
   ModelBoxes& model_;
   StopCheck& stop_check_;
+  WorkPulse& pulse_;
   VoxelResults& results_;
   ComparedPairs compared_;
   SweptLeaf swept_;
