@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/geometry/triangle/ordinary_length.h>
 
 #include <Eigen/Geometry>
 
@@ -29,13 +30,17 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
 /// A polygon's corners in the plane of its vector area, to its left when walked round; NaN where it has no area.
 std::vector<Vector2d> flattened(const std::vector<Vector3d>& corners)
 {
+  double largest = 0.0;
+  for (const Vector3d& p : corners) largest = std::max(largest, (p - corners[0]).cwiseAbs().maxCoeff());
+  const double factor = toOrdinary(largest); // the shape alone counts
+  const auto fromFirst = [&](const Vector3d& p) -> Vector3d { return factor * (p - corners[0]); };
   Vector3d area = Vector3d::Zero();
-  for (std::size_t i = 2; i < corners.size(); ++i) area += (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]);
+  for (std::size_t i = 2; i < corners.size(); ++i) area += fromFirst(corners[i - 1]).cross(fromFirst(corners[i]));
   const Vector3d normal = area.stableNormalized();
   const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
   std::vector<Vector2d> flat;
   flat.reserve(corners.size());
-  for (const Vector3d& p : corners) flat.emplace_back(x.dot(p - corners[0]), y.dot(p - corners[0]));
+  for (const Vector3d& p : corners) flat.emplace_back(x.dot(fromFirst(p)), y.dot(fromFirst(p)));
   return flat;
 }
 

@@ -186,5 +186,24 @@ TEST(Approach, IsThatOfManyInstants)
   EXPECT_GT(later, 50);
 }
 
+/// Across a face, however small or large that is.
+TEST(Separation, OfAFaceOfAnySizeIsAcrossIt)
+{
+  for (const double unit : {1.0, 1e-30, 1e-79, 1e-82, 1e-100, 1e-120, 1e30}) {
+    SCOPED_TRACE(unit);
+    const auto sized = [unit](Triangle3 t) {
+      for (Point3& p : t) p = {unit * p[0], unit * p[1], unit * p[2]};
+      return Corners::of(t);
+    };
+    const Corners a = sized({{{1, 1, 1}, {2, 2, 3}, {0, 2, 3}}}), b = sized({{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}});
+    EXPECT_NEAR(faceBetween(a, b, 0.5 * unit)[2], 1.0, 1e-12);
+    const Separation apart = separationOf(a, b);
+    EXPECT_NEAR(apart.direction[2], 1.0, 1e-12);
+    EXPECT_NEAR(apart.high / unit, 1.0, 1e-9);
+    const Corners pierced = sized({{{1, 1, -1}, {1, 1, 1}, {2, 1, 1}}});
+    EXPECT_LE(separationOf(pierced, b).high, 1e-12 * unit);
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh

@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace pcl_bsh {
 namespace {
@@ -146,6 +148,53 @@ TEST(Contacts, NormalsAreInTheFrameOfThePoses)
   ASSERT_EQ(result.contacts.size(), 1u);
   EXPECT_NEAR(result.contacts[0].distance, 0.75, 1e-15);
   EXPECT_TRUE(result.contacts[0].normal.isApprox(Eigen::Vector3d(0, 0, 1), 1e-12));
+}
+
+/// Of surfaces of any size: what is below 1e-80 has squares of normals that are not in the range of double.
+TEST(Contacts, NormalsOfTrianglesOfAnySizeAreOfLengthOne)
+{
+  struct Case {
+    const char* name;
+    Triangle3 a, b;
+    Eigen::Vector3d normal;
+  };
+  const double root = std::sqrt(0.5);
+  const Case cases[] = {
+      {"a corner above a face", {{{1, 1, 1}, {2, 2, 3}, {0, 2, 3}}}, {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, {0, 0, 1}},
+      {"a face above a corner", {{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, {{{1, 1, 0}, {2, 2, -3}, {0, 2, -3}}}, {0, 0, 1}},
+      {"edges that cross", {{{-1, 0, 1}, {1, 0, 1}, {0, 0, 3}}}, {{{0, -1, 0}, {0, 1, 0}, {0, 0, -3}}}, {0, 0, 1}},
+      {"a corner beside an edge",
+       {{{2, 0, 2}, {5, 1, 5}, {5, -1, 5}}},
+       {{{1, -9, 1}, {1, 9, 1}, {-8, 0, -9}}},
+       {root, 0, root}},
+      {"an edge beside a corner",
+       {{{1, -9, 1}, {1, 9, 1}, {8, 0, 9}}},
+       {{{0, 0, 0}, {-5, 1, -5}, {-5, -1, -5}}},
+       {root, 0, root}},
+      {"corners", {{{1, 0, 1}, {5, 1, 6}, {5, -1, 6}}}, {{{0, 0, 0}, {-5, 1, -6}, {-5, -1, -6}}}, {root, 0, root}},
+      {"a needle's face",
+       {{{1, 0x1p-42, 1}, {2, 0, 3}, {0, 0, 3}}},
+       {{{0, 0, 0}, {4, 0, 0}, {2, 0x1p-40, 0}}},
+       {0, 0, 1}}};
+  for (const double unit : {1.0, 1e-40, 1e-70, 1e-80, 1e-81, 1e-90, 1e-100, 1e-130, 1e-160, 1e-200, 1e-290, 1e20, 1e37})
+    for (const Case& one : cases) {
+      SCOPED_TRACE(std::string(one.name) + " of " + std::to_string(std::log10(unit)));
+      test::Mesh of_a, of_b;
+      const auto sized = [unit](Point3 p) { return Point3{unit * p[0], unit * p[1], unit * p[2]}; };
+      of_a.add(sized(one.a[0]), sized(one.a[1]), sized(one.a[2]));
+      of_b.add(sized(one.b[0]), sized(one.b[1]), sized(one.b[2]));
+      const auto viewOfMesh = [](const test::Mesh& mesh) {
+        return viewOf(TrianglesView{viewOf(mesh.vertices[0].data(), 3), mesh.corners.data(), 1});
+      };
+      const SphereHierarchy a(viewOfMesh(of_a)), b(viewOfMesh(of_b));
+      for (const bool swap : {false, true}) {
+        const ContactsResult found =
+            swap ? nearestContacts({b}, {a}, within(2 * unit, 3)) : nearestContacts({a}, {b}, within(2 * unit, 3));
+        ASSERT_EQ(found.contacts.size(), 1u);
+        const Eigen::Vector3d normal = found.contacts[0].normal;
+        EXPECT_TRUE(normal.isApprox(swap ? -one.normal : one.normal, 1e-9)) << normal.transpose();
+      }
+    }
 }
 
 /// Where points have radii, too, float arithmetic decides all but those at the very reach.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/geometry/triangle/separation.h>
 
-#include <pcl_bsh/geometry/triangle/vector3.h>
+#include <pcl_bsh/geometry/triangle/ordinary_length.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,17 +47,32 @@ Point3 onEdge(const Point3& p, const Point3& start, const Point3& end)
   return start + clampedShare(dot(p - start, way), dot(way, way)) * way;
 }
 
+double largestOf(const Point3& u, const Point3& v)
+{
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::abs(u[k]), std::abs(v[k])});
+  return largest;
+}
+
+/// Of any length; of one whose square is in the range of double where the triangle's sides are not all but parallel.
+Point3 faceNormal(const Triangle3& t)
+{
+  return cross(ofOrdinaryLength(t[1] - t[0]), ofOrdinaryLength(t[2] - t[0]));
+}
+
 /// The place of a triangle's inside that is below or above a point; nothing where there is none.
 /// @param offer called with the place
 template <class Offer>
 void onFace(const Point3& p, const Triangle3& t, const Offer& offer)
 {
-  const Point3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
+  Point3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
+  const double factor = toOrdinary(largestOf(u, v));
+  if (factor != 1.0) u = factor * u, v = factor * v, w = factor * w;
   const Point3 normal = cross(u, v);
   const double square = dot(normal, normal); // where it is 0, no place below compares as inside
   const double on_v = dot(normal, cross(u, w)) / square, on_u = dot(normal, cross(w, v)) / square;
   if (!(on_u > 0.0 && on_v > 0.0 && on_u + on_v < 1.0)) return;
-  offer(t[0] + on_u * u + on_v * v);
+  offer(t[0] + on_u * (t[1] - t[0]) + on_v * (t[2] - t[0]));
 }
 
 void offerEdges(const Point3& a, const Point3& end_a, const Point3& b, const Point3& end_b, NearestPlaces& nearest)
@@ -76,7 +91,7 @@ void offerEdges(const Point3& a, const Point3& end_a, const Point3& b, const Poi
 template <class Offer>
 void wherePierced(const Triangle3& edges, const Triangle3& t, const Offer& offer)
 {
-  const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  const Point3 normal = faceNormal(t);
   double heights[3];
   for (std::size_t i = 0; i < 3; ++i) heights[i] = dot(normal, edges[i] - t[0]);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -153,8 +168,9 @@ public:
   Point3 direction = {0, 0, 0};
   double gap = -kInfinitelyFar;
 
-  void offer(const Point3& along)
+  void offer(const Point3& way)
   {
+    const Point3 along = ofOrdinaryLength(way);
     const double length = lengthOf(along);
     if (!(length > kVanishing)) return; // its direction would not be of length 1
     const Point3 unit = (1.0 / length) * along;
@@ -204,7 +220,7 @@ Separation separationOf(const Corners& a, const Corners& b, const Near& near)
   for (const Corners* corners : {&a, &b}) {
     if (corners->count < 3 || best.gap >= most) continue;
     const Triangle3& t = corners->at;
-    const Point3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    const Point3 normal = faceNormal(t);
     best.offer(dot(normal, between) < 0.0 ? -1.0 * normal : normal);
     for (std::size_t i = 0; i < 3; ++i) {
       const Point3 edge = t[(i + 1) % 3] - t[i];
@@ -303,7 +319,7 @@ Point3 faceBetween(const Corners& a, const Corners& b, double least)
   BestDirection best(a, b);
   for (const Corners* corners : {&a, &b}) {
     if (corners->count < 3) continue;
-    const Point3 normal = cross(corners->at[1] - corners->at[0], corners->at[2] - corners->at[0]);
+    const Point3 normal = faceNormal(corners->at);
     best.offer(normal);
     best.offer(-1.0 * normal);
   }

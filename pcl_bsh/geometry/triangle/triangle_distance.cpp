@@ -10,8 +10,10 @@
 #include <pcl_bsh/geometry/triangle/double_distance.h>
 #include <pcl_bsh/geometry/triangle/facing.h>
 #include <pcl_bsh/geometry/triangle/nearest_features.h>
+#include <pcl_bsh/geometry/triangle/ordinary_length.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -401,6 +403,55 @@ double TriangleDistance::gap(const TrianglePair& pair, Stages* stages) const
   return rounded(pair, orNone(stages, none));
 }
 
+namespace {
+
+const Point3& cornerOf(const Point3& point, std::size_t)
+{
+  return point;
+}
+const Point3& cornerOf(const Triangle3& triangle, std::size_t i)
+{
+  return triangle[i % 3];
+}
+
+/// Across the nearest parts of two that do not meet. @param edge_a, edge_b the sides, called with their first corner's
+/// number @param between a place on the one and one on the other
+template <class EdgeA, class EdgeB>
+Vector3<Dyadic> normalAcross(const Features& features, const EdgeA& edge_a, const EdgeB& edge_b,
+                             const Vector3<Dyadic>& between)
+{
+  const auto across = [&](const Vector3<Dyadic>& edge) {
+    return dot(edge, edge) * between - dot(between, edge) * edge;
+  };
+  switch (features.kind) {
+  case Features::meeting:
+  case Features::corners:
+    return between;
+  case Features::corner_edge:
+    return across(edge_b(features.j));
+  case Features::edge_corner:
+    return across(edge_a(features.i));
+  case Features::edges:
+    return cross(edge_a(features.i), edge_b(features.j));
+  case Features::corner_face:
+    return cross(edge_b(0), edge_b(1));
+  case Features::face_corner:
+    break;
+  }
+  return cross(edge_a(0), edge_a(1));
+}
+
+/// Its direction, rounded: the largest part is in [1, 2).
+Point3 ofLengthOne(const Vector3<Dyadic>& v)
+{
+  const Dyadic::Scaled parts[3] = {v[0].scaled(), v[1].scaled(), v[2].scaled()};
+  const int largest = std::max({parts[0].exponent, parts[1].exponent, parts[2].exponent});
+  const auto part = [&](std::size_t k) { return std::ldexp(parts[k].mantissa, parts[k].exponent - largest); };
+  return {part(0), part(1), part(2)};
+}
+
+} // namespace
+
 template <class Pair>
 Point3 TriangleDistance::betweenNearest(const Pair& pair) const
 {
@@ -408,10 +459,22 @@ Point3 TriangleDistance::betweenNearest(const Pair& pair) const
   const Features features = nearestFeatures(pair, by_integers);
   const Seen at = seen(pair.a, pair.b);
   const std::size_t i = features.i, j = features.j, next_i = (i + 1) % 3, next_j = (j + 1) % 3;
-  const auto across = [](const Point3& from, const Point3& edge) { // from a line through 0
+  const auto across = [](const Point3& from, const Point3& way) { // from a line through 0
+    const Point3 edge = ofOrdinaryLength(way);
     return from - (dot(from, edge) / dot(edge, edge)) * edge;
   };
-  const auto along = [](const Point3& from, const Point3& normal) { // from a plane through 0
+  const auto along = [&](const Point3& from, const Point3& u, const Point3& v) { // from a plane through 0
+    const Point3 way_u = ofOrdinaryLength(u), way_v = ofOrdinaryLength(v);
+    Point3 normal = cross(way_u, way_v);
+    constexpr double needle = 0x1p-40; // of the sine, squared: rounding may turn the normal by its root
+    if (!(dot(normal, normal) > needle * dot(way_u, way_u) * dot(way_v, way_v)))
+      normal = ofLengthOne(normalAcross(
+          features,
+          [&](std::size_t k) {
+            return placed<Dyadic>(a_, cornerOf(pair.a, k + 1)) - placed<Dyadic>(a_, cornerOf(pair.a, k));
+          },
+          [&](std::size_t k) { return placed<Dyadic>(b_, pair.b[(k + 1) % 3]) - placed<Dyadic>(b_, pair.b[k]); },
+          Vector3<Dyadic>()));
     return (dot(from, normal) / dot(normal, normal)) * normal;
   };
   switch (features.kind) {
@@ -424,13 +487,13 @@ Point3 TriangleDistance::betweenNearest(const Pair& pair) const
   case Features::edge_corner:
     return -1.0 * across(at.b[j] - at.a[i], at.a[next_i] - at.a[i]);
   case Features::edges:
-    return along(at.a[i] - at.b[j], cross(at.a[next_i] - at.a[i], at.b[next_j] - at.b[j]));
+    return along(at.a[i] - at.b[j], at.a[next_i] - at.a[i], at.b[next_j] - at.b[j]);
   case Features::corner_face:
-    return along(at.a[i] - at.b[0], cross(at.b[1] - at.b[0], at.b[2] - at.b[0]));
+    return along(at.a[i] - at.b[0], at.b[1] - at.b[0], at.b[2] - at.b[0]);
   case Features::face_corner:
     break;
   }
-  return -1.0 * along(at.b[j] - at.a[0], cross(at.a[1] - at.a[0], at.a[2] - at.a[0]));
+  return -1.0 * along(at.b[j] - at.a[0], at.a[1] - at.a[0], at.a[2] - at.a[0]);
 }
 
 template <class Pair>
@@ -439,12 +502,8 @@ std::optional<std::array<ExactPlane, 2>> TriangleDistance::planesOfNearest(const
   using Vector = Vector3<Dyadic>;
   bool by_integers = false;
   const Features features = nearestFeatures(pair, by_integers);
-  const auto given_a = [&pair](std::size_t i) {
-    if constexpr (std::is_same_v<Pair, PointPair>)
-      return pair.a;
-    else
-      return pair.a[i % 3];
-  };
+  if (features.kind == Features::meeting) return std::nullopt;
+  const auto given_a = [&pair](std::size_t i) { return cornerOf(pair.a, i); };
   const auto edge_a = [&](std::size_t i) {
     return placed<Dyadic>(a_, given_a(i + 1)) - placed<Dyadic>(a_, given_a(i));
   };
@@ -453,30 +512,7 @@ std::optional<std::array<ExactPlane, 2>> TriangleDistance::planesOfNearest(const
   };
   const std::size_t i = features.i, j = features.j;
   const Vector between = placed<Dyadic>(b_, pair.b[j]) - placed<Dyadic>(a_, given_a(i)); // from one plane to the other
-  const auto across = [&](const Vector& edge) { return dot(edge, edge) * between - dot(between, edge) * edge; };
-  Vector normal;
-  switch (features.kind) {
-  case Features::meeting:
-    return std::nullopt;
-  case Features::corners:
-    normal = between;
-    break;
-  case Features::corner_edge:
-    normal = across(edge_b(j));
-    break;
-  case Features::edge_corner:
-    normal = across(edge_a(i));
-    break;
-  case Features::edges:
-    normal = cross(edge_a(i), edge_b(j));
-    break;
-  case Features::corner_face:
-    normal = cross(edge_b(0), edge_b(1));
-    break;
-  case Features::face_corner:
-    normal = cross(edge_a(0), edge_a(1));
-    break;
-  }
+  const Vector normal = normalAcross(features, edge_a, edge_b, between);
   const int side = dot(normal, between).sign();
   if (side == 0) return std::nullopt;
   const auto plane = [&normal](const Pose& pose, const Point3& through, double towards) {
