@@ -77,11 +77,13 @@ void findGreatestOfBoth(const Placed& a, const Placed& b, SymmetricDistances& re
   const bool takes_a = isFromA();
   result.hausdorff_pair = takes_a ? of_a : of_b;
   result.hausdorff = takes_a ? result.a.greatest : result.b.greatest;
+  result.hausdorff_interval = {result.hausdorff, result.hausdorff};
 }
 
 void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result)
 {
   result.hausdorff = std::numeric_limits<double>::quiet_NaN();
+  result.hausdorff_interval = {result.hausdorff, result.hausdorff};
   result.hausdorff_pair.reset();
   if (!result.a.greatest_pair || !result.b.greatest_pair) return;
   if (allMeasured(a, result.a) && allMeasured(b, result.b)) findGreatestOfBoth(a, b, result);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances of all points: each voxel of a is one task and owns its points.
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/pulse.h>
 #include <pcl_bsh/distances/check_distances.h>
 #include <pcl_bsh/distances/distance_query.h>
 #include <pcl_bsh/distances/greatest_distance.h>
+#include <pcl_bsh/distances/surface_hausdorff.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
@@ -136,6 +138,11 @@ bool haveAnswers(const Placed& a, const Placed& b)
   return !a.hierarchy().empty() && !b.hierarchy().empty();
 }
 
+bool ofTriangles(const Placed& a, const Placed& b)
+{
+  return a.hierarchy().view().triangles || b.hierarchy().view().triangles;
+}
+
 /// Where a cloud is empty, nothing is near.
 void finish(const Placed& a, const Placed& b, const PointDistancesRequest& request, PointDistances& result)
 {
@@ -215,11 +222,21 @@ void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRe
       from_a.passes(rule, StopRule::kNever);
       from_b.passes(rule, StopRule::kNever);
     }
-    progress.end();
   }
   finish(a, b, request, found.a);
   finish(b, a, request, found.b);
   findHausdorff(a, b, found);
+  if (request.accuracy.mode == Accuracy::Mode::tolerance)
+    found.hausdorff_interval.lower = std::nextafter(found.hausdorff - request.accuracy.value, -kInfinity);
+  if (found.hausdorff_pair && ofTriangles(a, b)) {
+    const HausdorffDistance farthest =
+        request.accuracy.stopsEarly() ? HausdorffDistance() : surfaceHausdorff(a, b, request);
+    found.hausdorff = farthest.distance;
+    found.hausdorff_pair = farthest.pair;
+    found.hausdorff_interval = farthest.interval;
+    found.hausdorff_work = farthest.work;
+  }
+  if (haveAnswers(a, b)) progress.end();
   result = std::move(found);
 }
 
@@ -228,12 +245,21 @@ HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const Haus
   PointDistancesRequest request;
   static_cast<Effort&>(request) = hausdorff;
   check(a, b, request);
-  checkExact(request);
+  if (request.accuracy.stopsEarly())
+    throw InvalidInput(Input::accuracy, "accuracy",
+                       request.accuracy.text() + " stops early, which the Hausdorff distance does not",
+                       "give exact or tolerance=LENGTH");
   const DefaultFloatEnvironment environment;
+  request.accuracy = Accuracy::exact(); // of points
   const StopRule rule(request.accuracy);
   Progress progress(request.progress);
   HausdorffDistance result;
   if (!haveAnswers(a, b)) return result;
+  if (ofTriangles(a, b)) {
+    result = surfaceHausdorff(a, b, hausdorff);
+    progress.finish();
+    return result;
+  }
   SymmetricDistances found;
   clear(found.a, a, request);
   clear(found.b, b, request);
@@ -248,6 +274,7 @@ HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const Haus
   findGreatest(b, a, found.b);
   findGreatestOfBoth(a, b, found);
   result.distance = found.hausdorff;
+  result.interval = {result.distance, result.distance};
   result.pair = found.hausdorff_pair;
   result.work = found.a.work;
   result.work += found.b.work;

@@ -7,8 +7,8 @@
 //   PointDistances change = pointDistances({after}, {before}, request);
 //   // change.distance[i]: from record i of `after` to the nearest point of `before`, NaN where that is farther than 2
 //
-// Of triangles the distance is that of the nearest places: so those of a triangle of a are to its nearest place, and
-// Hausdorff distances ask how far records are, not how far the farthest place of a triangle is.
+// Of triangles the distance is that of the nearest places: so those of a triangle of a are from its nearest place, and
+// means and percentiles are of these. The Hausdorff distance of surfaces is that of their farthest places.
 //
 // The distance of points p and q is |T_a p - T_b q|, less the points' radii where given: then it may be negative. The
 // nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. The same
@@ -51,8 +51,8 @@ struct PointDistances {
   std::vector<Interval> interval;
   std::size_t measured = 0;  ///< points that have a distance
   std::size_t undecided = 0; ///< points that may have one within max_distance, but were left when the search stopped
-  /// The greatest of all distances (from a to b, the directed Hausdorff distance, where every point has one), and the
-  /// pair that realises it, of several the smallest (a, b). NaN and none where no point has one.
+  /// The greatest of all distances (from points of a to b, the directed Hausdorff distance, where every point has one),
+  /// and the pair that realises it, of several the smallest (a, b). NaN and none where no point has one.
   double greatest = std::numeric_limits<double>::quiet_NaN();
   std::optional<PointPair> greatest_pair;
   Work work;
@@ -75,10 +75,14 @@ PointDistances pointDistances(const Placed& a, const std::vector<std::uint32_t>&
 struct SymmetricDistances {
   PointDistances a; ///< from each point of a to b
   PointDistances b; ///< from each point of b to a
-  /// The symmetric Hausdorff distance: the greatest of all. NaN where a point of either cloud has no distance, because
-  /// it is farther than max_distance or undecided, or the other cloud is empty; then it is not known.
+  /// The symmetric Hausdorff distance: of points the greatest of all, of surfaces as HausdorffDistance::distance. NaN
+  /// where a record of either cloud has no distance, because it is farther than max_distance or undecided, or the other
+  /// cloud is empty, and of surfaces where the accuracy stops early; then it is not known.
   double hausdorff = std::numeric_limits<double>::quiet_NaN();
   std::optional<PointPair> hausdorff_pair; ///< that realises it, of several the smallest (a, b)
+  /// Holds it for certain: as HausdorffDistance::interval, which the accuracy's tolerance is for. NaN where not known.
+  Interval hausdorff_interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  Work hausdorff_work; ///< of surfaces: of that alone
 };
 
 /// Distances from each cloud to the other. A count of sphere tests, or a time, is for both together.
@@ -89,26 +93,35 @@ SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const Po
 void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request,
                         SymmetricDistances& result);
 
-/// What hausdorffDistance() reads. It is exact.
+/// What hausdorffDistance() reads. Of points it is exact. Of surfaces a tolerance says how wide the interval may be;
+/// without one that is kHausdorffShare of the greater extent of both.
 struct HausdorffRequest : Effort {
   using Effort::Effort;
   /** All. */ HausdorffRequest(Effort effort) : Effort(std::move(effort)) {}
   HausdorffRequest() = default;
 };
 
+/// Of the diagonal of the larger cloud's box: how wide the interval of a Hausdorff distance of surfaces may be.
+inline constexpr double kHausdorffShare = 0x1p-14;
+
 /// What hausdorffDistance() found.
 struct HausdorffDistance {
-  /// The greatest distance from a point of either cloud to the other cloud, in the clouds' unit, rounded to the nearest
-  /// double. NaN where a cloud is empty.
+  /// The greatest distance from a place of either cloud to the other cloud, in the clouds' unit, rounded to the nearest
+  /// double: of points exactly, of surfaces that of the farthest place which was measured. NaN where a cloud is empty.
   double distance = std::numeric_limits<double>::quiet_NaN();
-  std::optional<PointPair> pair; ///< that realises it, of several the smallest (a, b)
-  Work work; ///< with several threads it depends on which of them is the first to measure a great distance
+  /// Holds the greatest distance for certain; of points both ends are `distance`. It may be wider than the tolerance
+  /// where doubles do not tell places apart, or where a million divisions of triangles were not enough.
+  Interval interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  std::optional<PointPair> pair; ///< that realises it; of points and several of them the smallest (a, b)
+  Work work; ///< of points with several threads: depends on which is the first to measure a great distance
 };
 
 /// The symmetric Hausdorff distance alone: what symmetricDistances() says of it without a limit, bit for bit, for less.
-/// Points that are certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm
-/// for calculating the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
-/// @throws std::invalid_argument when a pose is not what its declaration asks for; an accuracy other than exact.
+/// Of surfaces it is that of all their places: triangles are divided, the one that may be the farthest first, until the
+/// interval is narrow enough. From a triangle to a record, the greatest distance is that of a corner. Points that are
+/// certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm for calculating
+/// the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
+/// @throws std::invalid_argument when a pose is not what its declaration asks for; an accuracy that stops early.
 ///   Cancelled.
 HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& request = {});
 

@@ -57,7 +57,9 @@ All others are those of `point_distances`.
 Returns
 -------
 SymmetricDistances
-    `a` and `b` are `PointDistances`; `hausdorff` is the greatest of all, NaN where a point has no distance.
+    `a` and `b` are `PointDistances`, of meshes from each triangle's nearest place. `hausdorff` is the greatest distance of
+    all places, of meshes of those inside triangles, too; `hausdorff_interval` (lower, upper) holds it for certain, no
+    wider than the accuracy's tolerance, or than 2^-14 of the larger box's diagonal. NaN where a record has no distance.
 
 Examples
 --------
@@ -71,6 +73,7 @@ Examples
 
 constexpr auto kHausdorffDistance =
     R"(The symmetric Hausdorff distance, without measuring every point: that of `symmetric_distances`, bit for bit, for less.
+Of meshes, that of all places of their triangles, as an interval.
 
 Parameters
 ----------
@@ -78,12 +81,15 @@ a, b : SphereHierarchy
     Of meshes, the surfaces: `solid` is for `symmetric_distances`.
 pose_a, pose_b, threads, progress
     As of `point_distances`.
+accuracy : Accuracy or str, optional
+    Exact, or ``tolerance=LENGTH``: how wide the interval of meshes may be; exact: 2^-14 of the larger box's diagonal.
 
 Returns
 -------
 HausdorffDistance
-    Unpacks as ``distance, pair``. `distance` is the greatest distance from a point of either cloud to the other cloud,
-    NaN where a cloud is empty; `pair` realises it, of several the smallest (a, b), or is None.
+    Unpacks as ``distance, pair``. `distance` is the greatest distance from a place of either cloud to the other cloud,
+    NaN where a cloud is empty: of points exactly, of meshes that of the farthest place that was measured. `interval`
+    (lower, upper) holds it for certain. `pair` realises it, of points the smallest (a, b), or is None.
 
 Examples
 --------
@@ -125,10 +131,10 @@ SymmetricDistances symmetricDistancesOf(const Cloud& a, const Cloud& b, std::opt
 }
 
 HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
-                                      unsigned threads, const ProgressLike& progress)
+                                      const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress)
 {
   Asked asked(a, pose_a, b, pose_b);
-  const HausdorffRequest request{threads, progressOf(progress)};
+  const HausdorffRequest request{accuracyOf(accuracy), threads, progressOf(progress)};
   return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); },
                       [](const HausdorffDistance&) { return 0.0; }); // which has nothing to do with what is inside
 }
@@ -170,6 +176,12 @@ void bindDistances(py::module_& module)
       .def_readonly("a", &SymmetricDistances::a, "From each point of a to b.")
       .def_readonly("b", &SymmetricDistances::b, "From each point of b to a.")
       .def_readonly("hausdorff", &SymmetricDistances::hausdorff)
+      .def_property_readonly(
+          "hausdorff_interval",
+          [](const SymmetricDistances& found) {
+            return py::make_tuple(found.hausdorff_interval.lower, found.hausdorff_interval.upper);
+          },
+          "(lower, upper): holds the Hausdorff distance for certain.")
       .def_property_readonly("hausdorff_pair",
                              [](const SymmetricDistances& found) { return tupleOf(found.hausdorff_pair); })
       .def("__repr__", [](const SymmetricDistances& found) {
@@ -178,6 +190,10 @@ void bindDistances(py::module_& module)
   py::class_<HausdorffDistance>(module, "HausdorffDistance",
                                 "The answer of `hausdorff_distance`; unpacks as distance, pair.")
       .def_readonly("distance", &HausdorffDistance::distance)
+      .def_property_readonly(
+          "interval",
+          [](const HausdorffDistance& found) { return py::make_tuple(found.interval.lower, found.interval.upper); },
+          "(lower, upper): holds the distance for certain.")
       .def_property_readonly("pair", [](const HausdorffDistance& found) { return tupleOf(found.pair); })
       .def_readonly("work", &HausdorffDistance::work)
       .def("__len__", [](const HausdorffDistance&) { return 2; })
@@ -186,7 +202,8 @@ void bindDistances(py::module_& module)
       .def("__repr__",
            [](const HausdorffDistance& found) { return "HausdorffDistance(" + numberText(found.distance) + ")"; });
   module.def("hausdorff_distance", &hausdorffDistanceOf, kHausdorffDistance, "a"_a, "b"_a, py::kw_only(),
-             "pose_a"_a = py::none(), "pose_b"_a = py::none(), "threads"_a = 1, "progress"_a = py::none());
+             "pose_a"_a = py::none(), "pose_b"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,
+             "progress"_a = py::none());
   const auto define = [&](const char* name, auto function, const char* text) {
     module.def(name, function, text, "a"_a, "b"_a, "max_distance"_a = py::none(), py::kw_only(),
                "pose_a"_a = py::none(), "pose_b"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,

@@ -59,6 +59,9 @@ private:
         {{"unit", unit_},
          {"in", question.unit.empty() ? "" : " " + unit_},
          {"hausdorff", length(report_.hausdorff)},
+         {"interval", false},
+         {"input_meaning", report_.input.meaning()},
+         {"obstacle_meaning", report_.obstacle.meaning()},
          {"pair", false},
          {"max_distance", numberOrNone(question.request.max_distance)},
          {"input_part", report_.input.part},
@@ -66,6 +69,9 @@ private:
          {"farther", countedIfAny(farther, "point has", "points have")},
          {"statistics", statistics()},
          {"sides", List{side(report_.input, report_.obstacle.name), side(report_.obstacle, report_.input.name)}}});
+    if (report_.isHausdorffAnInterval())
+      page["interval"] = Object{{"lower", length(report_.hausdorff_interval.lower)},
+                                {"upper", length(report_.hausdorff_interval.upper)}};
     if (const auto& pair = report_.hausdorff_pair)
       page["pair"] = Object{{"a", std::to_string(pair->a)}, {"b", std::to_string(pair->b)}};
     return page;
@@ -97,6 +103,7 @@ private:
   {
     Object side = {{"from", plain(from.name)},
                    {"to", plain(to)},
+                   {"parts", std::string(from.part) + 's'},
                    {"points", counted(from.points, from.part)},
                    {"beyond", length(from.beyond)},
                    {"view", from.points > 0 ? view(from) : Data(false)},

@@ -6,6 +6,7 @@
 #include <pcl_bsh/io/reports/report_origin.h>
 
 #include <cmath>
+#include <string>
 
 namespace pcl_bsh::io {
 namespace {
@@ -45,6 +46,7 @@ Json toJson(const DistanceSide& side, bool is_input)
   std::optional<PointPair> farthest = side.found.greatest_pair;
   if (farthest && !is_input) farthest = PointPair{farthest->b, farthest->a};
   Json json = {{"points", side.points},
+               {"statistics_of", side.meaning()},
                {"count", statistics.count},
                {"farther", side.farther()},
                {"mean", lengthJson(statistics.mean)},
@@ -70,6 +72,17 @@ Json toJson(const DistanceSide& side, bool is_input)
 
 } // namespace
 
+const char* DistanceSide::meaning() const
+{
+  return std::string(part) == "triangle" ? "triangles: the distance of each one's nearest place"
+                                         : "points: the distance of each one";
+}
+
+bool DistanceReport::isHausdorffAnInterval() const
+{
+  return hausdorff_interval.upper - hausdorff_interval.lower > 0x1p-40 * std::abs(hausdorff_interval.upper);
+}
+
 Json DistanceQuestion::surfaceToTell() const
 {
   Json json = surfaceJson(surface, solid);
@@ -81,8 +94,12 @@ Json DistanceQuestion::surfaceToTell() const
 DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, const Placed& obstacle,
                         const SymmetricDistances& found)
 {
-  return {question, sideOf(question.input, input, found.a, question.beyond),
-          sideOf(question.obstacle, obstacle, found.b, question.beyond), found.hausdorff, found.hausdorff_pair};
+  return {question,
+          sideOf(question.input, input, found.a, question.beyond),
+          sideOf(question.obstacle, obstacle, found.b, question.beyond),
+          found.hausdorff,
+          found.hausdorff_pair,
+          found.hausdorff_interval};
 }
 
 Json distanceJson(const DistanceReport& report)
@@ -100,7 +117,9 @@ Json distanceJson(const DistanceReport& report)
           {"input_to_obstacle", toJson(report.input, true)},
           {"obstacle_to_input", toJson(report.obstacle, false)},
           {"hausdorff", lengthJson(report.hausdorff)},
-          {"hausdorff_pair", pairJson(report.hausdorff_pair)}};
+          {"hausdorff_pair", pairJson(report.hausdorff_pair)},
+          {"hausdorff_interval",
+           {lengthJson(report.hausdorff_interval.lower), lengthJson(report.hausdorff_interval.upper)}}};
 }
 
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report)

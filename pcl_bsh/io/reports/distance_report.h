@@ -44,6 +44,9 @@ struct DistanceSide {
 
   std::size_t farther() const { return points - statistics.count; } ///< than the greatest distance asked for
 
+  /// What each of the numbers that statistics are of says.
+  const char* meaning() const;
+
   /// Of a record, in the input's frame.
   Eigen::Vector3d placeOf(std::uint32_t record) const
   {
@@ -55,8 +58,12 @@ struct DistanceSide {
 struct DistanceReport {
   DistanceQuestion question;
   DistanceSide input, obstacle;
-  double hausdorff; ///< the greatest of both sides, NaN where a point has no distance
+  double hausdorff; ///< as SymmetricDistances has it, and the following
   std::optional<PointPair> hausdorff_pair;
+  Interval hausdorff_interval;
+
+  /// Whether the interval is wider than the distance's rounding.
+  bool isHausdorffAnInterval() const;
 };
 
 /// The report of what symmetricDistances() found between the two, which are borrowed.

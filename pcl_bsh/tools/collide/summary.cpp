@@ -34,9 +34,15 @@ std::string distanceSummary(const io::DistanceReport& report)
     return text.str();
   };
   const DistanceStatistics& statistics = report.input.statistics;
-  return "; distances of " + counted(statistics.count, report.input.part) + ": mean " + length(statistics.mean) +
-         ", RMS " + length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " +
-         length(statistics.maximum) + "; Hausdorff distance " + length(report.hausdorff);
+  const bool of_triangles = report.input.part == std::string("triangle");
+  const Interval& interval = report.hausdorff_interval;
+  const std::string certainly = report.isHausdorffAnInterval()
+                                    ? ", certainly from " + length(interval.lower) + " to " + length(interval.upper)
+                                    : "";
+  return "; distances of " + counted(statistics.count, report.input.part) +
+         (of_triangles ? ", each of its nearest place" : "") + ": mean " + length(statistics.mean) + ", RMS " +
+         length(statistics.rms) + ", median " + length(statistics.median) + ", greatest " + length(statistics.maximum) +
+         "; Hausdorff distance " + length(report.hausdorff) + certainly;
 }
 
 } // namespace

@@ -88,6 +88,8 @@ TEST_F(DistanceReports, TellBothDirectionsInNumbers)
   EXPECT_EQ(from["farthest_pair"][1], 42) << "input before obstacle";
   EXPECT_EQ(told["hausdorff"], 2);
   EXPECT_EQ(told["hausdorff_pair"], (Json{42, 42}));
+  EXPECT_EQ(told["hausdorff_interval"], (Json{2, 2})) << "of points it is exact";
+  EXPECT_EQ(to["statistics_of"], "points: the distance of each one");
 }
 
 TEST_F(DistanceReports, TellWhatWasAskedForOtherThanUsual)
