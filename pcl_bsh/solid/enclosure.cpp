@@ -89,13 +89,16 @@ std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isom
   const std::vector<std::int32_t> places = content.placesOf(held);
   const SphereHierarchy near = partOf(view, places);
   const LabelsResult labels = labelPoints({near, T_world_content}, {solid.whole(), T_world_solid});
-  std::vector<std::int32_t> inside; // a hollow of the solid is inside some of its bodies, too
-  for (const std::int32_t place : places)
-    if (labels.labels[static_cast<std::size_t>(place)] == labelOf(Label::inside)) inside.push_back(place);
   if (work) *work += labels.work;
-  if (inside.empty()) return holders;
-  const SphereHierarchy part = partOf(view, inside);
   const std::vector<SolidBodies::Body>& bodies = solid.all();
+  std::vector<std::int32_t> within; // a hollow of the solid is inside some of its bodies, too
+  for (const std::int32_t place : places) {
+    const std::uint8_t label = labels.labels[static_cast<std::size_t>(place)];
+    // On the face of one body a place may be inside of another.
+    if (bodies.size() > 1 ? isHeld(label) : label == labelOf(Label::inside)) within.push_back(place);
+  }
+  if (within.empty()) return holders;
+  const SphereHierarchy part = partOf(view, within);
   for (const SolidBodies::Body& body : bodies) {
     if (bodies.size() > 1 && !anyWithin({part, T_world_content}, {solid.solidOf(body), T_world_solid}, work)) continue;
     holders.insert(holders.end(), body.triangles.begin(), body.triangles.end());
