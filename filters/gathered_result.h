@@ -6,6 +6,7 @@
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -27,6 +28,8 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
   sizeAs(found.flags, gathered.flags, Verdict::free);
   sizeAs(found.distance, gathered.distance, std::numeric_limits<float>::quiet_NaN());
   sizeAs(found.first_pose, gathered.first_pose, -1);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  sizeAs(found.interval, gathered.interval, Interval{unknown, unknown});
   sizeAs(found.certain_pose, gathered.certain_pose, -1);
   sizeAs(found.closest_pose, gathered.closest_pose, -1);
   sizeAs(found.closest_point, gathered.closest_point, kNothing);
@@ -39,12 +42,17 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
       if (!found.flags.empty()) gathered.flags[group] = graver(gathered.flags[group], found.flags[t]);
       if (!found.first_pose.empty()) takeFirst(found.first_pose[t], gathered.first_pose[group]);
       if (!found.certain_pose.empty()) takeFirst(found.certain_pose[t], gathered.certain_pose[group]);
-      if (found.distance.empty() || !(found.distance[t] >= 0.0f)) continue;
+      if (!found.interval.empty()) { // the ends that are numbers
+        Interval& interval = gathered.interval[group];
+        interval.lower = std::fmin(interval.lower, found.interval[t].lower);
+        interval.upper = std::fmin(interval.upper, found.interval[t].upper);
+      }
+      if (found.distance.empty() || std::isnan(found.distance[t])) continue; // a depth is less than 0
       const bool has_poses = !found.closest_pose.empty();
       const auto rank = [has_poses](const TrajectoryResult& of, std::size_t i) {
         return std::tuple(of.distance[i], has_poses ? of.closest_pose[i] : 0);
       };
-      const bool is_first = !(gathered.distance[group] >= 0.0f);
+      const bool is_first = std::isnan(gathered.distance[group]);
       if (!is_first && !(rank(found, t) < rank(gathered, group))) continue;
       gathered.distance[group] = found.distance[t];
       if (has_poses) gathered.closest_pose[group] = found.closest_pose[t];

@@ -75,7 +75,12 @@ void add(Clash& clash, std::uint32_t record, const PointsView& scan, const Traje
     clash.high[k] = std::max(clash.high[k], extent.high[k] + 0.0);
   }
   clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
-  const double distance = static_cast<double>(found.distance[record]);
+  double distance = static_cast<double>(found.distance[record]);
+  if (!found.interval.empty() && !std::isnan(found.interval[record].lower)) {
+    distance = std::clamp(distance, found.interval[record].lower, found.interval[record].upper); // it was rounded
+    clash.interval.lower = std::fmin(clash.interval.lower, found.interval[record].lower);
+    clash.interval.upper = std::fmin(clash.interval.upper, found.interval[record].upper);
+  }
   if (!(distance < clash.distance)) return;
   clash.distance = distance;
   clash.scan_point = record;

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -40,20 +41,25 @@ struct Clash {
   std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
   Point3 low = {}, high = {};     ///< its bounding box
   Point3 place = {};              ///< where its point of the closest pair is; of a triangle, its middle
-  double distance = 0.0;          ///< the smallest, less radii; NaN of what is unseen and was no clash
-  std::uint32_t scan_point = 0;   ///< the pair that realises it; of several, that of the smallest record of the scan
-  std::uint32_t model_point = 0;  ///< at the closest pose
+  double distance = 0.0;          ///< the smallest, less radii; negative of what a solid holds: the greatest depth. NaN
+                                  ///< of what is unseen and was no clash
+  /// Where a solid makes it negative, or may: holds it for certain. Else both NaN.
+  Interval interval = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  std::uint32_t scan_point = 0;  ///< the pair that realises it; of several, that of the smallest record of the scan
+  std::uint32_t model_point = 0; ///< at the closest pose
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
 
   bool isCertain() const { return certain_points > 0; } ///< else it collides only perhaps
+
+  bool isDeep() const { return distance < 0.0; } ///< inside a solid, or balls overlap
 
   bool wasNoClash() const { return std::isnan(distance); } ///< unseen, and nothing else is known of it
 };
 
 /// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
 /// first: those that have a point which collides for certain before those that collide only perhaps, then by smallest
-/// distance, then by most points, then by id.
+/// distance, so that the deepest come first, then by most points, then by id.
 ///
 /// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin, whose
 /// cells are as long as the smallest power of two that is at least four cluster distances. So it is the same in every

@@ -157,7 +157,7 @@ void bindDistances(py::module_& module)
       .def_property_readonly("closest_point", column(&PointDistances::closest_point), "(records,) int32; -1: none.")
       .def_property_readonly("interval", &intervalArray,
                              "(records, 2) float64: holds each distance for certain, where the accuracy is less than "
-                             "exact; else None.")
+                             "exact, or a solid holds triangles; else None.")
       .def_readonly("measured", &PointDistances::measured, "Points that have a distance.")
       .def_readonly("undecided", &PointDistances::undecided, "Points that were left when the search stopped.")
       .def_readonly("greatest", &PointDistances::greatest, "The greatest of all distances; NaN where there is none.")

@@ -10,6 +10,7 @@
 
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -44,7 +45,7 @@ pivot : array_like, (3,), optional
 accuracy : Accuracy or str, default exact
 solid, input_solid : bool, default False
     The model, or the scan, is a mesh that counts with what its faces enclose, and they must close: what is inside at a
-    pose collides there, at a distance of 0.
+    pose collides there. Its distance is less than 0: the depth at the pose where it is deepest.
 threads : int, default 1
 progress : callable, optional
     Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
@@ -124,7 +125,7 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
     TrajectoryRequest wanted = request;
     wanted.flags = flags || solid || input_solid; // which what is held is counted by
     TrajectoryResult found = collideAlong(asked.a, model, list, wanted);
-    addHeld(asked.question, asked.input, asked.obstacle, found);
+    addHeld(asked.question, asked.input, asked.obstacle, found, request.pivot);
     return found;
   };
   run.result = asked.answer(find, [](const TrajectoryResult& found) { return nearestOf(found); });
@@ -219,7 +220,14 @@ void bindClashes(py::module_& module)
       .def_readonly("points", &Clash::points)
       .def_readonly("low", &Clash::low, "The lower corner of its box.")
       .def_readonly("high", &Clash::high)
-      .def_readonly("distance", &Clash::distance, "The smallest.")
+      .def_readonly("distance", &Clash::distance, "The smallest; less than 0 inside a solid: the greatest depth.")
+      .def_property_readonly(
+          "interval",
+          [](const Clash& clash) -> std::optional<std::pair<double, double>> {
+            if (std::isnan(clash.interval.lower)) return std::nullopt;
+            return std::pair(clash.interval.lower, clash.interval.upper);
+          },
+          "Holds the distance for certain where a solid makes it less than 0, or may; else None.")
       .def_readonly("scan_point", &Clash::scan_point, "The rows that realise it.")
       .def_readonly("model_point", &Clash::model_point)
       .def_readonly("first_pose", &Clash::first_pose)
@@ -257,7 +265,17 @@ void bindTrajectory(py::module_& module)
                             "None unless it was asked for.")
       .def_property_readonly("flags", columnWhere(&Result::flags, &Request::flags), "uint8: a Verdict.")
       .def_property_readonly("distance", columnWhere(&Result::distance, &Request::distances),
-                             "float32: the smallest over all poses, less radii; NaN where free.")
+                             "float32: the smallest over all poses, less radii; NaN where free. Less than 0 of what a "
+                             "solid holds: the depth.")
+      .def_property_readonly(
+          "interval",
+          [](const py::object& self) -> std::optional<py::array_t<double>> {
+            const auto& interval = self.cast<const TrajectoryRun&>().result.interval;
+            if (interval.empty()) return std::nullopt;
+            return arrayIn(self, &interval.front().lower, {static_cast<py::ssize_t>(interval.size()), 2});
+          },
+          "(records, 2) float64, with distances, where a solid holds anything: holds the distance of a record for "
+          "certain that it makes less than 0, or may; NaN of others. Else None.")
       .def_property_readonly("first_pose", columnWhere(&Result::first_pose, &Request::first_poses),
                              "int32; -1 where free.")
       .def_property_readonly("closest_pose", columnWhere(&Result::closest_pose, &Request::closest_poses),

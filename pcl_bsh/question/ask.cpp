@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/depths/content_part.h>
+#include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/progress.h>
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace pcl_bsh {
@@ -28,7 +31,9 @@ class MeasuredDistances {
 public:
   MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
   : found_(found),
-    exact_(input.hierarchy().view(), input.pose, obstacle.hierarchy().view(), obstacle.pose)
+    exact_(input.hierarchy().view(), input.pose, obstacle.hierarchy().view(), obstacle.pose),
+    sunk_(sunk(input.hierarchy().view(), radii_)),
+    depth_(sunk_, input.pose, obstacle.hierarchy().view(), obstacle.pose)
   {
   }
 
@@ -39,7 +44,8 @@ public:
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
     const std::uint32_t nearest = found_.closest_point[record];
-    if (distance < 0.0) return -exact_.compare({record, nearest}, -length); // a depth
+    if (exact_.ofTriangles() && distance < sunk_.ownRadius(record)) // a depth; of triangles not known better
+      return sunk_.triangles ? 0 : -depth_.compare({record, nearest}, -length);
     return exact_.compare({record, nearest}, length);
   }
 
@@ -47,6 +53,9 @@ private:
   const DefaultFloatEnvironment environment_;
   const PointDistances& found_;
   const RecordDistance exact_;
+  std::vector<float> radii_;
+  const PointsView sunk_;
+  const RecordDistance depth_;
 };
 
 /// Of all points that collide, that of the smallest distance.
@@ -54,10 +63,18 @@ DistanceResult closestOf(const TrajectoryResult& found)
 {
   DistanceResult closest;
   for (std::size_t i = 0; i < found.distance.size(); ++i) {
-    const double distance = static_cast<double>(found.distance[i]);
+    double distance = static_cast<double>(found.distance[i]);
+    if (!found.interval.empty() && !std::isnan(found.interval[i].lower))
+      distance = std::clamp(distance, found.interval[i].lower, found.interval[i].upper); // it was rounded
     if (!(distance < closest.distance)) continue;
     closest.distance = distance;
     closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
+  }
+  for (const Interval& interval : found.interval) { // of what solids hold
+    if (std::isnan(interval.lower) || !(interval.lower < 0.0)) continue;
+    closest.interval.lower =
+        std::isinf(closest.interval.lower) ? interval.lower : std::min(closest.interval.lower, interval.lower);
+    closest.interval.upper = std::min(closest.interval.upper, interval.upper);
   }
   return closest;
 }
@@ -209,11 +226,54 @@ private:
     answer_.collisions = collideAlong(a_, b_.hierarchy(), question_.poses(), request);
     answer_.work += answer_.collisions.work;
     solids_->addToPath(answer_.collisions, answer_.work);
+    if (wanted_.poses) tellPoses(request);
     if (!flags) answer_.collisions.flags.clear();
     if (wanted_.closest) {
       answer_.closest = closestOf(answer_.collisions);
-      answer_.closest.distance = std::max(answer_.closest.distance, 0.0);
       closest_is_known_ = true;
+    }
+  }
+
+  /// Of each pose the pair; swept, of the motion from each pose to the next all: of what collides anywhere, which is
+  /// few.
+  void tellPoses(TrajectoryRequest request)
+  {
+    const std::vector<Verdict>& flags = answer_.collisions.flags;
+    const bool whole = question_.input_solid; // a part of a solid is none
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t i = 0; i < flags.size(); ++i)
+      if (flags[i] != Verdict::free) some.push_back(i);
+    const ContentPart part(a_.hierarchy(), whole ? std::vector<std::uint32_t>() : some);
+    Shape input = whole ? input_ : Shape(input_.name(), {std::shared_ptr<const void>(), &part.content().thing()});
+    const Placed a(whole ? a_.hierarchy() : part.content().thing(), a_.pose);
+    const std::vector<Eigen::Isometry3d> poses = question_.poses();
+    std::vector<PoseSummary>& told = answer_.collisions.poses;
+    told.resize(poses.size());
+    answer_.pose_pairs.assign(poses.size(), std::nullopt);
+    if (some.empty()) return;
+    Question motion = question_;
+    request.progress = motion.progress = nullptr;
+    request.distances = request.closest_poses = request.first_poses = true;
+    request.pose_summaries = false;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      DistanceResult closest;
+      if (request.swept) {
+        motion.path.emplace(poses.begin() + static_cast<std::ptrdiff_t>(k),
+                            poses.begin() + static_cast<std::ptrdiff_t>(std::min(k + 2, poses.size())));
+        const Solids solids(motion, input, obstacle_, a, b_);
+        TrajectoryResult found = collideAlong(a, b_.hierarchy(), *motion.path, request);
+        solids.addToPath(found, found.work);
+        answer_.work += found.work;
+        closest = closestOf(found);
+        told[k] = {found.colliding > 0, found.colliding, found.undecided, closest.distance};
+      }
+      else if (told[k].colliding_points + told[k].undecided_points > 0) {
+        closest = closestPair(a, {b_.hierarchy(), poses[k]});
+        Solids(question_, input, obstacle_, a, b_).turn(closest, poses[k]);
+        answer_.work += closest.work;
+      }
+      answer_.pose_pairs[k] = closest.pair;
+      if (closest.pair && !whole) answer_.pose_pairs[k]->a = part.original(closest.pair->a);
     }
   }
 

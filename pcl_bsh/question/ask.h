@@ -13,7 +13,6 @@
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,8 +27,11 @@ namespace pcl_bsh {
 struct Answer {
   /// Flags, contacts (distance, first_pose, closest_pose, closest_point: a record of the obstacle), poses, and how many
   /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
-  /// too.
+  /// too. Swept, an entry of `poses` is of the motion from its pose to the next, the last one of the last pose.
   TrajectoryResult collisions;
+  /// With Wanted::poses, of each pose at which anything collides, or may: the pair of its smallest distance, of several
+  /// the smallest (input, obstacle).
+  std::vector<std::optional<PointPair>> pose_pairs;
   AnyResult any; ///< its pair: of a solid, what is held, and a triangle of the body that holds it
   CollidingIndices indices;
   std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`

@@ -19,8 +19,10 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// As ask() adds it along the question's path, to all that is there; nothing where neither thing is asked as a solid.
-/// @throws as ask() does of solids
-void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found);
+/// Distances of what is held are depths, less than 0: at the pose where it is deepest.
+/// @param pivot of swept motion, as the query had it. @throws as ask() does of solids
+void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found,
+             const Point3& pivot = {0, 0, 0});
 
 /// Of the obstacle at each of these poses, or on motions that begin there.
 /// @param verdicts of the surfaces, one for each pose: what is held collides
@@ -39,6 +41,19 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult&
 
 /// @param found has the flags of both sides where places are uncertain
 void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found);
+
+/// What closestPair() reads of two things of which one or both are solids.
+struct SolidDistanceRequest : DistanceRequest {
+  using DistanceRequest::DistanceRequest;
+  bool solid = false;       ///< b counts with what its faces enclose: they must close
+  bool input_solid = false; ///< a does
+};
+
+/// The smallest distance, which is less than 0 where a solid holds anything: the depth of the deepest, of triangles
+/// with an interval. The pair is the deepest record and the triangle of the solid nearest to its deepest place.
+/// @throws as closestPair() does of surfaces; InvalidOption for a solid without faces, InvalidInput where these do not
+///   close
+DistanceResult closestPair(const Placed& a, const Placed& b, const SolidDistanceRequest& request);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

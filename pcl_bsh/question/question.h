@@ -31,7 +31,8 @@ struct Wanted {
   bool indices = false;          ///< which points of the input collide, as a list, at one pose
   bool obstacle_indices = false; ///< the same of the obstacle
   bool contacts = false;         ///< of each that collides: its smallest distance, the first pose and the closest
-  bool poses = false;         ///< of each pose: how many points collide, and the smallest distance; not of swept motion
+  bool poses = false;         ///< of each pose: how many points collide, the smallest distance and its pair; swept, of
+                              ///< the motion from each pose to the next
   bool first_poses = false;   ///< of each that collides: the first pose alone
   bool closest = false;       ///< the smallest distance and its pair: with contacts, and along a path, of what collides
   bool distances = false;     ///< of each point of the input to the obstacle; along a path the smallest

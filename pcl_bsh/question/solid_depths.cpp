@@ -2,69 +2,62 @@
 // Distances of what solids hold: negative, the depth to the surface.
 #include <pcl_bsh/question/solids.h>
 
+#include <pcl_bsh/depths/depths_along.h>
 #include <pcl_bsh/distances/point_distances.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
 
-Interval outward(double lower, double upper)
+/// As a distance.
+Interval turned(const Interval& depth)
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {std::nextafter(lower, -infinity), std::nextafter(upper, infinity)};
+  return {-depth.upper, 0.0 - depth.lower};
 }
 
-/// Of what is held. @param width of a ball, 0 of a point or a triangle
-Interval depthsOf(const Interval& distance, double width)
+/// What the distance of each record is certainly in, where it was measured exactly.
+void tellIntervals(PointDistances& found)
 {
-  if (width == 0.0) return {-distance.upper, -distance.lower};
-  return outward(-(distance.upper + width), -(distance.lower + width));
+  if (!found.interval.empty()) return;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN(), beyond = std::numeric_limits<double>::infinity();
+  for (const double distance : found.distance)
+    found.interval.push_back(std::isnan(distance)
+                                 ? Interval{none, none}
+                                 : Interval{std::nextafter(distance, -beyond), std::nextafter(distance, beyond)});
 }
 
 } // namespace
 
-PointDistances Solids::depths(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& records) const
+DeepSolid Solids::deepSolid(const Pairing& pair, const Eigen::Isometry3d& pose) const
 {
-  PointDistancesRequest request;
-  request.threads = question_.threads;
-  const Placed b(b_.hierarchy(), pose);
-  return pair.of_obstacle ? pointDistances(a_, records, b, request) : pointDistances(b, records, a_, request);
+  return {pair.solid.whole(), (pair.of_obstacle ? b_ : a_).hierarchy(), poseOfSolid(pair, pose)};
 }
 
-/// Of a ball: the distance is that of its near side, the depth that of its far side.
-double Solids::widthOf(const Pairing& pair, std::uint32_t record) const
+void Solids::turn(SymmetricDistances& found, bool both_ways) const
 {
-  return 2.0 * (pair.of_obstacle ? a_ : b_).hierarchy().view().ownRadius(record);
-}
-
-void Solids::turn(SymmetricDistances& found, bool both_ways)
-{
-  for (Pairing& pair : pairings_)
+  for (const Pairing& pair : pairings_)
     if (pair.of_obstacle || both_ways) turn(pair, pair.of_obstacle ? found.a : found.b);
 }
 
-void Solids::turn(Pairing& pair, PointDistances& found)
+void Solids::turn(const Pairing& pair, PointDistances& found) const
 {
-  const Records& records = held(pair, found.work);
-  Records deep; // beyond what was asked for
-  for (const std::uint32_t record : records)
-    if (std::isnan(found.distance[record])) deep.push_back(record);
-  if (!deep.empty()) {
-    const PointDistances measured = depths(pair, b_.pose, deep);
-    for (const std::uint32_t record : deep) {
-      found.distance[record] = measured.distance[record];
-      found.closest_point[record] = measured.closest_point[record];
-      if (!found.interval.empty())
-        found.interval[record] = outward(measured.distance[record], measured.distance[record]);
-      found.measured += !std::isnan(measured.distance[record]);
+  const DepthsResult depths =
+      depthsIn(deepSolid(pair, b_.pose), pair.content, poseOfContent(pair, b_.pose), question_.threads);
+  found.work += depths.work;
+  if (pair.content.isSurface() && !depths.depths.empty()) tellIntervals(found);
+  for (const Depth& depth : depths.depths) {
+    double& distance = found.distance[depth.record];
+    found.measured += std::isnan(distance);
+    if (std::isnan(distance) || depth.told > 0.0) {
+      distance = 0.0 - depth.told;
+      found.closest_point[depth.record] = depth.nearest;
     }
-  }
-  for (const std::uint32_t record : records) {
-    const double width = widthOf(pair, record);
-    if (const double depth = found.distance[record] + width; depth > 0.0) found.distance[record] = -depth;
-    if (!found.interval.empty()) found.interval[record] = depthsOf(found.interval[record], width);
+    if (!found.interval.empty()) found.interval[depth.record] = turned(depth.depth);
   }
   found.greatest = std::numeric_limits<double>::quiet_NaN();
   found.greatest_pair.reset();
@@ -76,29 +69,85 @@ void Solids::turn(Pairing& pair, PointDistances& found)
   }
 }
 
-void Solids::turn(DistanceResult& closest)
-{
-  for (Pairing& pair : pairings_) turn(pair, b_.pose, held(pair, closest.work), closest);
-}
-
 void Solids::turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const
 {
-  for (const Pairing& pair : pairings_) turn(pair, pose, heldAt(pair, pose, closest.work), closest);
+  for (const Pairing& pair : pairings_)
+    deepen(closest, deepSolid(pair, pose), pair.of_obstacle, pair.content, poseOfContent(pair, pose),
+           question_.threads);
 }
 
-void Solids::turn(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held,
-                  DistanceResult& closest) const
+/// Records of the content of which a path may make depths.
+Solids::Records Solids::mayBeDeep(const Pairing& pair, const FirstPoses& first, const TrajectoryResult& found) const
 {
-  if (held.empty()) return;
-  const PointDistances measured = depths(pair, pose, held);
-  for (const std::uint32_t record : held) {
-    const double depth = measured.distance[record] + widthOf(pair, record);
-    if (!(depth > 0.0) || closest.distance <= -depth) continue;
-    closest.distance = -depth;
-    const std::uint32_t nearest = measured.closest_point[record];
-    closest.pair = pair.of_obstacle ? PointPair{record, nearest} : PointPair{nearest, record};
-    closest.interval = outward(-depth, -depth);
+  Records records;
+  if (!pair.of_obstacle) { // nothing is known of the obstacle's records
+    records.resize(pair.content.thing().view().count);
+    std::iota(records.begin(), records.end(), 0U);
+    return records;
   }
+  const bool between = question_.swept > 0.0;
+  for (std::uint32_t i = 0; i < first.possible.size(); ++i) {
+    bool may = first.possible[i] != kNothing;
+    if (pair.content.isSurface() || between) { // what no pose holds may cross the surface
+      if (!found.distance.empty())
+        may |= static_cast<double>(found.distance[i]) <= question_.swept;
+      else
+        may |= found.flags.empty() || found.flags[i] != Verdict::free;
+    }
+    if (may) records.push_back(i);
+  }
+  return records;
+}
+
+/// A triangle of the input that is a solid gets the depth of what is deepest nearest to it. Where nothing is, and its
+/// body holds something, it is at a distance of 0.
+void Solids::addDepths(const Pairing& pair, const FirstPoses& first, const std::vector<Eigen::Isometry3d>& poses,
+                       const Point3& pivot, TrajectoryResult& found, std::vector<double>& at_poses, Work& work) const
+{
+  if (found.distance.empty() && found.poses.empty()) return;
+  const ContentPart part(pair.content.thing(), mayBeDeep(pair, first, found));
+  DepthPath path{poses, a_.pose, pair.of_obstacle, question_.sweptTolerance(), pivot, question_.threads};
+  std::vector<double> deepest;
+  const std::vector<DepthAlong> depths =
+      depthsAlong(deepSolid(pair, poses.front()), part, path, work, found.poses.empty() ? nullptr : &deepest);
+  for (std::size_t k = 0; k < deepest.size(); ++k) at_poses[k] = std::max(at_poses[k], deepest[k]);
+  if (found.distance.empty()) return;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (!depths.empty() && found.interval.empty()) found.interval.assign(found.distance.size(), Interval{nan, nan});
+  const auto bound = [&](std::uint32_t record, const Interval& depth) {
+    Interval& interval = found.interval[record];
+    interval.lower = std::fmin(interval.lower, -depth.upper);
+    interval.upper = std::fmin(interval.upper, 0.0 - depth.lower);
+  };
+  const auto tell = [&](std::uint32_t record, double distance, std::uint32_t pose, std::uint32_t other) {
+    const auto rounded = static_cast<float>(distance);
+    if (found.distance[record] <= rounded) return;
+    found.distance[record] = rounded;
+    if (!found.closest_pose.empty()) found.closest_pose[record] = static_cast<std::int32_t>(pose);
+    if (!found.closest_point.empty()) found.closest_point[record] = other;
+  };
+  for (const DepthAlong& depth : depths) {
+    if (pair.of_obstacle) {
+      bound(depth.record, depth.depth);
+      if (depth.told > 0.0 || first.possible[depth.record] != kNothing)
+        tell(depth.record, 0.0 - depth.told, depth.pose, depth.nearest);
+      continue;
+    }
+    if (!(depth.told > 0.0)) continue;
+    std::uint32_t triangle = depth.nearest;
+    if (first.possible[triangle] == kNothing && !(found.distance[triangle] <= question_.swept)) // of another body
+      triangle = holderOf(pair.solid, a_.pose, pair.content, poses[depth.pose], depth.record, &work);
+    bound(triangle, depth.depth);
+    tell(triangle, -depth.told, depth.pose, depth.record);
+  }
+  if (pair.of_obstacle) return;
+  std::vector<PoseRecord> of_others;
+  for (std::uint32_t i = 0; i < first.possible.size(); ++i) {
+    if (first.possible[i] == kNothing || found.distance[i] <= 0.0f) continue;
+    tell(i, 0.0, first.possible[i], kNothing);
+    if (!found.closest_point.empty()) of_others.emplace_back(first.possible[i], i);
+  }
+  findOthers(pair, std::move(of_others), poses, found.closest_point, work);
 }
 
 } // namespace pcl_bsh

@@ -183,16 +183,17 @@ void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const s
   }
 }
 
-void Solids::addToPath(TrajectoryResult& found, Work& work) const
+void Solids::addToPath(TrajectoryResult& found, Work& work, const Point3& pivot) const
 {
   const auto takeFirst = [](std::vector<std::int32_t>& poses, std::size_t i, std::uint32_t held) {
     if (!poses.empty() && (poses[i] < 0 || poses[i] > static_cast<std::int32_t>(held)))
       poses[i] = static_cast<std::int32_t>(held);
   };
+  if (none()) return;
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
+  std::vector<double> at_poses(found.poses.size(), 0.0);
   for (const Pairing& pair : pairings_) {
     const FirstPoses first = firstPoses(pair, work);
-    std::vector<PoseRecord> of_others;
     for (std::size_t i = 0; i < first.possible.size(); ++i) {
       if (first.possible[i] == kNothing) continue;
       const bool certain = first.certain[i] != kNothing;
@@ -200,25 +201,21 @@ void Solids::addToPath(TrajectoryResult& found, Work& work) const
         found.flags[i] = graver(found.flags[i], certain ? Verdict::colliding : Verdict::undecided);
       takeFirst(found.first_pose, i, first.possible[i]);
       if (certain) takeFirst(found.certain_pose, i, first.certain[i]);
-      if (!found.distance.empty() && !(found.distance[i] <= 0.0f)) {
-        found.distance[i] = 0.0f;
-        if (!found.closest_pose.empty()) found.closest_pose[i] = static_cast<std::int32_t>(first.possible[i]);
-        if (!found.closest_point.empty()) of_others.emplace_back(first.possible[i], static_cast<std::uint32_t>(i));
-      }
       if (question_.swept > 0.0) takeContact(found.first_contact, first.possible[i]);
       if (question_.swept > 0.0 && certain && !found.certain_pose.empty())
         takeContact(found.certain_contact, first.certain[i]);
     }
-    findOthers(pair, std::move(of_others), poses, found.closest_point, work);
+    addDepths(pair, first, poses, pivot, found, at_poses, work);
   }
   found.colliding = countOf(found.flags, Verdict::colliding);
   found.undecided = countOf(found.flags, Verdict::undecided);
-  for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], work);
+  for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], at_poses[k], work);
 }
 
 /// Of the union of what is near the surface and what is held, which only all flags tell.
-void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const
+void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const
 {
+  if (depth > 0.0) summary.distance = std::min(summary.distance, -depth);
   bool any = false;
   FlagsResult joined;
   for (const Pairing& pair : pairings_) {
@@ -256,9 +253,9 @@ void withSolids(const Question& question, Shape& input, Shape& obstacle, const A
 
 } // namespace
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found)
+void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found, const Point3& pivot)
 {
-  withSolids(question, input, obstacle, [&](const Solids& solids) { solids.addToPath(found, found.work); });
+  withSolids(question, input, obstacle, [&](const Solids& solids) { solids.addToPath(found, found.work, pivot); });
 }
 
 void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
@@ -313,6 +310,24 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult&
 void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.addTo(found); });
+}
+
+DistanceResult closestPair(const Placed& a, const Placed& b, const SolidDistanceRequest& request)
+{
+  DistanceResult closest = closestPair(a, b, static_cast<const DistanceRequest&>(request));
+  if (!request.solid && !request.input_solid) return closest;
+  Question question;
+  question.pose = b.pose;
+  question.pose_of_input = a.pose;
+  question.threads = request.threads;
+  question.solid = request.solid;
+  question.input_solid = request.input_solid;
+  const auto shape = [](const char* name, const SphereHierarchy& hierarchy) {
+    return Shape(name, {std::shared_ptr<const void>(), &hierarchy});
+  };
+  Shape input = shape("a", a.hierarchy()), obstacle = shape("b", b.hierarchy());
+  addHeld(question, input, obstacle, closest);
+  return closest;
 }
 
 } // namespace pcl_bsh

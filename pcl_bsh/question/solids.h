@@ -2,6 +2,7 @@
 // What solids enclose collides, and its distance is negative: added to what is found of surfaces.
 #pragma once
 
+#include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/question/ask.h>
@@ -34,14 +35,15 @@ public:
   /// With the obstacle at some pose.
   void addTo(AnyResult& found, const Eigen::Isometry3d& pose);
 
-  /// Along the path: what is inside at a pose collides there, at a distance of 0.
-  void addToPath(TrajectoryResult& found, Work& work) const;
+  /// Along the path: what is inside at a pose collides there, and is as deep as where it is deepest; swept, also on the
+  /// motion between poses. @param pivot of that motion
+  void addToPath(TrajectoryResult& found, Work& work, const Point3& pivot = {0, 0, 0}) const;
 
-  /// Distances of what is inside become negative, and are measured however deep.
-  void turn(SymmetricDistances& found, bool both_ways);
+  /// Distances of what is inside become negative, and are measured however deep. Of triangles there are intervals.
+  void turn(SymmetricDistances& found, bool both_ways) const;
 
   /// The deepest, where anything is inside.
-  void turn(DistanceResult& closest);
+  void turn(DistanceResult& closest) const { turn(closest, b_.pose); }
 
   /// With the obstacle at some pose.
   void turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const;
@@ -80,11 +82,14 @@ private:
                   std::vector<std::uint32_t>& others, Work& work) const;
   FirstPoses firstPoses(const Pairing& pair, Work& work) const;
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
-  void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, Work& work) const;
-  PointDistances depths(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& records) const;
-  double widthOf(const Pairing& pair, std::uint32_t record) const;
-  void turn(Pairing& pair, PointDistances& found);
-  void turn(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, DistanceResult& closest) const;
+  void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const;
+
+  /// Of a pair, at a pose of the obstacle.
+  DeepSolid deepSolid(const Pairing& pair, const Eigen::Isometry3d& pose) const;
+  Records mayBeDeep(const Pairing& pair, const FirstPoses& first, const TrajectoryResult& found) const;
+  void addDepths(const Pairing& pair, const FirstPoses& first, const std::vector<Eigen::Isometry3d>& poses,
+                 const Point3& pivot, TrajectoryResult& found, std::vector<double>& at_poses, Work& work) const;
+  void turn(const Pairing& pair, PointDistances& found) const;
 
   const Question& question_;
   const Placed &a_, &b_;

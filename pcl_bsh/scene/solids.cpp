@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/scene/solids.h>
 
-#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/reach.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/solid/labels.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace pcl_bsh {
@@ -90,21 +88,13 @@ void SceneSolids::addTo(FlagsResult& found, const StandingPart& a, const Standin
 
 void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto deepest = [&](const StandingPart& solid, const StandingPart& other) -> std::optional<PointPair> {
-    if (!solid.solid) return std::nullopt;
-    const auto held =
-        heldBy({bodiesOf(solid).whole(), solid.placed.pose}, contentOf(other), other.placed.pose, 1, &found.work);
-    if (held.empty()) return std::nullopt;
-    const PointDistances depths = pointDistances(other.placed, held, solid.placed);
-    found.work += depths.work;
-    if (!(depths.greatest > 0.0) || found.distance <= -depths.greatest) return std::nullopt;
-    found.distance = -depths.greatest;
-    found.interval = {std::nextafter(found.distance, -infinity), std::nextafter(found.distance, infinity)};
-    return depths.greatest_pair;
+  const auto turn_by = [&](const StandingPart& solid, const StandingPart& other, bool solid_is_b) {
+    if (!solid.solid) return;
+    deepen(found, {bodiesOf(solid).whole(), solid.placed.hierarchy(), solid.placed.pose}, solid_is_b, contentOf(other),
+           other.placed.pose);
   };
-  if (const auto pair = deepest(b, a)) found.pair = pair;
-  if (const auto pair = deepest(a, b)) found.pair = PointPair{pair->b, pair->a};
+  turn_by(b, a, true);
+  turn_by(a, b, false);
 }
 
 /// A place that comes into a body, or leaves it, meets its surface. One that comes out of a hollow meets the surface of

@@ -101,9 +101,12 @@ struct TrajectoryResult {
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< kNothing where free
-  std::vector<std::int32_t> certain_pose;   ///< with first_poses, where points are uncertain: the first pose at which a
-                                            ///< point collides for certain; kNothing where at none
-  std::vector<PoseSummary> poses;           ///< one per pose
+  /// With distances, where a solid was added that holds anything (question/held.h): holds the distance of each record
+  /// for certain that a solid makes negative, or may; NaN of others. Else empty.
+  std::vector<Interval> interval;
+  std::vector<std::int32_t> certain_pose; ///< with first_poses, where points are uncertain: the first pose at which a
+                                          ///< point collides for certain; kNothing where at none
+  std::vector<PoseSummary> poses;         ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;
   std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain

@@ -72,6 +72,22 @@ TEST(GatheredResult, HasTheSmallestDistanceWithItsPoseAndPoint)
   EXPECT_EQ(result.closest_point[3], kNothing);
 }
 
+/// Of what a solid holds distances are less than 0.
+TEST(GatheredResult, ADepthIsADistance)
+{
+  TrajectoryResult found;
+  found.flags = {hit, hit, hit};
+  found.distance = {0.25f, -0.5f, -0.75f};
+  found.closest_pose = {0, 1, 2};
+  found.interval = {{NAN, NAN}, {-0.625, -0.5}, {-0.75, -0.75}};
+  const TrajectoryResult result = gathered(found, 2, {{0}, {0}, {1}});
+  EXPECT_EQ(result.distance[0], -0.5f);
+  EXPECT_EQ(result.closest_pose[0], 1);
+  EXPECT_EQ(result.interval[0].lower, -0.625);
+  EXPECT_EQ(result.interval[0].upper, -0.5);
+  EXPECT_EQ(result.distance[1], -0.75f);
+}
+
 TEST(GatheredResult, KeepsContactsAndWorkAndNoSummaries)
 {
   TrajectoryResult found;

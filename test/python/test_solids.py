@@ -48,7 +48,9 @@ def test_points_in_a_box(points, pose):
     run = pcl_bsh.collide_along(scan, tank, [np.diag([1, 1, 1, 1.0]) + np.eye(4, k=3) * 9, pose], 0.1, solid=True,
                                 first_poses=True, distances=True, pose_summaries=True)
     np.testing.assert_array_equal(run.first_pose, np.where(d <= 0.1, 1, -1))
-    np.testing.assert_array_equal(run.distance == 0, d <= 0)
+    np.testing.assert_allclose(run.distance, np.where(d <= 0.1, d, np.nan), atol=1e-6)
+    assert ((run.interval[d <= 0, 0] <= d[d <= 0] + 1e-12) & (run.interval[d <= 0, 1] >= d[d <= 0] - 1e-12)).all()
+    assert np.isnan(run.interval[d > 0]).all()
     assert run.poses["colliding_points"].tolist() == [0, (d <= 0.1).sum()]
 
 
@@ -65,6 +67,36 @@ def test_corners_within_edges_of_neighbours(points):
     with pytest.raises(ValueError, match=r"3 edges are open, the first from \(-1, -1, 1\) to \(1, -1, 1\)|"
                                          r"3 edges are open, the first from \(1, -1, 1\) to \(-1, -1, 1\)"):
         pcl_bsh.collision_flags(scan, pcl_bsh.SphereHierarchy.of_triangles(corners, faces), solid=True)
+
+
+def test_clashes_are_as_deep_as_their_deepest_point():
+    scan = pcl_bsh.SphereHierarchy(np.array([[0.0, 0.0, 1 - 0.0226], [0.0, 0.0, 1.01], [0.5, 0.5, -1 + 0.304]]))
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[:, 2, 3] = [9, 0, -9]
+    run = pcl_bsh.collide_along(scan, box(), poses, 0.05, solid=True, distances=True, first_poses=True,
+                                closest_poses=True)
+    deep, shallow = pcl_bsh.find_clashes(scan, run, 0.1)
+    assert (deep.points, deep.scan_point, deep.closest_pose) == (1, 2, 1)
+    assert (shallow.points, shallow.scan_point) == (2, 0)
+    assert deep.distance == pytest.approx(-0.304) and shallow.distance == pytest.approx(-0.0226)
+    assert deep.interval[0] <= -0.304 + 1e-15 and deep.interval[1] >= -0.304 - 1e-15
+    assert pcl_bsh.find_clashes(scan, pcl_bsh.collide_along(scan, box(), poses, 0.05, distances=True, first_poses=True,
+                                                            closest_poses=True), 0.1)[0].interval is None
+
+
+def test_swept_depths_are_those_between_poses():
+    scan = pcl_bsh.SphereHierarchy(np.array([[0.0, 0.25, 0.0]]))
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    poses[:, 0, 3] = [-1.7, 2.2]
+    words = {"solid": True, "distances": True, "closest_poses": True, "swept": 0.01}
+    run = pcl_bsh.collide_along(scan, box(), poses, 0.0, **words)
+    assert run.distance[0] == pytest.approx(-0.75, abs=0.005) and run.closest_pose.tolist() == [0]
+    assert run.interval[0, 0] <= -0.75 <= run.interval[0, 1] + 0.005
+    poses[1, :3, :3] = turned(1)[:3, :3]
+    about = pcl_bsh.collide_along(scan, box(), poses, 0.0, pivot=[0.0, 5.0, 0.0], **words)
+    d = [signed(np.array([[0.0, 0.25, 0.0]]), pcl_bsh.pose_between(poses[0], poses[1], s, pivot=[0.0, 5.0, 0.0]))[0]
+         for s in np.linspace(0, 1, 2001)]
+    assert about.interval[0, 0] - 1e-9 <= min(d) and about.distance[0] == pytest.approx(min(d), abs=0.006)
 
 
 def test_two_solids_of_which_one_holds_the_other():

@@ -220,7 +220,8 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   Answer found = answer();
   EXPECT_EQ(found.collisions.flags, test::verdictsOf({1, 1}));
   EXPECT_THAT(found.collisions.first_pose, ElementsAre(1, 0));
-  EXPECT_THAT(found.collisions.distance, ElementsAre(0.0f, 0.0f));
+  EXPECT_THAT(found.collisions.distance, ElementsAre(-1.0f, -1.0f));
+  EXPECT_THAT(found.collisions.closest_pose, ElementsAre(1, 0));
   for (const std::uint32_t triangle : found.collisions.closest_point) EXPECT_LT(triangle, 12u) << "of the body";
   ASSERT_EQ(found.collisions.poses.size(), 3u);
   EXPECT_EQ(found.collisions.poses[0].colliding_points, 1u);
@@ -272,7 +273,7 @@ TEST_F(SolidsTest, OnlyWhatAQueryToldIsAddedTo)
   EXPECT_EQ(held(true, false, false, false).flags, test::verdictsOf({1, 0, 0}));
   TrajectoryResult found = held(false, true, false, false);
   EXPECT_TRUE(found.flags.empty() && found.closest_pose.empty() && found.first_pose.empty());
-  EXPECT_EQ(found.distance[0], 0.0f);
+  EXPECT_EQ(found.distance[0], -1.0f);
   EXPECT_TRUE(std::isnan(found.distance[1]));
   EXPECT_LT(found.closest_point[0], 12u);
   EXPECT_EQ(found.closest_point[1], std::uint32_t{kNothing});
@@ -283,8 +284,161 @@ TEST_F(SolidsTest, OnlyWhatAQueryToldIsAddedTo)
   found = collideAlong({scan}, tank, *question.path, {});
   found.distance = {NAN, NAN, NAN}; // of a program that keeps these alone
   addHeld(question, input, obstacle, found);
-  EXPECT_EQ(found.distance[0], 0.0f);
+  EXPECT_EQ(found.distance[0], -1.0f);
   EXPECT_TRUE(found.closest_pose.empty() && found.closest_point.empty());
+}
+
+/// As users meet it: a cube, a point in it and one far away.
+TEST_F(SolidsTest, AListTellsTheDepthAndItsPlace)
+{
+  for (Point3& corner : corners)
+    for (double& x : corner) x = 0.5 * (x + 1.0);
+  points = {{0.5, 0.5, 0.8}, {5, 5, 5}};
+  question.clearance = 0.1;
+  question.wanted.flags = question.wanted.contacts = question.wanted.closest = true;
+  const Answer found = answer();
+  EXPECT_EQ(found.collisions.distance[0], static_cast<float>(-(1.0 - 0.8)));
+  EXPECT_THAT(found.collisions.closest_pose, ElementsAre(0, -1));
+  EXPECT_THAT(found.collisions.closest_point[0], testing::AnyOf(2u, 3u)); // its top
+  EXPECT_NEAR(found.closest.distance, -(1.0 - 0.8), 1e-16); // not only to a float
+  EXPECT_EQ(*found.closest.pair, (PointPair{0, found.collisions.closest_point[0]}));
+  EXPECT_LE(found.collisions.interval[0].lower, -(1.0 - 0.8));
+  EXPECT_GE(found.collisions.interval[0].upper, -(1.0 - 0.8));
+  EXPECT_TRUE(std::isnan(found.collisions.interval[1].lower));
+  const SphereHierarchy scan(viewOf(points[0].data(), points.size())), tank(viewOf(view()));
+  SolidDistanceRequest solid;
+  solid.solid = true;
+  const DistanceResult closest = closestPair({scan}, {tank}, solid);
+  EXPECT_EQ(closest.distance, -(1.0 - 0.8));
+  EXPECT_EQ(*closest.pair, *found.closest.pair);
+  solid.solid = false;
+  EXPECT_GT(closestPair({scan}, {tank}, solid).distance, 0.0);
+  solid.input_solid = true;
+  EXPECT_THROW(closestPair({scan}, {tank}, solid), InvalidOption);
+  std::swap(solid.solid, solid.input_solid);
+  solid.input_solid = true;
+  solid.solid = false;
+  EXPECT_EQ(closestPair({tank}, {scan}, solid).distance, -(1.0 - 0.8));
+  EXPECT_EQ(*closestPair({tank}, {scan}, solid).pair, (PointPair{closest.pair->b, 0}));
+}
+
+/// The deepest pose and its place, in the middle of a path through a cube; swept, between two poses.
+TEST_F(SolidsTest, ThroughACubeTheDeepestIsInTheMiddle)
+{
+  const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
+  points = {{0, 0.25, 0}, {0, 0, 0.9}};
+  question.clearance = 0.01;
+  question.wanted.flags = question.wanted.contacts = question.wanted.closest = question.wanted.poses = true;
+  question.path.emplace();
+  for (int k = -4; k <= 4; ++k) question.path->push_back(at(0.5 * k));
+  Answer found = answer();
+  EXPECT_THAT(found.collisions.distance, ElementsAre(-0.75f, -0.1f));
+  EXPECT_EQ(found.collisions.closest_pose[0], 4);
+  EXPECT_EQ(found.collisions.first_pose[0], 2);
+  EXPECT_EQ(found.closest.distance, -0.75);
+  EXPECT_EQ(found.closest.pair->a, 0u);
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double x = std::abs(0.5 * (static_cast<double>(k) - 4.0));
+    if (x <= 1.0) {
+      EXPECT_NEAR(found.collisions.poses[k].distance, -std::min(1.0 - x, 0.75), 1e-12) << k;
+    }
+    else {
+      EXPECT_EQ(found.collisions.poses[k].distance, INFINITY) << k;
+    }
+  }
+  question.swept = 0.01;
+  question.wanted.poses = false;
+  question.path = {at(-1.9), at(2.1)};
+  found = answer();
+  EXPECT_NEAR(found.collisions.distance[0], -0.75, 0.005);
+  EXPECT_NEAR(found.collisions.distance[1], -0.1, 0.005);
+  EXPECT_THAT(found.collisions.closest_pose, ElementsAre(0, 0));
+  for (const auto& [record, depth] : {std::pair(0, 0.75), {1, 0.1}}) {
+    EXPECT_LE(found.collisions.interval[static_cast<std::size_t>(record)].lower, -depth + 1e-12);
+    EXPECT_GE(found.collisions.interval[static_cast<std::size_t>(record)].upper, -depth - 1e-12);
+  }
+}
+
+/// A wall that crosses the surface: its corners are outside.
+TEST_F(SolidsTest, AWallThatCrossesIsDeep)
+{
+  const std::vector<Point3> wall = {{-9, 0.5, -9}, {9, 0.5, -9}, {0, 0.5, 20}};
+  const std::vector<Triangle> plate = {{0, 1, 2}};
+  Shape input("the wall", viewOf(TrianglesView{viewOf(wall[0].data(), 3), plate[0].data(), 1}));
+  Shape obstacle("the tank", viewOf(view()));
+  question.wanted.flags = question.wanted.contacts = question.wanted.closest = true;
+  Answer found = ask(question, input, obstacle);
+  EXPECT_NEAR(found.collisions.distance[0], -0.5, 1e-3);
+  EXPECT_LE(found.collisions.interval[0].lower, -0.5);
+  EXPECT_GE(found.collisions.interval[0].upper, -0.5);
+  question.wanted = {};
+  question.wanted.closest = question.wanted.distances = true;
+  found = ask(question, input, obstacle);
+  EXPECT_LE(found.closest.interval.lower, -0.5);
+  EXPECT_GE(found.closest.interval.upper, -0.5);
+  EXPECT_NEAR(found.closest.distance, -0.5, 1e-3);
+  ASSERT_EQ(found.distances.a.interval.size(), 1u);
+  EXPECT_LE(found.distances.a.interval[0].lower, -0.5);
+  EXPECT_GE(found.distances.a.interval[0].upper, -0.5);
+  question.solid = false;
+  EXPECT_EQ(ask(question, input, obstacle).closest.distance, 0.0);
+}
+
+/// On the face of one body, in the inside of another.
+TEST_F(SolidsTest, APlaceOnTheFaceOfABodyIsHeldByTheOneAboutIt)
+{
+  question.clearance = 0.0;
+  question.wanted.obstacle_flags = true;
+  struct Case {
+    Point3 point;
+    bool outer, inner;
+  };
+  for (const auto& [point, outer, inner] : {Case{{2, 1.5, 1.5}, true, false},
+                                            {{2.001, 1.5, 1.5}, true, false},
+                                            {{1.999, 1.5, 1.5}, true, true},
+                                            {{2, 2, 1.5}, true, false},
+                                            {{1, 1, 1}, true, false},
+                                            {{4, 1.5, 1.5}, false, false}}) {
+    test::ClosedMesh mesh;
+    mesh.add(test::boxMesh(), 4.0);
+    mesh.add(test::boxMesh(), 1.0, {1, 1, 1});
+    const std::array<double, 3> at = point;
+    Shape input("the scan", viewOf(at.data(), 1)), obstacle("the tank", viewOf(mesh.view()));
+    const std::vector<Verdict> flags = ask(question, input, obstacle).obstacle_flags;
+    question.solid = false;
+    const std::vector<Verdict> touched = ask(question, input, obstacle).obstacle_flags;
+    question.solid = true;
+    for (std::size_t i = 0; i < 24; ++i)
+      EXPECT_EQ(flags[i] == Verdict::colliding, touched[i] == Verdict::colliding || (i < 12 ? outer : inner))
+          << i << ' ' << point[0];
+  }
+}
+
+/// Limits that are met exactly, of balls: their depths are compared as they are before rounding.
+TEST_F(SolidsTest, DepthsOfBallsAreComparedExactly)
+{
+  test::Random random(6);
+  std::vector<float> radii;
+  points.clear();
+  for (int i = 0; i < 300; ++i) {
+    points.push_back({random.uniform(0.01, 0.4), 0, 0});
+    radii.push_back(static_cast<float>(random.uniform(0.1, 0.4)));
+  }
+  PointsView balls = viewOf(points[0].data(), points.size());
+  balls.radii = radii.data();
+  question.wanted.within = true;
+  Shape input("the scan", balls), obstacle("the tank", viewOf(view()));
+  std::size_t below = 0, above = 0;
+  for (std::size_t i = 0; i < points.size(); i += 10) {
+    const long double depth = (1.0L - points[i][0]) + radii[i]; // exact
+    const auto rounded = static_cast<double>(depth);
+    question.limits = {-rounded, 9.0};
+    const bool within = ask(question, input, obstacle).within[i] != 0;
+    EXPECT_EQ(within, depth <= rounded) << i;
+    (depth <= rounded ? below : above) += 1;
+  }
+  EXPECT_GT(below, 5u);
+  EXPECT_GT(above, 5u);
 }
 
 /// The first contact that is certain is that of points which are held wherever they truly are.
@@ -724,7 +878,7 @@ TEST_F(TwoSolidsTest, SummariesOfPosesCountWhatEitherHolds)
     const PoseSummary& pose = found.collisions.poses.at(0);
     EXPECT_TRUE(pose.colliding);
     EXPECT_EQ(pose.colliding_points, held);
-    EXPECT_EQ(pose.distance, 0.0);
+    EXPECT_LT(pose.distance, 0.0);
   }
   for (const double uncertainty : {0.25, 1.75, 9.0}) {
     question.obstacle_uncertainty.length = uncertainty;

@@ -151,6 +151,31 @@ TEST_F(SceneOfSolids, TheDeeperOfTwoCountsInEitherOrder)
   EXPECT_EQ(depth(false, true, true), std::max(of_fine, of_coarse));
 }
 
+/// As of questions: its middle is held, and its far side is told.
+TEST_F(SceneOfSolids, ABallIsAsDeepAsItsFarSide)
+{
+  options.effects.distance = std::numeric_limits<double>::infinity();
+  const auto tank = keep(test::boxMesh());
+  const std::vector<Point3> middles = {{0.5, 0.5, 0.25}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.0}};
+  const std::vector<float> radii = {0.125f, 0.0f, 0.25f};
+  const std::vector<double> expected = {-0.375, -0.5, -0.25};
+  for (std::size_t i = 0; i < 3; ++i) {
+    PointsView ball = viewOf(middles[i].data(), 1);
+    ball.radii = &radii[i];
+    const auto probe = std::make_shared<SphereHierarchy>(ball);
+    for (const bool tank_first : {true, false}) {
+      Scene scene(options);
+      if (tank_first) scene.add(objectOf("tank", tank, true));
+      scene.add(objectOf("probe", probe, false));
+      if (!tank_first) scene.add(objectOf("tank", tank, true));
+      const DistantPair found = scene.query().distance[0];
+      EXPECT_EQ(found.distance, expected[i]) << i;
+      EXPECT_LE(found.interval.lower, expected[i]);
+      EXPECT_GE(found.interval.upper, expected[i]);
+    }
+  }
+}
+
 TEST_F(SceneOfSolids, WhatIsHeldFarFromAllOfTheSolidsVoxelsIsFound)
 {
   options.effects.any = true;

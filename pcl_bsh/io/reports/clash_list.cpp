@@ -83,6 +83,10 @@ Clash clashFrom(const JsonReader& entry)
   clash.distance = clash.status == ClashStatus::unseen && distance.json().is_null()
                        ? std::numeric_limits<double>::quiet_NaN()
                        : distance.number(-largest, largest);
+  if (entry.has("distance_interval") && !entry.at("distance_interval").json().is_null()) {
+    const std::vector<double> ends = entry.at("distance_interval").numbers(2);
+    clash.interval = {ends[0], ends[1]};
+  }
   clash.first_pose = static_cast<std::int32_t>(entry.at("first_pose").whole(0, last_pose));
   clash.closest_pose = static_cast<std::int32_t>(entry.at("closest_pose").whole(0, last_pose));
   return clash;

@@ -79,7 +79,7 @@ private:
                  {"poses", counted(report_.poses.size(), "pose")},
                  {"clearance", number(*question.clearance)},
                  {"colliding", std::to_string(report_.found.colliding)},
-                 {"closest", numberOrNone(closest_)},
+                 {"closest", std::isfinite(closest_) ? Data(distanceText(closest_)) : Data(false)},
                  {"swept", question.swept > 0.0 ? Data(number(question.swept)) : Data(false)},
                  {"cluster_distance", number(report_.cluster_distance)},
                  {"compared", false},
@@ -158,8 +158,17 @@ private:
     }
     return Object{{"bars", bars},
                   {"limit", number(*report_.question.clearance, 3)},
-                  {"lowest", number(lowest_, 3)},
+                  {"lowest", distanceText(lowest_, 3)},
                   {"last", std::to_string(poses.size() - 1)}};
+  }
+
+  /// Of triangles, and swept, both ends of what is certain where they differ as they are written.
+  static std::string distanceOf(const Clash& clash)
+  {
+    const std::string told = distanceText(clash.distance), least = number(-clash.interval.upper),
+                      most = number(-clash.interval.lower);
+    if (!clash.isDeep() || std::isnan(clash.interval.lower) || least == most) return told;
+    return least + " to " + most + " deep";
   }
 
   static Object factsOf(const Clash& clash)
@@ -168,7 +177,8 @@ private:
             {"class", nameOf(clash.status)},
             {"status", inWords(clash.status)},
             {"perhaps", !clash.isCertain()},
-            {"distance", clash.wasNoClash() ? std::string() : number(clash.distance)},
+            {"distance", clash.wasNoClash() ? std::string() : distanceOf(clash)},
+            {"at_the", clash.isDeep() ? std::string("deepest") : std::string("closest")},
             {"points", std::to_string(clash.points)},
             {"points_noun", nounOf(clash.points, "point")},
             {"first_pose", std::to_string(clash.first_pose)},
@@ -306,7 +316,7 @@ private:
                   {"limit", number(*report_.question.clearance, 3)},
                   {"limit_y", number(limit_y, 6)},
                   {"limit_text_y", number(limit_y + 4, 6)},
-                  {"lowest", number(lowest_, 3)},
+                  {"lowest", distanceText(lowest_, 3)},
                   {"lowest_text_y", number(y(lowest_) + 2, 6)},
                   {"closest_x", coordinate(x(clash.closest_pose))},
                   {"closest_y", coordinate(y(clash.distance))},

@@ -22,6 +22,13 @@ Json toJson(const std::optional<Extent>& box)
   return box ? Json{{"min", box->low}, {"max", box->high}} : Json();
 }
 
+/// Where a solid makes the distance negative, or may.
+Json intervalOf(const Clash& clash)
+{
+  if (std::isnan(clash.interval.lower)) return nullptr;
+  return {clash.interval.lower, clash.interval.upper};
+}
+
 const char* certaintyOf(const Clash& clash)
 {
   if (clash.wasNoClash()) return "unseen";
@@ -43,6 +50,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"box", toJson(Extent{clash.low, clash.high})},
                {"place", clash.place},
                {"distance", clash.wasNoClash() ? Json() : Json(clash.distance)},
+               {"distance_interval", intervalOf(clash)},
                {"first_pose", clash.first_pose},
                {"closest_pose", clash.closest_pose}};
   if (!isPresent(clash.status)) return json;
@@ -134,7 +142,7 @@ std::string clashCsv(const ClashReport& report)
                     (report.model_source_of ? "source,obstacle_record" : report.partName()) +
                     ",obstacle_x,obstacle_y,obstacle_z,"
                     "certainty,certain_points,clearance,input_uncertainty,obstacle_uncertainty,sigmas,accuracy,unit,"
-                    "coordinate_system,pose_uncertainty\n";
+                    "coordinate_system,pose_uncertainty,distance_lower,distance_upper\n";
   const ClashQuestion& question = report.question;
   const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
   for (const Clash& clash : report.clashes) {
@@ -174,6 +182,7 @@ std::string clashCsv(const ClashReport& report)
     cell(csvText(report.unit));
     cell(csvText(report.coordinate_system));
     cell(csvText(question.pose_uncertainty.text()));
+    for (const double end : {clash.interval.lower, clash.interval.upper}) cell(std::isnan(end) ? "" : numberText(end));
     csv += '\n';
   }
   return csv;

@@ -41,6 +41,12 @@ inline std::string number(double value, int digits = 4)
   return numberText(value, std::chars_format::general, digits);
 }
 
+/// A distance; one below 0 is a depth.
+inline std::string distanceText(double distance, int digits = 4)
+{
+  return distance < 0.0 ? number(-distance, digits) + " deep" : number(distance, digits);
+}
+
 /// A coordinate: millimetres if the unit is a metre.
 inline std::string coordinate(double value)
 {

@@ -3,13 +3,14 @@
 #include <pcl_bsh/site/tiles/tile_visitor.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace pcl_bsh::site {
 
 namespace {
 
-constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 15;
+constexpr std::size_t member_numbers = 9, piece_numbers = member_numbers + 17;
 
 /// Numbers of 32 bits, floats and numbers of points are exact as doubles.
 void write(std::vector<double>& out, const Member& member)
@@ -44,6 +45,7 @@ void write(std::vector<double>& out, const Piece& piece)
   out.insert(out.end(), piece.met.place.begin(), piece.met.place.end());
   out.push_back(static_cast<double>(clash.first_pose));
   out.push_back(static_cast<double>(clash.certain_points));
+  out.insert(out.end(), {clash.interval.lower, clash.interval.upper});
 }
 
 Piece readPiece(const double* in)
@@ -59,6 +61,7 @@ Piece readPiece(const double* in)
   piece.met = {{static_cast<std::uint32_t>(in[8]), static_cast<std::uint32_t>(in[9])}, {in[10], in[11], in[12]}};
   clash.first_pose = static_cast<std::int32_t>(in[13]);
   clash.certain_points = static_cast<std::size_t>(in[14]);
+  clash.interval = {in[15], in[16]};
   clash.closest_pose = piece.nearest.closest_pose;
   return piece;
 }
@@ -129,6 +132,8 @@ void join(Piece& piece, const Piece& other)
     clash.high[k] = std::max(clash.high[k], other.clash.high[k]);
   }
   clash.first_pose = std::min(clash.first_pose, other.clash.first_pose);
+  clash.interval.lower = std::fmin(clash.interval.lower, other.clash.interval.lower); // the one that is a number
+  clash.interval.upper = std::fmin(clash.interval.upper, other.clash.interval.upper);
   if (std::pair(clash.distance, piece.nearest.point) <= std::pair(other.clash.distance, other.nearest.point)) return;
   clash.distance = other.clash.distance;
   clash.closest_pose = other.clash.closest_pose;

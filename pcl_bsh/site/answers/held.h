@@ -5,6 +5,7 @@
 #include <pcl_bsh/site/collide_site.h>
 
 #include <memory>
+#include <type_traits>
 
 namespace pcl_bsh::site {
 
@@ -20,7 +21,11 @@ void addHeldOf(const SiteRequest& request, const Placed& a, const Placed& b, Fou
 {
   if (!request.solid) return;
   Shape tile("a tile", std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &a.hierarchy()));
-  addHeld(questionOf(request, a, b, poses), tile, *request.solid, found);
+  const Question question = questionOf(request, a, b, poses);
+  if constexpr (std::is_same_v<Found, TrajectoryResult>)
+    addHeld(question, tile, *request.solid, found, request.pivot);
+  else
+    addHeld(question, tile, *request.solid, found);
 }
 
 } // namespace pcl_bsh::site

@@ -193,7 +193,7 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
     list("distance", result.distance, [&](Json& e, const DistantPair& pair) {
       e["distance"] = pair.distance;
       e["pair"] = points(pair.pair);
-      if (!accuracy.isExact()) e["interval"] = {pair.interval.lower, pair.interval.upper};
+      if (!accuracy.isExact() || pair.distance < 0.0) e["interval"] = {pair.interval.lower, pair.interval.upper};
     });
   if (effects.contacts)
     list("contacts", result.contacts, [&](Json& e, const ContactPair& pair) {
