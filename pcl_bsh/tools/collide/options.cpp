@@ -135,7 +135,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.wanted.flags = question.wanted.closest = true;
   question.wanted.obstacle_flags = options.obstacle_out && !question.seen; // which brings them
   question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
-  question.wanted.poses = question.wanted.contacts && !path.swept; // swept motion is of what lies between poses
+  question.wanted.poses = question.wanted.contacts && (!path.swept || options.report); // swept, it takes longer
   question.wanted.distances = question.wanted.both_ways = options.distances;
 
   CommandFiles& files = options.files;

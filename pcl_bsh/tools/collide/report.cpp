@@ -29,8 +29,9 @@ nlohmann::ordered_json toJson(const Spacing& spacing)
   return {{"median", spacing.median}, {"nine_of_ten", spacing.wide}, {"sampled_points", spacing.samples}};
 }
 
-nlohmann::ordered_json pathJson(const Question& question, const TrajectoryResult& found)
+nlohmann::ordered_json pathJson(const Question& question, const Answer& answer)
 {
+  const TrajectoryResult& found = answer.collisions;
   nlohmann::ordered_json json;
   json["poses"] = question.path->size();
   json["swept"] = question.swept > 0.0 ? nlohmann::ordered_json(question.swept) : nlohmann::ordered_json();
@@ -41,7 +42,12 @@ nlohmann::ordered_json pathJson(const Question& question, const TrajectoryResult
   json["table"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < found.poses.size(); ++k) {
     const PoseSummary& pose = found.poses[k];
-    json["table"].push_back({{"pose", k}, {"colliding", pose.colliding_points}, {"distance", orNull(pose.distance)}});
+    json["table"].push_back({{"pose", k},
+                             {"colliding", pose.colliding_points},
+                             {"undecided", pose.undecided_points},
+                             {"distance", orNull(pose.distance)},
+                             {"closest_pair", nullptr}});
+    if (const auto& pair = answer.pose_pairs.at(k)) json["table"].back()["closest_pair"] = {pair->a, pair->b};
   }
   return json;
 }
@@ -81,14 +87,15 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
     json["closest_pair"] = {closest.pair->a, closest.pair->b};
   }
   json["distance_interval"] = nullptr;
-  if (!question.path) json["distance_interval"] = {orNull(closest.interval.lower), orNull(closest.interval.upper)};
+  if (!question.path || std::isfinite(closest.interval.lower))
+    json["distance_interval"] = {orNull(closest.interval.lower), orNull(closest.interval.upper)};
   json["accuracy"] = question.swept > 0.0 ? "swept" : question.accuracy.text();
   json["density"] = {{"input", toJson(answer.density.input.value_or(Spacing()))},
                      {"obstacle", answer.density.obstacle ? toJson(*answer.density.obstacle) : nullptr},
                      {"blind", answer.density.blind()},
                      {"widest_gap", answer.widest_gap > 0 ? nlohmann::ordered_json(answer.widest_gap) : nullptr},
                      {"could_hide_collisions", answer.density.couldHide(clearance)}};
-  if (question.path) json["path"] = pathJson(question, answer.collisions);
+  if (question.path) json["path"] = pathJson(question, answer);
   if (report.distances) json["distances"] = *report.distances;
   json["work"] = {{"node_pairs", answer.work.node_pairs},
                   {"volumes_carried", answer.work.volumes_carried},

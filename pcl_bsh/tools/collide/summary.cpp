@@ -4,6 +4,7 @@
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/tools/cli/program.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -18,9 +19,22 @@ std::string distanceText(const CollisionReport& report)
   const DistanceResult& closest = report.answer.closest;
   const Accuracy& accuracy = report.question.accuracy;
   text << closest.distance;
+  if (closest.distance < 0.0) text << " (" << -closest.distance << " deep)";
   if (accuracy.isExact()) return text.str();
   if (report.question.path) return text.str() + " within the tolerance";
   text << " or less, certainly in [" << closest.interval.lower << ", " << closest.interval.upper << "]";
+  return text.str();
+}
+
+/// How many are unseen at single poses: also those that collide at another pose, which are not among the unseen ones of
+/// the whole path.
+std::string posesOfUnseen(const Answer::Unseen& unseen)
+{
+  const auto most = std::max_element(unseen.at_poses.begin(), unseen.at_poses.end());
+  std::ostringstream text;
+  text << " and collide at no pose; of all, " << unseen.at_poses[*unseen.first_pose] << " at pose "
+       << *unseen.first_pose << ", the first with any, and " << *most << " at pose " << most - unseen.at_poses.begin()
+       << ", the first with the most";
   return text.str();
 }
 
@@ -63,11 +77,13 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
         << counted(answer.unseen.count, report.surface ? "triangle is" : "point is",
                    report.surface ? "triangles are" : "points are")
         << " unseen";
-    if (report.question.path && answer.unseen.first_pose) out << ", first at pose " << *answer.unseen.first_pose;
+    if (report.question.path && answer.unseen.first_pose) out << posesOfUnseen(answer.unseen);
   }
   if (const auto& pair = answer.closest.pair) {
-    out << "; smallest distance " << distanceText(report) << ", between "
-        << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "
+    const std::vector<std::int32_t>& poses = answer.collisions.closest_pose;
+    out << "; smallest distance " << distanceText(report);
+    if (report.question.path && pair->a < poses.size()) out << " at pose " << poses[pair->a];
+    out << ", between " << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "
         << (report.surface ? report.surface->partName() : "point") << ' ' << pair->b << " of the obstacle";
   }
   if (report.question.path) out << "; " << counted(report.question.path->size(), "pose");

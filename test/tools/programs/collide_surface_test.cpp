@@ -159,6 +159,60 @@ TEST_F(CollideSurface, DistancesAreThoseOfTheTriangles)
               HasSubstr("the distance of a triangle is that of its nearest point"));
 }
 
+/// Two clusters in a crate, of which the list, the page and the table tell how deep they are.
+TEST_F(CollideSurface, ListsHowDeepClashesAre)
+{
+  folder.write("deep.xyz", "1 1 1.9774\n1 1 2.01\n0.304 0.7 0.7\n9 9 9\n");
+  const std::string said = collideOutput("deep.xyz crate.off out.pcd --clearance 0.05 --solid --cluster-distance 0.1 "
+                                         "--clashes clashes.json --clashes clashes.csv --clashes clashes.html --report report.json");
+  EXPECT_THAT(said, HasSubstr("3 of 4 points collide; smallest distance -0.304 (0.304 deep), between point 2 of"));
+  const Json list = json("clashes.json")["clashes"];
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_NEAR(list[0]["distance"], -0.304, 1e-12);
+  EXPECT_NEAR(list[1]["distance"], -0.0226, 1e-12);
+  EXPECT_LE(list[0]["distance_interval"][0], -0.304 + 1e-15);
+  EXPECT_GE(list[0]["distance_interval"][1], -0.304 - 1e-15);
+  EXPECT_EQ(list[0]["closest_pair"]["input"]["point"], 2);
+  EXPECT_NEAR(list[0]["closest_pair"]["obstacle"]["at"][0], 0.0, 1e-12); // the face x = 0
+  EXPECT_NEAR(list[0]["closest_pair"]["obstacle"]["at"][1], 0.7, 1e-12);
+  const std::string page = io::contentOf(folder / "clashes.html");
+  EXPECT_THAT(page, testing::AllOf(HasSubstr("<td>0.304 deep</td>"), HasSubstr("<td>0.0226 deep</td>"),
+                                   HasSubstr("<b>0.304 deep</b> at the deepest")));
+  EXPECT_LT(page.find("<td>0.304 deep</td>"), page.find("<td>0.0226 deep</td>")) << "by severity";
+  EXPECT_NEAR(json("report.json")["distance"], -0.304, 1e-12);
+  collideOutput("deep.xyz crate.off out.pcd --clearance 0.05 --solid --from 0,0,3,0,0,0 --to 0,0,-3,0,0,0 --steps 6 "
+                "--report report.json");
+  const Json table = json("report.json")["path"]["table"];
+  ASSERT_EQ(table.size(), 7u);
+  EXPECT_EQ(table[0]["closest_pair"], nullptr);
+  EXPECT_NEAR(table[3]["distance"], -0.304, 1e-12);
+  EXPECT_EQ(table[3]["closest_pair"][0], 2);
+  EXPECT_LT(table[3]["closest_pair"][1], 12);
+}
+
+/// Of the motion from each pose to the next.
+TEST_F(CollideSurface, TellsOfEachMotionWhatItMeets)
+{
+  folder.write("still.xyz", "1 1 2.25\n1 5 2\n");
+  const std::string job = "still.xyz crate.off out.pcd --clearance 0.1 --from 0,0,3,0,0,0 --to 0,0,-3,0,0,0 --steps 6 "
+                          "--swept 0.001 --report report.json";
+  collideOutput(job);
+  const Json table = json("report.json")["path"]["table"];
+  ASSERT_EQ(table.size(), 7u);
+  const std::vector<int> colliding = {1, 0, 1, 0, 0, 0, 0}; // its bottom goes by, then its top
+  for (std::size_t k = 0; k < 7; ++k) {
+    EXPECT_EQ(table[k]["pose"], k);
+    EXPECT_EQ(table[k]["colliding"], colliding[k]) << k;
+    EXPECT_EQ(table[k]["distance"].is_null(), colliding[k] == 0) << k;
+    EXPECT_EQ(table[k]["closest_pair"].is_null(), colliding[k] == 0) << k;
+  }
+  EXPECT_EQ(table[2]["closest_pair"][0], 0);
+  collideOutput(job + " --solid");
+  const Json solid = json("report.json")["path"]["table"];
+  EXPECT_EQ(solid[1]["colliding"], 1);
+  EXPECT_NEAR(solid[1]["distance"], -1.0, 1e-3); // in the middle of it
+}
+
 TEST_F(CollideSurface, FollowsAPathAndListsClashesByTriangles)
 {
   const std::string path = "--clearance 0.1 --from 0,0,3,0,0,0 --to 0,0,-3,0,0,0 --steps 12 ";
