@@ -300,7 +300,7 @@ TEST_F(SolidsTest, AListTellsTheDepthAndItsPlace)
   EXPECT_EQ(found.collisions.distance[0], static_cast<float>(-(1.0 - 0.8)));
   EXPECT_THAT(found.collisions.closest_pose, ElementsAre(0, -1));
   EXPECT_THAT(found.collisions.closest_point[0], testing::AnyOf(2u, 3u)); // its top
-  EXPECT_NEAR(found.closest.distance, -(1.0 - 0.8), 1e-16); // not only to a float
+  EXPECT_NEAR(found.closest.distance, -(1.0 - 0.8), 1e-16);               // not only to a float
   EXPECT_EQ(*found.closest.pair, (PointPair{0, found.collisions.closest_point[0]}));
   EXPECT_LE(found.collisions.interval[0].lower, -(1.0 - 0.8));
   EXPECT_GE(found.collisions.interval[0].upper, -(1.0 - 0.8));
