@@ -163,8 +163,9 @@ TEST_F(CollideSurface, DistancesAreThoseOfTheTriangles)
 TEST_F(CollideSurface, ListsHowDeepClashesAre)
 {
   folder.write("deep.xyz", "1 1 1.9774\n1 1 2.01\n0.304 0.7 0.7\n9 9 9\n");
-  const std::string said = collideOutput("deep.xyz crate.off out.pcd --clearance 0.05 --solid --cluster-distance 0.1 "
-                                         "--clashes clashes.json --clashes clashes.csv --clashes clashes.html --report report.json");
+  const std::string said =
+      collideOutput("deep.xyz crate.off out.pcd --clearance 0.05 --solid --cluster-distance 0.1 "
+                    "--clashes clashes.json --clashes clashes.csv --clashes clashes.html --report report.json");
   EXPECT_THAT(said, HasSubstr("3 of 4 points collide; smallest distance -0.304 (0.304 deep), between point 2 of"));
   const Json list = json("clashes.json")["clashes"];
   ASSERT_EQ(list.size(), 2u);
