@@ -2,6 +2,9 @@
 # Everything comes from the packages listed in packages.txt: what core, search and filters need, then what is shared by
 # components. What one component alone needs, its own CMakeLists.txt looks for.
 
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON) # whoever links our libraries sees what these link
+endif()
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

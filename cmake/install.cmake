@@ -30,6 +30,38 @@ foreach(name IN ITEMS certify vtk) # only for those who ask: find_package(pcl_bs
   endif()
 endforeach()
 
+# For pkg-config: each shared library, and those that its headers need. pcl_bsh_vtk has none, for VTK has none.
+function(pcl_bsh_install_pkg_config name component)
+  set(PCL_BSH_LIBRARY pcl_bsh_${name})
+  get_target_property(linked ${PCL_BSH_LIBRARY} INTERFACE_LINK_LIBRARIES)
+  list(FILTER linked EXCLUDE REGEX "LINK_ONLY")
+  list(TRANSFORM linked REPLACE "^Eigen3::Eigen$" eigen3)
+  list(JOIN linked " " PCL_BSH_REQUIRES)
+  get_target_property(defined ${PCL_BSH_LIBRARY} INTERFACE_COMPILE_DEFINITIONS)
+  set(PCL_BSH_DEFINED "")
+  if(defined)
+    list(TRANSFORM defined PREPEND " -D")
+    list(JOIN defined "" PCL_BSH_DEFINED)
+  endif()
+  set(PCL_BSH_LIBDIR "${CMAKE_INSTALL_LIBDIR}")
+  set(PCL_BSH_INCLUDEDIR "${CMAKE_INSTALL_INCLUDEDIR}")
+  file(RELATIVE_PATH PCL_BSH_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/") # from where the file is installed
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/pcl_bsh.pc.in" "${PROJECT_BINARY_DIR}/pkgconfig/${PCL_BSH_LIBRARY}.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/pkgconfig/${PCL_BSH_LIBRARY}.pc" COMPONENT ${component}
+          DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endfunction()
+if(BUILD_SHARED_LIBS)
+  foreach(name IN ITEMS core files search filters pipeline sites certify)
+    if(TARGET pcl_bsh_${name})
+      set(component dev)
+      if(name STREQUAL "certify")
+        set(component certify)
+      endif()
+      pcl_bsh_install_pkg_config(${name} ${component})
+    endif()
+  endforeach()
+endif()
+
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/cmake/pcl_bshConfig.cmake.in" "${PROJECT_BINARY_DIR}/pcl_bshConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")

@@ -96,7 +96,7 @@ function(pcl_bsh_add_library name)
     pcl_bsh_${name}
     PROPERTIES EXPORT_NAME ${name}
                INSTALL_RPATH "$ORIGIN" # wherever they are installed, they lie side by side
-               VERIFY_INTERFACE_HEADER_SETS ON
+               VERIFY_INTERFACE_HEADER_SETS ${PROJECT_IS_TOP_LEVEL}
                CXX_VISIBILITY_PRESET hidden
                VISIBILITY_INLINES_HIDDEN ON
                DEFINE_SYMBOL "" # unused, and another one for each library would forbid them a common precompiled header
@@ -104,6 +104,13 @@ function(pcl_bsh_add_library name)
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   if(BUILD_SHARED_LIBS)
     pcl_bsh_limit_exports(pcl_bsh_${name})
+  endif()
+endfunction()
+
+# install(), where anything is installed.
+function(pcl_bsh_install)
+  if(PCL_BSH_INSTALL)
+    install(${ARGV})
   endif()
 endfunction()
 

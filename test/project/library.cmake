@@ -1,34 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The preset library: built, installed, and used by another project. Objects that another build compiles by the same
 # commands are taken from there.
-#   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -P library.cmake
+#   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -D WERROR=ON -P library.cmake
+# WERROR: as that build has it
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH test)
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${test}/.." COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
-endfunction()
-
-# What the compiler is told in a build, without the folder and what launches it.
-function(read_commands build result)
-  file(STRINGS "${build}/compile_commands.json" lines REGEX "^ *\"command\": ")
-  list(TRANSFORM lines REPLACE "${build}" "")
-  list(TRANSFORM lines REPLACE "^.*(clang|g|c)[+][+] " "")
-  set(${result} "${lines}" PARENT_SCOPE)
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/reuse.cmake")
 
 file(REMOVE_RECURSE "${WORK}")
 set(library "${WORK}/library")
-set(list "${WORK}/reused.txt")
-set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} "bash;${CMAKE_CURRENT_LIST_DIR}/reuse.sh;${PCL_BSH_BUILD};${list}")
-run(${CMAKE_COMMAND} --preset library -B "${library}" -D PCL_BSH_WERROR=ON)
+set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} "${PCL_BSH_REUSE};.")
+run(${CMAKE_COMMAND} --preset library -S "${test}/.." -B "${library}" -D "PCL_BSH_WERROR=${WERROR}")
 unset(ENV{CMAKE_CXX_COMPILER_LAUNCHER})
-read_commands("${library}" wanted)
-read_commands("${PCL_BSH_BUILD}" compiled)
-foreach(command IN LISTS wanted)
-  if(command IN_LIST compiled AND command MATCHES " -o ([^ ]+) ")
-    file(APPEND "${list}" "${CMAKE_MATCH_1}\n")
-  endif()
-endforeach()
+pcl_bsh_list_reused("${library}" ".")
 run(${CMAKE_COMMAND} --build "${library}")
 run(${CMAKE_COMMAND} --install "${library}" --prefix "${WORK}/prefix")
 
