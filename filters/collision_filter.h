@@ -29,7 +29,7 @@ namespace pcl_bsh {
 ///
 /// filter() keeps the points of the input that do not collide; after setNegative(true), those that do, with those that
 /// are undecided (setAccuracy()). Called through a pointer to pcl::Filter, setKeepFlagged() needs an output that is not
-/// the input.
+/// the input, and from PCL 1.15 on the output may be left alone when memory runs out: QueryFilter says where.
 template <typename PointT>
 class CollisionFilterBase : public QueryFilter<PointT, CollisionSettings> {
 public:

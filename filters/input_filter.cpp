@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/input_filter.h>
 
+#include <cstddef>
 #include <stdexcept>
 
 namespace pcl_bsh {
@@ -9,7 +10,8 @@ void InputFilter<pcl::PCLPointCloud2>::setInputCloud(const PCLPointCloud2ConstPt
 {
   if (!cloud) throw std::invalid_argument("input cloud is null: give an empty cloud if there are no points");
   field_sizes_.reserve(cloud->fields.size()); // PCL's takes the cloud before it has room for these
-  pcl::FilterIndices<pcl::PCLPointCloud2>::setInputCloud(cloud);
+  numberPoints(std::size_t{cloud->width} * cloud->height);
+  NumberedFilter<pcl::PCLPointCloud2>::setInputCloud(cloud);
 }
 
 } // namespace pcl_bsh

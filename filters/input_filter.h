@@ -6,22 +6,53 @@
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/filters/filter_indices.h>
+#include <pcl/point_cloud.h>
+
+#include <cstddef>
+#include <memory>
+#include <numeric>
+#include <utility>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// PCL's base of filters, as it is.
+/// PCL numbers all points of the input in filter(), where the user has set no indices. When memory runs out there, PCL
+/// 1.15 prints a line and filters nothing: here the numbers are there before.
 template <typename PointT>
-class InputFilter : public pcl::FilterIndices<PointT> {
+class NumberedFilter : public pcl::FilterIndices<PointT> {
 public:
   using pcl::FilterIndices<PointT>::FilterIndices;
+
+protected:
+  /// Where memory runs out, the former numbers stay.
+  void numberPoints(std::size_t count)
+  {
+    if (this->indices_ && (!this->fake_indices_ || this->indices_->size() == count)) return;
+    auto all = std::make_shared<pcl::Indices>(count);
+    std::iota(all->begin(), all->end(), 0);
+    this->indices_ = std::move(all);
+    this->fake_indices_ = true;
+  }
 };
 
-/// The same for clouds whose fields are known at run time only, with an input of its own.
-template <>
-class PCL_BSH_EXPORT InputFilter<pcl::PCLPointCloud2> : public pcl::FilterIndices<pcl::PCLPointCloud2> {
+/// @throws std::bad_alloc from setInputCloud(); then the former input stays
+template <typename PointT>
+class InputFilter : public NumberedFilter<PointT> {
 public:
-  using pcl::FilterIndices<pcl::PCLPointCloud2>::FilterIndices;
+  using NumberedFilter<PointT>::NumberedFilter;
+
+  void setInputCloud(const typename pcl::PointCloud<PointT>::ConstPtr& cloud) override
+  {
+    if (cloud) this->numberPoints(cloud->size());
+    NumberedFilter<PointT>::setInputCloud(cloud);
+  }
+};
+
+/// The same for clouds whose fields are known at run time only.
+template <>
+class PCL_BSH_EXPORT InputFilter<pcl::PCLPointCloud2> : public NumberedFilter<pcl::PCLPointCloud2> {
+public:
+  using NumberedFilter<pcl::PCLPointCloud2>::NumberedFilter;
 
   /// @throws std::invalid_argument when the pointer is null, as PCL's own would crash. On an error the former input
   ///   stays.

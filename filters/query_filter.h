@@ -15,7 +15,10 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// PCL's filter() is not virtual. Called through a pointer to pcl::Filter, it leaves the output alone when the input is
-/// missing.
+/// missing. It does so, too, from PCL 1.15 on, when memory runs out while PCL numbers the points of the input, and
+/// prints a line. PCL does that only where the input has grown since setInputCloud(), where the last setIndices() was
+/// given null, or where the input, a pcl::PCLPointCloud2, was set through that pointer. In all other cases
+/// std::bad_alloc comes out.
 /// @tparam Settings a QuestionFilter with passing()
 template <typename PointT, typename Settings>
 class QueryFilter : public InputFilter<PointT>, public Settings {
@@ -33,6 +36,7 @@ public:
   /// either way. `output` may be the input; on an error it stays as it was, and getRemovedIndices() is of this call or
   /// the one before.
   /// @throws std::invalid_argument when input or obstacle is missing, or a setting is not what its declaration asks for
+  /// @throws std::bad_alloc when memory runs out
   void filter(Cloud& output);
 
   /// The same as indices into the input, in its order.

@@ -59,8 +59,8 @@ pcl::IndicesPtr QueryFilter<PointT, Settings>::indicesOfItsOwn() const
 template <typename PointT, typename Settings>
 void QueryFilter<PointT, Settings>::filter(Cloud& output)
 {
-  inputView();
-  Cloud result; // apart, so that output may be the input and is untouched by an error
+  this->numberPoints(inputView().size()); // once more: the cloud may have grown
+  Cloud result;                           // apart, so that output may be the input and is untouched by an error
   pcl::FilterIndices<PointT>::filter(result);
   output = std::move(result);
 }
@@ -68,7 +68,7 @@ void QueryFilter<PointT, Settings>::filter(Cloud& output)
 template <typename PointT, typename Settings>
 void QueryFilter<PointT, Settings>::filter(pcl::Indices& indices)
 {
-  inputView();
+  this->numberPoints(inputView().size());
   pcl::FilterIndices<PointT>::filter(indices);
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <type_traits>
 
 namespace pcl_bsh::test {
 namespace {
@@ -407,6 +408,83 @@ TEST_F(FilterAllocationFailure, OfDistances)
                        subject->filter.computeDistances(result);
                        return std::tuple(bitsOf(result.distance), result.closest_point, result.greatest);
                      });
+}
+
+/// Through a reference to PCL's class, whose filter() and setInputCloud() are called.
+template <typename PointT, typename AnySubject, typename AnyCloud>
+void failThroughPcl(const std::shared_ptr<AnyCloud>& cloud, Mode mode)
+{
+  const auto make = [&] { return std::make_unique<AnySubject>(cloud, mode); };
+  const auto undisturbed = make();
+  undisturbed->filter.filter(undisturbed->output);
+  undisturbed->filter.filter(undisturbed->kept);
+  ASSERT_FALSE(undisturbed->kept.empty());
+  ASSERT_LT(undisturbed->kept.size(), scan().size());
+  const auto into_cloud = [](AnySubject& subject) {
+    pcl::Filter<PointT>& base = subject.filter;
+    base.filter(subject.output);
+  };
+  const auto into_indices = [](AnySubject& subject) {
+    pcl::FilterIndices<PointT>& base = subject.filter;
+    base.filter(subject.kept);
+  };
+  underEachFailure(make, into_cloud, [&](AnySubject& subject, bool thrown) {
+    if (thrown) into_cloud(subject);
+    EXPECT_TRUE(contentsOf(subject.output) == contentsOf(undisturbed->output));
+  });
+  underEachFailure(make, into_indices, [&](AnySubject& subject, bool thrown) {
+    if (thrown) into_indices(subject);
+    EXPECT_EQ(subject.kept, undisturbed->kept);
+  });
+  if constexpr (!std::is_same_v<AnyCloud, Blob>) { // PCL's setInputCloud() is virtual
+    const auto make_without_input = [&] {
+      auto subject = make();
+      subject->filter.setInputCloud(std::make_shared<AnyCloud>());
+      return subject;
+    };
+    const auto set_and_filter = [&](AnySubject& subject) {
+      pcl::Filter<PointT>& base = subject.filter;
+      base.setInputCloud(cloud);
+      base.filter(subject.output);
+    };
+    underEachFailure(make_without_input, set_and_filter, [&](AnySubject& subject, bool thrown) {
+      if (thrown) set_and_filter(subject);
+      EXPECT_TRUE(contentsOf(subject.output) == contentsOf(undisturbed->output));
+    });
+  }
+}
+
+TEST_F(FilterAllocationFailure, ThroughPclsClasses)
+{
+  for (const Mode mode : {Mode::plain, Mode::negative, Mode::organised, Mode::subset}) {
+    failThroughPcl<pcl::PointXYZ, CloudSubject>(scanCloud(), mode);
+    failThroughPcl<Blob, BlobSubject>(scanBlob(), mode);
+    failThroughPcl<pcl::PointXYZ, DistanceSubject>(scanCloud(), mode);
+    failThroughPcl<Blob, DistanceBlobSubject>(scanBlob(), mode);
+  }
+}
+
+/// PCL numbers the points anew: of an input that has grown since it was set, and where indices were taken away.
+TEST_F(FilterAllocationFailure, OfPointsThatPclNumbers)
+{
+  const auto grown = [] {
+    const Cloud::Ptr cloud = scanCloud();
+    auto subject = std::make_unique<CloudSubject>(cloud, Mode::plain);
+    for (const pcl::PointXYZ& point : *obstacleCloud()) cloud->push_back(point);
+    return subject;
+  };
+  const auto unset = [] {
+    auto subject = std::make_unique<CloudSubject>(scanCloud(), Mode::subset);
+    subject->filter.setIndices(pcl::IndicesPtr());
+    return subject;
+  };
+  const auto filtered = [](const auto& subject) {
+    subject->filter.filter(subject->output);
+    subject->filter.filter(subject->kept);
+    return std::tuple(contentsOf(subject->output), subject->kept);
+  };
+  EXPECT_GT(failEachAllocation(grown, filtered), 0U);
+  EXPECT_GT(failEachAllocation(unset, filtered), 0U);
 }
 
 TEST_F(FilterAllocationFailure, OfCopiesOfDistances)

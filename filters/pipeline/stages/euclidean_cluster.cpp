@@ -70,7 +70,7 @@ private:
     // Unsorted: of sorted neighbours PCL skips the first as the point itself, which its duplicate may be.
     const auto search = std::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false);
     pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-    extraction.setInputCloud(points.points);
+    setInput(extraction, points);
     extraction.setSearchMethod(search);
     extraction.setClusterTolerance(cluster_tolerance);
     extraction.setMinClusterSize(min_cluster_size);

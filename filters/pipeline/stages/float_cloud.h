@@ -9,6 +9,8 @@
 #include <pcl/point_types.h>
 
 #include <cstdint>
+#include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,17 @@ struct FloatCloud {
 };
 
 FloatCloud floatCloud(const PointsView& points);
+
+/// Gives one of PCL's classes the points and their numbers. PCL would number them itself; when memory runs out there,
+/// it prints a line and finds nothing.
+template <typename Algorithm>
+void setInput(Algorithm& algorithm, const FloatCloud& cloud)
+{
+  const auto all = std::make_shared<pcl::Indices>(cloud.points->size());
+  std::iota(all->begin(), all->end(), 0);
+  algorithm.setInputCloud(cloud.points);
+  algorithm.setIndices(all);
+}
 
 /// How far neighbours are apart, half of them or more, where a search counts neighbours instead of naming a length.
 /// Infinite where nothing was rounded.

@@ -71,7 +71,7 @@ private:
     if (points.points->empty()) return normals;
     const Numbers<3> view = view_point.value_or(Numbers<3>{sensor[0], sensor[1], sensor[2]});
     pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(number_of_threads);
-    estimation.setInputCloud(points.points);
+    setInput(estimation, points);
     estimation.setSearchMethod(std::make_shared<Search>());
     estimation.setViewPoint(static_cast<float>(view[0] - points.origin[0]),
                             static_cast<float>(view[1] - points.origin[1]),

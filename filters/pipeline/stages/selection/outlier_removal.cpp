@@ -34,7 +34,7 @@ protected:
     const std::string warning = roundingWarning(points, comparedLength(view, points));
     if (!warning.empty()) warn(warning);
 
-    filter->setInputCloud(points.points);
+    setInput(*filter, points);
     pcl::Indices kept;
     filter->filter(kept);
     for (const pcl::index_t i : kept) passes[points.records[static_cast<std::size_t>(i)]] = 1;
