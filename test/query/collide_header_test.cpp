@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+namespace pcl_bsh {
 namespace {
 
 using pcl_bsh::anyCollision;
@@ -75,3 +76,4 @@ TEST(CollideHeader, BringsWhatItTakesToAsk)
 }
 
 } // namespace
+} // namespace pcl_bsh
