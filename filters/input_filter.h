@@ -41,6 +41,7 @@ class InputFilter : public NumberedFilter<PointT> {
 public:
   using NumberedFilter<PointT>::NumberedFilter;
 
+  /// Numbers all points of the cloud, too, before PCL does.
   void setInputCloud(const typename pcl::PointCloud<PointT>::ConstPtr& cloud) override
   {
     if (cloud) this->numberPoints(cloud->size());

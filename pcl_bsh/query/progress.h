@@ -57,8 +57,7 @@ public:
     done_ += steps;
     if ((pieces_ += pieces) < kPairsOfPulse) return;
     pieces_ = 0;
-    tell(done_);
-    throwIfStopped();
+    ask();
     if (limit_ && limit_->isOver()) throw OutOfTime();
   }
 
@@ -80,10 +79,10 @@ public:
   /// A step that takes long goes on. @throws Cancelled
   void ask() override
   {
-    if (std::this_thread::get_id() == caller_)
-      tell(done_);
-    else if (!report_ && watched_.before())
+    if (!report_ && watched_.before())
       watched_.before()->ask();
+    else if (std::this_thread::get_id() == caller_)
+      tell(done_);
     throwIfStopped();
   }
 
@@ -119,9 +118,10 @@ private:
   void tell(std::size_t done)
   {
     if (stopped_) return;
-    if (!report_) {
-      if (watched_.before()) watched_.before()->ask();
-      return;
+    if (!report_) { // the steps of a small query within another one ask nobody: many of them count as much work
+      if ((steps_told_ += kPairsOfPulse / 64) < kPairsOfPulse || !watched_.before()) return;
+      steps_told_ = 0;
+      return watched_.before()->ask();
     }
     const double share = steps_ == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(steps_);
     const Watched nobody(nullptr); // a report may ask queries of its own
@@ -138,7 +138,7 @@ private:
   const std::function<bool(double)>& report_;
   const std::thread::id caller_ = std::this_thread::get_id();
   const StopRule* limit_ = nullptr;
-  std::size_t steps_ = 0, pieces_ = 0;
+  std::size_t steps_ = 0, pieces_ = 0, steps_told_ = 0;
   double from_ = 0.0, to_ = 0.0; ///< of this part: what its first and its last step take the whole to
   std::atomic<std::size_t> done_{0};
   std::exception_ptr thrown_; ///< by the report; set before it has stopped

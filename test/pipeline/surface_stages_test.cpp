@@ -68,7 +68,8 @@ TEST_F(SurfaceStages, CornersAloneAreNoObstacle)
 {
   folder_.write("lines.obj", "v 1 1 2\nv 1 1 1\nl 1 2\n");
   const std::string lines =
-      R"({"type": "readers.mesh", "tag": "lines", "filename": ")" + (folder_ / "lines.obj").string() + R"("}, )";
+      R"({"type": "readers.mesh", "tag": "lines", "filename": ")" + (folder_ / "lines.obj").string() +
+      R"("}, {"type": "filters.bsh_flag", "clearance": 0.1, "inputs": ["scan"], "obstacle": "crate"}, )";
   const std::string flag = R"({"type": "filters.bsh_flag", "tag": "f", "clearance": 0.01, "inputs": ["scan"],
       "obstacle": "lines")";
   const auto refusal = [&](const std::string& stages) -> std::string {

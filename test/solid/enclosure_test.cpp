@@ -96,7 +96,7 @@ void expectExact(const Mesh& solid_mesh, const PointsView& content, const Isomet
     const bool holds = std::any_of(held.begin(), held.end(), [&](std::uint32_t record) {
       const Records all = placesOf(content, record);
       return std::any_of(all.begin(), all.end(), [&](std::uint32_t place) {
-        return labels[place] == labelOf(Label::inside) && of_body[place] == labelOf(Label::inside);
+        return labels[place] != labelOf(Label::outside) && of_body[place] == labelOf(Label::inside);
       });
     });
     for (std::uint32_t i = 0; holds && i < view.count; ++i)

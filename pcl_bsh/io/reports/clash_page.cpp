@@ -158,7 +158,7 @@ private:
     }
     return Object{{"bars", bars},
                   {"limit", number(*report_.question.clearance, 3)},
-                  {"lowest", distanceText(lowest_, 3)},
+                  {"lowest", number(lowest_, 3)},
                   {"last", std::to_string(poses.size() - 1)}};
   }
 
@@ -316,7 +316,7 @@ private:
                   {"limit", number(*report_.question.clearance, 3)},
                   {"limit_y", number(limit_y, 6)},
                   {"limit_text_y", number(limit_y + 4, 6)},
-                  {"lowest", distanceText(lowest_, 3)},
+                  {"lowest", number(lowest_, 3)},
                   {"lowest_text_y", number(y(lowest_) + 2, 6)},
                   {"closest_x", coordinate(x(clash.closest_pose))},
                   {"closest_y", coordinate(y(clash.distance))},

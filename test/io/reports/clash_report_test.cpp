@@ -317,7 +317,7 @@ TEST_F(ClashReports, UncertaintiesOfPosesAreComparedToo)
   EXPECT_EQ(read.question.uncertaintyOfObstacle(), list.question.uncertaintyOfObstacle());
   EXPECT_EQ(Json::parse(clashJson(list))["uncertainty"]["obstacle"].dump(),
             R"({"length":0.0,"pose":{"length":0.01,"angle":0.002,"about":[1.0,2.0,3.0]}})");
-  EXPECT_EQ(cellsOf(clashCsv(list))[0].back(), "pose_uncertainty");
+  EXPECT_THAT(cellsOf(clashCsv(list))[0], testing::Contains("pose_uncertainty"));
   EXPECT_THAT(clashCsv(list), HasSubstr("\"0.01,0.002,1,2,3\""));
   EXPECT_NO_THROW(requireComparable("list.json", read, list.question));
   ClashQuestion other = list.question;
@@ -382,8 +382,8 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
   list.clashes[1].status = ClashStatus::resolved;
   const auto rows = cellsOf(clashCsv(list));
   ASSERT_EQ(rows.size(), 3U);
-  ASSERT_EQ(rows[0].size(), 30U);
-  ASSERT_EQ(rows[1].size(), 30U);
+  ASSERT_EQ(rows[0].size(), 32U);
+  ASSERT_EQ(rows[1].size(), 32U);
   EXPECT_EQ(rows[1][0], "C4_0_617283");
   EXPECT_EQ(numberIn(rows[1][3]), list.clashes[0].distance);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -394,7 +394,7 @@ TEST_F(ClashReports, CsvReadsBackToTheSameBits)
     EXPECT_EQ(numberIn(rows[1][17 + k]), list.modelPoint(list.clashes[0])[axis]);
   }
   EXPECT_EQ(rows[1][12], "32");
-  ASSERT_EQ(rows[2].size(), 30U);
+  ASSERT_EQ(rows[2].size(), 32U);
   for (std::size_t k = 12; k < 20; ++k) EXPECT_EQ(rows[2][k], "") << "a resolved one has no pair";
   for (std::size_t i = 1; i < 3; ++i) {
     EXPECT_EQ(rows[i][20], "certain");
@@ -420,7 +420,7 @@ TEST_F(ClashReports, CsvTellsTheFilesOfPoints)
       if (of_obstacle) list.model_source_of = source("b.ply", 3);
       const auto rows = cellsOf(clashCsv(list));
       ASSERT_EQ(rows.size(), 3U);
-      const std::size_t width = 30U + (of_input ? 1U : 0U) + (of_obstacle ? 1U : 0U);
+      const std::size_t width = 32U + (of_input ? 1U : 0U) + (of_obstacle ? 1U : 0U);
       for (const auto& row : rows) EXPECT_EQ(row.size(), width);
       const auto cell = [&](const std::string& name) {
         const auto at = std::find(rows[0].begin(), rows[0].end(), name);

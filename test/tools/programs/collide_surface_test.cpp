@@ -326,7 +326,7 @@ TEST_F(CollideSurface, ItsTrianglesHaveDistances)
 {
   folder.write("point.xyz", "1.5 1 2.5\n");
   EXPECT_THAT(collideOutput("crate.off point.xyz out.ply --distances --report report.json"),
-              HasSubstr("distances of 12 triangles: "));
+              HasSubstr("distances of 12 triangles, each of its nearest place: "));
   const io::Mesh mesh = io::readMesh(folder / "out.ply");
   ASSERT_EQ(mesh.face_values.back().name, "distance");
   const std::vector<double>& distances = mesh.face_values.back().values;

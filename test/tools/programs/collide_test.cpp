@@ -678,8 +678,8 @@ TEST_F(CollideAlong, WritesItsFieldsAndReports)
 {
   const Outcome done = collide(job + "--trajectory {poses.txt} --report {report.json}");
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("4 of 41 points collide; smallest distance 0.1, between point 32 of the input and "
-                                  "point 0 of the obstacle; 4 poses; wrote "));
+  EXPECT_THAT(done.out, HasSubstr("4 of 41 points collide; smallest distance 0.1 at pose 3, between point 32 of the "
+                                  "input and point 0 of the obstacle; 4 poses; wrote "));
   const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "out.ply");
   ASSERT_EQ(cloud.fields.size(), 7U);
   EXPECT_EQ(cloud.fields[3].datatype, pcl::PCLPointField::UINT8);
@@ -698,7 +698,9 @@ TEST_F(CollideAlong, WritesItsFieldsAndReports)
   EXPECT_EQ(json["colliding"], 4);
   EXPECT_EQ(json["path"]["poses"], 4);
   EXPECT_EQ(json["path"]["table"][0]["colliding"], 1);
-  EXPECT_EQ(json["path"]["table"][1], (Json{{"pose", 1}, {"colliding", 0}, {"distance", nullptr}}));
+  EXPECT_EQ(json["path"]["table"][0]["closest_pair"], (Json{8, 0}));
+  EXPECT_EQ(json["path"]["table"][1],
+            (Json{{"pose", 1}, {"colliding", 0}, {"undecided", 0}, {"distance", nullptr}, {"closest_pair", nullptr}}));
   EXPECT_EQ(json["density"]["input"], (Json{{"median", 0.25}, {"nine_of_ten", 0.25}, {"sampled_points", 41}}));
 }
 
@@ -801,7 +803,7 @@ TEST_F(CollideAlong, CertainClashesAreToldFromThosePerhaps)
   EXPECT_EQ(list["clashes"][0]["certainty"], "certain");
   EXPECT_EQ(list["clashes"][1]["certainty"], "perhaps");
   EXPECT_THAT(io::contentOf(folder / "a.html"), HasSubstr("<h1>1 clash, 1 perhaps</h1>"));
-  EXPECT_THAT(io::contentOf(folder / "a.csv"), HasSubstr(",perhaps,0,0.3,0.15,0,,exact,,,\n"));
+  EXPECT_THAT(io::contentOf(folder / "a.csv"), HasSubstr(",perhaps,0,0.3,0.15,0,,exact,,,,,\n"));
   expectDone(job + options + "--clashes {b.json} --previous {a.json}");
   for (const Json& clash : clashes("b.json")) EXPECT_EQ(clash["status"], "persisting");
   expectFailure(job + "--trajectory {poses.txt} --clashes {c.json} --previous {a.json}", 1,
