@@ -18,8 +18,8 @@ namespace pcl_bsh {
 
 /// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
 /// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited),
-/// nothing at all of the scan lies near it (not_scanned), or the model is unseen there: see FormerPlaces. What is
-/// unseen and was no clash before has an entry of its own (findUnseenPlaces()).
+/// nothing at all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces.
+/// What is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
 enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
 inline constexpr std::size_t clash_statuses = 6; ///< how many there are
 
@@ -38,11 +38,12 @@ struct Clash {
   ClashStatus status = ClashStatus::fresh;
   std::vector<std::uint32_t> records; ///< its points, ascending; empty unless it is there now
   std::size_t points = 0;
-  std::size_t certain_points = 0; ///< of these: that collide wherever the points truly are; the others are undecided
-  Point3 low = {}, high = {};     ///< its bounding box
-  Point3 place = {};              ///< where its point of the closest pair is; of a triangle, its middle
-  double distance = 0.0;          ///< the smallest, less radii; negative of what a solid holds: the greatest depth. NaN
-                                  ///< of what is unseen and was no clash
+  std::size_t certain_points = 0;   ///< of these: that collide wherever the points truly are; the others are undecided
+  std::size_t points_in_shadow = 0; ///< of what is unseen and was no clash: of these, in shadow; the others in the skin
+  Point3 low = {}, high = {};       ///< its bounding box
+  Point3 place = {};                ///< where its point of the closest pair is; of a triangle, its middle
+  double distance = 0.0; ///< the smallest, less radii; negative of what a solid holds: the greatest depth. NaN
+                         ///< of what is unseen and was no clash
   /// Where a solid makes it negative, or may: holds it for certain. Else both NaN.
   Interval interval = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   std::uint32_t scan_point = 0;  ///< the pair that realises it; of several, that of the smallest record of the scan

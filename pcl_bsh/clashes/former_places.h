@@ -11,7 +11,8 @@
 // visited if the model comes within the reach of the point that was the clash's nearest, at a pose or during swept
 // motion. It was scanned if a finite point of the scan lies within the reach, along each axis, of the clash's box. A
 // wall that is removed with all that is near it leaves no points either: of such a place the scan says nothing, and
-// not_scanned is the honest answer. It is unseen if something of the model is, at a pose, within the reach of the box.
+// not_scanned is the honest answer. It is unseen if something of the model is in shadow, at
+// a pose, within the reach of the box; where beams passed, though not by the margin, the run looked.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -41,7 +42,7 @@ public:
   /// The scan has these points.
   void scan(const PointsView& points);
 
-  /// Something of the model was unseen in this box.
+  /// Something of the model was in shadow in this box.
   void unsee(const Extent& box);
 
   /// Whether visit() of points within this box may tell anything.

@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clashes/former_places.h>
+#include <pcl_bsh/seen/unseen_points.h>
 
 #include <cstdint>
 #include <vector>
@@ -17,20 +18,26 @@ struct UnseenAlong {
   const PointsView& model;                      ///< points or triangles
   const std::vector<Eigen::Isometry3d>& poses;  ///< T_scan_model
   const std::vector<std::vector<bool>>& unseen; ///< of each pose, one per record; empty: none
+
+  /// Of each pose, with parts in the scan's frame; null, or nothing of a pose: all that is unseen is in shadow.
+  const std::vector<UnseenKinds>* kinds = nullptr;
 };
 
 /// Clusters of the records, as placed, that are unseen at any pose: places in one cell, or in cells that touch, of a
-/// grid through the origin lie together, and so do the corners of a triangle. The cells are as long as the smallest
+/// grid through the origin lie together, and so do the corners of a triangle that is unseen as a whole, and those parts
+/// of another triangle whose boxes touch. The cells are as long as the smallest
 /// power of two that is at least the cluster distance. Most points first, then by id.
 ///
 /// Of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `closest_pose`, at which most of
-/// its records are unseen, the first of several; `points`, how many these are; `place`, the middle of its box;
-/// `first_pose`; and no distance (NaN).
+/// its records are unseen, the first of several; `points`, how many these are; `points_in_shadow`, how many of these
+/// are in shadow there; `place`, the middle of its box; `first_pose`; and no distance (NaN).
 /// @param cluster_distance finite, > 0
 /// @throws std::invalid_argument for another distance
 std::vector<Clash> findUnseenPlaces(const UnseenAlong& along, double cluster_distance);
 
-/// Tells which of the former places the model was at unseen. @param former before it judges
+/// Tells which of the former places the model was at in shadow. In the skin beams passed the place: there the run
+/// looked.
+/// @param former before it judges
 void tellUnseen(FormerPlaces& former, const UnseenAlong& along);
 
 } // namespace pcl_bsh

@@ -11,6 +11,7 @@
 #include <pcl_bsh/question/question.h>
 #include <pcl_bsh/question/shape.h>
 #include <pcl_bsh/question/warnings/warnings.h>
+#include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cstdint>
@@ -47,13 +48,23 @@ struct Answer {
     std::optional<std::size_t> first_pose; ///< with any
     std::vector<double> angles;            ///< of each scan: what its beams speak for, in radians
     std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, which; empty where none are
+    std::vector<UnseenKinds> kinds;        ///< likewise, of these
 
-    /// Of a solid, at each pose: the volume of cubes that hold what it encloses and in which not all is seen. They
+    // In shadow no beam passed the place itself; all else is in the skin, where beams passed but not by the margin.
+    std::size_t in_shadow = 0;                ///< of `count`: those that are at some pose
+    std::vector<std::size_t> shadow_at_poses; ///< of `at_poses`
+    std::vector<bool> shadow;                 ///< per record: whether it is in shadow at some pose
+
+    std::size_t inSkin() const { return count - in_shadow; } ///< of `count`, at no pose in shadow
+
+    /// Of a solid, at each pose: the volume of cubes that hold what it encloses and whose middles are in shadow. They
     /// collide with nothing, and are at least 1/48 of its longest side.
     std::vector<double> inside;
 
-    /// What was found at the next pose. @param gravest of all poses, one per record
-    void addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest);
+    /// What was found at the next pose. @param gravest of all poses, one per record. @param of markUnseen(); without
+    /// `in_shadow` nothing is in shadow
+    void addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest,
+                 UnseenKinds of = {});
   };
   Unseen unseen;
   std::vector<std::uint8_t> within; ///< 1: within the limits

@@ -18,16 +18,26 @@
 
 namespace pcl_bsh {
 
-void Answer::Unseen::addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest)
+void Answer::Unseen::addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest,
+                             UnseenKinds of)
 {
   at_poses.push_back(countOf(found, Verdict::unseen));
   if (at_poses.back() > 0 && !first_pose) first_pose = at_poses.size() - 1;
   for (std::size_t i = 0; i < found.size(); ++i) gravest[i] = graver(gravest[i], found[i]);
   count = countOf(gravest, Verdict::unseen);
+  shadow_at_poses.push_back(static_cast<std::size_t>(std::count(of.in_shadow.begin(), of.in_shadow.end(), true)));
+  shadow.resize(gravest.size());
+  in_shadow = 0;
+  for (std::size_t i = 0; i < gravest.size(); ++i) {
+    if (i < of.in_shadow.size() && of.in_shadow[i]) shadow[i] = true;
+    if (shadow[i] && gravest[i] == Verdict::unseen) ++in_shadow;
+  }
   if (!with_places) return;
   where.emplace_back();
+  kinds.emplace_back();
   if (at_poses.back() == 0) return;
   for (const Verdict verdict : found) where.back().push_back(verdict == Verdict::unseen);
+  kinds.back() = std::move(of);
 }
 
 namespace {
@@ -58,7 +68,8 @@ public:
     near.threads = question.threads;
     const FlagsResult meets = collisionFlags({all}, {surface}, near);
     for (std::size_t i = 0; i < middles.size(); ++i)
-      if (found.labels[i] != labelOf(Label::outside) || meets.a[i] != Verdict::free) middles_.push_back(middles[i]);
+      if (found.labels[i] != labelOf(Label::outside) || meets.a[i] != Verdict::free)
+        middles_.push_back(inBounds(middles[i], bounds.box));
     radii_.assign(middles_.size(), radius);
     PointsView view = viewOf(middles_.empty() ? nullptr : middles_.front().data(), middles_.size());
     view.radii = radii_.data();
@@ -74,10 +85,18 @@ public:
     const UnseenResult left = markUnseen(seen, {*balls_, in_scan}, request, found.b);
     work += found.work;
     work += left.work;
-    return static_cast<double>(left.unseen) * edge_ * edge_ * edge_;
+    return static_cast<double>(left.in_shadow) * edge_ * edge_ * edge_;
   }
 
 private:
+  /// Cubes reach beyond the bounds, where nothing of the solid is. The ball about the place that is nearest to the
+  /// middle holds all of the cube that is within them.
+  static Point3 inBounds(const Point3& middle, const Eigen::AlignedBox3d& bounds)
+  {
+    const Eigen::Vector3d place = Eigen::Vector3d(middle.data()).cwiseMax(bounds.min()).cwiseMin(bounds.max());
+    return {place.x(), place.y(), place.z()};
+  }
+
   double edge_ = 0.0;
   std::vector<Point3> middles_;
   std::vector<float> radii_;
@@ -99,6 +118,7 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
   flags.flagged = Side::b;
   UnseenRequest request;
   request.threads = question.threads;
+  request.kinds = true;
   answer.obstacle_flags.assign(model.view().count, Verdict::free);
   const CornerBox bounds(model.view());
   std::optional<Enclosed> enclosed;
@@ -118,8 +138,11 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
     request.clearance = flags.clearance + moves;
     collisionFlags(scan, {model, poses[k]}, flags, found);
     answer.work += found.work;
-    answer.work += markUnseen(seen, {model, in_scan}, request, found.b).work;
-    unseen.addPose(found.b, question.wanted.unseen_places, answer.obstacle_flags);
+    request.parts = question.wanted.unseen_places;
+    request.frame = poses[k];
+    UnseenResult left = markUnseen(seen, {model, in_scan}, request, found.b);
+    answer.work += left.work;
+    unseen.addPose(found.b, question.wanted.unseen_places, answer.obstacle_flags, std::move(left.kinds));
     if (enclosed) unseen.inside.push_back(enclosed->unseen(seen, scan, poses[k], in_scan, request, flags, answer.work));
   }
 }

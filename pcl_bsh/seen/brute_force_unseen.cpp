@@ -89,6 +89,39 @@ bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double
   return beams >= 2 && !open;
 }
 
+bool isDark(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& place)
+{
+  if (!place.isMeasured()) return true;
+  bool passed = false;
+  std::size_t beams = 0;
+  const BeamAngle speaks(angle);
+  eachBeam(scan, [&](std::uint32_t, const BeamEnd& beam) {
+    ++beams;
+    passed = passed || (!place.is_around && passes(place, beam.way, beam.empty, speaks));
+  });
+  if (beams < 2) return true;
+  if (place.is_around) return false;
+  const Cone cone(place.direction, place.coneAngle());
+  return !passed ||
+         std::any_of(holes.begin(), holes.end(), [&](const DirectionCell& cell) { return cone.meets(cell); });
+}
+
+/// Place by place.
+struct Shadow {
+  const std::vector<ScanBeams>& scans;
+  const std::vector<std::vector<DirectionCell>>& holes;
+  double angle;
+
+  bool at(const PosedPlace& place) const
+  {
+    for (std::size_t s = 0; s < scans.size(); ++s)
+      if (!isDark(scans[s], holes[s], angle, {scans[s].origin, place.at, place.magnitude, 0.0})) return false;
+    return true;
+  }
+  bool all(const PosedPlace& /*middle*/, double /*radius*/) const { return false; }
+  bool none(const PosedPlace& /*middle*/, double /*radius*/) const { return false; }
+};
+
 } // namespace
 
 UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const Placed& model,
@@ -110,12 +143,20 @@ UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const
       seen = seen || sees(scans[s], holes[s], angle, {scans[s].origin, place.at, place.magnitude, radius});
     return seen;
   };
+  const Shadow shadow{scans, holes, angle};
+  const Eigen::Isometry3d frame = request.frame.value_or(model.pose);
+  if (request.kinds) result.kinds.in_shadow.assign(view.count, false);
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
     if (!isFinite(view.point(record)) || verdicts[record] != Verdict::free) continue;
-    if (RecordSight(model, request.clearance, sees_ball)(record)) continue;
+    const RecordSight sight(model, request.clearance, sees_ball);
+    if (sight(record)) continue;
     verdicts[record] = Verdict::unseen;
     ++result.unseen;
+    if (!request.kinds) continue;
+    result.kinds.in_shadow[record] =
+        sight.isInShadow(record, shadow, request.parts ? &result.kinds.parts : nullptr, frame);
+    result.in_shadow += result.kinds.in_shadow[record] ? 1 : 0;
   }
   return result;
 }

@@ -86,4 +86,14 @@ inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double em
          empty * speaks.sure * (1.0 - kSightSlack);
 }
 
+/// Whether a beam counts for the direction of a place and went beyond it. @pre not around: the place is a ball of
+/// radius 0. @param beam not 0; its length does not matter. @param empty how far it went
+inline bool passes(const Sight& place, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
+{
+  if (!(empty > place.distance + place.slack)) return false;
+  const Eigen::Vector3d unit = beam / beam.norm();
+  const double cosine = place.way.dot(unit) / place.distance, sine = place.way.cross(unit).norm() / place.distance;
+  return cosine > 0.0 && sine * speaks.cosine <= cosine * speaks.sine;
+}
+
 } // namespace pcl_bsh

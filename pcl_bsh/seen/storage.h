@@ -26,6 +26,10 @@ public:
   /// Whether it sees no ball about a place in this one. @param ball of places. @param least radius of balls about them
   bool seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const;
 
+  /// Whether no beam passed a place: it is in a hole, or all beams that count for its direction ended before it.
+  /// @param place a ball of radius 0
+  bool isDark(const Sight& place, std::uint64_t& tested) const;
+
 private:
   BeamTree beams_;
   double angle_;

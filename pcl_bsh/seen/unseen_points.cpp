@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -22,11 +25,16 @@ using Scans = std::vector<const SeenScan*>;
 /// One model at one pose, or the part of it that one thread looks at.
 class UnseenWalk {
 public:
-  UnseenWalk(const SeenSpace::Storage& seen, const Placed& model, double clearance, std::vector<Verdict>& verdicts)
+  /// @param in_shadow gets 1 where a record is; one per record with `kinds`
+  UnseenWalk(const SeenSpace::Storage& seen, const Placed& model, const UnseenRequest& request,
+             std::vector<Verdict>& verdicts, std::vector<std::uint8_t>& in_shadow)
   : model_(model),
     storage_(model.hierarchy().storage()),
-    clearance_(clearance),
-    verdicts_(verdicts)
+    request_(request),
+    clearance_(request.clearance),
+    frame_(request.frame.value_or(model.pose)),
+    verdicts_(verdicts),
+    in_shadow_(in_shadow)
   {
     for (const SeenScan& scan : seen.scans) all_.push_back(&scan);
   }
@@ -41,8 +49,8 @@ public:
   UnseenResult result;
 
 private:
-  /// Which scans may see something in the sphere but not all; none left: it is settled.
-  enum class State : std::uint8_t { seen, unseen, open };
+  /// Which scans may see something in the sphere but not all; none left: it is settled, but for its kind.
+  enum class State : std::uint8_t { seen, in_shadow, unseen, open };
 
   State look(const GivenSphere& sphere, const Scans& scans, Scans& left)
   {
@@ -55,9 +63,19 @@ private:
       const Sight inside(scan->origin(), place.at, place.magnitude, places, 8.0);
       if (!scan->seesNoneIn(inside, clearance_, result.work.node_pairs)) left.push_back(scan);
     }
-    return left.empty() ? State::unseen : State::open;
+    if (!left.empty()) return State::open;
+    return !request_.kinds || isAllInShadow(place, places) ? State::in_shadow : State::unseen;
   }
 
+  bool isAllInShadow(const PosedPlace& place, double radius)
+  {
+    return std::all_of(all_.begin(), all_.end(), [&](const SeenScan* scan) {
+      const Sight places(scan->origin(), place.at, place.magnitude, radius, 8.0);
+      return scan->seesNoneIn(places, 0.0, result.work.node_pairs);
+    });
+  }
+
+  /// @param scans none: all below is unseen, and its kind is wanted
   void enterNode(const Voxel* voxel, std::uint32_t index, const Scans& scans)
   {
     const Node& node = voxel ? voxel->nodes[index] : storage_.top[index];
@@ -69,12 +87,11 @@ private:
       pulse_.step();
       const State state = look(sphere, scans, left);
       if (state == State::seen) continue;
-      if (voxel && node.isLeaf(i)) {
-        for (std::uint32_t p = node.begin[i]; p < node.begin[i + 1]; ++p)
-          point(voxel->records()[p], state == State::unseen, left);
-      }
-      else if (state == State::unseen) {
+      if (state == State::in_shadow) {
         markBelow(voxel, node, i);
+      }
+      else if (voxel && node.isLeaf(i)) {
+        for (std::uint32_t p = node.begin[i]; p < node.begin[i + 1]; ++p) record(voxel->records()[p], left);
       }
       else if (!node.isLeaf(i)) {
         enterNode(voxel, node.child[i], left);
@@ -91,52 +108,81 @@ private:
     enterNode(&voxel, 0, scans);
   }
 
+  /// What is unseen, and in shadow.
   void markBelow(const Voxel* voxel, const Node& node, std::uint32_t child)
   {
+    const auto mark_all = [this](std::uint32_t record) {
+      if (verdicts_[record] == Verdict::free) mark(record, request_.kinds);
+    };
     for (std::uint32_t i = node.begin[child]; i < node.begin[child + 1]; ++i) {
       if (voxel)
-        mark(voxel->records()[i]);
+        mark_all(voxel->records()[i]);
       else
-        storage_.forEachRecord(i, [this](std::uint32_t record) { mark(record); });
+        storage_.forEachRecord(i, mark_all);
     }
   }
 
-  void point(std::uint32_t record, bool unseen, const Scans& scans)
+  void record(std::uint32_t record, const Scans& scans)
   {
     if (verdicts_[record] != Verdict::free) return;
     pulse_.step();
-    if (!unseen) {
-      const auto sees = [&](const PosedPlace& place, double radius) {
-        const auto of_scan = [&](const SeenScan* scan) {
-          return scan->sees({scan->origin(), place.at, place.magnitude, radius}, result.work.node_pairs);
-        };
-        // What sees a place mostly sees its neighbours.
-        const bool asked = std::find(scans.begin(), scans.end(), last_) != scans.end();
-        if (asked && of_scan(last_)) return true;
-        for (const SeenScan* scan : scans) {
-          if ((asked && scan == last_) || !of_scan(scan)) continue;
-          last_ = scan;
-          return true;
-        }
-        return false;
+    const auto sees = [&](const PosedPlace& place, double radius) {
+      const auto of_scan = [&](const SeenScan* scan) {
+        return scan->sees({scan->origin(), place.at, place.magnitude, radius}, result.work.node_pairs);
       };
-      if (RecordSight(model_, clearance_, sees)(record)) return;
-    }
-    mark(record);
+      // What sees a place mostly sees its neighbours.
+      const bool asked = std::find(scans.begin(), scans.end(), last_) != scans.end();
+      if (asked && of_scan(last_)) return true;
+      for (const SeenScan* scan : scans) {
+        if ((asked && scan == last_) || !of_scan(scan)) continue;
+        last_ = scan;
+        return true;
+      }
+      return false;
+    };
+    const RecordSight sight(model_, clearance_, sees);
+    if (!scans.empty() && sight(record)) return;
+    mark(record, request_.kinds &&
+                     sight.isInShadow(record, Shadow{*this}, request_.parts ? &result.kinds.parts : nullptr, frame_));
   }
 
-  void mark(std::uint32_t record)
+  /// As RecordSight asks for it.
+  struct Shadow {
+    UnseenWalk& walk;
+
+    bool at(const PosedPlace& place) const
+    {
+      walk.pulse_.step(); // a triangle may be divided many times
+      return std::all_of(walk.all_.begin(), walk.all_.end(), [&](const SeenScan* scan) {
+        return scan->isDark({scan->origin(), place.at, place.magnitude, 0.0}, walk.result.work.node_pairs);
+      });
+    }
+    bool all(const PosedPlace& place, double radius) const { return walk.isAllInShadow(place, radius); }
+    bool none(const PosedPlace& place, double radius) const
+    {
+      walk.pulse_.step();
+      return std::any_of(walk.all_.begin(), walk.all_.end(), [&](const SeenScan* scan) {
+        return scan->sees({scan->origin(), place.at, place.magnitude, radius, 8.0}, walk.result.work.node_pairs);
+      });
+    }
+  };
+
+  void mark(std::uint32_t record, bool in_shadow)
   {
-    Verdict& verdict = verdicts_[record];
-    if (verdict != Verdict::free) return;
-    verdict = Verdict::unseen;
+    verdicts_[record] = Verdict::unseen;
     ++result.unseen;
+    if (!in_shadow) return;
+    in_shadow_[record] = 1;
+    ++result.in_shadow;
   }
 
   const Placed& model_;
   const SphereHierarchy::Storage& storage_;
+  const UnseenRequest& request_;
   const double clearance_;
+  const Eigen::Isometry3d frame_;
   std::vector<Verdict>& verdicts_;
+  std::vector<std::uint8_t>& in_shadow_;
   Scans all_;
   const SeenScan* last_ = nullptr; ///< that saw something
   WorkPulse pulse_{result.work};
@@ -153,17 +199,26 @@ UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const Unseen
   const std::size_t voxels = model.hierarchy().storage().voxel_count;
   const unsigned threads = threadCount(request.threads);
   UnseenResult result;
+  std::vector<std::uint8_t> in_shadow(request.kinds ? verdicts.size() : 0);
   std::mutex adding;
   const auto look = [&](const auto& walkIt) {
-    UnseenWalk walk(seen.storage(), model, request.clearance, verdicts);
+    UnseenWalk walk(seen.storage(), model, request, verdicts, in_shadow);
     walkIt(walk);
     const std::lock_guard<std::mutex> lock(adding);
     result.unseen += walk.result.unseen;
+    result.in_shadow += walk.result.in_shadow;
+    result.kinds.parts.insert(result.kinds.parts.end(), walk.result.kinds.parts.begin(), walk.result.kinds.parts.end());
     result.work += walk.result.work;
+  };
+  const auto tell = [&] {
+    result.kinds.in_shadow.assign(in_shadow.begin(), in_shadow.end());
+    std::stable_sort(result.kinds.parts.begin(), result.kinds.parts.end(),
+                     [](const UnseenPart& a, const UnseenPart& b) { return a.record < b.record; });
+    return std::move(result);
   };
   if (threads == 1 && !request.progress) {
     look([](UnseenWalk& walk) { walk.wholeModel(); });
-    return result;
+    return tell();
   }
   progress.begin(1.0, voxels);
   parallelFor(voxels, threads, [&](std::size_t i) {
@@ -172,7 +227,7 @@ UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const Unseen
     progress.step();
   });
   if (voxels > 0) progress.end();
-  return result;
+  return tell();
 }
 
 } // namespace pcl_bsh

@@ -9,9 +9,12 @@
 #include <pcl_bsh/query/work.h>
 #include <pcl_bsh/seen/seen_space.h>
 
+#include <Eigen/Geometry>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -24,12 +27,38 @@ struct UnseenRequest {
   /// Called now and then, by the calling thread, with the fraction done in [0, 1], which never falls. False: stop,
   /// markUnseen() throws Cancelled.
   std::function<bool(double)> progress = {};
+
+  bool kinds = false;                          ///< tell UnseenResult::kinds
+  bool parts = false;                          ///< with kinds: and its parts
+  std::optional<Eigen::Isometry3d> frame = {}; ///< of the parts' boxes: T_frame_model. None: the model's pose
+};
+
+/// A part of a triangle, or several that are neighbours, in which it is unseen.
+struct UnseenPart {
+  std::uint32_t record;
+  bool in_shadow; ///< else in the skin
+  Point3 low, high;
+};
+
+/// Where nobody saw that there is nothing is shadow or skin. A place is in shadow if no beam passed it: for each
+/// scanner, its direction lies between no beams, or all beams within 1.2 angles of it ended before it. All else that is
+/// unseen is skin: beams passed the place, but the ball about it is too near to a border or a surface to be seen.
+struct UnseenKinds {
+  /// One per record: whether it is unseen and in shadow. A point by its place; a triangle if a part of it is that is
+  /// unseen and whose middle is in shadow. Its parts have a radius of at most the clearance and its uncertainty, or ten
+  /// halvings.
+  std::vector<bool> in_shadow;
+  /// With `parts`, by record: where triangles are unseen, at most 64 boxes of shadow and 64 of skin each. A triangle
+  /// without parts is unseen as a whole and of one kind, or no larger than the ball about a place.
+  std::vector<UnseenPart> parts;
 };
 
 /// What markUnseen() found.
 struct UnseenResult {
-  std::size_t unseen = 0; ///< points that were free and are unseen
-  Work work;              ///< node_pairs: spheres of the model, and of directions, that were tested
+  std::size_t unseen = 0;    ///< points that were free and are unseen
+  std::size_t in_shadow = 0; ///< with UnseenRequest::kinds: of these, in shadow; the others are in the skin
+  UnseenKinds kinds;         ///< likewise
+  Work work;                 ///< node_pairs: spheres of the model, and of directions, that were tested
 };
 
 /// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. Of a

@@ -210,11 +210,12 @@ SiteUnseen unseenAlong(const Site& site, const SiteSight& sight, const SphereHie
   const CornerBox bounds(model.view());
   UnseenRequest wanted;
   wanted.threads = request.threads;
+  wanted.kinds = wanted.parts = true;
   result.verdicts.assign(model.view().count, Verdict::free);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     wanted.clearance = ballAt(poses[k], bounds, request);
-    markUnseen(space, {model, poses[k]}, wanted, verdicts[k]);
-    result.unseen.addPose(verdicts[k], true, result.verdicts);
+    UnseenResult found = markUnseen(space, {model, poses[k]}, wanted, verdicts[k]);
+    result.unseen.addPose(verdicts[k], true, result.verdicts, std::move(found.kinds));
   }
   return result;
 }

@@ -11,6 +11,8 @@
 #include <vtkObjectFactory.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <utility>
+
 vtkStandardNewMacro(vtkBSHCollisionFilter);
 
 void vtkBSHCollisionFilter::PrintSelf(ostream& os, vtkIndent indent)
@@ -53,9 +55,12 @@ void vtkBSHCollisionFilter::Fill(const pcl_bsh::Question& question, const pcl_bs
   verdicts->SetName("obstacle_collision");
   for (const pcl_bsh::Verdict verdict : answer.obstacle_flags)
     verdicts->InsertNextValue(static_cast<unsigned char>(verdict));
-  vtkNew<vtkIntArray> at_poses;
-  at_poses->SetName("unseen_at_poses");
-  for (const std::size_t count : answer.unseen.at_poses) at_poses->InsertNextValue(static_cast<int>(count));
   output->GetFieldData()->AddArray(verdicts);
-  output->GetFieldData()->AddArray(at_poses);
+  for (const auto& [name, counts] : {std::pair{"unseen_at_poses", &answer.unseen.at_poses},
+                                     {"in_shadow_at_poses", &answer.unseen.shadow_at_poses}}) {
+    vtkNew<vtkIntArray> at_poses;
+    at_poses->SetName(name);
+    for (const std::size_t count : *counts) at_poses->InsertNextValue(static_cast<int>(count));
+    output->GetFieldData()->AddArray(at_poses);
+  }
 }

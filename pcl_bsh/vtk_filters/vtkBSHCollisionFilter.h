@@ -8,8 +8,8 @@
 /// `first_pose` and `closest_pose` (int, from 0; -1 where free).
 ///
 /// With the option `seen` the output's field data has `obstacle_collision`, a verdict for each point of the obstacle or
-/// cell of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses), and `unseen_at_poses`,
-/// how many are unseen at each.
+/// cell of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses), `unseen_at_poses`,
+/// how many are unseen at each, and `in_shadow_at_poses`, how many of these no beam passed.
 ///
 ///     vtkNew<vtkBSHCollisionFilter> collision;
 ///     collision->SetInputData(scan);

@@ -191,5 +191,41 @@ TEST_F(UnseenPlaces, OfATriangleReachToAllItsCorners)
   EXPECT_NE(clashes[2].status, ClashStatus::unseen);
 }
 
+/// One triangle, unseen in two corners: in the first it is in shadow, in the second in the skin.
+TEST_F(UnseenPlaces, OfPartsOfATriangleAreThese)
+{
+  beOneTriangle();
+  stop(0, {true});
+  std::vector<UnseenKinds> kinds(1);
+  kinds[0].in_shadow = {true};
+  kinds[0].parts = {{0, true, {0, 0, 0}, {2.5, 0.5, 0}},
+                    {0, true, {2.5, 0, 0}, {4.5, 0.25, 0}}, // touches the first
+                    {0, false, {0, 8.5, 0}, {0.5, 9, 0}}};
+  const UnseenAlong parts{view, poses, unseen, &kinds};
+  std::vector<Clash> found = findUnseenPlaces(parts, 1.0);
+  ASSERT_EQ(found.size(), 2u);
+  if (found[0].low[1] > 1.0) std::swap(found[0], found[1]);
+  EXPECT_EQ(found[0].high, (Point3{4.5, 0.5, 0}));
+  EXPECT_EQ(found[0].points, 1u) << "one triangle";
+  EXPECT_EQ(found[0].points_in_shadow, 1u);
+  EXPECT_EQ(found[1].low, (Point3{0, 8.5, 0}));
+  EXPECT_EQ(found[1].points, 1u);
+  EXPECT_EQ(found[1].points_in_shadow, 0u);
+
+  std::vector<Clash> clashes(3);
+  for (Clash& clash : clashes) clash.status = ClashStatus::resolved, clash.distance = 0.0;
+  clashes[0].place = {4, 0, 0}, clashes[1].place = {0, 9, 0}, clashes[2].place = {8, 0, 0};
+  for (Clash& clash : clashes) clash.low = clash.high = clash.place;
+  FormerPlaces former(clashes, 0.5, 1.0);
+  former.visit(SphereHierarchy(view), poses, TrajectoryRequest());
+  const Point3 scanned[] = {{4, 0, 1}, {0, 9, 1}, {8, 0, 1}};
+  former.scan(viewOf(scanned[0].data(), 3));
+  tellUnseen(former, parts);
+  former.judge();
+  EXPECT_EQ(clashes[0].status, ClashStatus::unseen);
+  EXPECT_EQ(clashes[1].status, ClashStatus::resolved) << "beams passed there";
+  EXPECT_EQ(clashes[2].status, ClashStatus::resolved) << "a part that is seen";
+}
+
 } // namespace
 } // namespace pcl_bsh

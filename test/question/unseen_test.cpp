@@ -369,13 +369,16 @@ TEST_F(Unseen, TheInsideOfASolidIsThatOfItsCubes)
   for (const auto& [clearance, edge] : {std::pair(0.0, 0.96 / 48), {0.03, 0.03}, {0.1, 0.1}, {0.2, 0.96 / 8}}) {
     const Eigen::Array3i count = (bounds.sizes().array() / edge).ceil().cast<int>();
     const auto radius = static_cast<float>(0.5 * std::sqrt(3.0) * edge * (1.0 + 1e-6));
-    std::vector<Point3> middles;
+    std::vector<Eigen::Vector3d> within; // the bounds
     for (int i = 0; i < count.prod(); ++i) {
       const Eigen::Array3d place(i % count[0], i / count[0] % count[1], i / count[0] / count[1]);
       const Eigen::Vector3d middle = bounds.min() + edge * (place + 0.5).matrix();
       const auto holds = [&](const auto& box) { return box.exteriorDistance(middle) <= static_cast<double>(radius); };
-      if (std::any_of(boxes.begin(), boxes.end(), holds)) middles.push_back({middle[0], middle[1], middle[2]});
+      if (std::any_of(boxes.begin(), boxes.end(), holds))
+        within.push_back(middle.cwiseMax(bounds.min()).cwiseMin(bounds.max()));
     }
+    std::vector<Point3> middles;
+    for (const Eigen::Vector3d& middle : within) middles.push_back({middle[0], middle[1], middle[2]});
     const std::vector<float> radii(middles.size(), radius);
     PointsView view = viewOf(middles.front().data(), middles.size());
     view.radii = radii.data();
@@ -387,9 +390,10 @@ TEST_F(Unseen, TheInsideOfASolidIsThatOfItsCubes)
       FlagsResult found = collisionFlags({scan, question.pose_of_input}, {balls, pose}, touching);
       UnseenRequest request;
       request.clearance = clearance;
+      request.kinds = true;
       inside.push_back(
           static_cast<double>(
-              markUnseen(space, {balls, question.pose_of_input.inverse() * pose}, request, found.b).unseen) *
+              markUnseen(space, {balls, question.pose_of_input.inverse() * pose}, request, found.b).in_shadow) *
           edge * edge * edge);
     }
     question.clearance = clearance;

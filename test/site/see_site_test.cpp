@@ -17,6 +17,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -103,14 +104,15 @@ protected:
     flags.clearance = request.clearance;
     flags.flagged = Side::b;
     UnseenRequest asked;
+    asked.kinds = true;
     Answer::Unseen unseen;
     gravest.assign(machine.size(), Verdict::free);
     for (const Eigen::Isometry3d& pose : poses) {
       FlagsResult found = pcl_bsh::collisionFlags({scan}, {model, pose}, flags);
       asked.clearance = request.clearance + // beams and their scanner move together
                         strayOf(request.uncertainty.pose, CornerBox(model.view()), pose);
-      markUnseen(space, {model, pose}, asked, found.b);
-      unseen.addPose(found.b, true, gravest);
+      UnseenResult left = markUnseen(space, {model, pose}, asked, found.b);
+      unseen.addPose(found.b, true, gravest, std::move(left.kinds));
     }
     return unseen;
   }
@@ -142,6 +144,8 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
     EXPECT_EQ(found.unseen.where, right.where);
     EXPECT_EQ(found.unseen.first_pose, right.first_pose);
     EXPECT_EQ(found.unseen.count, right.count);
+    EXPECT_EQ(found.unseen.in_shadow, right.in_shadow);
+    EXPECT_EQ(found.unseen.shadow_at_poses, right.shadow_at_poses);
     EXPECT_EQ(found.unseen.angles, (std::vector<double>{0.05, 0.05}));
     EXPECT_LT(found.beams, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
   }
@@ -189,8 +193,12 @@ TEST_F(SeeSite, BeamsAreUncertainWhateverElseIsRead)
     io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
     std::vector<Verdict> at_once;
     const Answer::Unseen right = expected(at_once);
-    for (const std::uint64_t tile_points : {1000000u, 3000u})
-      EXPECT_EQ(asked(siteOf(tile_points + another)).unseen.where, right.where);
+    EXPECT_GT(*std::max_element(right.shadow_at_poses.begin(), right.shadow_at_poses.end()), 0u);
+    for (const std::uint64_t tile_points : {1000000u, 3000u}) {
+      const Answer::Unseen found = asked(siteOf(tile_points + another)).unseen;
+      EXPECT_EQ(found.where, right.where);
+      EXPECT_EQ(found.shadow_at_poses, right.shadow_at_poses);
+    }
     ++another;
   }
 }

@@ -1105,6 +1105,7 @@ TEST(CollisionFilter, TellsWhatOfTheObstacleNobodySaw)
   EXPECT_EQ(found->GetTuple1(1), 4);
   EXPECT_EQ(found->GetTuple1(2), 1);
   EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("unseen_at_poses")->GetTuple1(0), 1);
+  EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("in_shadow_at_poses")->GetTuple1(0), 1);
   filter->SetOption("pose_uncertainty", "0.2");
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("obstacle_collision")->GetTuple1(2), 2) << "undecided now";

@@ -200,7 +200,9 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
   if (found.answer.unseen.count > 0) {
     const std::string part = found.compared.partName();
     stage.warn(counted(found.answer.unseen.count, part + " of the obstacle is", part + "s of the obstacle are") +
-               " unseen: free of collisions, but no scanner saw that nothing is there");
+               " unseen: free of collisions, but no scanner saw that nothing is there (" +
+               std::to_string(found.answer.unseen.in_shadow) + " in shadow, " +
+               std::to_string(found.answer.unseen.inSkin()) + " in the skin)");
   }
   warnOfUndecided(found.answer, question, found.input.isSurface() ? "triangles" : "points", stage);
   return found;

@@ -203,6 +203,8 @@ private:
       Object row = factsOf(clash);
       row["size"] = number(longestSide(clash), 3);
       row["linked"] = has_card;
+      row["unseen"] = table == Table::unseen;
+      row["in_shadow"] = std::to_string(clash.points_in_shadow);
       rows.push_back(std::move(row));
     }
     return rows.empty() ? Data(false) : Data(rows);

@@ -47,6 +47,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"certainty", certaintyOf(clash)},
                {"points", clash.points},
                {"certain_points", clash.certain_points},
+               {"points_in_shadow", clash.wasNoClash() ? Json(clash.points_in_shadow) : Json()},
                {"box", toJson(Extent{clash.low, clash.high})},
                {"place", clash.place},
                {"distance", clash.wasNoClash() ? Json() : Json(clash.distance)},
@@ -99,7 +100,10 @@ Json surfaceJson(const Obstacle* surface, bool solid)
 Json unseenJson(const Answer::Unseen& unseen)
 {
   return {{"obstacle_points", unseen.count},
+          {"in_shadow", unseen.in_shadow},
+          {"in_skin", unseen.inSkin()},
           {"at_poses", unseen.at_poses},
+          {"in_shadow_at_poses", unseen.shadow_at_poses},
           {"first_pose", unseen.first_pose ? Json(*unseen.first_pose) : Json()},
           {"angles_of_scans", unseen.angles},
           {"inside", unseen.inside.empty() ? Json() : Json(unseen.inside)}};
@@ -207,7 +211,8 @@ std::string clashCounts(const ClashReport& report)
 void listUnseen(ClashReport& report)
 {
   if (!report.unseen) return;
-  for (Clash& place : findUnseenPlaces({report.model, report.poses, report.unseen->where}, report.cluster_distance))
+  for (Clash& place : findUnseenPlaces({report.model, report.poses, report.unseen->where, &report.unseen->kinds},
+                                       report.cluster_distance))
     report.clashes.push_back(std::move(place));
 }
 
@@ -219,7 +224,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
   FormerPlaces former(report.clashes, *report.question.clearance, report.cluster_distance);
   if (!former.empty()) {
     look(former);
-    if (report.unseen) tellUnseen(former, {report.model, report.poses, report.unseen->where});
+    if (report.unseen) tellUnseen(former, {report.model, report.poses, report.unseen->where, &report.unseen->kinds});
     former.judge();
   }
   return surveyWarnings(file, earlier, report.survey, *report.question.clearance + report.cluster_distance);

@@ -77,6 +77,8 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
         << counted(answer.unseen.count, report.surface ? "triangle is" : "point is",
                    report.surface ? "triangles are" : "points are")
         << " unseen";
+    if (answer.unseen.count > 0)
+      out << " (" << answer.unseen.in_shadow << " in shadow, " << answer.unseen.inSkin() << " in the skin)";
     if (report.question.path && answer.unseen.first_pose) out << posesOfUnseen(answer.unseen);
   }
   if (const auto& pair = answer.closest.pair) {

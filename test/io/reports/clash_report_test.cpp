@@ -256,6 +256,7 @@ TEST_F(ClashReports, WhatIsUnseenIsAStateOfItsOwn)
   EXPECT_EQ(Json::parse(json)["options"]["seen"], "true");
   EXPECT_EQ(entry["status"], "unseen");
   EXPECT_EQ(entry["certainty"], "unseen");
+  EXPECT_EQ(entry["points_in_shadow"], 1);
   EXPECT_TRUE(entry["distance"].is_null());
   EXPECT_FALSE(entry.contains("closest_pair"));
   const ClashList read = parseClashes(json, "list.json");
@@ -270,6 +271,7 @@ TEST_F(ClashReports, WhatIsUnseenIsAStateOfItsOwn)
   EXPECT_TRUE(has(page, "<h1>2 clashes, 1 unseen</h1>"));
   EXPECT_TRUE(has(page, "<h2>Unseen</h2>"));
   EXPECT_TRUE(has(page, "<span class=\"badge unseen\">unseen</span></td><td></td><td>1</td><td>1</td><td>1</td>"));
+  EXPECT_TRUE(has(page, "<th>points in shadow</th>"));
   EXPECT_EQ(occurrences(page, "<section class=\"card\""), 2U);
 }
 
@@ -655,9 +657,12 @@ TEST_F(ClashReports, TellWhereNothingWas)
 
   Answer::Unseen unseen;
   unseen.count = 3;
+  unseen.in_shadow = 1;
   unseen.at_poses = {0, 2, 3};
+  unseen.shadow_at_poses = {0, 1, 0};
   unseen.angles = {0.25, 0.5};
-  EXPECT_EQ(unseenJson(unseen).dump(), R"({"obstacle_points":3,"at_poses":[0,2,3],"first_pose":null,)"
+  EXPECT_EQ(unseenJson(unseen).dump(), R"({"obstacle_points":3,"in_shadow":1,"in_skin":2,"at_poses":[0,2,3],)"
+                                       R"("in_shadow_at_poses":[0,1,0],"first_pose":null,)"
                                        R"("angles_of_scans":[0.25,0.5],"inside":null})");
   unseen.first_pose = 1;
   unseen.inside = {0.5};

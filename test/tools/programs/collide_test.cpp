@@ -198,7 +198,9 @@ TEST_F(Collide, TellsWhatOfTheObstacleNobodySaw)
   for (const std::string& scan : {"{scan.pcd}" + rest, "{scan.xyz}" + rest + "--origin 0,0,1 "}) {
     const Outcome done = collide(scan + "--obstacle-out {seen.pcd} --report {report.json}");
     ASSERT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_THAT(done.out, HasSubstr("; of the obstacle, 1 point is unseen"));
+    EXPECT_THAT(done.out, HasSubstr("; of the obstacle, 1 point is unseen (1 in shadow, 0 in the skin)"));
+    EXPECT_EQ(report()["unseen"]["in_shadow"], 1);
+    EXPECT_EQ(report()["unseen"]["in_skin"], 0);
     EXPECT_EQ(flags("seen.pcd"), (std::vector<int>{0, 4, 0, 1}));
     EXPECT_EQ(report()["unseen"]["obstacle_points"], 1);
     EXPECT_EQ(report()["unseen"]["first_pose"], 0);
