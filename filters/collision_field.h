@@ -17,8 +17,8 @@ namespace pcl_bsh {
 
 struct TrajectoryResult;
 
-/// The field that holds collision flags: UINT8, 0 = free, 1 = collides, 2 = undecided, 3 = sparse (the obstacle is not
-/// scanned densely enough there), 4 = unseen (it would be free, but no scanner saw that).
+/// The field that holds collision flags: UINT8, 0 = free, 1 = collides, 2 = undecided. Flag 3 is sparse: the obstacle
+/// is not scanned densely enough there. Flag 4 is unseen: it would be free, but no scanner saw that.
 inline constexpr const char* collision_field_name = "collision";
 
 /// Along a trajectory: FLOAT32, the smallest distance, NaN where free; INT32, numbers of poses, -1 where free.

@@ -20,7 +20,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What the typed filter and the one of pcl::PCLPointCloud2 share. Use DistanceFilter. Called through a pointer to
+/// The base of the typed filter and of the one of pcl::PCLPointCloud2. Use DistanceFilter. Called through a pointer to
 /// pcl::Filter, from PCL 1.15 on filter() may leave the output alone when memory runs out: QueryFilter says where.
 template <typename PointT>
 class DistanceFilterBase : public QueryFilter<PointT, DistanceSettings> {

@@ -49,7 +49,7 @@ public:
   }
 };
 
-/// The same for clouds whose fields are known at run time only.
+/// As InputFilter of a point type, for clouds whose fields are known at run time only.
 template <>
 class PCL_BSH_EXPORT InputFilter<pcl::PCLPointCloud2> : public NumberedFilter<pcl::PCLPointCloud2> {
 public:

@@ -183,8 +183,8 @@ void partRecords(const PointsView& input, const std::vector<std::uint8_t>& passe
 
 /// The settings that filters of collisions add.
 ///
-/// Accuracy: no point is called free or colliding that is not, within the tolerance if one was given. What an early
-/// stop leaves undecided is never kept as free: it counts as colliding wherever points are kept or removed, and its
+/// Accuracy: no point is called free or colliding that is not, within the tolerance if one was given. A point that an
+/// early stop leaves undecided is never kept as free: it counts as colliding wherever points are kept or removed; its
 /// flag is 2. A time is that of the query alone, after both clouds are sorted into voxels. Filtering throws for what
 /// TrajectoryRequest::accuracy says that a trajectory cannot tell.
 class CollisionSettings : public QuestionFilter {
@@ -202,7 +202,7 @@ public:
   void setSwept(double tolerance) { question_.swept = tolerance; }
 
   /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
-  /// collides where it does wherever all points truly are, it is free where it cannot collide, and else it is
+  /// collides where it does wherever all points truly are, and it is free where it cannot collide. Else it is
   /// undecided: its flag is 2, and it counts as colliding wherever points are kept or removed. Default: not at all.
   /// @throws std::invalid_argument for numbers that are not finite and >= 0. Filtering throws where a field is missing,
   ///   or holds such a number for a finite point.
@@ -213,7 +213,7 @@ public:
   }
 
   /// The density guard: a point that is free, but no farther from a point of the obstacle than the clearance and half
-  /// the spacing of the obstacle's points there, is undecided with the reason *not scanned densely enough*: its flag is
+  /// the spacing of the obstacle's points there, is *not scanned densely enough*. So it is undecided: its flag is
   /// 3, and it counts as colliding wherever points are kept or removed. FlagsRequest::spacings_of_b says what is
   /// promised and what not, patchSpacings() how wide the holes between the obstacle's points are taken to be. These are
   /// measured once for an obstacle. At one pose: along a trajectory, filtering throws. A surface has no holes, and

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The core holds code for the instruction sets that were asked for, and for no others: Highway names the namespace of each,
+# The core holds code for the instruction sets that were asked for, and for no others. Highway names the namespace of each,
 # and versions of Highway differ in the sets they know.
+#
 #   cmake -D NM=nm -D LIBRARY=<libpcl_bsh_core> -D "SETS=SSE2;AVX2" -D HIGHWAY=<folder of hwy/> -P instruction_sets.cmake
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND "${NM}" --demangle --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols ERROR_QUIET)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes a bare Debian in a folder, from the mirror that this machine's apt uses, and runs there, in a fresh clone of HEAD,
+# Makes a bare Debian in a folder, from the mirror that this machine's apt uses. Runs there, in a fresh clone of HEAD,
 # the two commands of README.md, then what they leave out: packaging, the preset clang, the benchmarks. Says how long each
 # takes. Needs root, 25 GB and hours; run it before every release, not in CI.
 #   bash test/on_debian.sh VERSION [FOLDER]     VERSION: 12 or 13. FOLDER: is made anew; default /var/tmp/pcl_bsh_debian_VERSION

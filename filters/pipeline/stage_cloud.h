@@ -38,7 +38,7 @@ struct StageCloud {
   std::vector<std::array<double, 7>> scanners = {};
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
-  /// Of a file that joins its points by lines, edges ... and has no faces: why its points say less. Empty else.
+  /// Why a file's points say less than the file: it joins them by lines, edges ... and has no faces. Empty else.
   std::string corners_alone = {};
 };
 

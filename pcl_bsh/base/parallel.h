@@ -68,8 +68,8 @@ private:
   std::condition_variable done_;
 };
 
-/// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws. What it computes on other threads
-/// has the watcher of this one, which is asked, too, while this one has nothing to do but wait.
+/// Calls body(i) for each i in [0, count), in any order; rethrows what a body throws. Bodies on other threads have the
+/// watcher of this thread. It is asked, too, while this thread only waits for them.
 template <class Body>
 void parallelFor(std::size_t count, unsigned threads, const Body& body)
 {

@@ -18,8 +18,8 @@ namespace pcl_bsh {
 
 /// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
 /// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited),
-/// nothing at all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces.
-/// What is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
+/// nothing at all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces. A
+/// place that is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
 enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
 inline constexpr std::size_t clash_statuses = 6; ///< how many there are
 
@@ -59,8 +59,8 @@ struct Clash {
 };
 
 /// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
-/// first: those that have a point which collides for certain before those that collide only perhaps, then by smallest
-/// distance, so that the deepest come first, then by most points, then by id.
+/// first. Clusters with a point that collides for certain come before those that collide only perhaps. Then the order
+/// is by smallest distance, so that the deepest come first, then by most points, then by id.
 ///
 /// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin, whose
 /// cells are as long as the smallest power of two that is at least four cluster distances. So it is the same in every

@@ -21,7 +21,7 @@ struct Place {
   std::uint32_t nearest;
 };
 
-/// Of each place of a view, which has no radii or sunk ones.
+/// Looks at each place of a view, which has no radii or sunk ones.
 std::vector<Place> lookAt(const PointsView& places, const Eigen::Isometry3d& pose, const DeepSolid& solid, Work& work)
 {
   PointsView middles = places;

@@ -6,8 +6,8 @@
 
 namespace pcl_bsh::brute_force {
 
-/// Of points and balls same contract as its namesake in depths.h. Triangles are looked at in the places of a grid: no
-/// deeper than between these is what lies among them.
+/// For points and balls, its contract is that of its namesake in depths.h. Triangles are looked at in the places of a
+/// grid: no deeper than between these is what lies among them.
 /// @param steps of the grid, along each side of a triangle
 DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
                       unsigned steps = 64);

@@ -22,7 +22,7 @@ public:
 
   const Content& content() const noexcept { return *content_; }
 
-  /// That the part's record was made of.
+  /// The thing's record that the part's record was made of.
   std::uint32_t original(std::uint32_t record) const { return records_[record]; }
 
   /// The places of a record of the part: of a point one, of a triangle its corners.

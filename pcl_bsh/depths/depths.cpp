@@ -20,7 +20,7 @@ Interval about(double rounded)
   return {std::nextafter(rounded, 0.0), std::nextafter(rounded, std::numeric_limits<double>::infinity())};
 }
 
-/// Of points and balls, which are held by their middles.
+/// Depths of points and balls. A ball is held where its middle is.
 std::vector<Depth> depthsOfPoints(const DeepSolid& solid, const Placed& content,
                                   const std::vector<std::uint32_t>& records, unsigned threads, Work& work)
 {

@@ -29,7 +29,7 @@ struct DeepSolid {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
 };
 
-/// Of a record: of points and balls rounded to the nearest double, of triangles not known better than the interval.
+/// A record's depth: for points and balls the nearest double, for triangles not known better than the interval.
 struct Depth {
   std::uint32_t record = 0;
   Interval depth;            ///< 0 <= lower <= upper
@@ -37,13 +37,13 @@ struct Depth {
   std::uint32_t nearest = 0; ///< the triangle of the solid that is nearest to the deepest place that was found
 };
 
-/// What depthsIn() found.
+/// The result of depthsIn().
 struct DepthsResult {
   std::vector<Depth> depths; ///< by record, ascending
   Work work;
 };
 
-/// Of triangles: the search stops where upper <= lower (1 + kDepthShare), or where a record has been cut into as many
+/// For triangles, the search stops where upper <= lower (1 + kDepthShare), or where a record has been cut into as many
 /// pieces as the query allows, so that its interval is wider.
 inline constexpr double kDepthShare = 0x1p-10;
 
@@ -52,14 +52,14 @@ inline constexpr double kDepthShare = 0x1p-10;
 std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const Content& content,
                                      const Eigen::Isometry3d& T_world_content, unsigned threads, Work& work);
 
-/// Of each record of recordsIn().
+/// The depth of each record of recordsIn().
 /// @param deepest of others than the deepest, no more is found out than that they are not deeper: their intervals hold
 ///   their depths all the same
 /// @param threads 0: all of the machine's. @throws std::invalid_argument when a pose is not rigid
 DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
                       unsigned threads = 1, bool deepest = false);
 
-/// Of the greatest depth: of several the first record. Nothing where no record is deeper than 0.
+/// The greatest depth; of several equal ones, that of the first record. Nothing where no record is deeper than 0.
 const Depth* deepestOf(const std::vector<Depth>& depths);
 
 /// The smallest distance of the two becomes the depth of the deepest record, less than 0, where the solid holds

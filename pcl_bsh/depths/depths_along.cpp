@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // While a record goes by a way w relative to the solid, its depth changes by no more than w: taken as less than 0
 // outside, by the distance to the surface. So a record that was this deep at one pose needs no measure at poses near
-// it, and on a motion of length w from depth s to depth t it is nowhere deeper than (s + t + w) / 2.
+// it. On a motion of length w from depth s to depth t, a record is nowhere deeper than (s + t + w) / 2.
 #include <pcl_bsh/depths/depths_along.h>
 
 #include <pcl_bsh/base/invalid_input.h>
@@ -122,10 +122,10 @@ private:
     records.erase(std::remove_if(records.begin(), records.end(), is_no_deeper), records.end());
   }
 
-  /// Of a ball: its depth is that of its middle, and so much.
+  /// A ball's radius: its depth is that of its middle, plus the radius.
   double radiusOf(std::uint32_t record) const { return part_.content().thing().view().ownRadius(record); }
 
-  /// Depths at most of some records at an instant; of a place outside, less than 0. What is inside is noted.
+  /// Depths at most of some records at an instant; of a place outside, less than 0. Notes records inside.
   std::map<std::uint32_t, double> depthsAt(const std::vector<std::uint32_t>& records, const Eigen::Isometry3d& at,
                                            std::uint32_t pose)
   {
@@ -140,7 +140,7 @@ private:
     return depths;
   }
 
-  /// The same of all records of a content, by their numbers; minus infinity of what is farther outside than `reach`.
+  /// Depths at most of all records of a content, by their numbers; minus infinity if farther outside than `reach`.
   std::vector<double> depthsOfAll(const Content& content, const Eigen::Isometry3d& at, std::uint32_t pose, double reach)
   {
     const auto [solid, of_content] = placed(at);
@@ -215,7 +215,7 @@ private:
     }
   }
 
-  /// What may be deeper there than is known, by more than half of the tolerance. Shorter parts than that tell no more.
+  /// Keeps a span that may be deeper than known by more than half the tolerance. Shorter parts than that tell no more.
   void keepOpen(const Span& span, std::vector<Span>& open)
   {
     const double way = span.speed * (span.to - span.from), upper = 0.5 * (span.first + span.last + way);
@@ -227,7 +227,7 @@ private:
       beyond_[span.record] = std::max(beyond_[span.record], upper);
   }
 
-  /// Of a record relative to the solid, with room for rounding.
+  /// A record's speed relative to the solid, with room for rounding.
   double speedOf(std::uint32_t record, const RigidMotion& motion) const
   {
     double radius = 0.0, largest = motion.worldPivot().cwiseAbs().maxCoeff() + motion.shift().norm();

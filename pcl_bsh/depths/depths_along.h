@@ -29,8 +29,8 @@ struct DepthAlong : Depth {
   std::uint32_t pose = 0; ///< the first pose that has it; swept: at it, or on the motion from it to the next
 };
 
-/// Of each record of the part that is inside somewhere on the path, or meets the surface there; `record` is the thing's
-/// own. Swept: upper - told <= swept / 2, but for triangles whose depth is not known so well at an instant
+/// The depth of each record of the part that is inside or meets the surface somewhere on the path; `record` is the
+/// thing's own. Swept: upper - told <= swept / 2, except for triangles whose depth is not known so well at an instant
 /// (kDepthShare). A record that cannot be deeper at a pose than it was at another, for it has not moved that far, is
 /// not measured there.
 /// @param solid its pose is not read

@@ -5,8 +5,8 @@
 //   s <= s(corner) + the way from there,
 //   s <= the distance to any one triangle of the solid, which is convex: no more than between its values at corners.
 //
-// Of two of these triangles the smaller distance counts everywhere: the greatest of what is smaller of two planes over
-// a piece is at a corner, or where they meet on an edge. There pieces are cut, so that ridges of s, halfway between two
+// The smaller distance to two of these triangles counts everywhere: over a piece, the smaller of the two is
+// greatest at a corner, or where they meet on an edge. There pieces are cut, so that ridges of s, halfway between two
 // walls, and seams between faces that lie in one plane become edges of pieces. A piece that crosses the surface is cut
 // where it does; then pieces outside are apart from the surface, which is how they are known.
 #include <pcl_bsh/depths/triangle_depths.h>
@@ -36,11 +36,11 @@ constexpr std::size_t kMostPlaces = std::size_t{1} << 18;                     //
 constexpr std::size_t kFewestPlaces = 64, kManyPlaces = std::size_t{1} << 14; ///< of one record
 constexpr double kLonger = 1.0 + 4e-6; ///< more than a pose may lengthen a way by
 
-/// Of places that are computed, relative to the largest coordinate: each cut rounds by 2^-51 of it, 2^-45 after
-/// kMostCuts.
+/// Error of places that are computed, relative to the largest coordinate: each cut rounds by 2^-51 of it, 2^-45
+/// after kMostCuts.
 constexpr double kPlaceError = 0x1p-44;
 
-/// Of one record.
+/// The search in one record.
 struct Search {
   std::uint32_t record;
   double error;                   ///< how far its pieces may be from it
@@ -151,7 +151,7 @@ private:
     deepest_lower_ = std::max(deepest_lower_, search.lower);
   }
 
-  /// What is no deeper is not looked at.
+  /// Pieces that are no deeper than this are not looked at.
   double enough(const Search& search) const
   {
     return std::max((deepest_ ? deepest_lower_ : search.lower) * (1.0 + kDepthShare), flatness(search));
@@ -263,7 +263,7 @@ private:
     return normalOf(Triangle3{places_[piece.corners[0]], places_[piece.corners[1]], places_[piece.corners[2]]});
   }
 
-  /// Of the solid's triangle that is nearest to the piece, in the content's frame.
+  /// Normal of the solid's triangle that is nearest to the piece, in the content's frame.
   Eigen::Vector3d normalAt(const Piece& piece) const
   {
     const auto highest = *std::max_element(piece.corners.begin(), piece.corners.end(), [&](auto one, auto other) {

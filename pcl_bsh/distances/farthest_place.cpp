@@ -75,7 +75,7 @@ FarthestPlace::FarthestPlace(const Placed& a, const Placed& b, double tolerance,
   a.hierarchy().view().triangles ? addTriangles() : measureRecords();
 }
 
-/// Of points: that is all.
+/// Measures all points of a; nothing else is to be done for points.
 void FarthestPlace::measureRecords()
 {
   PointDistancesRequest request;
@@ -145,7 +145,7 @@ void FarthestPlace::note(double distance, double error, PointPair pair)
   farthest_ = pair;
 }
 
-/// What a place is away from b, at most.
+/// The greatest distance that a place may have from b.
 double FarthestPlace::mostOf(std::uint32_t place) const
 {
   return sumAbove(std::nextafter(distance_[place], kBoundless), error_[place]);

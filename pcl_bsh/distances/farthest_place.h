@@ -15,13 +15,13 @@
 
 namespace pcl_bsh {
 
-/// Of the box around all that a view has: of the triangles' corners. In the clouds' unit.
+/// Diagonal of the box around all that a view has, in the clouds' unit; of triangles, around their corners.
 double diagonalOf(const PointsView& view);
 
 class FarthestPlace {
 public:
-  /// Measures all points of a, or all corners of its triangles. @param tolerance pieces that may be farther than what
-  /// is known by no more than this are not divided @param work gets what is done
+  /// Measures all points of a, or all corners of its triangles. @param work gets what is done
+  /// @param tolerance pieces that may be farther than what is known by no more than this are not divided
   FarthestPlace(const Placed& a, const Placed& b, double tolerance, unsigned threads, Work& work);
 
   /// Holds the distance of the farthest place.
@@ -35,7 +35,7 @@ public:
   std::size_t divide(double known);
 
 private:
-  /// Of a triangle of a.
+  /// A piece of a triangle of a.
   struct Piece {
     double upper; ///< none of its places is farther than this
     std::uint32_t record;
@@ -72,7 +72,7 @@ private:
   const Eigen::Isometry3d in_b_; ///< a's places as b's
   double largest_ = 0.0;         ///< coordinate of a
 
-  // Of places, in the order in which they were measured.
+  // Places, in the order in which they were measured.
   std::vector<Point3> places_;         ///< in a's own frame
   std::vector<double> distance_;       ///< from b, rounded to nearest
   std::vector<double> error_;          ///< how far the place may be from the one that it stands for
@@ -80,7 +80,7 @@ private:
   std::vector<std::uint32_t> record_;  ///< of a
 
   std::vector<Piece> waiting_; ///< a heap: the one that may be the farthest first
-  double settled_; ///< no place of the pieces that do not wait is farther, but for what is no more than known
+  double settled_; ///< no place of the pieces that do not wait is farther, unless it is no farther than known
   double lower_;
   double farthest_distance_;
   PointPair farthest_;

@@ -7,8 +7,8 @@
 //   PointDistances change = pointDistances({after}, {before}, request);
 //   // change.distance[i]: from record i of `after` to the nearest point of `before`, NaN where that is farther than 2
 //
-// Of triangles the distance is that of the nearest places: so those of a triangle of a are from its nearest place, and
-// means and percentiles are of these. The Hausdorff distance of surfaces is that of their farthest places.
+// The distance of triangles is that of the nearest places: so distances of a triangle of a are from its nearest place,
+// and means and percentiles are of these. The Hausdorff distance of surfaces is that of their farthest places.
 //
 // The distance of points p and q is |T_a p - T_b q|, less the points' radii where given: then it may be negative. The
 // nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. The same
@@ -77,7 +77,7 @@ struct SymmetricDistances {
   PointDistances b; ///< from each point of b to a
   /// The symmetric Hausdorff distance: of points the greatest of all, of surfaces as HausdorffDistance::distance. NaN
   /// where a record of either cloud has no distance, because it is farther than max_distance or undecided, or the other
-  /// cloud is empty, and of surfaces where the accuracy stops early; then it is not known.
+  /// cloud is empty. For surfaces, NaN also where the accuracy stops early. Then it is not known.
   double hausdorff = std::numeric_limits<double>::quiet_NaN();
   std::optional<PointPair> hausdorff_pair; ///< that realises it, of several the smallest (a, b)
   /// Holds it for certain: as HausdorffDistance::interval, which the accuracy's tolerance is for. NaN where not known.
@@ -93,7 +93,7 @@ SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const Po
 void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request,
                         SymmetricDistances& result);
 
-/// What hausdorffDistance() reads. Of points it is exact. Of surfaces a tolerance says how wide the interval may be;
+/// Options of hausdorffDistance(). For points it is exact. For surfaces a tolerance says how wide the interval may be;
 /// without one that is kHausdorffShare of the greater extent of both.
 struct HausdorffRequest : Effort {
   using Effort::Effort;
@@ -101,7 +101,7 @@ struct HausdorffRequest : Effort {
   HausdorffRequest() = default;
 };
 
-/// Of the diagonal of the larger cloud's box: how wide the interval of a Hausdorff distance of surfaces may be.
+/// Greatest width of the interval of a Hausdorff distance of surfaces, as a share of the larger box's diagonal.
 inline constexpr double kHausdorffShare = 0x1p-14;
 
 /// What hausdorffDistance() found.
@@ -117,7 +117,7 @@ struct HausdorffDistance {
 };
 
 /// The symmetric Hausdorff distance alone: what symmetricDistances() says of it without a limit, bit for bit, for less.
-/// Of surfaces it is that of all their places: triangles are divided, the one that may be the farthest first, until the
+/// For surfaces all their places count: triangles are divided, the one that may be the farthest first, until the
 /// interval is narrow enough. From a triangle to a record, the greatest distance is that of a corner. Points that are
 /// certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm for calculating
 /// the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.

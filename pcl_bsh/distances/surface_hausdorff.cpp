@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The greatest distance of all places of a surface from another cloud, by branch and bound: of some places it is
 // measured exactly, and of a piece of a triangle it is bounded. The distance from one record of the other cloud is a
-// convex function, and the greatest on a piece is that at one of its corners; no place of a piece is farther from its
+// convex function, and the greatest on a piece is that at one of its corners. No place of a piece is farther from its
 // nearest corner than the longest side over the root of three. Pieces that may be the farthest are cut in two.
 #include <pcl_bsh/distances/surface_hausdorff.h>
 

@@ -33,8 +33,8 @@ struct FlagsRequest : Effort {
   /// The density guard, for collisionFlags(): how far the samples of b's surface are apart at each record of its view
   /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, alike at the same place; null: no guard. A patch
   /// is the ball about a point of b whose diameter is its spacing. A point of a that is free, but within the clearance
-  /// of a patch (wherever points truly are), is Verdict::sparse instead of free: no farther from a point of b than the
-  /// clearance and half of its spacing.
+  /// of a patch (wherever points truly are), is Verdict::sparse instead of free. It is no farther from a point of b
+  /// than the clearance and half of its spacing.
   ///
   /// Promised: of a free point that stays free, no place of b's surface is within the clearance, if each place of that
   /// surface is in a patch. Not promised: that the patches cover it. Holes wider than the spacings say, what nobody

@@ -17,9 +17,9 @@ namespace pcl_bsh {
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads);
 
-/// Calls body(i, point), which returns how many pairs of nodes would have taken as long, for the i-th point that the
-/// view names, for all of them, in the DefaultFloatEnvironment; and expect(i, soon) twice before that, for what the
-/// answer needs to be fetched: early, and again soon before.
+/// Calls body(i, point) for each point that the view names, the i-th, in the DefaultFloatEnvironment. The body returns
+/// how many pairs of nodes would have taken as long. Calls expect(i, soon) twice before that, so that what the answer
+/// needs is fetched: early, and again soon before.
 /// @throws InvalidInput for an accuracy other than exact. Cancelled
 template <class Expect, class Body>
 void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, const Effort& effort,

@@ -68,7 +68,7 @@ void bindWords(py::module_& module)
   members["UNSEEN"] = static_cast<int>(Verdict::unseen);
   verdicts() = py::module_::import("enum").attr("IntEnum")("Verdict", members, "module"_a = "pcl_bsh").release();
   verdicts().attr("__doc__") =
-      "What stands in arrays of flags: 0 free, 1 colliding, 2 undecided, 3 free, but within the clearance and half the "
+      "Values in arrays of flags: 0 free, 1 colliding, 2 undecided, 3 free, but within the clearance and half the "
       "spacing there of a point, so not scanned densely enough, 4 free, but seen by no scanner.";
   module.attr("Verdict") = verdicts();
 

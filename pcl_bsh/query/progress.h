@@ -221,7 +221,7 @@ private:
 
   const Watch watch_;
   const std::size_t whole_;
-  std::size_t left_, told_ = left_; ///< entries; likewise when it was told last
+  std::size_t left_, told_ = left_; ///< entries left, and entries left when it was told last
   WorkPulse pulse_;
 };
 

@@ -234,12 +234,12 @@ private:
     }
   }
 
-  /// Of each pose the pair; swept, of the motion from each pose to the next all: of what collides anywhere, which is
-  /// few.
+  /// Tells the pair of each pose; swept, all of the motion from each pose to the next. Only records that collide
+  /// anywhere are asked about: they are few.
   void tellPoses(TrajectoryRequest request)
   {
     const std::vector<Verdict>& flags = answer_.collisions.flags;
-    const bool whole = question_.input_solid; // a part of a solid is none
+    const bool whole = question_.input_solid; // a part of a solid is no solid
     std::vector<std::uint32_t> some;
     for (std::uint32_t i = 0; i < flags.size(); ++i)
       if (flags[i] != Verdict::free) some.push_back(i);

@@ -42,7 +42,7 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult&
 /// @param found has the flags of both sides where places are uncertain
 void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found);
 
-/// What closestPair() reads of two things of which one or both are solids.
+/// Options of closestPair() for two things of which one or both are solids.
 struct SolidDistanceRequest : DistanceRequest {
   using DistanceRequest::DistanceRequest;
   bool solid = false;       ///< b counts with what its faces enclose: they must close

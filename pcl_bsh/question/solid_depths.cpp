@@ -20,7 +20,7 @@ Interval turned(const Interval& depth)
   return {-depth.upper, 0.0 - depth.lower};
 }
 
-/// What the distance of each record is certainly in, where it was measured exactly.
+/// Adds the interval that certainly holds the distance of each record, where it was measured exactly.
 void tellIntervals(PointDistances& found)
 {
   if (!found.interval.empty()) return;

@@ -39,7 +39,7 @@ public:
   /// motion between poses. @param pivot of that motion
   void addToPath(TrajectoryResult& found, Work& work, const Point3& pivot = {0, 0, 0}) const;
 
-  /// Distances of what is inside become negative, and are measured however deep. Of triangles there are intervals.
+  /// Distances of what is inside become negative, and are measured however deep. Triangles get intervals.
   void turn(SymmetricDistances& found, bool both_ways) const;
 
   /// The deepest, where anything is inside.
@@ -84,7 +84,7 @@ private:
   FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const;
 
-  /// Of a pair, at a pose of the obstacle.
+  /// The solid of a pair, at a pose of the obstacle.
   DeepSolid deepSolid(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   Records mayBeDeep(const Pairing& pair, const FirstPoses& first, const TrajectoryResult& found) const;
   void addDepths(const Pairing& pair, const FirstPoses& first, const std::vector<Eigen::Isometry3d>& poses,

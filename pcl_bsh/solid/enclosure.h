@@ -56,7 +56,7 @@ std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& conte
                                   const Eigen::Isometry3d& T_world_content, unsigned threads = 1, Work* work = nullptr);
 
 /// The triangles, ascending, of each body that holds a place of these records in its inside, not only on its surface:
-/// the place may be on the surface of another body. What is in a hollow of the solid is held by none.
+/// the place may be on the surface of another body. No body holds a place in a hollow of the solid.
 /// @param held of heldBy() @throws likewise
 std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
                                      const Content& content, const Eigen::Isometry3d& T_world_content,

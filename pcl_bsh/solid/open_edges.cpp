@@ -167,8 +167,8 @@ public:
         if (left.take(numbers_[i][k], numbers_[i][(k + 1) % 3])) edges_.push_back(static_cast<Id>(3 * i + k));
   }
 
-  /// Whether they cancel along their lines. On a line they do if and only if at each place as many begin as end: how
-  /// often it is passed one way, less the other way, changes by the difference, and far out it is 0.
+  /// Whether they cancel along their lines. On a line they do if and only if at each place as many begin as end. Passes
+  /// one way less those the other way change there by begins less ends, and far out they are 0.
   bool cancel() const
   {
     if (edges_.empty()) return true;
@@ -189,7 +189,7 @@ public:
     return true;
   }
 
-  /// What of them is left open, by the edges' numbers. @param visit called with triangle, from, to
+  /// Visits the parts of them that are left open, by the edges' numbers. @param visit called with triangle, from, to
   template <class Visit>
   void forEachOpen(const Visit& visit) const
   {

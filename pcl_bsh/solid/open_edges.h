@@ -35,16 +35,16 @@ struct OpenEdge {
 ///
 /// An edge between the same places is looked for first, so that meshes without T-junctions cost no arithmetic. The
 /// others cost n log n exact comparisons for n edges, however they lie. Memory: about 12 bytes for a triangle and 4 for
-/// a vertex where vertices are shared by number and each edge meets one between the same vertices, otherwise about 40
-/// for a triangle, and 60 for an edge that is left.
+/// a vertex where vertices are shared by number and each edge meets one between the same vertices. Otherwise about 40
+/// bytes for a triangle, and 60 for an edge that is left.
 /// @pre as checkTriangles() asks
 /// @throws std::invalid_argument for 2^32 edges or 2^31 places
 PCL_BSH_EXPORT_INTERNAL bool closes(const TrianglesView& triangles);
 
-/// What is open. Where several edges pass a place in one direction and some of them are cancelled there, the first are
+/// Open edges. Where several edges pass a place in one direction and some of them are cancelled there, the first are
 /// open.
 /// @param all gets each open edge, by their triangles, where it is not null
-/// @pre, @throws likewise
+/// @pre, @throws as closes()
 PCL_BSH_EXPORT_INTERNAL OpenEdges openEdgesOf(const TrianglesView& triangles, std::vector<OpenEdge>* all = nullptr);
 
 } // namespace pcl_bsh

@@ -25,7 +25,7 @@ enum class Label : std::uint8_t { outside, inside, surface };
 /// A mesh whose directed edges cancel along their lines: as many pass each place one way as the other way, for all
 /// places but corners, in exact arithmetic. So an edge is met by one between the same places, or by several end to end:
 /// a corner may lie within the edge of a neighbour (a T-junction), exactly on it. A point is inside where the surface
-/// winds round it, in either sense, another number of times than 0: so nested and overlapping shells, shells that cross
+/// winds round it, in either sense, another number of times than 0. So nested and overlapping shells, shells that cross
 /// themselves, faces doubled in opposite directions and several bodies in one mesh enclose what one expects. Corners
 /// are one where their coordinates are equal. Triangles that are not finite count for nothing.
 ///
@@ -33,9 +33,9 @@ enum class Label : std::uint8_t { outside, inside, surface };
 /// kB; where triangles are long and thin, up to 10 MB.
 class Solid {
 public:
-  /// @throws InvalidInput (Input::surface) for a view that viewOf() refuses, and for a mesh that does not close: how
-  ///   many of its edges are open, wholly or in part, and where the first open part lies, whose triangle is the error's
-  ///   index
+  /// @throws InvalidInput (Input::surface) for a view that viewOf() refuses, and for a mesh that does not close. It
+  ///   tells how many of its edges are open, wholly or in part, and where the first open part lies, whose triangle is
+  ///   the error's index
   explicit Solid(const TrianglesView& triangles);
   ~Solid();
   Solid(Solid&&) noexcept;

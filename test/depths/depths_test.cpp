@@ -100,7 +100,7 @@ TEST(Depths, OfPointsAndBallsAreThoseOfBruteForce)
   EXPECT_GT(deep, 300u);
 }
 
-/// What is certain of a triangle agrees with the places of a grid on it.
+/// The interval of a triangle agrees with the places of a grid on it.
 void expectHeldBetween(const DepthsResult& found, const DepthsResult& grid, double rounding)
 {
   std::map<std::uint32_t, Depth> of;

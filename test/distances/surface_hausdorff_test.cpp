@@ -116,7 +116,7 @@ TEST(SurfaceHausdorff, OfAPointAndATriangleIsThatOfTheFarthestCorner)
   EXPECT_EQ(symmetricDistances(point, triangle).hausdorff, 10.0);
 }
 
-/// Of points and of balls as ever: exact.
+/// The distance of points, and that of balls, is exact.
 TEST(SurfaceHausdorff, OfPointsIsExact)
 {
   const double one[6] = {0, 0, 0, 1, 0, 0}, other[3] = {0, 0, 0.1};
@@ -181,7 +181,7 @@ TEST(SurfaceHausdorff, OfATurnedSquare)
   }
 }
 
-/// A ball within a ball: each place is as far away as the others, but for their facets.
+/// A ball within a ball: each place is as far away as the others, except for their facets.
 TEST(SurfaceHausdorff, OfBallsHoldsTheTruth)
 {
   const double facet = 1.0 - std::cos(std::numbers::pi / 24);
@@ -191,7 +191,7 @@ TEST(SurfaceHausdorff, OfBallsHoldsTheTruth)
   EXPECT_LE(found.interval.upper - found.interval.lower, kHausdorffShare * 6);
 }
 
-/// Of units as small as 1e-60 and as large as 1e30, and at offsets of maps.
+/// Units as small as 1e-60 and as large as 1e30, and offsets of maps.
 TEST(SurfaceHausdorff, OfAnyUnitAndFarFromTheOrigin)
 {
   for (const double unit : {1e-60, 1e-30, 1e-6, 1e6, 1e30}) {

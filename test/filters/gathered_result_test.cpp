@@ -72,7 +72,7 @@ TEST(GatheredResult, HasTheSmallestDistanceWithItsPoseAndPoint)
   EXPECT_EQ(result.closest_point[3], kNothing);
 }
 
-/// Of what a solid holds distances are less than 0.
+/// Records that a solid holds have distances less than 0.
 TEST(GatheredResult, ADepthIsADistance)
 {
   TrajectoryResult found;

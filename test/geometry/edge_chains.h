@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What edges are left open where they are summed up along their lines, by rational numbers.
+// Parts of edges that are left open where edges are summed up along their lines, by rational numbers.
 #pragma once
 
 #include "triangle_oracle.h"

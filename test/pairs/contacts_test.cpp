@@ -150,7 +150,7 @@ TEST(Contacts, NormalsAreInTheFrameOfThePoses)
   EXPECT_TRUE(result.contacts[0].normal.isApprox(Eigen::Vector3d(0, 0, 1), 1e-12));
 }
 
-/// Of surfaces of any size: what is below 1e-80 has squares of normals that are not in the range of double.
+/// Surfaces of any size: triangles below 1e-80 have squares of normals that are not in the range of double.
 TEST(Contacts, NormalsOfTrianglesOfAnySizeAreOfLengthOne)
 {
   struct Case {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The Python package, installed by pip into an environment that sees the system's packages, and used from there.
+#
 #   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -D WERROR=ON -D PYTHON=python3 -P pip.cmake
 # WERROR: as that build has it
 cmake_minimum_required(VERSION 3.25)

@@ -8,7 +8,7 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# What the compiler is told in a build, without folders, launchers, and what changes nothing of an object. PREFIX: the folder
+# The compiler's arguments in a build, without folders, launchers, and what changes nothing of an object. PREFIX: the folder
 # in which the project is built, below the build's own.
 function(pcl_bsh_read_commands build prefix result)
   file(STRINGS "${build}/compile_commands.json" lines REGEX "^ *\"command\": ")

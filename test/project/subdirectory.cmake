@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The project as a part of another one, which lies in a folder with nothing else: by FetchContent of a local path, and by
 # add_subdirectory().
+#
 #   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -D WERROR=ON -P subdirectory.cmake
 # WERROR: as that build has it
 cmake_minimum_required(VERSION 3.25)

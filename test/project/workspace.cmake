@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # A workspace of ROS 2 with two packages, this project and one that needs it, built by colcon.
+#
 #   cmake -D PCL_BSH_BUILD=<build folder> -D WORK=<folder of its own> -D WERROR=ON -P workspace.cmake
 # WERROR: as that build has it
 cmake_minimum_required(VERSION 3.25)

@@ -167,7 +167,7 @@ TEST(Cancelling, OfFlatScansThatFaceEachOther)
   expectAsks(a, b, 0.5);
 }
 
-/// Of many voxels, each of which is compared with all of the other cloud's.
+/// Many voxels, each of which is compared with all of the other cloud's.
 TEST(Cancelling, OfFineVoxels)
 {
   Random random(33);
@@ -197,7 +197,7 @@ TEST(Cancelling, OfCoincidentPoints)
   EXPECT_EQ(calls, 20u);
 }
 
-/// What a question does beside its queries is watched, too: building, and what solids hold.
+/// Work of a question beside its queries is watched, too: building, and finding records that solids hold.
 TEST(Cancelling, OfWhatIsNoQuery)
 {
   Random random(34);

@@ -27,13 +27,13 @@ using pcl_bsh::markUnseen;
 using pcl_bsh::pairsWithin;
 using pcl_bsh::pointDistances;
 
-/// Those above.
+/// The names above.
 const std::set<std::string> brought = {
     "anyCollision", "anyCollisionAtPoses", "anyCollisionOnMotions", "closestPair",    "closestPairAtPoses",
     "collideAlong", "findClashes",         "collidingIndices",      "collisionFlags", "hausdorffDistance",
     "labelPoints",  "markUnseen",          "pairsWithin",           "pointDistances"};
 
-/// The functions in the column C++ of the table "I want to ...", but for setters of filters and what CGAL proves.
+/// The functions in the column C++ of the table "I want to ...", except setters of filters and what CGAL proves.
 std::set<std::string> namedByTheReadme()
 {
   std::ifstream readme(PCL_BSH_SOURCE_DIR "/README.md");

@@ -350,7 +350,7 @@ TEST(SceneWarnings, OfObjectsFarFromTheOthers)
   }
 }
 
-/// Of the two whose sizes differ most, where one of them moves.
+/// Warns of the two whose sizes differ most, where one of them moves.
 TEST(SceneWarnings, OfUnitsThatDiffer)
 {
   WallAndCart scene;

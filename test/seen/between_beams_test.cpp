@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No direction counts in which nobody looked, and no surface of a world is nearer than what its scan says of the
+// No direction counts in which nobody looked. No surface of a world is nearer than what its scan says of the
 // directions between beams: ceilings, walls and gaps, and random worlds of planes, boxes and spheres.
 #include <pcl_bsh/seen/unseen_points.h>
 
@@ -26,7 +26,7 @@ Eigen::Vector3d directionOf(double elevation, double azimuth)
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
 }
 
-/// What returns to a scanner at the origin.
+/// The returns to a scanner at the origin.
 class Scan {
 public:
   explicit Scan(const MadeWorld& world) : world_(world) {}
@@ -67,7 +67,7 @@ struct Counted {
   std::size_t free = 0, free_seen = 0, within = 0, within_seen = 0; ///< places, and of these those that are seen
 };
 
-/// Of places: farther from all surfaces than the clearance, or not.
+/// Counts places that are farther from all surfaces than the clearance, and others.
 Counted count(const MadeWorld& world, const SeenSpace& space, const std::vector<double>& places, double clearance)
 {
   std::vector<Verdict> verdicts(places.size() / 3, Verdict::free);

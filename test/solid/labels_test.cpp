@@ -111,7 +111,7 @@ TEST(Labels, OfShellsThatCrossAndTouchOnALattice)
   }
 }
 
-/// The same surface in triangles whose corners lie within edges of others has the same labels.
+/// A surface in triangles whose corners lie within edges of others has the labels of the whole one.
 TEST(Labels, OfCornersWithinEdges)
 {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {

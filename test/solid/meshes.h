@@ -112,8 +112,8 @@ inline ClosedMesh latticeMesh(int tetrahedra, int steps, std::uint64_t seed)
   return mesh;
 }
 
-/// The same surface in more triangles: so many times one of them, and not its neighbour, is cut in two at the middle of
-/// an edge, or in four. So corners lie within edges, and exactly so where coordinates have few digits.
+/// The mesh's surface in more triangles: so many times one of them, and not its neighbour, is cut in two at the middle
+/// of an edge, or in four. So corners lie within edges, and exactly so where coordinates have few digits.
 inline ClosedMesh cutMesh(const ClosedMesh& mesh, int cuts, std::uint64_t seed)
 {
   Random random(seed);

@@ -224,7 +224,7 @@ TEST(OpenEdges, NameThePartThatIsOpen)
       if (p == Point3{0.5, 0, beyond}) p = {0.5, 0, 1};
   EXPECT_TRUE(find(off).closed());
 
-  // Edges that overlap and share no end: both are open, but for what they have in common.
+  // Edges that overlap and share no end: both are open, except where they overlap.
   const OpenEdges slid = find(Soup{{{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}}, {{{3, 0, 0}, {1, 0, 0}, {0, 0, 1}}}});
   EXPECT_EQ(slid.count, 6u);
   EXPECT_EQ(slid.to, (Point3{1, 0, 0}));
@@ -257,7 +257,7 @@ TEST(OpenEdges, OfCutMeshes)
   EXPECT_GT(open, 7);
 }
 
-/// Of what lies on few lines: edges that overlap in every way.
+/// Edges on few lines, which overlap in every way.
 TEST(OpenEdges, OfRandomEdgesOnALine)
 {
   test::Random random(29);

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh::test {
 
-/// What is before all planes, and in no box or sphere, is empty.
+/// Space that is before all planes, and in no box or sphere, is empty.
 struct MadeWorld {
   struct Plane {
     Eigen::Vector3d normal;

@@ -88,7 +88,7 @@ struct RoughSlope {
 };
 
 /// By their directions, and parallel ones by how far they are aside: 0 where the spans are of one line.
-/// @pre likewise
+/// @pre as compareDirections()
 inline int compareLines(const LineSpan& a, const LineSpan& b)
 {
   if (const int sign = compareDirections(a, b)) return sign;

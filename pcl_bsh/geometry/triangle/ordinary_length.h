@@ -19,7 +19,7 @@ inline double toOrdinary(double largest)
   return std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
 }
 
-/// The same direction, of a length whose fourth power is in the range of double.
+/// A vector of the direction of v, of a length whose fourth power is in the range of double.
 inline Vector3<double> ofOrdinaryLength(const Vector3<double>& v)
 {
   const double factor = toOrdinary(std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}));

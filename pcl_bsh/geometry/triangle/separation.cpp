@@ -54,7 +54,7 @@ double largestOf(const Point3& u, const Point3& v)
   return largest;
 }
 
-/// Of any length; of one whose square is in the range of double where the triangle's sides are not all but parallel.
+/// A normal of any length. Its square is in the range of double where the triangle's sides are not almost parallel.
 Point3 faceNormal(const Triangle3& t)
 {
   return cross(ofOrdinaryLength(t[1] - t[0]), ofOrdinaryLength(t[2] - t[0]));

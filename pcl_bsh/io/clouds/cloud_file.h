@@ -57,11 +57,11 @@ struct CloudFacts {
 ///             too: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1 to 4
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
-/// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says;
-///             x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a comment before
-///             it names the columns (column_names.h); lines that start with // are comments, and what follows a # that
-///             begins a line or stands behind a blank; columns that float64 does not hold are whole numbers of 64 bits
-///             or text (column_kinds.h), which .csv has again as they were
+/// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says.
+///             Columns: x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a
+///             comment before it names them (column_names.h). Lines that start with // are comments, and text after a #
+///             that begins a line or stands behind a blank. Columns that float64 does not hold are whole numbers of 64
+///             bits or text (column_kinds.h), which .csv has again as they were.
 ///
 /// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS or LAZ file does, and
 /// columns otherwise.
@@ -103,12 +103,12 @@ struct Mesh {
 };
 
 /// Reads the faces, too, of .obj, .off, .ply and .stl; of others the points alone. Polygons are cut into triangles.
-/// What else the file holds beside faces (lines, edges, points of no face ...) is counted in the remarks of `facts`.
+/// Remarks of `facts` count all else that the file holds beside faces (lines, edges, points of no face ...).
 /// Throws as readCloud() does, where a face names a vertex that is not there, and for a mesh of corners_alone.
 Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts = nullptr, const ReadSettings& settings = {},
               unsigned threads = 0);
 
-/// The same, also of corners_alone, for who compares nothing, or asks about vertices.
+/// As readMesh(), but reads corners_alone, too: for callers that compare nothing, or ask about vertices.
 Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts = nullptr,
                        const ReadSettings& settings = {}, unsigned threads = 0);
 

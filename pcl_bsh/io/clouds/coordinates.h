@@ -14,7 +14,7 @@ bool hasIntegerCoordinates(const pcl::PCLPointCloud2& cloud);
 /// @throws FormatError for an integer that float64 does not hold
 void makeCoordinatesPlain(pcl::PCLPointCloud2& cloud);
 
-/// That the points have usable x y z. @throws FormatError
+/// Requires that the points have usable x y z. @throws FormatError
 void requireCoordinates(const pcl::PCLPointCloud2& cloud);
 
 } // namespace pcl_bsh::io

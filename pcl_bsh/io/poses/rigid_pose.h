@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Matrices as files have them: one rule for poses, for transforms of scans and for rotations of sensors.
 //
-// Up to rigidity_tolerance from a rotation they are taken as they are, up to printed_rigidity the nearest rotation
+// Up to rigidity_tolerance from a rotation they are taken as they are. Up to printed_rigidity the nearest rotation
 // takes their place, with a warning: with six digits they are no longer rigid enough for a query. Others are refused.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a header counts, held against what the file has: all formats say a difference alike.
+// Compares a header's counts with what the file has: all formats say a difference alike.
 #pragma once
 
 #include <pcl_bsh/io/text/format_error.h>
@@ -13,13 +13,13 @@ namespace pcl_bsh::io {
 
 class TextCursor;
 
-/// What a header counts.
+/// A count in a header.
 struct HeaderCount {
   std::uint64_t told = 0;
   std::string one = "point", many = "points"; ///< nouns
 };
 
-/// What is wrong where these differ.
+/// The error where these differ.
 FormatError otherCount(const HeaderCount& count, std::uint64_t there);
 
 /// Refuses a file with fewer than its header counts. @throws FormatError
@@ -37,7 +37,7 @@ void requireNoMoreLines(const HeaderCount& count, TextCursor& text);
 /// @throws FormatError
 void requireNoMoreBytes(const HeaderCount& count, std::uint64_t left, std::uint64_t record, bool exact = true);
 
-/// The same as a sentence for users, of a format whose files may have something else there: zeros are padding, as PCL
+/// A sentence on such bytes for users, of a format whose files may have something else there: zeros are padding, as PCL
 /// writes them.
 /// @param first of the bytes that are left: most_padding of them, or all
 std::optional<std::string> remarkOnMoreBytes(const HeaderCount& count, std::uint64_t left, std::string_view first,

@@ -39,10 +39,10 @@ std::optional<T> numberOf(std::string_view word)
   return std::nullopt;
 }
 
-/// What is wrong with a word that says no number. @param whole a whole number was meant
+/// The error in a word that says no number. @param whole a whole number was meant
 FormatError noNumber(std::string_view word, bool whole);
 
-/// The same number. @throws FormatError where there is none
+/// The number of numberOf(). @throws FormatError where there is no number
 template <typename T>
 T parseNumber(std::string_view word)
 {

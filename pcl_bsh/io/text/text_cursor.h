@@ -41,7 +41,7 @@ public:
   enum class Lines : bool { single, continued };
 
   /// @param comment the rest of a line is ignored from this character on, where it begins the line or a blank or a tab
-  ///   stands before it: within a word, as in 1.#QNAN, it is a character of the word. 0: none
+  ///   stands before it. Within a word, as in 1.#QNAN, it is a character of the word. 0: none
   /// @throws FormatError when the text is marked as UTF-16
   explicit TextCursor(std::string_view text, char comment = 0, Lines lines = Lines::single)
   : text_(text),

@@ -56,7 +56,7 @@ bool mayMeet(const Objects& objects, const std::string& a, const std::string& b)
   return false;
 }
 
-/// Of the two clouds between whose points the widest holes are.
+/// Warns of the two clouds between whose points the widest holes are.
 void warnOfDensity(const Objects& objects, const Clouds& clouds, double clearance, std::vector<std::string>& told)
 {
   double widest = 0.0;
@@ -74,7 +74,7 @@ void warnOfDensity(const Objects& objects, const Clouds& clouds, double clearanc
   if (found) addOnce(found->text, told);
 }
 
-/// Of the two clouds whose sizes differ most.
+/// Warns of the two clouds whose sizes differ most.
 void warnOfUnits(const Objects& objects, const Clouds& clouds, std::vector<std::string>& told)
 {
   double most = 0.0;

@@ -31,8 +31,8 @@ struct NamedObject {
   Motion motion;
 };
 
-/// What users should know of a scene whatever its results are, a line each: of its clouds, of the two of them whose
-/// points lie farthest apart, of the two whose sizes differ most, and of objects that are nowhere near the others.
+/// Warnings on a scene whatever its results are, a line each. They are of its clouds, of the two whose points lie
+/// farthest apart, of the two whose sizes differ most, and of objects that are nowhere near the others.
 /// @param clouds by the names that objects know them by: all that objects have
 /// @param duration of all motion, seconds; none: nobody knows, so what moves by itself may be anywhere
 std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,

@@ -121,7 +121,7 @@ std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b)
 
 namespace {
 
-/// Of a scanner that stood, as its origin says, farther from all that it scanned than ten times the size of that.
+/// Warns of a scanner whose origin is farther from all that it scanned than ten times the size of that.
 std::optional<Warning> warningOfOrigins(const Question& question, const NamedCloud& input)
 {
   if (!question.seen || input.box.isEmpty()) return std::nullopt;

@@ -226,8 +226,8 @@ private:
   Separation apart_;
 };
 
-/// What rounding may take of a distance of places that are moved: some forty roundings of the largest coordinate that
-/// goes into each, as ObjectMotion::rounding() has it.
+/// The most that rounding may take of a distance of places that are moved: some forty roundings of the largest
+/// coordinate that goes into each, as ObjectMotion::rounding() has it.
 double roundingOf(const RigidMotion& motion, const Corners& corners)
 {
   double largest = std::max({motion.from().translation().lpNorm<1>(), motion.to().translation().lpNorm<1>(),

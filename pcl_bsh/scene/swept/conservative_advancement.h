@@ -29,7 +29,7 @@ struct ContactZone {
   bool isNext(double now) const { return now <= reach + 0.125 * tolerance; }
 
   /// How near a pair may come that is within outer from the start: to inner, or, if it is hardly farther than that, a
-  /// little nearer than now; next to the reach no nearer than rounding has it. There the pair may still move along and
+  /// little nearer than now. Next to the reach: no nearer than rounding has it. There the pair may still move along and
   /// away, and whether it collides on its way is another question (timeOfContact()).
   double floor(double now) const
   {
@@ -50,8 +50,8 @@ double reachOf(const Terms& terms)
   return reach;
 }
 
-/// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1. Of a
-/// pair that is next to the reach from the start, rounding decides.
+/// Points `apart` (from the other to the moving one), the moving one going by `shift` while s runs from 0 to 1. If
+/// the pair is next to the reach from the start, rounding decides.
 /// @return s of the contact, in [0, 1]
 std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::Vector3d& shift,
                                     const ContactZone& zone);
@@ -61,8 +61,8 @@ std::optional<double> timeOfContact(const Eigen::Vector3d& apart, const Eigen::V
 /// two of them hardly come nearer, steps grow with the square root of what is left.
 ///
 /// Two points that go straight and are next to the reach from the start have a contact, at once, if they come nearer
-/// and within the reach at any instant, in exact arithmetic on the corners and the poses. Others that are next to the
-/// reach, by no more than rounding may take, have one at once if they come nearer.
+/// and within the reach at any instant. Exact arithmetic on the corners and the poses decides it. Others that
+/// are next to the reach, by no more than rounding may take, have one at once if they come nearer.
 std::optional<double> timeOfContact(const RigidMotion& motion_a, const Corners& a, const RigidMotion& motion_b,
                                     const Corners& b, const ContactZone& zone, double begin, double end);
 

@@ -14,8 +14,8 @@ namespace pcl_bsh::self_filter {
 /// @throws io::FormatError naming the word that is none of that
 JointValues parseJointValues(const std::string& text);
 
-/// A table: the names of joints in its first line, then a line for each frame; separated by semicolons, commas, tabs or
-/// blanks; comments begin with # at the beginning of a line or behind a blank.
+/// A table: the names of joints in its first line, then a line for each frame. Semicolons, commas, tabs or blanks
+/// separate the values. Comments begin with # at the beginning of a line or behind a blank.
 /// @throws files::FileError naming the line
 std::vector<JointValues> readJointStates(const std::filesystem::path& path);
 

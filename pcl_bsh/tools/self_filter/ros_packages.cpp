@@ -31,7 +31,7 @@ bool has(const fs::path& folder, const char* file)
   return fs::is_regular_file(folder / file, ignored);
 }
 
-/// What a package.xml names its package, outside of comments; empty: nothing.
+/// The name that a package.xml gives its package, outside of comments; empty: no name.
 std::string nameIn(const fs::path& manifest)
 {
   std::ifstream in(manifest, std::ios::binary);

@@ -44,7 +44,7 @@ std::string ply(const std::string& format, const std::string& more, const std::s
 
 class HeaderCounts : public testing::Test {
 protected:
-  /// What is said of a file: its refusal, or its remarks; "" where nothing is.
+  /// The refusal of a file, or its remarks; "" where nothing is said.
   std::string saidOf(const std::string& name, const std::string& text) const
   {
     try {

@@ -191,7 +191,7 @@ TEST_F(CollideSurface, ListsHowDeepClashesAre)
   EXPECT_LT(table[3]["closest_pair"][1], 12);
 }
 
-/// Of the motion from each pose to the next.
+/// The report of the motion from each pose to the next.
 TEST_F(CollideSurface, TellsOfEachMotionWhatItMeets)
 {
   folder.write("still.xyz", "1 1 2.25\n1 5 2\n");

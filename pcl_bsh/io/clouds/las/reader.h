@@ -40,7 +40,7 @@ public:
   /// Everything beside the points. Takes as much memory as that does in the file.
   LasHeader header() const;
 
-  /// What users should know: points or records that the header does not count, a line each.
+  /// Remarks for users: points or records that the header does not count, a line each.
   std::vector<std::string> remarks() const;
 
   /// Leaves out the next points.

@@ -42,7 +42,7 @@ bool isWordOfText(std::string_view word)
   });
 }
 
-/// What the words of a column show.
+/// Findings in the words of a column.
 struct Shown {
   bool eligible = true;
   bool empty = false, whole = true, held = true, positive = false, negative = false;

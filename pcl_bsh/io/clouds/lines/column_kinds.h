@@ -13,7 +13,7 @@
 
 namespace pcl_bsh::io {
 
-/// Goes to the next line that is no comment of the // kind. False when there is none.
+/// Goes to the next line that is no comment of the // kind. False when there is no such line.
 bool nextRow(TextCursor& text);
 
 /// Whether float64 says as many digits of a number as the word does, so that these are not lost.
@@ -28,9 +28,9 @@ std::string_view textOf(const pcl::PCLPointField& field, const char* bytes);
 /// Whether a word can stand between separators, and is read as it was. @param separator ' ': blanks
 bool canBeColumn(std::string_view word, char separator);
 
-/// Finds the columns that are not float64, but coordinates, colours and those that are not read: whole numbers beyond
-/// 2^53 are INT64 or UINT64; what is no number, or has more digits than float64 holds, is text, as wide as its longest
-/// word. The first 1000 rows, of the first 48 KiB, tell what a column is, and for texts all rows how wide.
+/// Finds the columns that are not float64, except coordinates, colours and those that are not read. Whole numbers
+/// beyond 2^53 are INT64 or UINT64. Words that are no number, or have more digits than float64 holds, are text, as wide
+/// as the longest. The first 1000 rows, of the first 48 KiB, tell what a column is, and for texts all rows how wide.
 struct ColumnKinds {
   /// @param rows at the first row
   /// @param whole false: these are not all rows

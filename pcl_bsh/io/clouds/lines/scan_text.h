@@ -23,13 +23,13 @@ namespace pcl_bsh::io {
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePts(std::string_view file);
 
-/// The same. @param remarks what users should know is appended: blocks of more points than they say
+/// As parsePts(). @param remarks gets remarks for users: blocks of more points than they say
 pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::string>& remarks);
 
 /// Only the fields that parsePts() makes. @throws FormatError
 pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
 
-/// The same of a file's beginning. @param whole as of parseColumnNames()
+/// As parsePtsHeader(), of a file's beginning. @param whole as of parseColumnNames()
 pcl::PCLPointCloud2 parsePtsBeginning(std::string_view file, bool whole);
 
 /// .ptx: scans, each of ten lines (columns, rows, the scanner's registered position and axes, a 4 x 4 transform whose

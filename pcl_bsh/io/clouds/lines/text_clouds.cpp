@@ -71,7 +71,7 @@ Words namesInComments(std::string_view file)
 
 struct Columns {
   Fields values;
-  bool at_row = false;                   ///< the text is at the first point; false when there is none
+  bool at_row = false;                   ///< the text is at the first point; false when there is no point
   bool rows_tell = false;                ///< the values depend on all rows
   bool named = true;                     ///< not by their numbers
   std::optional<std::uint64_t> promised; ///< points, by a line of its own
@@ -212,7 +212,7 @@ void takeCount(TextCursor& text, Columns& columns)
   columns.at_row = nextRow(text);
 }
 
-/// What users can say of columns of which some are no numbers: a name for each, `_` for those. Empty: all are.
+/// Example of names for columns of which some are no numbers: a name for each, `_` for those. Empty: all are.
 std::string exampleOf(TextCursor row, const Columns& columns)
 {
   std::string example;

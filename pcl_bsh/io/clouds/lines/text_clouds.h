@@ -14,16 +14,16 @@
 namespace pcl_bsh::io {
 
 /// .xyz, .txt, .csv: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first line
-/// that has values says. That line, or a comment before it (// or #) with as many words, may name the columns, x, y and
-/// z among them or what withAxes() takes for them; then colours of a byte per channel are packed, and normals get PCL's
-/// names (pcl_names.h). Without a row, a file that names x, y and z is an empty cloud. A line of one whole number
+/// that has values says. The line, or a comment before it (// or #) with as many words, may name the columns: x, y and
+/// z are among them, or what withAxes() takes for them. Then colours of a byte per channel are packed, and normals get
+/// PCL's names (pcl_names.h). Without a row, a file that names x, y and z is an empty cloud. A line of one whole number
 /// before the first row counts the points, as CloudCompare writes it: fewer are an error, more a remark.
 ///
 /// Where nothing names them, columns 4 to 6 are a colour if in all rows they are whole numbers from 0 to 255, and each
 /// of them exceeds 31 in some, as no return and no class of LAS does; the last three of nine or more are a normal
 /// beside it if all are of length 1 (or 0).
-/// Columns are float64, but whole numbers beyond 2^53 (INT64 or UINT64), and what is no number, or has more digits than
-/// float64 holds: INT8 of a count, the bytes of the text and zeros behind them (column_kinds.h).
+/// Columns are float64. Whole numbers beyond 2^53 are INT64 or UINT64. Words that are no number, or have more digits
+/// than float64 holds, are INT8 of a count: the bytes of the text and zeros behind them (column_kinds.h).
 /// @param given names of all columns, whatever the file says
 /// @param remarks if not null, what was taken for granted is appended, and where the first of four or more columns
 ///   without a name counts the rows
@@ -41,7 +41,7 @@ pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole = true, c
 /// @throws FormatError
 pcl::PCLPointCloud2 parseObj(std::string_view file);
 
-/// The same. @param remarks gets one where such a comment counts fewer than there are
+/// As parseObj(). @param remarks gets one where such a comment counts fewer than there are
 pcl::PCLPointCloud2 parseObjTelling(std::string_view file, std::vector<std::string>& remarks);
 
 /// Only the fields that parseObj() makes; looks for colours and normals in all of the file.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What mesh files hold beside points and faces: lines, edges, free-form surfaces. It is counted, and not compared.
+// Elements of mesh files beside points and faces: lines, edges, free-form surfaces. They are counted, not compared.
 #pragma once
 
 #include <cstdint>

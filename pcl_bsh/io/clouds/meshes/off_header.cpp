@@ -9,7 +9,7 @@ namespace pcl_bsh::io {
 
 namespace {
 
-/// What stands in a keyword.
+/// The parts of a keyword.
 struct OffKeyword {
   std::string_view name;   ///< all of it: NCOFF
   std::string_view behind; ///< the first count, where no blank stands before it
@@ -56,7 +56,7 @@ OffHeader::OffHeader(TextCursor& text)
     if (!prefix.empty()) {
       const bool other = prefix.find_first_of("4n") != std::string::npos;
       throw FormatError(not_off, "its keyword is " + name +
-                                     (other ? ", of vertices that have not three coordinates: " : ", which is none: ") +
+                                     (other ? ", of vertices that have not three coordinates: " : ", unknown: ") +
                                      save_as_off);
     }
     if (text.line().starts_with("BINARY")) throw FormatError("is a binary OFF file", save_as_off);

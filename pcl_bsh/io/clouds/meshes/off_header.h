@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io {
 
-/// What an .off says before its vertices.
+/// The header of an .off, before its vertices.
 struct OffHeader {
   bool normals = false, colours = false, texture = false;
   bool normals_named_first = false; ///< by a keyword like NCOFF, which programs write whose lines have colours first
@@ -22,7 +22,7 @@ struct OffHeader {
   ///   for a binary one
   explicit OffHeader(TextCursor& text);
 
-  /// That what is left of the text can hold the vertices. To be called before memory is asked for. @throws FormatError
+  /// Requires that the rest of the text can hold the vertices. Call it before memory is asked for. @throws FormatError
   void requireRoom(const TextCursor& text) const;
 };
 

@@ -23,7 +23,7 @@ public:
   std::vector<FaceValues>& values() { return values_; }
   const std::vector<FaceValues>& values() const { return values_; }
 
-  /// What the file holds that is neither vertex nor face.
+  /// Elements of the file that are neither vertex nor face.
   LeftOuts& leftOut() { return left_out_; }
   const LeftOuts& leftOut() const { return left_out_; }
 
@@ -47,7 +47,7 @@ private:
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices,
                                   std::vector<FaceValues>& values);
 
-/// What is not compared of a mesh: what the file holds beside faces, and faces of fewer than three corners. Vertices
+/// Parts of a mesh that are not compared: elements beside faces, and faces of fewer than three corners. Vertices
 /// that no face has are counted by looseVertices().
 LeftOuts leftOutOf(const Polygons& polygons);
 

@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint);
 
-/// The same. @param remarks what users should know is appended: points that the header of a binary file does not count
+/// As parsePcd(). @param remarks gets remarks for users: points that the header of a binary file does not count
 pcl::PCLPointCloud2 parsePcdTelling(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>& remarks);
 
 /// The fields and the number of points that the header promises, without the points. @throws FormatError

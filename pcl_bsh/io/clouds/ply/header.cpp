@@ -34,7 +34,7 @@ PlyProperty readProperty(TextCursor& text)
   return property;
 }
 
-/// What a comment says, if it is of cameraComment()'s form.
+/// The viewpoint in a comment, if it is of cameraComment()'s form.
 std::optional<Viewpoint> readViewpoint(TextCursor comment)
 {
   if (comment.word() != ply_viewpoint_comment) return std::nullopt;

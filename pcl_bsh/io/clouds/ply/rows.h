@@ -32,7 +32,7 @@ public:
   }
   void end() const { text_.requireEndOfLine(); }
 
-  /// That no row follows. @param last what the header counts of the last element
+  /// Requires that no row follows. @param last what the header counts of the last element
   void requireNoMore(const HeaderCount& last, std::uint64_t, bool) { requireNoMoreLines(last, text_); }
 
   std::uint64_t bytesLeft() const { return text_.rest().size() + 1; } // the last line may lack its end
@@ -61,7 +61,7 @@ public:
   void skip(std::uint8_t datatype, std::uint64_t count) { take(count * sizeOf(datatype)); }
   void end() {}
 
-  /// The same. @param record bytes of a row; at least, where `exact` is false
+  /// Requires that no row follows. @param record bytes of a row; at least, where `exact` is false
   void requireNoMore(const HeaderCount& last, std::uint64_t record, bool exact) const
   {
     requireNoMoreBytes(last, bytes_.size(), record, exact);

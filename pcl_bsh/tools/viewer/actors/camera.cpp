@@ -62,7 +62,7 @@ Gaze gazeAt(const Side& side, const vtkBoundingBox& seen, double tall, double as
     away = std::max({away, std::abs(p.dot(gaze.right)) / (free_width * gaze.wide) + p.dot(gaze.toward),
                      std::abs(p.dot(gaze.up)) / gaze.tall + p.dot(gaze.toward)});
   }
-  // Of a single place any distance will do that the graphics card's floats tell from none.
+  // From a single place, any distance will do that the graphics card's floats tell from 0.
   away = away > 0.0 ? std::max(away, 1e-6) : std::max(1.0, 1e-3 * focus.norm());
   gaze.at = focus + 1.1 * away * gaze.toward;
   return gaze;

@@ -104,7 +104,7 @@ ChunkTable readChunkTable(ByteSource& file, const LasBlock& block, const Scheme&
     chunk.first += chunk.points;
     chunk.at += chunk.bytes;
   }
-  // Of chunks of one size, all but the last are full.
+  // If chunks have one size, all except the last are full.
   if (scheme.chunk_points != 0) told = i < count ? (count - 1) * std::uint64_t{scheme.chunk_points} + 1 : block.points;
   for (; i < count && scheme.chunk_points == 0; ++i) {
     points = counts.read(in, points, 0);
