@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/depths/brute_force_depths.h>
 #include <pcl_bsh/distances/brute_force_distances.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/geometry/triangle/winding.h>
@@ -111,6 +112,25 @@ std::vector<std::uint8_t> expectedLabels(const Placed& a, const PlacedSolid& sol
   return named;
 }
 
+/// Triangles inside the obstacle: each interval meets the one that places of a grid bound, and holds the distance.
+/// @param expected becomes what was found of those that are deeper than 0
+void requireDepths(const Placed& a, const Placed& b, const PlacedSolid& solid, const PointDistances& found,
+                   std::vector<double>& expected)
+{
+  constexpr unsigned steps = 6;
+  const DeepSolid deep{*solid.solid, b.hierarchy(), solid.pose};
+  for (const Depth& depth : brute_force::depthsIn(deep, Content(a.hierarchy()), a.pose, steps).depths) {
+    if (!(found.distance[depth.record] < 0.0) && depth.depth.lower == 0.0) continue; // it may meet the surface or not
+    require(!found.interval.empty(), "solid obstacle: no intervals of triangles");
+    const Interval& interval = found.interval[depth.record];
+    require(interval.lower <= -depth.depth.lower && interval.upper >= -depth.depth.upper,
+            "solid obstacle: another depth of a triangle");
+    require(interval.lower <= found.distance[depth.record] && found.distance[depth.record] <= interval.upper,
+            "solid obstacle: a depth outside of its interval");
+    expected[depth.record] = found.distance[depth.record];
+  }
+}
+
 /// Of a solid obstacle: what the surface collides with, and what is inside; distances are negative there.
 void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, const Question& question)
 {
@@ -126,10 +146,13 @@ void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, 
     require((answer.collisions.flags[i] == Verdict::colliding) == (held(i) || surface.a[i] == Verdict::colliding),
             "solid obstacle: another flag");
   PointDistances expected = brute_force::pointDistances(a, b);
-  for (std::size_t i = 0; i < labels.size(); ++i) { // of a ball, the depth is that of its far side
-    const double depth = expected.distance[i] + 2.0 * a.hierarchy().view().ownRadius(static_cast<std::uint32_t>(i));
-    if (held(i) && depth > 0.0) expected.distance[i] = -depth;
-  }
+  if (a.hierarchy().view().triangles)
+    requireDepths(a, b, solid, answer.distances.a, expected.distance);
+  else
+    for (std::size_t i = 0; i < labels.size(); ++i) { // of a ball, the depth is that of its far side
+      const double depth = expected.distance[i] + 2.0 * a.hierarchy().view().ownRadius(static_cast<std::uint32_t>(i));
+      if (held(i) && depth > 0.0) expected.distance[i] = -depth;
+    }
   requireSame(answer.distances.a.distance, expected.distance, "solid obstacle: other distances");
 }
 
