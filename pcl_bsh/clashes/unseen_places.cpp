@@ -15,7 +15,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// What is unseen of a record at a pose, as placed.
+/// Unseen parts of a record at a pose, as placed.
 struct UnseenRecord {
   std::size_t pose;
   bool in_shadow;              ///< some of it

@@ -19,7 +19,7 @@ struct UnseenAlong {
   const std::vector<Eigen::Isometry3d>& poses;  ///< T_scan_model
   const std::vector<std::vector<bool>>& unseen; ///< of each pose, one per record; empty: none
 
-  /// Of each pose, with parts in the scan's frame; null, or nothing of a pose: all that is unseen is in shadow.
+  /// At each pose, with parts in the scan's frame. Null, or empty at a pose: all unseen places are in shadow.
   const std::vector<UnseenKinds>* kinds = nullptr;
 };
 

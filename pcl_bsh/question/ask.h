@@ -48,7 +48,7 @@ struct Answer {
     std::optional<std::size_t> first_pose; ///< with any
     std::vector<double> angles;            ///< of each scan: what its beams speak for, in radians
     std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, which; empty where none are
-    std::vector<UnseenKinds> kinds;        ///< likewise, of these
+    std::vector<UnseenKinds> kinds;        ///< kinds of these
 
     // In shadow no beam passed the place itself; all else is in the skin, where beams passed but not by the margin.
     std::size_t in_shadow = 0;                ///< of `count`: those that are at some pose
@@ -57,11 +57,11 @@ struct Answer {
 
     std::size_t inSkin() const { return count - in_shadow; } ///< of `count`, at no pose in shadow
 
-    /// Of a solid, at each pose: the volume of cubes that hold what it encloses and whose middles are in shadow. They
+    /// At each pose, the volume of a solid's cubes whose middles are in shadow; cubes cover what it encloses. They
     /// collide with nothing, and are at least 1/48 of its longest side.
     std::vector<double> inside;
 
-    /// What was found at the next pose. @param gravest of all poses, one per record. @param of markUnseen(); without
+    /// Adds the answer of the next pose. @param gravest of all poses, one per record. @param of markUnseen(); without
     /// `in_shadow` nothing is in shadow
     void addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest,
                  UnseenKinds of = {});

@@ -24,7 +24,7 @@ std::uint64_t bitsBetween(int first, int last)
 
 using Sides = std::array<std::uint64_t, kBeamSides>;
 
-/// Of the cells of a tile, on which sides of each a beam lies (direction_cells.h).
+/// Tells on which sides of each cell of a tile a beam lies (direction_cells.h).
 class BeamSides {
 public:
   /// @param x, y where it is, and @param off by how much it is beside a cell at least; lengths of a cell's edge
@@ -40,7 +40,7 @@ public:
   {
   }
 
-  /// Of the cells of one row, among these.
+  /// Adds the cells of one row, among these.
   void add(int row, std::uint64_t cells, Sides& sides) const
   {
     const std::array<std::uint64_t, kBeamSides> half_planes = {

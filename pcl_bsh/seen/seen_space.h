@@ -14,7 +14,7 @@
 // leaves the ball. One scanner that sees the whole ball suffices.
 //
 // For which worlds that holds. In a direction between beams a plane that they met, at any slant, is no nearer than the
-// nearest place where they met it, but for 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer:
+// nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer:
 // a sphere by less than the angle's share if the beams round the direction are within the angle of it, an edge of a
 // right angle or blunter if they are within 0.87 angles, a corner of three right angles if they are within two thirds:
 // those of an even grid are, at the angle that is measured. Beams have to meet things: one that is at least two angles
@@ -25,7 +25,7 @@
 // the angle of its middle, one is in each of eight sectors of 135 degrees that all of its places see; a length of 2^-40
 // times the coordinates may decide either way.
 //
-// What the beams do not tell: things thinner than that, edges and corners sharper than right angles, things that throw
+// The beams do not tell of things thinner than that, edges and corners sharper than right angles, things that throw
 // nothing back between beams that are neighbours, glass, and mixed pixels at edges, whose returns lie behind what was
 // there.
 #pragma once

@@ -63,7 +63,7 @@ public:
   }
 
 private:
-  /// Of a triangle into what is in shadow and what is in the skin.
+  /// Parts a triangle into shadow and skin.
   template <class Shadow>
   struct Division {
     const Shadow& shadow;

@@ -49,7 +49,7 @@ public:
   UnseenResult result;
 
 private:
-  /// Which scans may see something in the sphere but not all; none left: it is settled, but for its kind.
+  /// Which scans may see something in the sphere but not all; none left: it is settled, except for its kind.
   enum class State : std::uint8_t { seen, in_shadow, unseen, open };
 
   State look(const GivenSphere& sphere, const Scans& scans, Scans& left)
@@ -108,7 +108,7 @@ private:
     enterNode(&voxel, 0, scans);
   }
 
-  /// What is unseen, and in shadow.
+  /// Counts of unseen places, and of those in shadow.
   void markBelow(const Voxel* voxel, const Node& node, std::uint32_t child)
   {
     const auto mark_all = [this](std::uint32_t record) {
@@ -130,7 +130,7 @@ private:
       const auto of_scan = [&](const SeenScan* scan) {
         return scan->sees({scan->origin(), place.at, place.magnitude, radius}, result.work.node_pairs);
       };
-      // What sees a place mostly sees its neighbours.
+      // A scan that sees a place mostly sees its neighbours.
       const bool asked = std::find(scans.begin(), scans.end(), last_) != scans.end();
       if (asked && of_scan(last_)) return true;
       for (const SeenScan* scan : scans) {

@@ -57,7 +57,7 @@ struct UnseenKinds {
 struct UnseenResult {
   std::size_t unseen = 0;    ///< points that were free and are unseen
   std::size_t in_shadow = 0; ///< with UnseenRequest::kinds: of these, in shadow; the others are in the skin
-  UnseenKinds kinds;         ///< likewise
+  UnseenKinds kinds;         ///< with UnseenRequest::kinds
   Work work;                 ///< node_pairs: spheres of the model, and of directions, that were tested
 };
 

@@ -63,7 +63,7 @@ protected:
     return findClashes(viewOf(returns.data(), returns.size() / 3), answer.collisions, 0.5);
   }
 
-  /// What an earlier run found, judged by this one.
+  /// Former clashes, judged by this run.
   std::vector<Clash> compared(const std::vector<Clash>& before, const Answer& now)
   {
     std::vector<Clash> all = clashes(now);

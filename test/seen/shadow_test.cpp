@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is unseen is shadow, where no beam passed, or skin, where beams passed, but not by the margin.
+// An unseen place is in shadow, where no beam passed, or in the skin, where beams passed, but not by the margin.
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
@@ -36,7 +36,7 @@ private:
   }
 };
 
-/// Of each record with parts, the box of all that are in shadow, and of all that are not.
+/// Boxes of each record's parts: of those in shadow, and of the others.
 std::map<std::uint32_t, Box> boxesOf(const UnseenKinds& kinds)
 {
   std::map<std::uint32_t, Box> boxes;
@@ -106,7 +106,7 @@ protected:
 
     const auto boxes = boxesOf(found.kinds), right_boxes = boxesOf(right.kinds);
     for (const auto& [record, box] : boxes) {
-      // What brute force finds in parts may be told as a whole, where all of it is in shadow.
+      // Parts that brute force finds may be told as a whole, where all of it is in shadow.
       const auto of_right = right_boxes.find(record);
       ASSERT_NE(of_right, right_boxes.end()) << what << ": " << record;
       EXPECT_TRUE(box.isNear(of_right->second)) << what << ": " << record;

@@ -162,7 +162,7 @@ private:
                   {"last", std::to_string(poses.size() - 1)}};
   }
 
-  /// Of triangles, and swept, both ends of what is certain where they differ as they are written.
+  /// The text has both ends of the interval where they differ as written: of triangles and of swept motion.
   static std::string distanceOf(const Clash& clash)
   {
     const std::string told = distanceText(clash.distance), least = number(-clash.interval.upper),

@@ -44,7 +44,7 @@ struct DistanceSide {
 
   std::size_t farther() const { return points - statistics.count; } ///< than the greatest distance asked for
 
-  /// What each of the numbers that statistics are of says.
+  /// Meaning of each of the numbers that statistics summarize.
   const char* meaning() const;
 
   /// Of a record, in the input's frame.

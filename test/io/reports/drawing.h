@@ -60,7 +60,7 @@ inline std::vector<Tag> tagsOf(const std::string& drawing, const std::string& na
   return tags;
 }
 
-/// Those with this value of an attribute; empty: without it.
+/// Tags with this value of an attribute; empty: without it.
 inline std::vector<Tag> with(const std::vector<Tag>& tags, const std::string& attribute, const std::string& value)
 {
   std::vector<Tag> some;
