@@ -76,6 +76,13 @@ public:
     end();
   }
 
+  /// A serial part goes on, after a step or some. @throws Cancelled
+  void tellOn()
+  {
+    if (std::this_thread::get_id() == caller_) tell(done_);
+    throwIfStopped();
+  }
+
   /// A step that takes long goes on. @throws Cancelled
   void ask() override
   {
@@ -216,7 +223,7 @@ private:
     watch_.progress->skipTo(whole_ - left_);
     if (8 * (told_ - left_) < whole_) return;
     told_ = left_;
-    watch_.progress->ask();
+    watch_.progress->tellOn();
   }
 
   const Watch watch_;

@@ -64,7 +64,7 @@ public:
   template <class MakeVisitor>
   void visit(unsigned threads, const MakeVisitor& makeVisitor)
   {
-    askWatcher(); // this thread may come too late to get a piece
+    if (threads > 1) askWatcher(); // this thread may come too late to get a piece
     parallelFor(threads, threads, [&](std::size_t) {
       try {
         auto visitor = makeVisitor();

@@ -67,14 +67,20 @@ protected:
 TEST_F(SurfaceStages, CornersAloneAreNoObstacle)
 {
   folder_.write("lines.obj", "v 1 1 2\nv 1 1 1\nl 1 2\n");
-  const std::string lines =
-      R"({"type": "readers.mesh", "tag": "lines", "filename": ")" + (folder_ / "lines.obj").string() +
-      R"("}, {"type": "filters.bsh_flag", "clearance": 0.1, "inputs": ["scan"], "obstacle": "crate"}, )";
+  const std::string readers =
+      R"({"pipeline": [{"type": "readers.pcd", "tag": "scan", "filename": "scan.pcd"},
+          {"type": "readers.mesh", "tag": "lines", "filename": ")" +
+      (folder_ / "lines.obj").string() + R"("}, )";
   const std::string flag = R"({"type": "filters.bsh_flag", "tag": "f", "clearance": 0.01, "inputs": ["scan"],
       "obstacle": "lines")";
+  const auto runThese = [&](const std::string& stages) {
+    Pipeline pipeline = Pipeline::parse(readers + stages + "]}");
+    pipeline.setCloud("scan", scan());
+    return pipeline.run();
+  };
   const auto refusal = [&](const std::string& stages) -> std::string {
     try {
-      runAll(lines + stages);
+      runThese(stages);
     }
     catch (const std::exception& error) {
       return error.what();
@@ -85,7 +91,7 @@ TEST_F(SurfaceStages, CornersAloneAreNoObstacle)
   EXPECT_THAT(refusal(flag + "}"), HasSubstr("`vertices_only`: true"));
   EXPECT_THAT(refusal(R"({"type": "filters.bsh_flag", "clearance": 0.01, "inputs": ["lines"], "obstacle": "scan"})"),
               HasSubstr("and no faces"));
-  const PipelineResult corners = runAll(lines + flag + R"(, "vertices_only": true})");
+  const PipelineResult corners = runThese(flag + R"(, "vertices_only": true})");
   EXPECT_THAT(flagsOf(corners, "f"), ElementsAre(1, 0, 1, 0));
   EXPECT_THAT(corners.warnings, Contains(HasSubstr("its 1 line (l) is not compared")));
 }

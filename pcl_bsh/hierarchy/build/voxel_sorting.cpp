@@ -28,6 +28,13 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// The point at which a chunk asks first: each chunk does, so that many of them ask often enough, except the first, so
+/// that a small cloud does not.
+std::size_t firstToAsk(std::size_t chunk, std::size_t begin)
+{
+  return chunk == 0 ? begin + kPairsOfPulse : begin;
+}
+
 constexpr std::size_t kChunkPoints = 1 << 16; // points a thread takes at least: below that, one thread is faster
 
 template <class T>
@@ -149,7 +156,7 @@ private:
       const std::int32_t* const indices = view_.indices;
       const std::size_t end = begins_[chunk + 1];
       Pulse pulse;
-      for (std::size_t i = first, ask = i; i < end; ++i) {
+      for (std::size_t i = first, ask = firstToAsk(chunk, i); i < end; ++i) {
         if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const GivenPoint<T> p = read_(indices ? static_cast<std::uint32_t>(indices[i]) : static_cast<std::uint32_t>(i));
         const GivenPoint<T> numbers = cell_of.numbers(p);
@@ -295,7 +302,7 @@ private:
       for (const Bin<T>& bin : chunks_[chunk].bins) lists.emplace_back(bin.list);
       Pulse pulse;
       RunReader read_run(runs_.get() + begins_[chunk]);
-      for (std::size_t i = begins_[chunk], ask = i; i < begins_[chunk + 1];) {
+      for (std::size_t i = begins_[chunk], ask = firstToAsk(chunk, i); i < begins_[chunk + 1];) {
         if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const Run run = read_run();
         if (run.number != kNoBin) eachRunOf(i, i + run.points, lists[run.number]);
@@ -316,7 +323,7 @@ private:
         targets.push_back({reinterpret_cast<PointRecord*>(voxel.block) + bin.first, LocalPlace<T>(voxel.frame)});
       }
       RunReader read_run(runs_.get() + begins_[chunk]);
-      for (std::size_t i = begins_[chunk], ask = i; i < begins_[chunk + 1];) {
+      for (std::size_t i = begins_[chunk], ask = firstToAsk(chunk, i); i < begins_[chunk + 1];) {
         if (i >= ask) pulse.count(kPairsOfPulse), ask = i + kPairsOfPulse;
         const Run run = read_run();
         if (run.number != kNoBin) {

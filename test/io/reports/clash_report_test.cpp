@@ -539,7 +539,7 @@ TEST_F(ClashReports, CertainAndPerhapsAreToldApart)
   const auto rows = cellsOf(clashCsv(list));
   EXPECT_EQ(rows[1][20], "certain");
   EXPECT_EQ(std::vector<std::string>(rows[2].begin() + 20, rows[2].end()),
-            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", "", ""}));
+            (std::vector<std::string>{"perhaps", "0", "0.3", "sigma", "0.04", "3", "exact", "", "", "", "", ""}));
 }
 
 TEST_F(ClashReports, TellWhereTheyAreNotExact)
@@ -547,7 +547,7 @@ TEST_F(ClashReports, TellWhereTheyAreNotExact)
   ClashReport list = twoClashes();
   list.question.accuracy = Accuracy::tolerance(0.01);
   EXPECT_EQ(Json::parse(clashJson(list))["accuracy"], "tolerance=0.01");
-  EXPECT_THAT(clashCsv(list), HasSubstr(",tolerance=0.01,,,\n"));
+  EXPECT_THAT(clashCsv(list), HasSubstr(",tolerance=0.01,,,,,\n"));
   EXPECT_TRUE(has(clashPage(list), "<b>tolerance=0.01</b><span>accuracy"));
 }
 
@@ -575,7 +575,7 @@ TEST_F(ClashReports, TellUnitDateVersionAndCoordinateSystem)
   EXPECT_EQ(json["program"], "pcl_bsh " PCL_BSH_VERSION_TEXT);
   EXPECT_EQ(json["unit"], "m");
   EXPECT_EQ(json["coordinate_system"], "ETRS89 / UTM 32N");
-  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N,\n"));
+  EXPECT_THAT(clashCsv(list), HasSubstr(",exact,m,ETRS89 / UTM 32N,,,\n"));
   setenv("SOURCE_DATE_EPOCH", "0", 1);
   EXPECT_TRUE(has(clashPage(list), " on 1970-01-01.")) << "the first second";
   setenv("SOURCE_DATE_EPOCH", "253402300799", 1);

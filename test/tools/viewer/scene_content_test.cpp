@@ -132,7 +132,8 @@ TEST_F(SceneRunTest, WavesRunForwardAndBack)
   set.view->show(0);
   EXPECT_GT(set.draw().differing(before), 500u);
   set.view->show(3);
-  EXPECT_EQ(set.draw().bytes, before.bytes);
+  EXPECT_EQ(set.draw().differing(before, 200, 180, 115), 0U)
+      << "above the legend, whose words may move by half a pixel";
 }
 
 TEST_F(SceneRunTest, TheSliderMovesObjectsAndFlagsFollow)
