@@ -112,10 +112,12 @@ TEST(Progress, OfANestedQueryAsksTheOuterOne)
   const std::function<bool(double)> none;
   {
     Progress inner(none);
-    inner.begin(1.0, 1);
+    inner.begin(1.0, 100);
     inner.step();
     askWatcher();
-    EXPECT_THAT(told.shares, ElementsAre(0.25, 0.25)) << "which tells nothing of the inner one";
+    EXPECT_THAT(told.shares, ElementsAre(0.25)) << "which tells nothing of the inner one";
+    for (int i = 1; i < 64; ++i) inner.step();
+    EXPECT_THAT(told.shares, ElementsAre(0.25, 0.25)) << "many steps ask once";
     told.most = 0;
     EXPECT_THROW(askWatcher(), Cancelled);
   }
