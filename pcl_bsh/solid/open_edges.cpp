@@ -178,7 +178,7 @@ public:
     for (std::size_t& n : ends) sum += std::exchange(n, sum);
     std::vector<Id> at(sum);
     for (const Id edge : edges_)
-      for (const std::size_t end : {0, 1}) at[ends[number(edge, end)]++] = edge;
+      for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) at[ends[number(edge, end)]++] = edge;
     std::vector<Leaving> leaving;
     for (std::size_t place = 0; place < places_; ++place) {
       leaving.clear();
