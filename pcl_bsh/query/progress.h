@@ -102,17 +102,6 @@ public:
     end();
   }
 
-  /// For a query that is one step of this work, or part of one, in any thread: it tells nothing of how far it is, and
-  /// is stopped with the whole.
-  std::function<bool(double)> nested()
-  {
-    if (!report_) return {};
-    return [this](double) {
-      ask();
-      return true;
-    };
-  }
-
   /// @throws Cancelled, or what the report threw
   void throwIfStopped() const
   {

@@ -84,10 +84,8 @@ AnyAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseList& T_w
   result.flags.assign(T_world_b.size(), Verdict::free);
   if (a.hierarchy().empty() || b.empty() || T_world_b.size() == 0) return result;
   if (!request.accuracy.isExact()) {
-    AnyRequest single = request;
-    single.threads = 1;
+    const AnyRequest single{request.clearance, {request.accuracy, 1}};
     Progress progress(request.progress);
-    single.progress = progress.nested();
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
       const AnyResult found = anyCollision(a, {b, pose}, single);
       result.flags[i] = found.verdict;
@@ -133,7 +131,7 @@ DistancesAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseLis
         [&](const PoseBatch& batch, const std::uint32_t* order) { return closestOfBatch(batch, order, result); });
   else
     result.work = forEachPose(T_world_b, request.threads, progress, [&](std::size_t i, const Eigen::Isometry3d& pose) {
-      const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy, 1, progress.nested()});
+      const DistanceResult found = closestPair(a, {b, pose}, {request.accuracy, 1});
       result.distances[i] = found.distance;
       result.pairs[i] = *found.pair;
       return found.work;

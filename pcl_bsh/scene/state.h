@@ -136,9 +136,8 @@ public:
   void prepareGrid();      ///< the grid, and every object in it
   SceneResult query();     ///< at the end of a step, or by itself
 
-  /// For a query of two parts: what the scene's accuracy is, and who watches.
-  Effort ofParts() const { return {options.accuracy, 1, progress->nested()}; }
-  Effort exactOfParts() const { return {1, progress->nested()}; }
+  /// Returns the effort of a query of two parts. The scene's progress watches its thread.
+  Effort ofParts() const { return {options.accuracy, 1}; }
 
   SceneOptions options;
   mutable std::optional<Progress> progress; ///< of the query or step in progress, and none between them

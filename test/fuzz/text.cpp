@@ -43,7 +43,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   const auto parse_header = [](std::string_view file) { return io::parseColumnNames(file); };
   fuzz::readAny(data, size, parse, parse_header, writeColumns);
   readNamed(data, size);
-  fuzz::readAny(data, size, io::parseObj, io::parseObjHeader, io::writeObj);
+  const auto obj = [](std::string_view file) { return io::parseObj(file); };
+  fuzz::readAny(data, size, obj, io::parseObjHeader, io::writeObj);
   fuzz::readAny(data, size, io::parseOff, io::parseOffHeader, writeNothing);
   return 0;
 }

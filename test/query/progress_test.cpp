@@ -77,7 +77,6 @@ TEST(Progress, EndsWhereTheCallerHasEnough)
   EXPECT_TRUE(progress.stopped());
   EXPECT_THROW(progress.throwIfStopped(), Cancelled);
   EXPECT_THROW(progress.end(), Cancelled);
-  EXPECT_THROW(progress.nested()(0.5), Cancelled);
   EXPECT_EQ(told.shares.size(), 2u) << "it is not asked again";
 }
 
@@ -88,7 +87,6 @@ TEST(Progress, OfNobodyTellsNothing)
   progress.begin(1.0, 1);
   progress.step();
   progress.finish();
-  EXPECT_FALSE(progress.nested());
 }
 
 TEST(Progress, TellsTheWholeOfQueriesThatReportForThemselves)

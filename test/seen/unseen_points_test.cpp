@@ -549,7 +549,7 @@ TEST(MarkUnseen, TellsItsProgressAndCanBeCancelled)
     EXPECT_EQ(verdicts, expected);
     EXPECT_EQ(found.unseen, static_cast<std::size_t>(std::count(expected.begin(), expected.end(), kUnseen)));
     EXPECT_EQ(last, 1.0);
-    EXPECT_GT(reports, 3u);
+    EXPECT_GT(reports, threads == 1 ? 3u : 0u) << "of two threads, the other may take all voxels";
     request.progress = [](double) { return false; };
     EXPECT_THROW(markUnseen(space, {model}, request, verdicts), Cancelled);
     Verdicts none;

@@ -75,7 +75,7 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
   if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
   Contents contents;
   if (extension == ".pcd") {
-    contents.cloud = parsePcdTelling(file, contents.facts.viewpoint, contents.facts.remarks);
+    contents.cloud = parsePcd(file, contents.facts.viewpoint, &contents.facts.remarks);
   }
   else if (extension == ".ply") {
     contents.cloud =
@@ -86,7 +86,7 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
                               &contents.facts.remarks);
   }
   else if (extension == ".obj") {
-    contents.cloud = parseObjTelling(file, contents.facts.remarks);
+    contents.cloud = parseObj(file, &contents.facts.remarks);
     if (faces) faces->polygons = parseObjFaces(file, &contents.facts.remarks);
   }
   else if (extension == ".off") {
@@ -97,7 +97,7 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
     contents.cloud = parseStl(file, faces ? &faces->triangles : nullptr);
   }
   else if (extension == ".pts") {
-    contents.cloud = parsePtsTelling(file, contents.facts.remarks);
+    contents.cloud = parsePts(file, &contents.facts.remarks);
   }
   else {
     contents.cloud = parseColumns(file, settings.columns, &contents.facts.remarks);

@@ -49,7 +49,7 @@ void Scene::State::findContacts(EffectCost& spent)
   std::vector<std::vector<ContactPair>> found(near.size());
   eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
     ContactsResult contacts = nearestContacts(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
-                                              {pair.clearance, *options.effects.contacts, exactOfParts()});
+                                              {pair.clearance, *options.effects.contacts});
     pair.memory.work += contacts.work;
     if (contacts.contacts.empty() && contacts.complete) return;
     found[k].push_back({parts, std::move(contacts.contacts), contacts.complete});

@@ -207,7 +207,7 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
                            places);
       const double reach =
           farthest.most + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
-      const PairsWithin found = pairsWithin(mine, others, {reach, most, state_.exactOfParts()});
+      const PairsWithin found = pairsWithin(mine, others, {reach, most});
       ++cost_.pairs;
       cost_.work += found.work;
       if (!found.complete) {

@@ -110,10 +110,11 @@ TEST(Damage, Ply)
 
 TEST(Damage, Text)
 {
+  const auto obj = [](std::string_view file) { return parseObj(file); };
   expectSurvival(parseOff, "OFF\n2 1 0\n1 2 3\n4 5 6\n2 0 1\n");
-  expectSurvival(parseObj, "v 1 2 3\nf 1 1 1\n");
+  expectSurvival(obj, "v 1 2 3\nf 1 1 1\n");
   expectSurvival(parseOff, "CNOFF\n2 1 0\n1 2 3 0 0 1 9 8 7 6\n4 5 6 0 1 0 5 4 3 2\n2 0 1\n");
-  expectSurvival(parseObj, "vn 0 0 1\nv 1 2 3 0.2 0.4 1\nf 1//1 1 1\n");
+  expectSurvival(obj, "vn 0 0 1\nv 1 2 3 0.2 0.4 1\nf 1//1 1 1\n");
   const auto columns = [](std::string_view file) { return parseColumns(file); };
   expectSurvival(columns, "x y z i\n1 2 3 4\n5 6 7 8\n");
   expectSurvival(columns, "//X,Y,Z,R,G,B\n1,2,3,40,50,60\n5,6,7,8,9,10\n");
@@ -131,7 +132,7 @@ TEST(Damage, Las)
 
 TEST(Damage, Scans)
 {
-  expectSurvival(parsePts, "2\n1 2 3 -4 50 60 70\n5 6 7 8 9 10 11\n");
+  expectSurvival([](std::string_view file) { return parsePts(file); }, "2\n1 2 3 -4 50 60 70\n5 6 7 8 9 10 11\n");
   const std::string head = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n";
   expectSurvival(parseAnyPtx, "1\n2\n" + head + "1 2 3 0.5\n0 0 0 0.5\n1\n1\n" + head + "4 5 6 1\n");
 }

@@ -290,15 +290,9 @@ void transpose(pcl::PCLPointCloud2& cloud, const PtxScan& scan)
 
 } // namespace
 
-pcl::PCLPointCloud2 parsePts(std::string_view file)
+pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* remarks)
 {
-  std::vector<std::string> ignored;
-  return parsePtsTelling(file, ignored);
-}
-
-pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::string>& remarks)
-{
-  if (isPtsOfColumns(file)) return parseColumns(file, {}, &remarks);
+  if (isPtsOfColumns(file)) return parseColumns(file, {}, remarks);
   TextCursor text(file);
   std::optional<std::uint64_t> promised = readPtsCount(text);
   const PointLine line = ptsLine(text, promised.value_or(0));
@@ -326,7 +320,8 @@ pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::stri
     ++points;
   }
   endBlock();
-  if (const auto other = remarkOnCount({all_promised}, all_points)) remarks.push_back(*other);
+  const auto other = remarkOnCount({all_promised}, all_points);
+  if (remarks && other) remarks->push_back(*other);
   return std::move(rows).finished();
 }
 

@@ -20,11 +20,9 @@ namespace pcl_bsh::io {
 /// points than it says, as some writers' do, but no fewer. x y z are float64, intensity float32, colours are packed as
 /// rgb. A file whose first line names columns, is a comment, or has commas or semicolons is one of columns
 /// (parseColumns()).
+/// @param remarks if not null, gets a remark where blocks have more points than they say
 /// @throws FormatError
-pcl::PCLPointCloud2 parsePts(std::string_view file);
-
-/// As parsePts(). @param remarks gets remarks for users: blocks of more points than they say
-pcl::PCLPointCloud2 parsePtsTelling(std::string_view file, std::vector<std::string>& remarks);
+pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* remarks = nullptr);
 
 /// Only the fields that parsePts() makes. @throws FormatError
 pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);

@@ -38,11 +38,9 @@ pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole = true, c
 
 /// .obj: the `v` lines, with their colours; the `vn` lines where there is one for each vertex, and no face says
 /// otherwise. A file without vertices is an empty cloud when it says so in a comment `# Vertices: 0`.
+/// @param remarks if not null, gets a remark where such a comment counts fewer vertices than there are
 /// @throws FormatError
-pcl::PCLPointCloud2 parseObj(std::string_view file);
-
-/// As parseObj(). @param remarks gets one where such a comment counts fewer than there are
-pcl::PCLPointCloud2 parseObjTelling(std::string_view file, std::vector<std::string>& remarks);
+pcl::PCLPointCloud2 parseObj(std::string_view file, std::vector<std::string>* remarks = nullptr);
 
 /// Only the fields that parseObj() makes; looks for colours and normals in all of the file.
 pcl::PCLPointCloud2 parseObjHeader(std::string_view file);

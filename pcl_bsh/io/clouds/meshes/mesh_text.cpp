@@ -172,13 +172,7 @@ pcl::PCLPointCloud2 parseObjHeader(std::string_view file)
   return std::move(Vertices(scan.hasNormals(), scan.colours).rows()).finished();
 }
 
-pcl::PCLPointCloud2 parseObj(std::string_view file)
-{
-  std::vector<std::string> ignored;
-  return parseObjTelling(file, ignored);
-}
-
-pcl::PCLPointCloud2 parseObjTelling(std::string_view file, std::vector<std::string>& remarks)
+pcl::PCLPointCloud2 parseObj(std::string_view file, std::vector<std::string>* remarks)
 {
   const ObjScan scan = scanObj(file);
   if (scan.vertices == 0 && scan.promised != 0) throw FormatError("has no vertices", "give it lines 'v x y z'");
@@ -187,7 +181,8 @@ pcl::PCLPointCloud2 parseObjTelling(std::string_view file, std::vector<std::stri
                       counted(*scan.promised, "vertex", "vertices") + " that a comment promises");
   }
   const HeaderCount told{scan.promised.value_or(scan.vertices), "vertex", "vertices"};
-  if (const auto more = remarkOnCount(told, scan.vertices)) remarks.push_back(*more);
+  const auto more = remarkOnCount(told, scan.vertices);
+  if (remarks && more) remarks->push_back(*more);
   Vertices vertices(scan.hasNormals(), scan.colours);
   TextRows& rows = vertices.rows();
   rows.reserve(scan.vertices);

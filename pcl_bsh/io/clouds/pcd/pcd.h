@@ -12,11 +12,9 @@
 
 namespace pcl_bsh::io {
 
+/// @param remarks if not null, gets a remark where a binary file has points that its header does not count
 /// @throws FormatError
-pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint);
-
-/// As parsePcd(). @param remarks gets remarks for users: points that the header of a binary file does not count
-pcl::PCLPointCloud2 parsePcdTelling(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>& remarks);
+pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>* remarks = nullptr);
 
 /// The fields and the number of points that the header promises, without the points. @throws FormatError
 pcl::PCLPointCloud2 parsePcdHeader(std::string_view file);

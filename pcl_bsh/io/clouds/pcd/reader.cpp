@@ -230,13 +230,7 @@ pcl::PCLPointCloud2 parsePcdHeader(std::string_view file)
   return findPcdBody(file).header;
 }
 
-pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint)
-{
-  std::vector<std::string> ignored;
-  return parsePcdTelling(file, viewpoint, ignored);
-}
-
-pcl::PCLPointCloud2 parsePcdTelling(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>& remarks)
+pcl::PCLPointCloud2 parsePcd(std::string_view file, Viewpoint& viewpoint, std::vector<std::string>* remarks)
 {
   TextCursor text(file, '#');
   const PcdHeader header = readPcdHeader(text);
@@ -246,8 +240,9 @@ pcl::PCLPointCloud2 parsePcdTelling(std::string_view file, Viewpoint& viewpoint,
   const std::size_t points = std::size_t{cloud.width} * cloud.height;
   const std::string_view body = text.rest();
   const auto remarkOn = [&](std::string_view left) {
+    if (!remarks) return;
     const auto more = remarkOnMoreBytes({points}, left.size(), left.substr(0, most_padding), cloud.point_step);
-    if (more) remarks.push_back(*more);
+    if (more) remarks->push_back(*more);
   };
   if (points == 0) {
     if (header.storage == "ascii")
