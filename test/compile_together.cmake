@@ -23,7 +23,9 @@ endif()
 # Sets `compiled` to what stands for the files of a room, relative to the folder of these sources or of what is built of
 # them: those that are joined, of up to so many bytes, and those that stay alone, which define what others call, include
 # themselves again or read PCL's headers in another way.
-set(bytes_together 170000) # g++ takes 2 GB then
+# Small files suit who changes one test; large ones instantiate templates less often, and compile all tests in fewer seconds.
+set(PCL_BSH_BYTES_TOGETHER 170000 CACHE STRING "Bytes of tests that are compiled as one file; g++ takes 2 GB for the default")
+mark_as_advanced(PCL_BSH_BYTES_TOGETHER)
 function(pcl_bsh_compile_together compiled room)
   set(alone "")
   set(bytes 0)
@@ -37,7 +39,7 @@ function(pcl_bsh_compile_together compiled room)
     endif()
     file(SIZE "${file}" size)
     math(EXPR bytes "${bytes} + ${size}")
-    if(bytes GREATER bytes_together)
+    if(bytes GREATER PCL_BSH_BYTES_TOGETHER)
       math(EXPR group "${group} + 1")
       set(bytes ${size})
     endif()
