@@ -80,3 +80,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" 
     "${PROJECT_BINARY_DIR}/filters")
 
 include(CPack)
+
+if(CMAKE_CXX_FLAGS_RELEASE MATCHES "-g") # by the preset package
+  enable_testing()
+  add_test(NAME abi COMMAND bash "${PROJECT_SOURCE_DIR}/test/abi/abi.sh" check "${PROJECT_BINARY_DIR}")
+  set_tests_properties(abi PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
+endif()
