@@ -27,8 +27,10 @@ endfunction()
 # Clang's sanitizers bring an operator new, and tests have one of their own. AddressSanitizer's is a shared library, where
 # the tests' wins, which fails allocations. ThreadSanitizer's wins over the tests': none that is run there counts them.
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
-  execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-runtime-dir OUTPUT_VARIABLE runtimes
-                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  # Not -print-runtime-dir: Debian's clang 19 names a folder there that it does not have.
+  execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-file-name=libclang_rt.asan-${CMAKE_SYSTEM_PROCESSOR}.so
+                  OUTPUT_VARIABLE runtimes OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  cmake_path(GET runtimes PARENT_PATH runtimes)
   add_link_options(-shared-libsan "LINKER:-rpath,${runtimes}")
 elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
   add_link_options("LINKER:-z,muldefs")
