@@ -102,7 +102,7 @@ public:
 
   /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again, after an error too.
   /// @throws PipelineError when a stage fails; of several, the first in the document. Cancelled
-  ///   (pcl_bsh/query/cancelled.h) when cancel() was called; what the progress callback throws
+  ///   (pcl_bsh/base/cancelled.h) when cancel() was called; what the progress callback throws
   PipelineResult run();
 
   /// May be called from any thread and from the progress callback: run() begins no more stages, collision queries along

@@ -50,7 +50,7 @@ public:
   virtual StageCloudPtr run(StageClouds&& inputs) = 0;
 
   /// Whether the pipeline was told to stop (Pipeline::cancel()). A stage that works for long should look now and then,
-  /// from any thread, and throw Cancelled (pcl_bsh/query/cancelled.h).
+  /// from any thread, and throw Cancelled (pcl_bsh/base/cancelled.h).
   bool isCancelled() const noexcept { return cancelled_ != nullptr && *cancelled_; }
 
   /// Called by the pipeline before run().

@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/question/record_numbers.h>
 #include <pcl_bsh/question/text_numbers.h>
+#include <pcl_bsh/seen/seen_space.h>
 
 #include <algorithm>
 #include <memory>

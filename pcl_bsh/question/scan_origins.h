@@ -4,13 +4,14 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/question/uncertainty.h>
-#include <pcl_bsh/seen/seen_space.h>
 
 #include <string>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
+
+struct ScanBeams;
 
 /// One origin for all points, or a table of them by a number that each point has in a field. In the input's frame.
 struct ScanOrigins {

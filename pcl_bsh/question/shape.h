@@ -9,6 +9,7 @@
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
+#include <pcl_bsh/seen/seen_space.h>
 
 #include <cstdint>
 #include <functional>

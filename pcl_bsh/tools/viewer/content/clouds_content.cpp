@@ -14,6 +14,7 @@
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/warnings/warnings.h>
+#include <pcl_bsh/seen/seen_space.h>
 
 #include <algorithm>
 #include <cmath>
