@@ -63,7 +63,7 @@ inside() { # NAME COMMAND...
   shift
   say "$name: $* (output in $log)"
   { time unshare --mount --propagation private bash -c '
-      mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && cd / && exec chroot "$@"' - "$root" \
+      mount -t proc proc "$1/proc" && mount -t sysfs sysfs "$1/sys" && mount --rbind /dev "$1/dev" && cd / && exec chroot "$@"' - "$root" \
       /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin \
       bash -c 'cd /srv/pcl_bsh && exec "$@"' - "$@" </dev/null >"$log" 2>&1 ||
       failed+=("$name"); } 2>>"$folder/times"

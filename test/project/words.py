@@ -23,13 +23,21 @@ CODE = {".h": "//", ".hpp": "//", ".cpp": "//", ".cmake": "#", ".sh": "#", ".py"
 LONGEST_TITLE = 60
 
 
+def git(*arguments):
+    """What git prints in the project's folder; None where there is no git, or no repository."""
+    try:
+        done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
+    except FileNotFoundError:
+        return None
+    return done.stdout if done.returncode == 0 else None
+
+
 def files():
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT,
-                            capture_output=True)
-    if listed.returncode:  # an archive without a repository
+    listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard")
+    if listed is None:  # an archive without a repository, or a system without git
         names = [str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file() and "build" not in p.parts]
     else:
-        names = listed.stdout.decode().split("\0")
+        names = listed.split("\0")
     return sorted(Path(n) for n in names if n and (ROOT / n).is_file() and not n.startswith("test/project/words."))
 
 
@@ -110,9 +118,8 @@ def texts():
 
 def titles(base):
     """Titles of commits since the base; none where the history is not there."""
-    log = subprocess.run(["git", "log", "--no-merges", "--format=%h %s", f"{base}..HEAD"], cwd=ROOT, capture_output=True,
-                         text=True)
-    return [line.split(" ", 1) for line in log.stdout.splitlines()] if log.returncode == 0 else []
+    log = git("log", "--no-merges", "--format=%h %s", f"{base}..HEAD")
+    return [line.split(" ", 1) for line in (log or "").splitlines()]
 
 
 def findings(rules):
