@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds and runs the core's tests that a change to some files can break (preset dev), and says how long it took.
-#   bash test/near.sh [--list] FILE...     --list: names the rooms and ends
+#   bash test/near.sh [--list] FILE...     --list: names the rooms and ends.
 # A file can break its own room, and each room that has a file that includes it, directly or not. A public header
 # (pcl_bsh/CMakeLists.txt) can also break each room that includes its room by the table of ARCHITECTURE.md.
 # Tests that take long (test/long_tests.txt), and rooms outside of the core, are left to test/run.sh.

@@ -35,7 +35,7 @@ def git(*arguments):
 def files():
     listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard")
     if listed is None:  # an archive without a repository, or a system without git
-        names = [str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file() and "build" not in p.parts]
+        names = [str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file() and p.relative_to(ROOT).parts[0] not in ("build", ".git")]
     else:
         names = listed.split("\0")
     return sorted(Path(n) for n in names if n and (ROOT / n).is_file() and not n.startswith("test/project/words."))
