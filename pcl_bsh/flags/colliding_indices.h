@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which points collide, as a list: for large clouds of which few do. Costs what the query looks at and finds, where the
-// array of collisionFlags() costs a byte for each point of the cloud.
+// Which points collide, as lists of their records: collisionFlags() without its array.
 //
 //   CollidingIndices hit;
 //   for (const Eigen::Isometry3d& pose : poses) {

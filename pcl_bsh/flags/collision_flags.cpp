@@ -1,114 +1,109 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flags as an array: one for each record.
 #include <pcl_bsh/flags/check_request.h>
-#include <pcl_bsh/flags/side.h>
+#include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/flags/query.h>
+#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/uncertain.h>
+#include <pcl_bsh/traversal/voxel_passes.h>
 
-#include <algorithm>
 #include <atomic>
 #include <vector>
 
 namespace pcl_bsh {
 namespace {
 
-/// Writes verdicts into an array in which all points are free, or all undecided, at first.
-class FlagArray final : public FlagSink {
+/// The flags of one cloud: whose points are flagged, in which voxels, and in how many passes.
+class FlagSide {
 public:
-  FlagArray(const SphereHierarchy::Storage& cloud, std::uint32_t voxel, Verdict* flags, bool marked)
-  : cloud_(cloud),
-    voxel_(voxel),
-    flags_(flags),
-    marked_(marked)
+  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
+           std::vector<Verdict>& flags, Work& work, Progress& progress, const PatchSpacings& patches_of_b = {})
+  : flags_(flags),
+    marked_(rule.mayStop() && rule.deepest == StopRule::kNever),
+    pairs_(a, b, request.clearance, places == Places::either ? Places::possible : places, patches_of_b),
+    certain_(a, b, request.clearance, Places::certain),
+    query_{a,
+           b,
+           pairs_,
+           RelativeRotation(a.pose, b.pose),
+           Acceptance(pairs_.reach, request.accuracy),
+           places == Places::either ? &certain_ : nullptr,
+           Acceptance(places == Places::either ? certain_.reach : pairs_.reach, request.accuracy)},
+    voxels_(threadCount(request.threads), work, progress)
   {
-  }
-
-  void tell(Finding finding, const std::uint32_t* first, const std::uint32_t* last) override
-  {
-    each(finding, [=](const auto& take) { std::for_each(first, last, take); });
-  }
-
-  void tellAll(Finding finding) override
-  {
-    each(finding, [this](const auto& take) { cloud_.forEachRecord(voxel_, take); });
-  }
-
-  std::size_t colliding = 0; ///< points flagged so that were not before
-
-private:
-  /// @param visit calls a function for each record
-  template <class Visit>
-  void each(Finding finding, const Visit& visit)
-  {
-    if (finding == Finding::colliding) {
-      visit([this](std::uint32_t record) {
-        colliding += flags_[record] != Verdict::colliding;
-        flags_[record] = Verdict::colliding;
-      });
+    if (!a.hierarchy().empty() && !b.hierarchy().empty()) {
+      if (marked_)
+        for (std::uint32_t v = 0; v < a.hierarchy().storage().voxel_count; ++v) voxels_.places.push_back({v, v});
+      else
+        findNearVoxels(query_, voxels_.places, work);
     }
-    else if (finding == Finding::possible) {
-      visit([this](std::uint32_t record) {
-        if (flags_[record] != Verdict::colliding) flags_[record] = Verdict::undecided;
-      });
-    }
-    else if ((finding == Finding::free) == marked_) {
-      const Verdict flag = marked_ ? Verdict::free : Verdict::undecided;
-      visit([this, flag](std::uint32_t record) { flags_[record] = flag; });
-    }
-  }
-
-  const SphereHierarchy::Storage& cloud_;
-  const std::uint32_t voxel_;
-  Verdict* const flags_;
-  const bool marked_;
-};
-
-/// The array of one cloud.
-class FlagSheet {
-public:
-  explicit FlagSheet(std::vector<Verdict>& flags) : flags_(flags) {}
-
-  void begin(const FlagQuery& query, const std::vector<FlaggedPlace>& places, bool marked)
-  {
-    const SphereHierarchy& cloud = query.a.hierarchy();
-    marked_ = marked;
-    flags_.assign(cloud.view().count,
-                  marked && cloud.size() == cloud.view().count && !places.empty() ? Verdict::undecided : Verdict::free);
-    if (!marked || cloud.size() == cloud.view().count) return;
-    for (const FlaggedPlace& place : places) // the hierarchy does not hold all records
+    const SphereHierarchy& cloud = a.hierarchy();
+    const bool whole = cloud.size() == cloud.view().count; // the hierarchy holds all records
+    flags_.assign(cloud.view().count, marked_ && whole && !voxels_.places.empty() ? Verdict::undecided : Verdict::free);
+    if (!marked_ || whole) return;
+    for (const FlaggedPlace& place : voxels_.places)
       cloud.storage().forEachRecord(place.voxel, [this](std::uint32_t record) { flags_[record] = Verdict::undecided; });
   }
 
-  FlaggedVoxel walk(const FlagQuery& query, const StopRule& rule, const FlaggedPlace& place)
+  /// As VoxelPasses has them.
+  std::size_t steps(const StopRule& rule) const { return voxels_.steps(rule); }
+  std::uint64_t spent() const { return voxels_.spent(); }
+  void passes(const StopRule& rule, std::uint64_t tests)
   {
-    FlagArray array(query.a.hierarchy().storage(), place.voxel, flags_.data(), marked_);
-    const FlaggedVoxel found = flagVoxel(query, rule, place.voxel, array);
-    colliding_.fetch_add(array.colliding, std::memory_order_relaxed);
-    return found;
+    voxels_.run(rule, tests, [this](const StopRule& own, const FlaggedPlace& place) {
+      FlagWriter writer(query_.a.hierarchy().storage(), place.voxel, flags_.data(), marked_);
+      const FlaggedVoxel found = flagVoxel(query_, own, place.voxel, writer);
+      colliding_.fetch_add(writer.colliding, std::memory_order_relaxed);
+      return found;
+    });
   }
-
-  static void end() {}
 
   std::size_t colliding() const { return colliding_.load(std::memory_order_relaxed); }
 
-  std::size_t undecided() const { return countOf(flags_, Verdict::undecided); }
-
 private:
   std::vector<Verdict>& flags_;
+  /// Whether points are undecided at first: a budget may end before a voxel is looked at. A level looks at all voxels,
+  /// and has to look only at those that come near.
+  const bool marked_;
+  const PointPairs pairs_;
+  const PointPairs certain_;
+  const FlagQuery query_;
+  VoxelPasses<FlaggedPlace, FlaggedVoxel> voxels_; ///< with undecided points
   std::atomic<std::size_t> colliding_{0};
-  bool marked_ = false;
 };
 
 /// The flags of points that are where `places` says, which takes the progress from one share of the whole to another.
 void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found,
                 Progress& progress, double from, double to)
 {
-  FlagSheet sheet_a(found.a), sheet_b(found.b);
-  found.work += flagSides(a, b, request, places, sheet_a, sheet_b, progress, from, to);
-  found.colliding_a = sheet_a.colliding();
-  found.colliding_b = sheet_b.colliding();
+  const StopRule rule(request.accuracy);
+  if (request.flagged == Side::both && rule.mayStop()) {
+    FlagSide side_a(a, b, request, places, rule, found.a, found.work, progress),
+        side_b(b, a, request, places, rule, found.b, found.work, progress);
+    progress.begin(to, 2 * side_a.steps(rule) + side_b.steps(rule)); // a may come to its turn again
+    passBothWithin(side_a, side_b, rule);
+    found.colliding_a = side_a.colliding();
+    found.colliding_b = side_b.colliding();
+  }
+  else {
+    if (request.flagged != Side::b) {
+      const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
+                                  b.hierarchy().view().count);
+      FlagSide side(a, b, request, places, rule, found.a, found.work, progress, patches);
+      progress.begin(request.flagged == Side::both ? 0.5 * (from + to) : to, side.steps(rule));
+      side.passes(rule, rule.node_pairs);
+      found.colliding_a = side.colliding();
+    }
+    if (request.flagged != Side::a) {
+      FlagSide side(b, a, request, places, rule, found.b, found.work, progress);
+      progress.begin(to, side.steps(rule));
+      side.passes(rule, rule.node_pairs);
+      found.colliding_b = side.colliding();
+    }
+  }
   if (!request.accuracy.stopsEarly() && places != Places::either) return;
-  found.undecided_a = sheet_a.undecided();
-  found.undecided_b = sheet_b.undecided();
+  found.undecided_a = countOf(found.a, Verdict::undecided);
+  found.undecided_b = countOf(found.b, Verdict::undecided);
 }
 
 /// Of flags that a density guard looks at again, what the flags themselves are of the whole.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/flags/sink.h>
+#include <pcl_bsh/flags/flag_writer.h>
 #include <pcl_bsh/query/acceptance.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/traversal/point_pairs.h>
@@ -41,6 +41,6 @@ struct FlaggedVoxel {
 void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work);
 
 /// Flags the points of one voxel of a.
-FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink);
+FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagWriter& writer);
 
 } // namespace pcl_bsh

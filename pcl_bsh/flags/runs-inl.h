@@ -33,12 +33,12 @@ class FlagRuns {
 public:
   /// @param voxel listed. @param obstacles all voxels of b that it can reach; points have no radii
   FlagRuns(const Voxel& voxel, const PointsView& view, const std::vector<ObstacleVoxel>& obstacles,
-           const FlagQuery& query, FlagSink& sink, Work& work)
+           const FlagQuery& query, FlagWriter& writer, Work& work)
   : voxel_(voxel),
     view_(view),
     obstacles_(obstacles),
     query_(query),
-    sink_(sink),
+    writer_(writer),
     work_(work),
     slack_(roundUp(storedSlack(voxel.frame))),
     boxes_(obstacles)
@@ -292,7 +292,7 @@ private:
         return (undecided & ~hit) == 0;
       });
     if (hit == 0) return false;
-    tellBits(sink_, Finding::colliding, hit, [this](std::uint32_t i) { return points_[i].record; });
+    tellBits(writer_, Finding::colliding, hit, [this](std::uint32_t i) { return points_[i].record; });
     open_ &= ~hit;
     hit_in_ = &obstacle;
     hit_leaf_ = leaf;
@@ -308,7 +308,7 @@ private:
     const OpenPoints hit = hitUncertain(
         obstacle, carried_, [this](std::uint32_t i) { return points_[i].record; }, leaf, open, query_, work_);
     perhaps = (perhaps | hit.perhaps) & ~hit.surely;
-    tellBits(sink_, Finding::possible, perhaps, [this](std::uint32_t i) { return points_[i].record; });
+    tellBits(writer_, Finding::possible, perhaps, [this](std::uint32_t i) { return points_[i].record; });
     return hit.surely;
   }
 
@@ -316,7 +316,7 @@ private:
   const PointsView& view_;
   const std::vector<ObstacleVoxel>& obstacles_;
   const FlagQuery& query_;
-  FlagSink& sink_;
+  FlagWriter& writer_;
   Work& work_;
   const float slack_;
   const ObstacleBoxes boxes_;
@@ -338,11 +338,12 @@ private:
 
 /// Flags the points of a voxel of a, where it lists them and this was not done before. @return whether all are flagged
 inline bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel,
-                     const std::vector<ObstacleVoxel>& obstacles, const FlagQuery& query, FlagSink& sink, Work& work)
+                     const std::vector<ObstacleVoxel>& obstacles, const FlagQuery& query, FlagWriter& writer,
+                     Work& work)
 {
   if (query.pairs.haveRadii()) return false;
-  return a.readOnce(voxel,
-                    [&](const Voxel& listed) { return FlagRuns(listed, a.view, obstacles, query, sink, work).run(); });
+  return a.readOnce(
+      voxel, [&](const Voxel& listed) { return FlagRuns(listed, a.view, obstacles, query, writer, work).run(); });
 }
 
 } // namespace HWY_NAMESPACE

@@ -177,8 +177,8 @@ public:
     return near;
   }
 
-  /// Tells the sink which points may collide, of the open children that are done with.
-  HWY_NOINLINE void report(const FlagVisit& visit, FlagSink& sink) const
+  /// Tells the writer which points may collide, of the open children that are done with.
+  HWY_NOINLINE void report(const FlagVisit& visit, FlagWriter& writer) const
   {
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -190,9 +190,9 @@ public:
                                                                                           voxel_->records() +
                                                                                           visit.node->begin[lane + 1];
       if (all)
-        sink.tell(Finding::possible, first, last);
+        writer.tell(Finding::possible, first, last);
       else
-        tellBits(sink, Finding::possible, points, [first](std::uint32_t i) { return first[i]; });
+        tellBits(writer, Finding::possible, points, [first](std::uint32_t i) { return first[i]; });
     }
   }
 

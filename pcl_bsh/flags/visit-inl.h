@@ -9,7 +9,7 @@
 #define PCL_BSH_FLAGS_VISIT_INL_H_
 #endif
 
-#include <pcl_bsh/flags/sink.h>
+#include <pcl_bsh/flags/flag_writer.h>
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
@@ -86,14 +86,14 @@ struct FlagVisit {
   }
 };
 
-/// Tells a sink of some of sixteen points. @param bits of them. @param recordOf(i) of one
+/// Tells a writer of some of sixteen points. @param bits of them. @param recordOf(i) of one
 template <class RecordOf>
-inline void tellBits(FlagSink& sink, Finding finding, std::uint32_t bits, const RecordOf& recordOf)
+inline void tellBits(FlagWriter& writer, Finding finding, std::uint32_t bits, const RecordOf& recordOf)
 {
   if (bits == 0) return;
   std::uint32_t records[kLeafPoints], count = 0;
   for (; bits != 0; bits &= bits - 1) records[count++] = recordOf(static_cast<std::uint32_t>(std::countr_zero(bits)));
-  sink.tell(finding, records, records + count);
+  writer.tell(finding, records, records + count);
 }
 
 /// Finds points of b by their distance alone, for hasPointWithin().

@@ -25,14 +25,14 @@ namespace HWY_NAMESPACE {
 
 class FlagWalk {
 public:
-  FlagWalk(const FlagQuery& query, const StopRule& rule, FlagSink& sink, FlagScratch& scratch)
+  FlagWalk(const FlagQuery& query, const StopRule& rule, FlagWriter& writer, FlagScratch& scratch)
   : query_(query),
     a_(query.a),
     b_(query.b),
     pairs_(query.pairs),
     reach_(pairs_.reach.length()),
     rule_(rule),
-    sink_(sink),
+    writer_(writer),
     visits_(scratch.visits),
     obstacles_(scratch.obstacles),
     spheres_(scratch.spheres),
@@ -56,8 +56,8 @@ public:
     const bool apart = above.separates(reach_ + a_.storage.largest_radius + b_.storage.largest_radius);
     if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
     const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
-    if (all) return sink_.tellAll(Finding::colliding);
-    if (apart || reached_.empty()) return sink_.tellAll(Finding::free);
+    if (all) return writer_.tellAll(Finding::colliding);
+    if (apart || reached_.empty()) return writer_.tellAll(Finding::free);
     if (!mayEnter(voxel)) return leaveAll();
     for (const std::uint32_t other : reached_) {
       pulse_.look();
@@ -76,11 +76,11 @@ public:
            b_.storage.hasLongTriangles(other)});
     }
     allowed_ = steps() + kStepsOfVoxel;
-    if (b_.storage.view.triangles && !isNearTriangles(voxel)) return sink_.tellAll(Finding::free);
+    if (b_.storage.view.triangles && !isNearTriangles(voxel)) return writer_.tellAll(Finding::free);
     allowed_ += kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
-        flagRuns(a_.storage, voxel, obstacles_, query_, sink_, found.work))
+        flagRuns(a_.storage, voxel, obstacles_, query_, writer_, found.work))
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
@@ -210,7 +210,7 @@ private:
       from = to;
     }
     if (rule_.mayStop()) clear(visit);
-    if (query_.certain) uncertain_.report(visit, sink_);
+    if (query_.certain) uncertain_.report(visit, writer_);
     for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
@@ -223,7 +223,7 @@ private:
     }
   }
 
-  /// Where the walk may stop early: reports to the sink which points met nothing of b, and which stay undecided.
+  /// Where the walk may stop early: reports to the writer which points met nothing of b, and which stay undecided.
   void clear(const FlagVisit& visit)
   {
     for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
@@ -399,7 +399,7 @@ private:
       if (visit.near[lane].empty()) continue;
       const LeafRange leaf = slabs_.leafOf(visit, lane);
       const std::uint32_t hit = collidingPoints(visit, lane, leaf, slabs_.carriedPoints(visit, lane));
-      tellBits(sink_, Finding::colliding, hit, [&leaf](std::uint32_t i) { return leaf.record(i); });
+      tellBits(writer_, Finding::colliding, hit, [&leaf](std::uint32_t i) { return leaf.record(i); });
       visit.open_points[lane] &= ~hit;
       if (visit.open_points[lane] != 0) continue;
       visit.open &= ~(1u << lane);
@@ -461,13 +461,13 @@ private:
   void tell(Finding finding, std::uint32_t begin, std::uint32_t end)
   {
     found.undecided = found.undecided || finding == Finding::left;
-    sink_.tell(finding, a_voxel_->records() + begin, a_voxel_->records() + end);
+    writer_.tell(finding, a_voxel_->records() + begin, a_voxel_->records() + end);
   }
 
   void leaveAll()
   {
     found.undecided = true;
-    sink_.tellAll(Finding::left);
+    writer_.tellAll(Finding::left);
   }
 
   const FlagQuery& query_;
@@ -475,7 +475,7 @@ private:
   const PointPairs& pairs_;
   const double reach_; ///< of all pairs
   const StopRule& rule_;
-  FlagSink& sink_;
+  FlagWriter& writer_;
   static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
   static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
 

@@ -43,10 +43,10 @@ void findNearVoxelsOnTarget(const FlagQuery& query, std::vector<FlaggedPlace>& n
   findNearVoxels(a, b.storage.top[0], frame, frame.pruneReach(reach), a.storage.top[0], near, work);
 }
 
-FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink)
+FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagWriter& writer)
 {
   const ScratchLease<FlagScratch> scratch;
-  FlagWalk walk(query, rule, sink, *scratch);
+  FlagWalk walk(query, rule, writer, *scratch);
   walk.run(voxel);
   return walk.found;
 }
@@ -66,9 +66,9 @@ void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Wor
   HWY_DYNAMIC_DISPATCH(findNearVoxelsOnTarget)(query, near, work);
 }
 
-FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagSink& sink)
+FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagWriter& writer)
 {
-  return HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, rule, voxel, sink);
+  return HWY_DYNAMIC_DISPATCH(flagVoxelOnTarget)(query, rule, voxel, writer);
 }
 
 } // namespace pcl_bsh
