@@ -72,7 +72,7 @@ rooms() {
         for (k = 1; k <= others; ++k) add(other[k])
       }
       for (room in found) if (room != "") print room
-    }' ARCHITECTURE.md $(git ls-files 'pcl_bsh/*.h' 'pcl_bsh/*.hpp' 'pcl_bsh/*.cpp' 'filters/*' 'test/*.h' 'test/*.cpp') | sort
+    }' ARCHITECTURE.md $(find pcl_bsh filters test -name '*.h' -o -name '*.hpp' -o -name '*.cpp') | sort
 }
 
 core=" $(sed -n '/^set(threaded/,/)/p; /^set(core_tests/p' test/CMakeLists.txt | sed 's/^set([a-z_]*//; s/[${}()]//g' | tr '\n' ' ') "
