@@ -150,7 +150,7 @@ TEST(PointDistances, TakeNoMoreWorkOfGrowingCornersThanKnown)
   for (const Corner& corner : corners) {
     SCOPED_TRACE(corner.name);
     std::uint64_t before = 0;
-    for (const std::size_t n : {250, 1'000, 4'000}) {
+    for (const std::size_t n : {250u, 1'000u, 4'000u}) {
       const std::uint64_t work = workOf(corner.a(n), corner.b(n));
       const double growth = before != 0 ? static_cast<double>(work) / static_cast<double>(before) : 0.0;
       EXPECT_LE(growth, corner.growth) << n << " points: " << work;

@@ -18,8 +18,6 @@ using test::Random;
 using test::Scene;
 using namespace test::adversarial;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Of records: the distance and pair that brute force finds in both directions.
 HausdorffDistance truthOf(const Placed& a, const Placed& b)
 {

@@ -154,7 +154,7 @@ TEST(LongTriangles, TakeWorkThatGrowsWithThem)
   for (const Point3& at : {kNear, kFar})
     for (const Question& question : questions) {
       double before = 0.0;
-      for (const std::uint32_t count : {4000, 16000, 64000}) {
+      for (const std::uint32_t count : {4000u, 16000u, 64000u}) {
         const TestMesh mesh = moved(fan(count), at), scan = scanAbout(1000, at);
         const SphereHierarchy triangles(viewOf(mesh.trianglesView())), points(scan.view());
         const double steps = stepsOf(question.ask(triangles, points, at));

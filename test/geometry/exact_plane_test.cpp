@@ -28,7 +28,7 @@ TEST(ExactPlane, SidesAreThoseOfRationalNumbers)
     Point3 normal = random.point([&] { return std::ldexp(number(), -scale); });
     if (random.chance(0.2)) { // out of range beside the others
       normal[2] = std::ldexp(normal[2], -600);
-      for (const std::size_t k : {0, 1}) normal[k] = std::ldexp(normal[k], random.pick({0, 500}));
+      for (const std::size_t k : {0u, 1u}) normal[k] = std::ldexp(normal[k], random.pick({0, 500}));
     }
     Point3 place = random.point(number);
     if (random.chance(0.5)) { // in the plane, or by a rounding beside it

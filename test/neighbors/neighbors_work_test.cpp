@@ -40,7 +40,7 @@ TEST(NeighborsWork, GrowsAsTheShellAroundTheQuery)
 {
   // All points are nearest within rounding, so that all have to be looked at: once, not once for each few others.
   for (const double off : {0.0, 1e-6, 1e-3}) {
-    for (const std::size_t k : {1, 2, 10, 100}) {
+    for (const std::size_t k : {1u, 2u, 10u, 100u}) {
       const auto steps = [&](std::size_t n) {
         return stepsOfNearest({test::adversarial::shells(n, 1, 0), {{off, 0, 0}}}, k);
       };
@@ -68,8 +68,8 @@ TEST(NeighborsWork, StraysDoNotSpoilTheOthers)
       {{sentinel, sentinel, sentinel}},
       std::vector<Point3>(6, Point3{1e20, 1e20, 1e20}),
       {{1e20, 0, 0}, {-1e20, 0, 0}, {0, 1e20, 0}, {0, -1e20, 0}, {0, 0, 1e20}, {0, 0, -1e20}}};
-  for (std::size_t n : {3000, 12000, 48000}) {
-    for (const std::size_t k : {1, 2, 10}) {
+  for (std::size_t n : {3000u, 12000u, 48000u}) {
+    for (const std::size_t k : {1u, 2u, 10u}) {
       const auto steps = [&](const std::vector<Point3>& far) {
         return stepsOfNearest({test::adversarial::with(test::adversarial::cube(n, 3), far), placesInCube()}, k);
       };
@@ -105,7 +105,7 @@ std::map<std::string, double> stepsOfEach(const test::HardCloud& hard)
     return stepsOf(work);
   };
   std::map<std::string, double> steps;
-  for (const std::size_t k : {1, 2, 10})
+  for (const std::size_t k : {1u, 2u, 10u})
     steps["the " + std::to_string(k) + " nearest"] =
         total([&](const Point3& at, Neighbors& found, Work& work) { nearestKSearch(hierarchy, at, k, found, &work); });
   steps["at most 3 within"] = total([&](const Point3& at, Neighbors& found, Work& work) {

@@ -26,7 +26,6 @@ using test::Shape;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Verdict kFree = Verdict::free;
-constexpr Verdict kColliding = Verdict::colliding;
 constexpr Verdict kUndecided = Verdict::undecided;
 
 /// A scene, its hierarchies, and what is true of it.

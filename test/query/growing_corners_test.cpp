@@ -188,7 +188,7 @@ TEST(GrowingCorners, TakeNoMoreWorkThanKnown)
 {
   for (const Corner& corner : corners()) {
     std::vector<double> before;
-    for (const std::size_t n : {250, 1000, 4000}) {
+    for (const std::size_t n : {250u, 1000u, 4000u}) {
       const std::vector<double> steps = stepsOf(corner, n);
       for (std::size_t q = 0; q < steps.size() && !before.empty(); ++q) {
         const double limits[] = {corner.one_pair, corner.flags, corner.path, corner.every};

@@ -87,7 +87,7 @@ TEST(RequestCombinations, Neighbors)
     const Cloud cloud = cloudWith(options, 40, random), asked = cloudWith(options ^ 5, 12, random);
     const SphereHierarchy hierarchy(cloud.view(), voxels(options));
     for (const double radius : {0.0, 0.125, 0.375, 5.0})
-      for (const std::size_t most : {0, 1, 3, 1000})
+      for (const std::size_t most : {0u, 1u, 3u, 1000u})
         for (const bool sorted : {false, true})
           for (const unsigned threads : {1u, 3u}) {
             const std::string name = "options " + std::to_string(options) + ", radius " + std::to_string(radius) +

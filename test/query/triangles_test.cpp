@@ -32,7 +32,6 @@ using test::Random;
 using test::Scene;
 
 const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 FlagsRequest flagsWithin(double clearance, const Accuracy& accuracy = {})
 {

@@ -442,7 +442,7 @@ TEST(DensityGuard, RefusesWhatIsNoSpacing)
   const SphereHierarchy a(cloud.view());
   FlagsRequest request = within(1.0, Side::a);
   for (const double wrong : {-1.0, kInfinity, std::nan("")})
-    for (const std::size_t place : {0, 1}) {
+    for (const std::size_t place : {0u, 1u}) {
       std::vector<float> spacings = {0.0f, 0.0f};
       spacings[place] = static_cast<float>(wrong);
       request.spacings_of_b = spacings.data();

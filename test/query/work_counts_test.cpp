@@ -238,11 +238,11 @@ public:
     };
     Neighbors found;
     std::vector<std::int32_t> boxed;
-    for (const std::size_t most : {0, 3})
+    for (const std::size_t most : {0u, 3u})
       search("radius " + std::to_string(most), [&](const SphereHierarchy& cloud, const Point3& at, Work& work) {
         radiusSearch(cloud, at, radius, found, {most, true}, &work);
       });
-    for (const std::size_t k : {1, 9})
+    for (const std::size_t k : {1u, 9u})
       search("nearest " + std::to_string(k), [&](const SphereHierarchy& cloud, const Point3& at, Work& work) {
         nearestKSearch(cloud, at, k, found, &work);
       });

@@ -632,7 +632,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
       for (int axis = 0; axis < 3; ++axis) poses.back().translation()[axis] = random.uniform(-0.15, 0.15);
     }
     poses[2].translation().x() += 9.0;
-    question.pose = poses[i % 4];
+    question.pose = poses[static_cast<std::size_t>(i % 4)];
     Shape input("the machine", viewOf(first.view())), obstacle("the tank", viewOf(second.view()));
     const Placed a(input.hierarchy(question.uncertaintyOfInput(), 1), question.pose_of_input);
     const SphereHierarchy& tank = obstacle.hierarchy({}, 1);

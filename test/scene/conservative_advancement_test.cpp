@@ -26,7 +26,6 @@ using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_bac
 constexpr double pi = std::numbers::pi;
 constexpr double offsets[] = {1e-3, 0.15, 0.3, 0.9, 1.0, 1.2}, reaches[] = {0.0, 0.01, 0.5};
 constexpr double angles[] = {0.0, 1e-15, 1e-9, 0.01, 1.0, 3.0, pi, 4.0, 2 * pi, 20.0, 150.0};
-constexpr double asked_angles[] = {0.0, 1e-9, 1.0, pi, 2 * pi, 40.0, 6000.0};
 
 /// x 2^240, exactly: for numbers whose last bit is no smaller.
 Integer scaled(double x)

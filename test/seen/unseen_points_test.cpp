@@ -366,7 +366,7 @@ TEST(MarkUnseenHardCases, BallAboutTheScanner)
   }
   std::vector<double> without_below;
   for (std::size_t i = 0; i < ends.size(); i += 3)
-    if (ends[i + 2] > -11.0) without_below.insert(without_below.end(), ends.begin() + i, ends.begin() + i + 3);
+    if (ends[i + 2] > -11.0) without_below.insert(without_below.end(), &ends[i], &ends[i] + 3);
   EXPECT_FALSE(isSeen({scanOf(without_below)}, 0.2, {0, 0, 0}, 0.1)); // where the scanner itself stands
   EXPECT_FALSE(isSeen({scanOf(without_below)}, 0.2, {0, 0, -2}, 0.1));
   EXPECT_TRUE(isSeen({scanOf(without_below)}, 0.2, {0, 0, 2}, 0.1));
@@ -378,7 +378,7 @@ TEST(MarkUnseenHardCases, TwoScannersThatSeeHalfEach)
   const std::vector<double> ends = allAround(0.1, 12.5);
   for (std::size_t i = 0; i < ends.size(); i += 3) {
     std::vector<double>& side = ends[i + 1] < 0.0 ? left : right;
-    side.insert(side.end(), ends.begin() + i, ends.begin() + i + 3);
+    side.insert(side.end(), &ends[i], &ends[i] + 3);
   }
   const Point3 middle{5, 0, 0}, aside{5, 2, 0};
   EXPECT_FALSE(isSeen({scanOf(left), scanOf(right)}, 0.2, middle, 2.0));
@@ -424,7 +424,7 @@ TEST(MarkUnseenHardCases, SomeBeamsWithoutReturn)
   const std::vector<double> ends = allAround(0.1, 12.5);
   for (std::size_t i = 0; i < ends.size(); i += 3) {
     std::vector<double>& side = ends[i] > 10.0 ? misses : returns;
-    side.insert(side.end(), ends.begin() + i, ends.begin() + i + 3);
+    side.insert(side.end(), &ends[i], &ends[i] + 3);
   }
   ScanBeams scan = scanOf(returns);
   scan.misses = viewOf(misses.data(), misses.size() / 3);

@@ -238,7 +238,7 @@ TEST(OpenEdges, OfCutMeshes)
 {
   test::Random random(28);
   int open = 0;
-  for (int i = 0; i < 14; ++i) {
+  for (unsigned i = 0; i < 14; ++i) {
     const ClosedMesh whole = i % 3 == 0 ? test::boxMesh(4) : test::latticeMesh(random.integer(1, 5), 8, 7 + i);
     ClosedMesh cut = cutMesh(whole, random.integer(1, 40), i);
     EXPECT_TRUE(find(cut).closed());
