@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a walk writes what it finds of the points of one voxel: the flags of a cloud's records.
+// Writes the findings of a walk through one voxel into the flags of a cloud's records.
 #pragma once
 
 #include <pcl_bsh/hierarchy/storage.h>
@@ -11,7 +11,7 @@
 
 namespace pcl_bsh {
 
-/// What a walk finds of a point.
+/// A walk's finding about one point.
 enum class Finding : std::uint8_t {
   colliding, ///< some points are told so more than once
   possible,  ///< where points are uncertain: it may collide; colliding may follow
@@ -32,13 +32,13 @@ public:
   {
   }
 
-  /// @param first, last records of the points
+  /// Writes one finding for some points. @param first, last their records
   void tell(Finding finding, const std::uint32_t* first, const std::uint32_t* last)
   {
     each(finding, [=](const auto& take) { std::for_each(first, last, take); });
   }
 
-  /// The same of all points of the voxel, which may not be built.
+  /// Writes one finding for all points of the voxel. The voxel need not be built.
   void tellAll(Finding finding)
   {
     each(finding, [this](const auto& take) { cloud_.forEachRecord(voxel_, take); });
