@@ -79,13 +79,6 @@ public:
     piece.work = std::exchange(walk_.work, Work());
   }
 
-  /// Looks below these pairs alone, the last one first. @pre their nodes' voxels are built
-  std::optional<PointPair> searchBelow(const std::vector<LanePair>& pairs)
-  {
-    stack_.assign(pairs.begin(), pairs.end());
-    return search();
-  }
-
   const Work& work() const { return walk_.work; }
 
   /// What is left to be visited since the observer stopped the search, the next one last.

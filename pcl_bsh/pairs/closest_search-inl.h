@@ -88,13 +88,6 @@ public:
     return result(walk_.work);
   }
 
-  /// The same with a bound on the distance from the start: that of any pair.
-  DistanceResult runFrom(PointPair pair)
-  {
-    consider(pair);
-    return run();
-  }
-
   /// Visits the pairs of a piece and what is below, until it is stopped.
   void operator()(SharedStack<LanePair>::Piece& piece)
   {

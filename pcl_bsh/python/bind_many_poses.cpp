@@ -12,7 +12,7 @@ namespace pcl_bsh::python {
 namespace {
 
 constexpr auto kAnyAtPoses =
-    R"(Does any pair of points collide, b at each of many poses? Neighbouring poses share the search.
+    R"(Does any pair of points collide, b at each of many poses?
 
 Parameters
 ----------

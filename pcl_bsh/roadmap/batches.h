@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries about lists of poses and of motions share: checks, how a list is divided among threads, and verdicts.
+// What queries about lists of poses and of motions share: checks, and how a list is divided among threads.
 #pragma once
 
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/query/pose_list.h>
 #include <pcl_bsh/query/progress.h>
-#include <pcl_bsh/roadmap/pose_batch.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace pcl_bsh {
@@ -35,26 +37,25 @@ std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWro
 /// Refuses a pose that is not rigid, by its index, and more poses than an index can name. @param whose words for them
 void checkPoses(const PoseList& poses, const char* whose, unsigned threads);
 
-/// Some entries of a list of poses, by their indices.
-struct SomePoses {
-  std::size_t size() const { return indices.size(); }
-  Eigen::Isometry3d operator[](std::size_t i) const { return list[indices[i]]; }
+/// As many entries of a list as one task answers: the first of them has no earlier answer to begin with.
+inline constexpr std::size_t kBatch = 64;
 
-  const PoseList& list;
-  const std::vector<std::uint32_t>& indices;
-};
-
-/// Calls answer(begin, end) for batches of `count` entries, from several threads, all that is left of the progress,
-/// until it is told to stop. @return the sum of the work that it returns. @throws Cancelled
-template <class Answer>
-Work forEachBatch(std::size_t count, unsigned threads, Progress& progress, const Answer& answer)
+/// Calls answer(i, work) for each entry of a list with an `Answer` for each batch, made by makeAnswer(), from several
+/// threads, all that is left of the progress, until it is told to stop. @return the sum of the work. @throws Cancelled
+template <class MakeAnswer>
+Work forEachInBatches(std::size_t count, unsigned threads, Progress& progress, const MakeAnswer& makeAnswer)
 {
-  const std::size_t batches = (count + kBatchPoses - 1) / kBatchPoses;
+  const std::size_t batches = (count + kBatch - 1) / kBatch;
   progress.begin(1.0, batches);
   std::vector<Work> work(batches);
-  parallelFor(batches, threadCount(threads), [&](std::size_t i) {
+  parallelFor(batches, threadCount(threads), [&](std::size_t batch) {
     if (progress.stopped()) return;
-    work[i] = answer(i * kBatchPoses, std::min(count, (i + 1) * kBatchPoses));
+    auto answer = makeAnswer();
+    WorkPulse pulse(work[batch]);
+    for (std::size_t i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i) {
+      pulse.look();
+      answer(i, work[batch]);
+    }
     progress.step();
   });
   progress.throwIfStopped();
@@ -62,36 +63,6 @@ Work forEachBatch(std::size_t count, unsigned threads, Progress& progress, const
   Work all;
   for (const Work& part : work) all += part;
   return all;
-}
-
-/// Gives entries of a list that are free so far the verdicts that they have: those that may collide, and of these
-/// those that do for certain.
-/// @param uncertain whether points may be elsewhere than they were measured
-/// @param report of the progress from `begin` on
-/// @param find Work(some, places, progress, mark): of the entries `some` those that collide while points are where
-///   `places` says, to be marked by their places in `some`, from several threads
-template <class Find>
-Work giveVerdicts(bool uncertain, const std::function<bool(double)>& report, double begin,
-                  std::vector<Verdict>& verdicts, const Find& find)
-{
-  Work work;
-  const auto decide = [&](Verdict open, Verdict verdict, Places places, double from, double to) {
-    std::vector<std::uint32_t> some;
-    for (std::size_t i = 0; i < verdicts.size(); ++i)
-      if (verdicts[i] == open) some.push_back(static_cast<std::uint32_t>(i));
-    const std::function<bool(double)> part = [&](double done) { return !report || report(from + (to - from) * done); };
-    Progress progress(part);
-    work += find(some, places, progress, [&](std::size_t i) { verdicts[some[i]] = verdict; });
-  };
-  const double middle = 0.5 * (begin + 1.0);
-  if (!uncertain) {
-    decide(Verdict::free, Verdict::colliding, Places::measured, begin, 1.0);
-  }
-  else {
-    decide(Verdict::free, Verdict::undecided, Places::possible, begin, middle);
-    decide(Verdict::undecided, Verdict::colliding, Places::certain, middle, 1.0);
-  }
-  return work;
 }
 
 } // namespace pcl_bsh

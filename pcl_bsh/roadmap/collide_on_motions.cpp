@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many motions as a whole: what collides at a pose, then the motions that are left, as poses of their middles.
+// Many motions: what collides at a pose, then the motions that are left, one after the other.
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/roadmap/batches.h>
+#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/motions_query.h>
 #include <pcl_bsh/trajectory/leaf/closest_approach.h>
 #include <pcl_bsh/traversal/point_pairs.h>
@@ -12,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -42,44 +47,30 @@ Eigen::Vector3d seen(const Eigen::Isometry3d& pose, const Eigen::Vector3d& world
   return pose.linear().transpose() * (world - pose.translation());
 }
 
-/// About where motions have their middles: enough to order them.
-struct RoughMiddles {
-  std::size_t size() const { return open.size(); }
-  Eigen::Isometry3d operator[](std::size_t i) const
-  {
-    const PoseMotion& motion = motions[open[i]];
-    Eigen::Isometry3d middle = Eigen::Isometry3d::Identity();
-    middle.matrix().topRows<3>() =
-        0.5 * (poses[motion.from].matrix().topRows<3>() + poses[motion.to].matrix().topRows<3>());
-    return middle;
-  }
-
-  const PoseList& poses;
-  const std::vector<PoseMotion>& motions;
-  const std::vector<std::uint32_t>& open;
-};
-
-/// Those of a batch, of points that are where `places` says.
-class MotionsOfBatch final : public MotionsAbout {
+/// Of one motion after another whether points collide that are where `places` says.
+class MotionSearch {
 public:
-  MotionsOfBatch(const MotionsQuery& query, Places places) : query_(query), places_(places)
+  MotionSearch(const MotionsQuery& query, Places places) : query_(query), places_(places) {}
+
+  /// What collides at an instant, decided exactly, collides on the motion, too. What does not collide at the instants
+  /// that are tried needs the motion's own search.
+  bool collides(const RigidMotion& motion, Work& work)
   {
-    tolerance = query.request.swept;
+    if (witness_ && collideNearest(motion, *witness_, work)) return true;
+    const Placed middle{query_.model, motion.at(0.5)};
+    const double extent = extentAround(middle.pose, motion, query_.body);
+    const double beyond = (query_.request.clearance + query_.request.swept + extent) * (1.0 + kFewDoubleRoundings);
+    if (std::isfinite(beyond) && !find(middle, beyond, work)) return false;
+    std::optional<PointPair> witness = find(middle, query_.request.clearance, work);
+    if (!witness) witness = sweep(motion, work);
+    if (witness) witness_ = witness;
+    return witness.has_value();
   }
 
-  /// Appends a motion. @return the pose of its middle
-  Eigen::Isometry3d add(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, const BodyBall& body)
-  {
-    const RigidMotion& motion = motions_.emplace_back(motionBetween(from, to, query_.request.pivot));
-    const Eigen::Isometry3d middle = motion.at(0.5);
-    extents.push_back(extentAround(middle, motion, body));
-    return middle;
-  }
-
+private:
   /// At the instant that a straight line between the motion's ends suggests.
-  bool collide(std::size_t i, const PointPair& pair, Work& work) const override
+  bool collideNearest(const RigidMotion& motion, const PointPair& pair, Work& work) const
   {
-    const RigidMotion& motion = motions_[i];
     const Point3 p = query_.scan.hierarchy().view().point(pair.a), q = query_.model.view().point(pair.b);
     const Eigen::Vector3d world = query_.scan.pose * Eigen::Vector3d(p[0], p[1], p[2]);
     const Eigen::Vector3d start = seen(motion.from(), world), way = seen(motion.to(), world) - start;
@@ -89,13 +80,20 @@ public:
     return PointPairs(query_.scan, model, query_.request.clearance, places_).collide(pair, work);
   }
 
-  /// As a swept path that ends at the first witness.
-  std::optional<PointPair> find(std::size_t i, Work& work) const override
+  std::optional<PointPair> find(const Placed& model, double clearance, Work& work) const
+  {
+    const AnyResult found = anyCollisionAt(query_.scan, model, {clearance}, places_);
+    work += found.work;
+    return found.pair;
+  }
+
+  /// As a swept path that ends at the first witness, which it has if and only if there is one.
+  std::optional<PointPair> sweep(const RigidMotion& motion, Work& work) const
   {
     const std::function<bool(double)> none;
     Progress own(none);
     TrajectoryResult counted;
-    const std::vector<Eigen::Isometry3d> ends = {motions_[i].from(), motions_[i].to()};
+    const std::vector<Eigen::Isometry3d> ends = {motion.from(), motion.to()};
     const TrajectoryQuery path(query_.scan, query_.model, query_.boxes, ends, query_.swept, counted, own, places_,
                                Wanted::witness);
     const StopRule never(Accuracy::exact());
@@ -110,18 +108,41 @@ public:
     return witness;
   }
 
-private:
   const MotionsQuery& query_;
   const Places places_;
-  std::vector<RigidMotion> motions_;
+  std::optional<PointPair> witness_; ///< of the last that collided
+};
+
+/// Poses that motions name, in a list without the others.
+struct SomePoses {
+  std::size_t size() const { return indices.size(); }
+  Eigen::Isometry3d operator[](std::size_t i) const { return list[indices[i]]; }
+
+  const PoseList& list;
+  const std::vector<std::uint32_t>& indices;
 };
 
 } // namespace
+
+BodyBall::BodyBall(const SphereHierarchy& body)
+{
+  const SphereHierarchy::Storage& storage = body.storage();
+  const LocalFrame& frame = storage.frame;
+  const Node& root = storage.top[0];
+  center = Eigen::Vector3d(frame.origin[0], frame.origin[1], frame.origin[2]);
+  double reach = 0.0;
+  for (std::uint32_t i = 0; i < root.count; ++i) {
+    const Eigen::Vector3d at(root.x[i], root.y[i], root.z[i]);
+    reach = std::max(reach, at.norm() + static_cast<double>(root.r[i]));
+  }
+  radius = reach * frame.unit * (1.0 + 8 * kFewDoubleRoundings);
+}
 
 MotionsQuery::MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_of, const MotionsRequest& asked)
 : scan(scan_at),
   model(model_of),
   request(asked),
+  body(model_of),
   boxes(model_of.storage(), Travel(), // of motions in all directions
         divisionFor(scan_at.hierarchy().storage().size, scan_at.hierarchy().storage().largest_radius)),
   swept(requestOfOne(asked))
@@ -180,26 +201,22 @@ AnyOnMotions answer(const Placed& scan, const SphereHierarchy& model, const Pose
   for (std::size_t m = 0; m < motions.size(); ++m)
     result.flags[m] = graver(found.flags[place[motions[m].from]], found.flags[place[motions[m].to]]);
 
-  const BodyBall body(model);
-  result.work += giveVerdicts(
-      areUncertain(scan, {model}), request.progress, kAtPoses, result.flags,
-      [&](const std::vector<std::uint32_t>& open, Places places, Progress& progress, const auto& mark) {
-        const std::vector<std::uint32_t> order =
-            orderOf(RoughMiddles{poses, motions, open}, body, threadCount(request.threads));
-        return forEachBatch(order.size(), request.threads, progress, [&](std::size_t begin, std::size_t end) {
-          MotionsOfBatch about(query, places);
-          PoseBatch middles{scan, model, body, {}, &about};
-          for (std::size_t k = begin; k < end; ++k) {
-            const PoseMotion& motion = motions[open[order[k]]];
-            middles.poses.push_back(about.add(poses[motion.from], poses[motion.to], body));
-          }
-          bool collide[kBatchPoses] = {};
-          const Work work = anyOfBatch(middles, at_poses, places, collide);
-          for (std::size_t k = begin; k < end; ++k)
-            if (collide[k - begin]) mark(order[k]);
-          return work;
-        });
-      });
+  const std::function<bool(double)> left = [&](double done) {
+    return !request.progress || request.progress(kAtPoses + (1.0 - kAtPoses) * done);
+  };
+  Progress progress(left);
+  const bool uncertain = areUncertain(scan, {model});
+  result.work += forEachInBatches(motions.size(), request.threads, progress, [&] {
+    return [&, possible = MotionSearch(query, possiblePlaces(scan, {model})),
+            certain = MotionSearch(query, Places::certain)](std::size_t m, Work& work) mutable {
+      Verdict& flag = result.flags[m];
+      if (flag == Verdict::colliding) return;
+      const RigidMotion motion = motionBetween(poses[motions[m].from], poses[motions[m].to], request.pivot);
+      if (flag == Verdict::free && possible.collides(motion, work))
+        flag = uncertain ? Verdict::undecided : Verdict::colliding;
+      if (flag == Verdict::undecided && certain.collides(motion, work)) flag = Verdict::colliding;
+    };
+  });
   result.colliding = countOf(result.flags, Verdict::colliding);
   result.undecided = countOf(result.flags, Verdict::undecided);
   return result;

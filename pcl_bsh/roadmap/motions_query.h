@@ -3,13 +3,22 @@
 #pragma once
 
 #include <pcl_bsh/geometry/rigid_motion.h>
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
-#include <pcl_bsh/roadmap/pose_order.h>
 #include <pcl_bsh/trajectory/query.h>
 
 #include <vector>
 
 namespace pcl_bsh {
+
+/// A ball that holds all points of a body, with their radii, in the body's frame.
+struct BodyBall {
+  /// @param body not empty
+  explicit BodyBall(const SphereHierarchy& body);
+
+  Eigen::Vector3d center;
+  double radius;
+};
 
 struct MotionsQuery {
   MotionsQuery(const Placed& scan_at, const SphereHierarchy& model_of, const MotionsRequest& asked);
@@ -17,6 +26,7 @@ struct MotionsQuery {
   const Placed& scan;
   const SphereHierarchy& model;
   const MotionsRequest& request;
+  const BodyBall body;     ///< of the model
   const BoxTree boxes;     ///< of the model
   TrajectoryRequest swept; ///< the same, of one motion
 };

@@ -20,7 +20,6 @@ struct Options : ProgramOptions {
   std::vector<std::string> racers = availableRigidRacers();
   std::size_t poses = 1000;
   std::size_t slow_poses = 60;
-  std::size_t many_poses = 0;
   std::size_t motions = 0;
 };
 
@@ -99,15 +98,6 @@ RigidPose poseAround(const RigidPose& middle, double spread, Random& random)
   return pose;
 }
 
-/// Poses around a near miss.
-std::vector<RigidPose> posesAround(const PosedCase& middle, std::size_t count, double spread)
-{
-  Random random(5);
-  std::vector<RigidPose> poses;
-  for (std::size_t i = 0; i < count; ++i) poses.push_back(poseAround(middle.pose, spread, random));
-  return poses;
-}
-
 /// A tree of poses that grows about a near miss, as planners make it: each pose by a step from an earlier one, with a
 /// motion from that one and from the one before that.
 Roadmap roadmapAround(const PosedCase& middle, std::size_t motions, double step)
@@ -126,41 +116,6 @@ Roadmap roadmapAround(const PosedCase& middle, std::size_t motions, double step)
   }
   map.motions.resize(motions);
   return map;
-}
-
-/// Rates at many poses in one call, beside those of single calls at some of them.
-bool raceMany(const Options& options, const Bodies& bodies, const std::string& racer_name, RigidRacer& racer,
-              Table& table)
-{
-  const auto middle = std::find_if(bodies.cases.begin(), bodies.cases.end(),
-                                   [](const PosedCase& posed) { return posed.kind == PoseClass::near_miss; });
-  bool right = true;
-  for (const double spread : {0.02, 0.03, 0.1, 0.3}) {
-    const std::vector<RigidPose> poses = posesAround(*middle, options.many_poses, spread);
-    const std::vector<RigidPose> some(poses.begin(),
-                                      poses.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
-                                                          poses.size(), racer.slow() ? options.slow_poses : 20000)));
-    const auto addRow = [&](const std::string& how, std::size_t count, double seconds, std::size_t hits) {
-      table.add({std::to_string(bodies.a.size()), "any, " + how, "within " + text(spread), racer_name,
-                 std::to_string(count), text(1e6 * seconds / static_cast<double>(count)), "", "", "", "",
-                 std::to_string(hits) + " hits; " + racer.remark()});
-    };
-    racer.remark();
-    const Stopwatch watch;
-    std::size_t hits = 0;
-    for (const RigidPose& pose : some) hits += racer.any(pose);
-    addRow("single", some.size(), watch.seconds(), hits);
-    if (!racer.takesMany()) continue;
-    right = racer.anyOfMany(some, 1) == hits && right;
-    racer.remark();
-    for (const unsigned threads : {1u, 2u}) {
-      progress(racer_name + ", " + std::to_string(poses.size()) + " poses within " + text(spread));
-      const Stopwatch batch;
-      hits = racer.anyOfMany(poses, threads);
-      addRow("batch, " + std::to_string(threads) + " threads", poses.size(), batch.seconds(), hits);
-    }
-  }
-  return right;
 }
 
 /// Rates of motions in one call, beside those of a call for each of some of them.
@@ -225,7 +180,6 @@ bool race(const Options& options, std::size_t size, Table& table)
                  bodies, kind, at_most, repeat, [&](const RigidPose& pose) { return racer->any(pose); },
                  [&](bool answer, double truth) { return answer == (truth <= bodies.spacing); }));
     }
-    if (options.many_poses != 0) wrong += !raceMany(options, bodies, racer_name, *racer, table);
     if (options.motions != 0 && racer->takesMotions())
       wrong += !raceMotions(options, bodies, racer_name, *racer, table);
     if (!racer->measuresDistance()) continue;
@@ -258,12 +212,10 @@ int main(int argc, char** argv)
   app.add_option("--slow-poses", options.slow_poses, "poses for the slow racers")
       ->check(CLI::Range(3, 1000000))
       ->capture_default_str();
-  app.add_option("--many-poses", options.many_poses,
-                 "poses around a near miss in one call, beside single calls; mean times, in the column of the median")
-      ->check(CLI::Range(0, 10000000))
-      ->capture_default_str();
-  app.add_option("--motions", options.motions,
-                 "motions between poses around a near miss in one call, beside a call for each; likewise")
+  app.add_option(
+         "--motions", options.motions,
+         "motions between poses around a near miss in one call, beside a call for each; mean times, in the column of\n"
+         "the median")
       ->check(CLI::Range(0, 10000000))
       ->capture_default_str();
   app.add_option("--racers", options.racers, "who runs")

@@ -38,7 +38,7 @@ PROGRAMS = {
                          "--racers pcl_bsh,pcl_bsh_warm,fitted_grid,nanoflann --clock cpu --repeat 3"],
     "growth.csv": ["bench_growth --clock cpu --repeat 1 --sizes 1000,8000"],
     "laz.csv": ["bench_laz --clock cpu --threads 1 --repeat 3"],
-    "many_poses.csv": ["bench_rigid --sizes 100000 --poses 12 --racers pcl_bsh --many-poses 20000 --motions 200 --clock cpu"],
+    "motions.csv": ["bench_rigid --sizes 100000 --poses 12 --racers pcl_bsh --motions 200 --clock cpu"],
     "rigid_100k.csv": ["bench_rigid --sizes 100000 --poses 300"],
     "scene.csv": ["bench_scene --clock cpu --cloud 1000000 --objects 300 --steps 30"],
     "search.csv": ["bench_search --scene terrain,lion --size 300000 --queries 10000 --orders scan --clock cpu --repeat 3"],

@@ -6,7 +6,6 @@
 #include "peer/fcl_boxes.h"
 #endif
 
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -52,17 +51,6 @@ public:
   double distance(const RigidPose& pose) const override
   {
     return counted(closestPair({*a_}, {*b_, toEigen(pose)})).distance;
-  }
-
-  bool takesMany() const override { return true; }
-  std::size_t anyOfMany(const std::vector<RigidPose>& poses, unsigned threads) const override
-  {
-    AnyRequest request = request_;
-    request.threads = threads;
-    const AnyAtPoses found = anyCollisionAtPoses({*a_}, *b_, PosesOf{poses}, request);
-    work_ += found.work;
-    answers_ += poses.size();
-    return found.colliding;
   }
 
   bool takesMotions() const override { return true; }

@@ -33,10 +33,6 @@ public:
   /// Smallest distance; only when measuresDistance().
   virtual double distance(const RigidPose&) const { return 0.0; }
 
-  /// Whether any() of many poses in one call is a thing of its own; then anyOfMany() answers them.
-  virtual bool takesMany() const { return false; }
-  virtual std::size_t anyOfMany(const std::vector<RigidPose>&, unsigned /*threads*/) const { return 0; }
-
   /// Whether the motion between two poses can be asked about; then on how many of the first `count` motions of a
   /// roadmap any pair comes within the d of build(), to a tolerance of a tenth of it: one call for each, or one for
   /// all.

@@ -206,13 +206,12 @@ def cold(rows):
                    " / ".join(f"{float(of[racer]['faults']):,.0f}" for racer in ("pcl_bsh", "fitted_grid")) + " |")
 
 
-def many(rows):
-    yield "| any collision | a call for each | one call |"
+def motions(rows):
+    yield "| any collision on motions | a call for each | one call |"
     yield "|---|---|---|"
-    for single, batch, kinds in (("any, single", "any, batch, 1 threads", "poses"), ("any on motions, a call for each", "any on motions, one call, 1 threads", "motions in")):
-        for of in rows.where(query=single):
-            once = rows.one("median [us]", query=batch, **{"class": of["class"]})
-            yield f"| {kinds} {of['class']} | {short(float(of['median [us]']))} | {short(once)} |"
+    for of in rows.where(query="any on motions, a call for each"):
+        once = rows.one("median [us]", query="any on motions, one call, 1 threads", **{"class": of["class"]})
+        yield f"| {of['class']} | {short(float(of['median [us]']))} | {short(once)} |"
 
 
 def growth(rows):
@@ -368,6 +367,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, many, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
+TABLES = [flags, uneven, cold, rigid, motions, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, sites]
 TABLES = {table.__name__: table for table in TABLES}

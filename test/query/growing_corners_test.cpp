@@ -228,7 +228,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{axis(n, 1), helix(n, 100, 0.01)};
        },
-       16.5, 11, 21, 12.5},
+       17.5, 11, 21, 12.5},
       {"concentric shells",
        [](std::size_t n) {
          return HardPair{onShell(n, 1, 1), onShell(n, 1.5, 2)};
@@ -248,7 +248,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{unitSheet(n, 0, 0), unitSheet(n, 0.5, 0.1)};
        },
-       15, 8.5, 7, 9.5},
+       15.1, 8.5, 7, 9.5},
       {"a line above a sheet",
        [](std::size_t n) {
          HardPair pair{unitSheet(n, 0, 0), axis(n, 0.5)};
@@ -260,7 +260,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{helix(n, 1, 0), helix(n, 1, 0, 0.3, 0.5)};
        },
-       5, 9.5, 6.5, 11.5},
+       5.1, 9.5, 6.5, 11.5},
       {"combs",
        [](std::size_t n) {
          return HardPair{comb(n, 0), comb(n, 0.5)};

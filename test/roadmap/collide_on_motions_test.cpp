@@ -4,7 +4,6 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/roadmap/motions_query.h>
-#include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/journeys.h"
 #include "support/verdicts.h"

@@ -2,7 +2,6 @@
 // Lists of poses of bodies whose lengths are so small that squares of them vanish.
 #include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/pose_order.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
@@ -18,23 +17,6 @@ namespace {
 
 using test::Cloud;
 using test::Random;
-
-TEST(PoseOrder, MotionBoundOfTheSmallestLengths)
-{
-  for (const double scale : {1.0, 1e-100, 1e-160, 1e-165, 1e-200, 1e-310}) {
-    SCOPED_TRACE(scale);
-    const Cloud cloud({{scale, 0, 0}, {0, 2 * scale, 0}}, {Scalar::float64, 0, 0});
-    HierarchyOptions one_voxel;
-    one_voxel.voxel_edge = 8.0;
-    const SphereHierarchy hierarchy(cloud.view(), one_voxel);
-    const BodyBall body(hierarchy);
-    Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
-    to.translation() = Eigen::Vector3d(0, 3 * scale, 4 * scale);
-    EXPECT_GE(motionBound(body, from, to), 5 * scale);
-    EXPECT_LT(motionBound(body, from, to), 5.001 * scale + 0x1p-1050);
-    EXPECT_EQ(motionBound(body, from, from), 0.0);
-  }
-}
 
 /// At clearances at the distance, and on either side of it.
 TEST(CollideAtPoses, OfTheSmallestLengths)
