@@ -6,6 +6,8 @@
 #include "peer/fcl_boxes.h"
 #endif
 
+#include <pcl_bsh/pairs/any_collision.h>
+#include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
