@@ -3,9 +3,11 @@
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/traversal/behind_plane.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -23,15 +25,16 @@ namespace {
 /// What a sink did with a pair.
 enum class Added { kept, dropped, stop };
 
-/// Walks to every pair of points within a reach and hands it to a sink: `double reach()`, how far pairs are still of
-/// interest, which may shrink, to less than 0 where points have radii; `Added add(PointPair, Work&)`.
+/// Walks to every pair of points that may be within a reach and hands it to a sink: `pairs`, which decides them;
+/// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
+/// `Added add(PointPair, bool surely, Work&)`, of which it may be known that they collide; `bool passesOver(PairWalk,
+/// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
 template <class Sink>
 class ReachWalk : public PairVisitor {
 public:
-  ReachWalk(const Placed& a, const Placed& b, double clearance, Sink& sink, Progress& progress)
+  ReachWalk(const Placed& a, const Placed& b, Sink& sink, Progress& progress)
   : PairVisitor(Watch{&progress, 1.0}),
     walk_(a, b),
-    pairs_(a, b, clearance),
     sink_(sink)
   {
   }
@@ -53,7 +56,10 @@ public:
   /// What spheres are tested with.
   double reach() const { return std::max(sink_.reach(), 0.0); }
 
-  Next visit(const LanePair& pair) const { return pair.key > sink_.reach() ? Next::prune : Next::go_on; }
+  Next visit(const LanePair& pair)
+  {
+    return pair.key > sink_.reach() || sink_.passesOver(walk_, pair) ? Next::prune : Next::go_on;
+  }
 
   bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
   {
@@ -70,16 +76,20 @@ public:
     const std::uint32_t places_a = coincident(walk_.a, pair.a), places_b = coincident(walk_.b, pair.b);
     bool going = true;
     const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
-      if (surely || pairs_.collide({a.record(i), b.record(j)}, walk_.work))
-        going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b});
+      going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b}, surely);
       return !going;
     };
-    if (pairs_.haveRadii()) {
-      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), pairs_.surelyOfBalls(),
+    if (walk_.haveTriangles()) {
+      eachPairNearTriangles(
+          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
+          [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
+    }
+    else if (sink_.pairs.haveRadii()) {
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), sink_.pairs.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {
-      const float hit = leaves.frame.band(pairs_.reach.length()).hit;
+      const float hit = leaves.frame.band(sink_.pairs.reach.length()).hit;
       double reach = sink_.reach();
       float miss = leaves.frame.band(reach).miss;
       eachPairNotBeyond(leaves.points, leaves.near, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
@@ -102,20 +112,20 @@ private:
   }
 
   /// All pairs of two ranges of points, each of one place and one radius; records ascend where a range has several.
-  bool addAll(const LeafRange& a, const LeafRange& b)
+  bool addAll(const LeafRange& a, const LeafRange& b, bool surely)
   {
     for (std::uint32_t i = 0; i < a.count; ++i)
       for (std::uint32_t j = 0; j < b.count; ++j) {
         pulse_.count(1);
-        const Added added = sink_.add({a.record(i), b.record(j)}, walk_.work);
+        const Added added = sink_.add({a.record(i), b.record(j)}, surely, walk_.work);
         if (added == Added::stop) return false;
         if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
+        surely = true;
       }
     return true;
   }
 
   PairWalk walk_;
-  PointPairs pairs_;
   Sink& sink_;
   Pulse pulse_; ///< of pairs at one place
   const ScratchLease<PairStack> kept_stack_;
@@ -125,32 +135,42 @@ private:
 /// All of them, until there are too many.
 class AllPairs {
 public:
-  AllPairs(double clearance, std::size_t most, PairsWithin& result)
-  : clearance_(clearance),
-    most_(most),
+  AllPairs(const Placed& a, const Placed& b, const ContactsRequest& request, PairsWithin& result)
+  : pairs(a, b, request.clearance),
+    clearance_(request.clearance),
+    most_(request.most),
     result_(result)
   {
   }
 
   double reach() const { return clearance_; }
 
-  Added add(PointPair pair, Work&)
+  static bool passesOver(const PairWalk&, const LanePair&) { return false; }
+
+  Added add(PointPair pair, bool surely, Work& work)
   {
+    if (!surely && !pairs.collide(pair, work)) return Added::dropped;
     result_.complete = result_.pairs.size() < most_;
     if (!result_.complete) return Added::stop;
     result_.pairs.push_back(pair);
     return Added::kept;
   }
 
+  const PointPairs pairs;
+
 private:
-  double clearance_;
-  std::size_t most_;
+  const double clearance_;
+  const std::size_t most_;
   PairsWithin& result_;
 };
 
+/// A pair, and its gap: rounded, or of triangles between two bounds.
 struct PairGap {
-  double gap; ///< rounded
+  static constexpr std::uint32_t kAlone = 0xffffffffu;
+
+  double low, high;
   PointPair pair;
+  mutable std::uint32_t tie = kAlone; ///< with others that are exactly as near
 };
 
 /// Memory of one NearestPairs after another, to be had by a ScratchLease.
@@ -164,34 +184,91 @@ class NearestPairs {
   /// Rounding keeps the order of gaps, but may make some equal that are not.
   bool before(const PairGap& l, const PairGap& r) const
   {
-    if (l.gap != r.gap) return l.gap < r.gap;
+    if (l.high < r.low) return true;
+    if (r.high < l.low) return false;
+    if (areTied(l, r)) return l.pair < r.pair;
     pulse_.count(128); // exact decisions are slow where they are ties
-    const int sign = pairs_.distance.compareGaps(pairs_.posed(l.pair), pairs_.posed(r.pair));
-    return sign != 0 ? sign < 0 : l.pair < r.pair;
+    ++orders_;
+    const int sign = pairs.distance.compareGaps(pairs.posed(l.pair), pairs.posed(r.pair));
+    if (sign != 0) return sign < 0;
+    tie(l, r);
+    return l.pair < r.pair;
   }
+
+  /// Whether both gaps are known to be equal.
+  bool areTied(const PairGap& l, const PairGap& r) const
+  {
+    if (pairs.ofTriangles() && l.high == 0.0 && r.high == 0.0 && !pairs.mayOverlap()) return true;
+    return l.tie != PairGap::kAlone && r.tie != PairGap::kAlone && firstTie(l.tie) == firstTie(r.tie);
+  }
+
+  void tie(const PairGap& l, const PairGap& r) const
+  {
+    if (!pairs.ofTriangles()) return; // points are compared as quickly
+    if (l.tie == PairGap::kAlone && r.tie == PairGap::kAlone) {
+      l.tie = static_cast<std::uint32_t>(ties_.size());
+      ties_.push_back(l.tie);
+    }
+    if (l.tie == PairGap::kAlone) l.tie = r.tie;
+    if (r.tie == PairGap::kAlone) r.tie = l.tie;
+    ties_[firstTie(l.tie)] = firstTie(r.tie);
+  }
+
+  std::uint32_t firstTie(std::uint32_t tie) const
+  {
+    while (ties_[tie] != tie) tie = ties_[tie] = ties_[ties_[tie]];
+    return tie;
+  }
+
   auto order() const
   {
     return [this](const PairGap& l, const PairGap& r) { return before(l, r); };
   }
 
 public:
-  NearestPairs(const Placed& a, const Placed& b, double clearance, std::size_t most)
-  : pairs_(a, b, clearance),
-    most_(std::min(most, std::numeric_limits<std::size_t>::max() - 1) +
+  NearestPairs(const Placed& a, const Placed& b, const ContactsRequest& request)
+  : pairs(a, b, request.clearance),
+    clearance_(request.clearance),
+    most_(std::min(request.most, std::numeric_limits<std::size_t>::max() - 1) +
           1), // one more pair shows that some are left out
-    reach_(clearance)
+    reach_(request.clearance),
+    storage_a_(a.hierarchy().storage()),
+    storage_b_(b.hierarchy().storage())
   {
     kept_.clear();
   }
 
   double reach() const { return reach_; }
 
-  Added add(PointPair pair, Work& work)
+  /// Whether nothing below two lanes is nearer than the farthest pair, nor as near with smaller records: where that one
+  /// meets, or as planes between its nearest places tell.
+  bool passesOver(const PairWalk& walk, const LanePair& lanes)
   {
+    none_nearer_ = false;
+    return HWY_UNLIKELY(behind_a_ || meet_) && isSettled(walk, lanes);
+  }
+
+  Added add(PointPair pair, bool surely, Work& work)
+  {
+    const bool is_full = kept_.size() == most_;
+    if (none_nearer_ && is_full && kept_.front().pair < pair) return Added::dropped;
+    const RecordDistance::Pair posed = pairs.posed(pair);
+    PairGap entry{0.0, 0.0, pair};
+    if (pairs.ofTriangles()) {
+      if (pairs.distance.isSurelyBeyond(posed, reach_)) return Added::dropped;
+      if (behind_a_ && kept_.front().pair < pair && areBehind(pair)) return Added::dropped;
+      boundGap(posed, entry);
+      surely = surely || entry.high <= clearance_;
+    }
+    if (!surely && !pairs.collide(pair, work)) return Added::dropped;
     ++work.exact_decisions;
-    const PairGap entry{pairs_.distance.gap(pairs_.posed(pair)), pair};
-    if (kept_.size() == most_) {
-      if (!before(entry, kept_.front())) return Added::dropped;
+    if (!pairs.ofTriangles()) entry.low = entry.high = pairs.distance.gap(posed);
+    if (is_full) {
+      const std::uint64_t orders = orders_;
+      if (!before(entry, kept_.front())) {
+        if (orders_ != orders) decidedInVain();
+        return Added::dropped;
+      }
       std::pop_heap(kept_.begin(), kept_.end(), order());
       kept_.pop_back();
     }
@@ -200,7 +277,9 @@ public:
       heaped_ ? std::push_heap(kept_.begin(), kept_.end(), order())
               : std::make_heap(kept_.begin(), kept_.end(), order());
       heaped_ = true;
-      reach_ = std::min(reach_, std::nextafter(kept_.front().gap, std::numeric_limits<double>::infinity()));
+      const double farthest = kept_.front().high;
+      reach_ = std::min(reach_, std::nextafter(farthest, std::numeric_limits<double>::infinity()));
+      meet_ = pairs.ofTriangles() && farthest == 0.0 && !pairs.mayOverlap();
     }
     return Added::kept;
   }
@@ -214,19 +293,93 @@ public:
     result.contacts.reserve(kept_.size());
     for (const PairGap& entry : kept_) {
       const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
-      const Eigen::Vector3d apart = pairs_.ofTriangles() ? pairs_.distance.between(entry.pair)
-                                                         : a.pose * Eigen::Vector3d(p[0], p[1], p[2]) -
-                                                               b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
-      result.contacts.push_back({entry.pair, entry.gap, apart.stableNormalized()});
+      const Eigen::Vector3d apart =
+          pairs.ofTriangles() ? pairs.distance.between(entry.pair)
+                              : a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+      const double gap = pairs.ofTriangles() ? pairs.gap(entry.pair) : entry.high;
+      result.contacts.push_back({entry.pair, gap, apart.stableNormalized()});
     }
   }
 
+  const PointPairs pairs;
+
 private:
-  PointPairs pairs_;
-  std::size_t most_;
+  static constexpr std::uint64_t kDecisionsBeforePlanes = 8;
+  static constexpr std::uint64_t kLooksForDecision = 256; ///< at records, where these bring nothing
+  static constexpr std::uint64_t kMostLooked = 512;       ///< below a lane: larger nodes would be looked at often
+
+  /// As doubles tell; rounding a gap takes ten times as long.
+  void boundGap(const RecordDistance::Pair& posed, PairGap& entry) const
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto [low, high] = pairs.distance.enclose(posed);
+    const double radii = posed.radius_p + posed.radius_q, rounding = kFewDoubleRoundings * (high + radii);
+    entry.low = low - radii - rounding;
+    entry.high = high - radii + rounding;
+    if (!(entry.high < infinity)) {
+      const double gap = pairs.distance.gap(posed);
+      entry.low = std::nextafter(gap, -infinity), entry.high = std::nextafter(gap, infinity);
+    }
+    if (entry.low <= 0.0 && !pairs.mayOverlap() && pairs.distance.compare(posed, 0.0) == 0)
+      entry.low = entry.high = 0.0;
+  }
+
+  /// Whether a pair is no nearer than the one that planes were laid for.
+  bool areBehind(PointPair pair)
+  {
+    if (behind_a_->sideOf(pair.a) > 0 || behind_b_->sideOf(pair.b) > 0) return false;
+    looks_ += kLooksForDecision;
+    return true;
+  }
+
+  /// Counts pairs that were as near as doubles tell. Enough of them pay for planes.
+  void decidedInVain()
+  {
+    looks_ += kLooksForDecision;
+    if (++in_vain_ < planes_at_ || !pairs.ofTriangles()) return;
+    planes_at_ = in_vain_ + in_vain_ / 8 + kDecisionsBeforePlanes;
+    const PointPair farthest = kept_.front().pair;
+    if (planes_of_ == farthest) return;
+    planes_of_ = farthest;
+    behind_a_.reset(), behind_b_.reset();
+    if (const auto planes = pairs.distance.planesBetween(farthest)) {
+      behind_a_.emplace(storage_a_, (*planes)[0], 0.0, BehindPlane::kNoRecord);
+      behind_b_.emplace(storage_b_, (*planes)[1], 0.0, BehindPlane::kNoRecord);
+    }
+  }
+
+  HWY_NOINLINE bool isSettled(const PairWalk& walk, const LanePair& lanes)
+  {
+    PointPair first = walk.lowest(lanes);
+    none_nearer_ = meet_;
+    if (!meet_) {
+      const std::uint64_t allowed = std::min(kMostLooked, looks_);
+      std::uint64_t left = allowed;
+      const auto of_a = behind_a_->touching(walk.child(walk.a, lanes.a), left);
+      const auto of_b = of_a ? behind_b_->touching(walk.child(walk.b, lanes.b), left) : std::nullopt;
+      none_nearer_ = of_b.has_value();
+      if (!none_nearer_) {
+        looks_ -= allowed - left;
+        return false;
+      }
+      first = {of_a->lowest, of_b->lowest};
+    }
+    return kept_.front().pair < first;
+  }
+
+  const double clearance_;
+  const std::size_t most_;
   double reach_;
   bool heaped_ = false;
-  mutable Pulse pulse_; ///< of ties
+  bool meet_ = false; ///< all of them
+  const SphereHierarchy::Storage &storage_a_, &storage_b_;
+  std::optional<BehindPlane> behind_a_, behind_b_; ///< of a pair that was the farthest
+  PointPair planes_of_;
+  bool none_nearer_ = false; ///< below the lanes that are visited
+  std::uint64_t in_vain_ = 0, planes_at_ = kDecisionsBeforePlanes, looks_ = 0;
+  mutable std::uint64_t orders_ = 0;        ///< that doubles did not tell
+  mutable std::vector<std::uint32_t> ties_; ///< of a tie another one that it is a part of, or itself
+  mutable Pulse pulse_;                     ///< of ties
   const ScratchLease<PairHeap> scratch_;
   std::vector<PairGap>& kept_ = (*scratch_).pairs;
 };
@@ -236,16 +389,16 @@ private:
 void nearestContactsOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
                              ContactsResult& result)
 {
-  NearestPairs sink(a, b, request.clearance, request.most);
-  result.work = ReachWalk(a, b, request.clearance, sink, progress).run();
+  NearestPairs sink(a, b, request);
+  result.work = ReachWalk(a, b, sink, progress).run();
   sink.collect(a, b, result);
 }
 
 void pairsWithinOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
                          PairsWithin& result)
 {
-  AllPairs sink(request.clearance, request.most, result);
-  result.work = ReachWalk(a, b, request.clearance, sink, progress).run();
+  AllPairs sink(a, b, request, result);
+  result.work = ReachWalk(a, b, sink, progress).run();
 }
 
 } // namespace HWY_NAMESPACE

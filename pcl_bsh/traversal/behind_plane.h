@@ -43,9 +43,11 @@ public:
   /// to be looked at than `looks`, which those that are looked at are taken from.
   std::optional<Touching> touching(const NodeChild& child, std::uint64_t& looks);
 
+  /// The side that a record reaches to: 1 beyond the plane, 0 in it, -1 behind.
+  int sideOf(std::uint32_t record) const;
+
 private:
   int sideOf(const Point3& place) const { return plane_.isWithin(place, allowed_) ? -1 : plane_.side(place); }
-  int sideOf(std::uint32_t record) const; ///< of what of it reaches farthest
   bool touchesElsewhere(std::uint32_t record) const;
   std::optional<Touching> look(const NodeChild& child, std::uint64_t& looks) const;
 
