@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How work and time grow where nearly all pairs of points are alike: by which power of the number of points.
 #include "../support/adversarial_clouds.h"
+#include "../support/made_meshes.h"
 #include "program.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cmath>
@@ -135,11 +137,34 @@ std::string exponent(double less, double more, std::size_t from, std::size_t to)
   return text(std::log(more / less) / std::log(static_cast<double>(to) / static_cast<double>(from)));
 }
 
-void measure(const Corner& corner, const Query& query, const Options& options, Table& table)
+/// Rows of one query, of clouds of several sizes.
+/// @param askOf(size) makes clouds; what it returns makes hierarchies, asks, and tells the seconds and the work
+template <class AskOf>
+void measure(const std::string& clouds, const std::string& query, const Options& options, Table& table,
+             const AskOf& askOf)
 {
   double first_steps = 0.0, first_seconds = 0.0;
   for (const std::size_t size : options.sizes) {
-    progress(corner.name + ", " + query.name + ", " + std::to_string(size) + " points");
+    progress(clouds + ", " + query + ", " + std::to_string(size) + " points");
+    const auto ask = askOf(size);
+    std::vector<double> seconds;
+    double steps = 0.0;
+    for (unsigned repetition = 0; repetition < options.repeat; ++repetition) {
+      double taken = 0.0;
+      steps = stepsOf(ask(taken));
+      seconds.push_back(taken);
+    }
+    const bool is_first = size == options.sizes.front();
+    if (is_first) first_steps = steps, first_seconds = median(seconds);
+    table.add({clouds, query, std::to_string(size), text(steps / static_cast<double>(size)),
+               text(1e3 * median(seconds)), is_first ? "-" : exponent(first_steps, steps, options.sizes.front(), size),
+               is_first ? "-" : exponent(first_seconds, median(seconds), options.sizes.front(), size)});
+  }
+}
+
+void measure(const Corner& corner, const Query& query, const Options& options, Table& table)
+{
+  measure(corner.name, query.name, options, table, [&](std::size_t size) {
     const HardPair pair = corner.make(size);
     const auto viewOfAll = [](const std::vector<Point3>& points) {
       return viewOf(points.front().data(), points.size());
@@ -147,20 +172,36 @@ void measure(const Corner& corner, const Query& query, const Options& options, T
     // Just below the least distance, and about that of neighbours where there is none.
     const SphereHierarchy some_a(viewOfAll(pair.a)), some_b(viewOfAll(pair.b));
     const double least = closestPair(some_a, some_b).distance, clearance = least > 1e-3 ? least * (1.0 - 1e-6) : 1e-9;
-    std::vector<double> seconds;
-    double steps = 0.0;
-    for (unsigned repetition = 0; repetition < options.repeat; ++repetition) {
+    return [&query, pair, viewOfAll, clearance](double& seconds) {
       const SphereHierarchy a(viewOfAll(pair.a)), b(viewOfAll(pair.b)); // work depends on what was asked before
       const Stopwatch watch;
-      steps = stepsOf(query.ask(a, b, clearance));
-      seconds.push_back(watch.seconds());
-    }
-    const bool is_first = size == options.sizes.front();
-    if (is_first) first_steps = steps, first_seconds = median(seconds);
-    table.add({corner.name, query.name, std::to_string(size), text(steps / static_cast<double>(size)),
-               text(1e3 * median(seconds)), is_first ? "-" : exponent(first_steps, steps, options.sizes.front(), size),
-               is_first ? "-" : exponent(first_seconds, median(seconds), options.sizes.front(), size)});
-  }
+      const Work work = query.ask(a, b, clearance);
+      seconds = watch.seconds();
+      return work;
+    };
+  });
+}
+
+/// Two square plates of about so many triangles each, of cells of 0.2, 0.25 apart: ten of all pairs within 0.27.
+void measurePlates(const std::string& name, double noise, const Eigen::Isometry3d& pose, const Options& options,
+                   Table& table)
+{
+  measure(name, "10 contacts", options, table, [&](std::size_t size) {
+    const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(size) / 2)));
+    const auto plate = [&](double aside, double height) {
+      Random random(height > 0.0 ? 2 : 1);
+      return test::gridMesh(cells, cells, [&](double u, double v) -> Point3 {
+        return {0.2 * cells * u + aside, 0.2 * cells * v + aside, height + noise * random.uniform(-1, 1)};
+      });
+    };
+    return [low = plate(0, 0), high = plate(0.04, 0.25), pose](double& seconds) {
+      const SphereHierarchy a(viewOf(low.trianglesView())), b(viewOf(high.trianglesView()));
+      const Stopwatch watch;
+      const Work work = nearestContacts({a, pose}, {b, pose}, {0.27, 10}).work;
+      seconds = watch.seconds();
+      return work;
+    };
+  });
 }
 
 } // namespace
@@ -182,6 +223,11 @@ int main(int argc, char** argv)
   return runProgram(app, argc, argv, options, table, [&](Table& rows) {
     for (const Corner& corner : corners())
       for (const Query& query : queries()) measure(corner, query, options, rows);
+    const Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d turned(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized()));
+    measurePlates("flat plates of triangles", 0.0, flat, options, rows);
+    measurePlates("the same, turned", 0.0, turned, options, rows);
+    measurePlates("with noise of 0.001", 1e-3, flat, options, rows);
     return true;
   });
 }

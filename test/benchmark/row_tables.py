@@ -217,9 +217,20 @@ def motions(rows):
 def growth(rows):
     yield "| clouds | flags | closest pair | path of 5 poses, flags | path, distances | distances of all points |"
     yield "|---|---|---|---|---|---|"
-    for clouds in dict.fromkeys(row["clouds"] for row in rows):
-        of = [row for row in rows.where(clouds=clouds) if row["growth of steps"] != "-"]
-        yield f"| {clouds} | " + " | ".join(f"{row['growth of steps']}, {short(float(row['time [ms]']), ' ms')}" for row in of) + " |"
+    for clouds in dict.fromkeys(row["clouds"] for row in rows if row["query"] != "10 contacts"):
+        yield f"| {clouds} | " + " | ".join(grown(rows.where(clouds=clouds))) + " |"
+
+
+def plates(rows):
+    yield "| surfaces | 10 contacts |"
+    yield "|---|---|"
+    for clouds in dict.fromkeys(row["clouds"] for row in rows.where(query="10 contacts")):
+        yield f"| {clouds} | " + " | ".join(grown(rows.where(clouds=clouds))) + " |"
+
+
+def grown(rows):
+    """What the last size of each query has grown to."""
+    return [f"{row['growth of steps']}, {short(float(row['time [ms]']), ' ms')}" for row in rows if row["growth of steps"] != "-"]
 
 
 def search(rows):
@@ -367,6 +378,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, motions, growth, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
+TABLES = [flags, uneven, cold, rigid, motions, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, sites]
 TABLES = {table.__name__: table for table in TABLES}
