@@ -3,7 +3,7 @@
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/progress.h>
-#include <pcl_bsh/traversal/behind_plane.h>
+#include <pcl_bsh/traversal/planes_between.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,8 +232,7 @@ public:
     most_(std::min(request.most, std::numeric_limits<std::size_t>::max() - 1) +
           1), // one more pair shows that some are left out
     reach_(request.clearance),
-    storage_a_(a.hierarchy().storage()),
-    storage_b_(b.hierarchy().storage())
+    planes_(pairs.distance, a.hierarchy().storage(), b.hierarchy().storage())
   {
     kept_.clear();
   }
@@ -245,7 +244,7 @@ public:
   bool passesOver(const PairWalk& walk, const LanePair& lanes)
   {
     none_nearer_ = false;
-    return HWY_UNLIKELY(behind_a_ || meet_) && isSettled(walk, lanes);
+    return HWY_UNLIKELY(planes_.areLaid() || meet_) && isSettled(walk, lanes);
   }
 
   Added add(PointPair pair, bool surely, Work& work)
@@ -256,7 +255,7 @@ public:
     PairGap entry{0.0, 0.0, pair};
     if (pairs.ofTriangles()) {
       if (pairs.distance.isSurelyBeyond(posed, reach_)) return Added::dropped;
-      if (behind_a_ && kept_.front().pair < pair && areBehind(pair)) return Added::dropped;
+      if (planes_.areLaid() && kept_.front().pair < pair && areBehind(pair)) return Added::dropped;
       boundGap(posed, entry);
       surely = surely || entry.high <= clearance_;
     }
@@ -327,7 +326,7 @@ private:
   /// Whether a pair is no nearer than the one that planes were laid for.
   bool areBehind(PointPair pair)
   {
-    if (behind_a_->sideOf(pair.a) > 0 || behind_b_->sideOf(pair.b) > 0) return false;
+    if (!planes_.areBehind(pair)) return false;
     looks_ += kLooksForDecision;
     return true;
   }
@@ -341,11 +340,7 @@ private:
     const PointPair farthest = kept_.front().pair;
     if (planes_of_ == farthest) return;
     planes_of_ = farthest;
-    behind_a_.reset(), behind_b_.reset();
-    if (const auto planes = pairs.distance.planesBetween(farthest)) {
-      behind_a_.emplace(storage_a_, (*planes)[0], 0.0, BehindPlane::kNoRecord);
-      behind_b_.emplace(storage_b_, (*planes)[1], 0.0, BehindPlane::kNoRecord);
-    }
+    planes_.lay(farthest);
   }
 
   HWY_NOINLINE bool isSettled(const PairWalk& walk, const LanePair& lanes)
@@ -355,14 +350,13 @@ private:
     if (!meet_) {
       const std::uint64_t allowed = std::min(kMostLooked, looks_);
       std::uint64_t left = allowed;
-      const auto of_a = behind_a_->touching(walk.child(walk.a, lanes.a), left);
-      const auto of_b = of_a ? behind_b_->touching(walk.child(walk.b, lanes.b), left) : std::nullopt;
-      none_nearer_ = of_b.has_value();
+      const auto touching = planes_.touching(walk.child(walk.a, lanes.a), walk.child(walk.b, lanes.b), left);
+      none_nearer_ = touching.has_value();
       if (!none_nearer_) {
         looks_ -= allowed - left;
         return false;
       }
-      first = {of_a->lowest, of_b->lowest};
+      first = {touching->a.lowest, touching->b.lowest};
     }
     return kept_.front().pair < first;
   }
@@ -371,9 +365,8 @@ private:
   const std::size_t most_;
   double reach_;
   bool heaped_ = false;
-  bool meet_ = false; ///< all of them
-  const SphereHierarchy::Storage &storage_a_, &storage_b_;
-  std::optional<BehindPlane> behind_a_, behind_b_; ///< of a pair that was the farthest
+  bool meet_ = false;    ///< all of them
+  PlanesBetween planes_; ///< of a pair that was the farthest
   PointPair planes_of_;
   bool none_nearer_ = false; ///< below the lanes that are visited
   std::uint64_t in_vain_ = 0, planes_at_ = kDecisionsBeforePlanes, looks_ = 0;

@@ -8,6 +8,19 @@
 #include <utility>
 
 namespace pcl_bsh {
+namespace {
+
+const TriangleDistance::PointPair& keeping(const TriangleDistance::PointPair& pair, TriangleDistance::Known&)
+{
+  return pair;
+}
+TriangleDistance::TrianglePair keeping(TriangleDistance::TrianglePair pair, TriangleDistance::Known& known)
+{
+  pair.known = &known;
+  return pair;
+}
+
+} // namespace
 
 /// Calls visit() with the records as TriangleDistance takes them: two triangles, or a point and a triangle.
 template <class Visit>
@@ -56,7 +69,7 @@ int RecordDistance::compareTriangleGaps(const Pair& first, const RecordDistance&
   return withTriangles(first.records, [&](const auto& x) {
     return other.withTriangles(second.records, [&](const auto& y) -> int {
       if constexpr (std::is_same_v<decltype(x), decltype(y)>)
-        return distanceOfPair().compareGaps(x, other.distanceOfPair(), y);
+        return distanceOfPair().compareGaps(keeping(x, first.known), other.distanceOfPair(), keeping(y, second.known));
       else
         return 0; // not of the same clouds
     });

@@ -35,6 +35,7 @@ public:
     Pair(const ExactDistance::Pair& points, PointPair of) : ExactDistance::Pair(points), records(of) {}
 
     PointPair records;
+    mutable TriangleDistance::Known known; ///< of triangles: what comparing gaps has found
   };
 
   RecordDistance(const PointsView& a, const Eigen::Isometry3d& pose_a, const PointsView& b,

@@ -4,6 +4,10 @@
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -24,25 +28,105 @@ Range pointsBelow(const SphereHierarchy::Storage& cloud, const NodeChild& child)
   return {cloud.voxels[begin].begin, last.begin + last.count};
 }
 
+/// Calls visit(corner) for the corners of a triangle, or for a point.
+template <class Visit>
+void forEachCorner(const PointsView& view, std::uint32_t record, const Visit& visit)
+{
+  if (!view.triangles) return visit(view.point(record));
+  for (const Point3& corner : view.triangles->triangle(record)) visit(corner);
+}
+
+/// The greater one; NaN where one of them is.
+double greater(double x, double y)
+{
+  return std::isnan(x) || y <= x ? x : y;
+}
+
+/// The same, if that is known.
+std::optional<LongNumber> greater(const std::optional<LongNumber>& x, const std::optional<LongNumber>& y)
+{
+  if (!x || !y) return std::nullopt;
+  bool sure = true;
+  const int sign = (*x - *y).sign(sure);
+  if (sure) return sign < 0 ? y : x;
+  const LongNumber& less_known = x->error() < y->error() ? *y : *x; // they differ by less than their errors
+  const double error = 2 * (x->error() + y->error()) + std::abs((*x - *y).value()) * (1.0 + kDoubleMargin);
+  return LongNumber(less_known.value(), less_known.tail(), less_known.error() + error);
+}
+
 } // namespace
+
+template <class Member, class Look>
+auto BehindPlane::remembered(const NodeChild& child, std::uint64_t& looks, Member member, const Look& look)
+{
+  using Found = typename std::remove_reference_t<decltype(std::declval<Known>().*member)>::value_type;
+  const Range below = pointsBelow(cloud_, child);
+  std::optional<Found>& found = found_[std::uint64_t{below.begin} << 32 | below.end].*member;
+  const std::uint64_t count = below.end - below.begin;
+  if (!found) {
+    if (count > looks) return std::optional<Found>();
+    looks -= count;
+    found = look();
+  }
+  return found;
+}
+
+template <class Visit>
+void BehindPlane::forEachRecord(const NodeChild& child, const Visit& visit) const
+{
+  const std::uint32_t begin = child.node.begin[child.lane], end = child.node.begin[child.lane + 1];
+  if (child.space == kAboveVoxels) {
+    for (std::uint32_t voxel = begin; voxel < end; ++voxel) cloud_.forEachRecord(voxel, visit);
+    return;
+  }
+  const Voxel& voxel = cloud_.voxels[child.space];
+  for (std::uint32_t i = begin; i < end; ++i) visit(voxel.records()[i]);
+}
+
+double BehindPlane::heightAtMost(std::uint32_t record) const
+{
+  double most = -std::numeric_limits<double>::infinity();
+  forEachCorner(cloud_.view, record, [&](const Point3& corner) { most = greater(most, plane_.heightAtMost(corner)); });
+  return most;
+}
+
+std::optional<LongNumber> BehindPlane::height(std::uint32_t record) const
+{
+  std::optional<LongNumber> most = LongNumber(-std::numeric_limits<double>::max());
+  forEachCorner(cloud_.view, record, [&](const Point3& corner) { most = greater(most, plane_.height(corner)); });
+  return most;
+}
+
+std::optional<double> BehindPlane::heightAtMost(const NodeChild& child, std::uint64_t& looks)
+{
+  return remembered(child, looks, &Known::height, [&] {
+    double most = -std::numeric_limits<double>::infinity();
+    forEachRecord(child, [&](std::uint32_t record) { most = greater(most, heightAtMost(record)); });
+    return most;
+  });
+}
+
+std::optional<LongNumber> BehindPlane::height(const NodeChild& child, std::uint64_t& looks)
+{
+  const std::optional<std::optional<LongNumber>> found = remembered(child, looks, &Known::longer, [&] {
+    std::optional<LongNumber> most = LongNumber(-std::numeric_limits<double>::max());
+    forEachRecord(child, [&](std::uint32_t record) { most = greater(most, height(record)); });
+    return most;
+  });
+  return found ? *found : std::nullopt;
+}
 
 std::optional<BehindPlane::Touching> BehindPlane::touching(const NodeChild& child, std::uint64_t& looks)
 {
-  const Range below = pointsBelow(cloud_, child);
-  const std::uint64_t key = std::uint64_t{below.begin} << 32 | below.end;
-  auto found = found_.find(key);
-  if (found == found_.end()) {
-    if (below.end - below.begin > looks) return std::nullopt;
-    found = found_.emplace(key, look(child, looks)).first;
-  }
-  return found->second;
+  const std::optional<std::optional<Touching>> found =
+      remembered(child, looks, &Known::touching, [&] { return look(child); });
+  return found ? *found : std::nullopt;
 }
 
 int BehindPlane::sideOf(std::uint32_t record) const
 {
-  if (!cloud_.view.triangles) return sideOf(cloud_.view.point(record));
   int side = -1;
-  for (const Point3& corner : cloud_.view.triangles->triangle(record)) side = std::max(side, sideOf(corner));
+  forEachCorner(cloud_.view, record, [&](const Point3& corner) { side = std::max(side, plane_.side(corner)); });
   return side;
 }
 
@@ -53,31 +137,22 @@ bool BehindPlane::touchesElsewhere(std::uint32_t record) const
   const auto known = cloud_.view.triangles->triangle(known_);
   const auto corners = cloud_.view.triangles->triangle(record);
   return std::any_of(corners.begin(), corners.end(), [&](const Point3& corner) {
-    return std::find(known.begin(), known.end(), corner) == known.end() && sideOf(corner) == 0;
+    return std::find(known.begin(), known.end(), corner) == known.end() && plane_.side(corner) == 0;
   });
 }
 
-std::optional<BehindPlane::Touching> BehindPlane::look(const NodeChild& child, std::uint64_t& looks) const
+std::optional<BehindPlane::Touching> BehindPlane::look(const NodeChild& child) const
 {
-  const std::uint32_t begin = child.node.begin[child.lane], end = child.node.begin[child.lane + 1];
   Touching touching;
   bool is_behind = true;
-  const auto visit = [&](std::uint32_t record) {
+  forEachRecord(child, [&](std::uint32_t record) {
     if (!is_behind) return;
-    --looks;
     const int side = sideOf(record);
     is_behind = side <= 0;
     if (side != 0) return;
     touching.lowest = std::min(touching.lowest, record);
     if (record < touching.elsewhere && touchesElsewhere(record)) touching.elsewhere = record;
-  };
-  if (child.space == kAboveVoxels) {
-    for (std::uint32_t voxel = begin; voxel < end && is_behind; ++voxel) cloud_.forEachRecord(voxel, visit);
-  }
-  else {
-    const Voxel& voxel = cloud_.voxels[child.space];
-    for (std::uint32_t i = begin; i < end; ++i) visit(voxel.records()[i]);
-  }
+  });
   return is_behind ? std::optional(touching) : std::nullopt;
 }
 

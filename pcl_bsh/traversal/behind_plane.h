@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of nodes of one cloud: whether all of them is behind a plane, and what touches it there.
+// Of nodes of one cloud: how far they reach beyond a plane, whether all of them is behind it, and what touches it
+// there.
 #pragma once
 
 #include <pcl_bsh/geometry/exact/exact_plane.h>
@@ -18,7 +19,7 @@ struct NodeChild {
   std::uint32_t lane;
 };
 
-/// Looks at each record of a node once, exactly, and remembers what it has found.
+/// Looks at each record of a node once for each kind of number, and remembers what it has found.
 class BehindPlane {
 public:
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
@@ -29,33 +30,54 @@ public:
     std::uint32_t elsewhere = kNoRecord; ///< of those which touch it with a place that `known` does not touch it with
   };
 
-  /// @param plane behind it is where its normal points away from @param allowed what surely reaches beyond it by less
-  /// than this counts as behind @param known a record, or kNoRecord
-  BehindPlane(const SphereHierarchy::Storage& cloud, const ExactPlane& plane, double allowed, std::uint32_t known)
+  /// @param plane behind it is where its normal points away from @param known a record, or kNoRecord
+  BehindPlane(const SphereHierarchy::Storage& cloud, const ExactPlane& plane, std::uint32_t known)
   : cloud_(cloud),
     plane_(plane),
-    allowed_(allowed),
     known_(known)
   {
   }
 
-  /// What touches the plane below a child, if nothing there is beyond it. Nothing, too, where more records would have
-  /// to be looked at than `looks`, which those that are looked at are taken from.
+  const ExactPlane& plane() const { return plane_; }
+
+  /// No less than how far anything below a child reaches beyond the plane, in the plane's unit. Nothing where more
+  /// records would have to be looked at than `looks`, which those that are looked at are taken from; NaN where doubles
+  /// cannot tell.
+  std::optional<double> heightAtMost(const NodeChild& child, std::uint64_t& looks);
+
+  /// The same with more digits; nothing where these cannot tell, too.
+  std::optional<LongNumber> height(const NodeChild& child, std::uint64_t& looks);
+
+  /// Of a record.
+  double heightAtMost(std::uint32_t record) const;
+  std::optional<LongNumber> height(std::uint32_t record) const;
+
+  /// What touches the plane below a child, if nothing there is beyond it; exact. Nothing, too, where more records would
+  /// have to be looked at than `looks`.
   std::optional<Touching> touching(const NodeChild& child, std::uint64_t& looks);
 
   /// The side that a record reaches to: 1 beyond the plane, 0 in it, -1 behind.
   int sideOf(std::uint32_t record) const;
 
 private:
-  int sideOf(const Point3& place) const { return plane_.isWithin(place, allowed_) ? -1 : plane_.side(place); }
+  /// What is known of some records.
+  struct Known {
+    std::optional<double> height;
+    std::optional<std::optional<LongNumber>> longer;
+    std::optional<std::optional<Touching>> touching;
+  };
+
+  template <class Member, class Look>
+  auto remembered(const NodeChild& child, std::uint64_t& looks, Member member, const Look& look);
+  template <class Visit>
+  void forEachRecord(const NodeChild& child, const Visit& visit) const;
   bool touchesElsewhere(std::uint32_t record) const;
-  std::optional<Touching> look(const NodeChild& child, std::uint64_t& looks) const;
+  std::optional<Touching> look(const NodeChild& child) const;
 
   const SphereHierarchy::Storage& cloud_;
   const ExactPlane plane_;
-  const double allowed_;
   const std::uint32_t known_;
-  std::unordered_map<std::uint64_t, std::optional<Touching>> found_; ///< by the first and the last of the points below
+  std::unordered_map<std::uint64_t, Known> found_; ///< by the first and the last of the points below
 };
 
 } // namespace pcl_bsh

@@ -5,6 +5,7 @@
 #include <pcl_bsh/traversal/planes_between.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -60,10 +61,9 @@ private:
     is_laid_ = true;
     const double least = std::nextafter(pairs_.gap(*nearest_), 0.0);
     const double more = least - pairs_.ofPairs().around(*nearest_).second; // than the reach
-    planes_.lay(*nearest_, more > 0.0 ? kShareOfEach * more : 0.0);
+    planes_.lay(*nearest_, std::max(more, 0.0) * (1.0 - kDoubleMargin));
   }
 
-  static constexpr double kShareOfEach = 0.499; ///< of two planes
   static constexpr std::uint64_t kDecisionsBetweenCompared = 64;
   static constexpr std::uint64_t kDecisionsBeforeAsked = 1024; ///< what planes cost is little beside these
   static constexpr std::uint32_t kAskedInVain = 32; ///< one after the other, before as many decisions go without

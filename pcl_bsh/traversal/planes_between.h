@@ -7,6 +7,7 @@
 #include <pcl_bsh/traversal/behind_plane.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -37,18 +38,22 @@ public:
     decisions_ = looked_ = 0;
   }
 
-  /// Between the nearest places of another pair. There may be none. @param allowed what surely reaches beyond its plane
-  /// by less counts as behind, and as no nearer @param known_of_b as BehindPlane has it
-  void lay(PointPair pair, double allowed = 0.0, std::uint32_t known_of_b = BehindPlane::kNoRecord)
+  /// Between the nearest places of another pair. There may be none. @param less than the pair's distance: nothing
+  /// counts as near that is surely farther than the distance less this @param known_of_b as BehindPlane has it
+  void lay(PointPair pair, double less = 0.0, std::uint32_t known_of_b = BehindPlane::kNoRecord)
   {
     behind_a_.reset(), behind_b_.reset();
-    if (const auto planes = distance_.planesBetween(pair)) {
-      behind_a_.emplace(storage_a_, (*planes)[0], allowed, BehindPlane::kNoRecord);
-      behind_b_.emplace(storage_b_, (*planes)[1], allowed, known_of_b);
-    }
+    const auto planes = distance_.planesBetween(pair);
+    if (!planes) return;
+    behind_a_.emplace(storage_a_, (*planes)[0], BehindPlane::kNoRecord);
+    behind_b_.emplace(storage_b_, (*planes)[1], known_of_b);
+    const int more = (*planes)[1].exponent() - (*planes)[0].exponent();
+    unit_of_b_ = std::ldexp(1.0, more);
+    constexpr double off = 1e-5; // poses stretch the normal by less
+    less_ = less > 0x1p-400 ? (1.0 - off) * less * (*planes)[0].length() : 0.0;
   }
 
-  /// What of two children touches the planes.
+  /// What of two children touches the planes; of none, where all of them is surely farther apart than the planes.
   struct Touching {
     BehindPlane::Touching a, b;
   };
@@ -60,14 +65,56 @@ public:
     const std::uint64_t allowed = kLooksForDecision * decisions_;
     if (!behind_a_ || looked_ >= allowed) return std::nullopt;
     std::uint64_t looks = allowed - looked_;
+    const std::optional<Touching> found = touching(a, b, looks);
+    looked_ = allowed - looks;
+    return found;
+  }
+
+  /// The same for `looks` at records at most; those made are taken from it. What is beyond one plane may be as far
+  /// behind the other: the sum counts. @pre areLaid()
+  std::optional<Touching> touching(const NodeChild& a, const NodeChild& b, std::uint64_t& looks)
+  {
+    const auto height_a = behind_a_->heightAtMost(a, looks);
+    const auto height_b = height_a ? behind_b_->heightAtMost(b, looks) : std::nullopt;
+    if (height_a && height_b && isBeyond(*height_a, *height_b)) return Touching();
+    if (less_ != 0.0 || !height_b) return std::nullopt;
+    const auto longer_a = behind_a_->height(a, looks);
+    const auto longer_b = longer_a ? behind_b_->height(b, looks) : std::nullopt;
+    if (isBeyond(longer_a, longer_b)) return Touching();
     const auto of_a = behind_a_->touching(a, looks);
     const auto of_b = of_a ? behind_b_->touching(b, looks) : std::nullopt;
-    looked_ = allowed - looks;
-    if (!of_b) return std::nullopt;
-    return Touching{*of_a, *of_b};
+    return of_b ? std::optional(Touching{*of_a, *of_b}) : std::nullopt;
+  }
+
+  /// Whether there are planes.
+  bool areLaid() const { return behind_a_.has_value(); }
+
+  /// Whether two records are no nearer than the pair, as the planes tell.
+  bool areBehind(PointPair pair) const
+  {
+    return areBeyond(pair) || (areLaid() && behind_a_->sideOf(pair.a) <= 0 && behind_b_->sideOf(pair.b) <= 0);
+  }
+
+  /// Whether two records are surely farther apart than the planes.
+  bool areBeyond(PointPair pair) const
+  {
+    return behind_a_ && (isBeyond(behind_a_->heightAtMost(pair.a), behind_b_->heightAtMost(pair.b)) ||
+                         (less_ == 0.0 && isBeyond(behind_a_->height(pair.a), behind_b_->height(pair.b))));
   }
 
 private:
+  bool isBeyond(double height_a, double height_b) const
+  {
+    const double scaled = unit_of_b_ * height_b;
+    return height_a + scaled + kFewDoubleRoundings * (std::abs(height_a) + std::abs(scaled)) < less_;
+  }
+
+  bool isBeyond(const std::optional<LongNumber>& height_a, const std::optional<LongNumber>& height_b) const
+  {
+    bool sure = true;
+    return height_a && height_b && (*height_a + LongNumber(unit_of_b_) * *height_b).sign(sure) < 0;
+  }
+
   /// Before planes are tried, and how many records each of them allows to be looked at then: a look costs a hundredth
   /// of a decision.
   static constexpr std::uint64_t kDecisionsBeforePlanes = 256;
@@ -77,6 +124,8 @@ private:
   const SphereHierarchy::Storage& storage_a_;
   const SphereHierarchy::Storage& storage_b_;
   std::optional<BehindPlane> behind_a_, behind_b_;
+  double unit_of_b_ = 1.0; ///< of heights over b's plane, in that of a's
+  double less_ = 0.0;      ///< in the unit of a's plane
   std::uint64_t decisions_ = 0, looked_ = 0;
 };
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh {
@@ -46,44 +47,42 @@ TEST(ExactPlane, SidesAreThoseOfRationalNumbers)
   EXPECT_GT(in_plane, 300);
 }
 
-/// In places' numbers, under the pose and in those of the plane, in rational numbers.
-TEST(ExactPlane, WhatIsWithinALengthIs)
+TEST(ExactPlane, HeightsAreEnclosed)
 {
   Random random(6);
-  int within = 0, not_told = 0;
+  int told = 0, not_told = 0, exact = 0;
   for (int i = 0; i < 30000; ++i) {
     const int scale = random.pick({0, 0, -1072, -900, 1021, -300});
     const auto number = [&] { return std::ldexp(random.uniform(-1, 1), scale); };
     const Point3 at = random.point(number);
     Point3 normal = random.point([&] { return random.uniform(-1, 1); });
+    const Point3 more = random.point([&] { return random.pick({0.0, 0x1p-70, 0x1p-200}) * random.uniform(-1, 1); });
     if (random.chance(0.2)) normal[2] = std::ldexp(normal[2], random.pick({-600, -900, 900}));
-    const double norm = std::hypot(normal[0], normal[1], normal[2]);
-    double length = random.chance(0.1) ? 0.0 : std::ldexp(random.uniform(0, 1), scale + random.integer(-50, 1));
     Point3 place = random.point(number);
-    if (random.chance(0.3)) { // in the plane but for rounding, and as far
+    if (random.chance(0.3)) { // in the plane but for rounding
       const double far = number();
       place = {at[0] + far * normal[1], at[1] - far * normal[0], at[2]};
-      length = std::ldexp(random.uniform(0, 1), scale + random.integer(-56, -53));
-    }
-    else if (random.chance(0.8)) { // about as far as the length
-      const double by = length / norm * random.pick({0.0, 0.5, 0.99, 0.999999, 1.01});
-      for (std::size_t k = 0; k < 3; ++k) place[k] = at[k] + by * normal[k];
     }
     if (!isFinite(place)) continue;
-    const ExactPlane plane(at, {Dyadic(normal[0]), Dyadic(normal[1]), Dyadic(normal[2])});
-    Rational height = 0, squared = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      height += Rational(normal[k]) * (Rational(place[k]) - Rational(at[k]));
-      squared += Rational(normal[k]) * Rational(normal[k]);
-    }
-    const Rational shorter = Rational(length) * Rational(1 - 2e-6); // as a pose may make the normal
-    const bool is = height <= 0 || height * height < shorter * shorter * squared;
-    const bool told = plane.isWithin(place, length);
-    ASSERT_FALSE(told && (!is || length == 0.0)) << i;
-    ++(told ? within : not_told);
+    const ExactPlane plane(at, {Dyadic(normal[0]) + Dyadic(more[0]), Dyadic(normal[1]) + Dyadic(more[1]),
+                                Dyadic(normal[2]) + Dyadic(more[2])});
+    Rational height = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      height += (Rational(normal[k]) + Rational(more[k])) * (Rational(place[k]) - Rational(at[k]));
+    for (int k = std::abs(plane.exponent()); k > 0; k -= std::min(k, 512))
+      height *= Rational(std::ldexp(1.0, (plane.exponent() < 0 ? 1 : -1) * std::min(k, 512)));
+    const double most = plane.heightAtMost(place);
+    ++(std::isfinite(most) ? told : not_told);
+    if (std::isfinite(most)) ASSERT_LE(height, Rational(most)) << i;
+    const LongNumber longer = plane.height(place);
+    if (!std::isfinite(longer.value()) || !std::isfinite(longer.error())) continue;
+    const Rational off = height - Rational(longer.value()) - Rational(longer.tail());
+    ASSERT_LE(abs(off), Rational(longer.error())) << i;
+    exact += longer.error() < 0x1p-90 * std::abs(longer.value());
   }
-  EXPECT_GT(within, 3000);
-  EXPECT_GT(not_told, 3000);
+  EXPECT_GT(told, 10000);
+  EXPECT_GT(not_told, 1000);
+  EXPECT_GT(exact, 5000);
 }
 
 } // namespace

@@ -289,6 +289,15 @@ Rational squaredBeyond(const LongNumber& length)
   return rational(length) * rational(length);
 }
 
+/// Beyond a length; asked for as a fraction that is not a whole number, too.
+bool areBeyond(const LongCorners& a, const LongCorners& b, const LongNumber& length)
+{
+  const LongNumber square = length * length, three(3.0);
+  const bool beyond = areFacesBeyond(a, b, square, LongNumber(1.0));
+  EXPECT_EQ(areFacesBeyond(a, b, three * square, three), beyond);
+  return beyond;
+}
+
 TEST(FacesBeyond, AreBeyond)
 {
   Random random(44);
@@ -310,8 +319,8 @@ TEST(FacesBeyond, AreBeyond)
     for (const double length : {0.0, root * random.uniform(0.2, 1.2), root * (1.0 - 1e-14), root,
                                 std::nextafter(root, 0.0), std::nextafter(root, 9.0)}) {
       const bool is_beyond = squared > squaredBeyond(LongNumber(length));
-      const bool told = areFacesBeyond(long_a, long_b, LongNumber(length));
-      ASSERT_EQ(told, areFacesBeyond(long_b, long_a, LongNumber(length)));
+      const bool told = areBeyond(long_a, long_b, LongNumber(length));
+      ASSERT_EQ(told, areBeyond(long_b, long_a, LongNumber(length)));
       ASSERT_FALSE(told && !is_beyond) << i << ", length " << length;
       ++(told ? beyond : is_beyond ? undecided : within);
     }
@@ -326,21 +335,86 @@ TEST(FacesBeyond, AreToldByTheFaceOfEither)
   const LongNumber three(3.0), less(std::nextafter(3.0, 0.0));
   const LongCorners floor = cornersOf({{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}});
   const LongCorners tip = cornersOf({{{1, 1, 3}, {1, 4, 9}, {1, 4, 12}}}); // above it, its plane through it
-  EXPECT_TRUE(areFacesBeyond(floor, tip, less));
-  EXPECT_TRUE(areFacesBeyond(tip, floor, less));
-  EXPECT_FALSE(areFacesBeyond(floor, tip, three)); // at just the length
+  EXPECT_TRUE(areBeyond(floor, tip, less));
+  EXPECT_TRUE(areBeyond(tip, floor, less));
+  EXPECT_FALSE(areBeyond(floor, tip, three)); // at just the length
   const LongCorners below = cornersOf({{{1, 1, -3}, {1, 4, -9}, {1, 4, -12}}});
-  EXPECT_TRUE(areFacesBeyond(floor, below, less));
+  EXPECT_TRUE(areBeyond(floor, below, less));
   const LongCorners through = cornersOf({{{1, 1, -9}, {2, 1, 9}, {1, 2, 9}}}); // on both sides, far from the plane
-  EXPECT_FALSE(areFacesBeyond(floor, through, less));
-  EXPECT_FALSE(areFacesBeyond(through, floor, less));
+  EXPECT_FALSE(areBeyond(floor, through, less));
+  EXPECT_FALSE(areBeyond(through, floor, less));
   const LongCorners segment = cornersOf({{{0, 0, 9}, {8, 8, 9}, {4, 4, 9}}}); // which has no normal; the floor has
-  EXPECT_TRUE(areFacesBeyond(floor, segment, less));
-  EXPECT_FALSE(areFacesBeyond(segment, cornersOf({{{0, 0, 3}, {0, 0, 2}, {0, 0, 1}}}), less));
+  EXPECT_TRUE(areBeyond(floor, segment, less));
+  EXPECT_FALSE(areBeyond(segment, cornersOf({{{0, 0, 3}, {0, 0, 2}, {0, 0, 1}}}), less));
   LongCorners unsure = tip; // one corner may be as near
   unsure[0][2] = {3.0, 0.0, 1e-3};
-  EXPECT_FALSE(areFacesBeyond(floor, unsure, less));
-  EXPECT_TRUE(areFacesBeyond(floor, unsure, LongNumber(2.9)));
+  EXPECT_FALSE(areBeyond(floor, unsure, less));
+  EXPECT_TRUE(areBeyond(floor, unsure, LongNumber(2.9)));
+}
+
+/// A lattice of whole numbers in a plane at any slant, and planes beside it.
+struct Lattice {
+  Point3 u, v, normal;
+
+  explicit Lattice(Random& random)
+  {
+    do {
+      u = random.point([&] { return random.integer(-4, 4); });
+      v = random.point([&] { return random.integer(-4, 4); });
+      normal = cross(u, v);
+    } while (dot(normal, normal) == 0.0);
+  }
+
+  Triangle3 triangle(Random& random, int height) const
+  {
+    Triangle3 t;
+    for (Point3& corner : t)
+      corner = static_cast<double>(random.integer(-3, 3)) * u + static_cast<double>(random.integer(-3, 3)) * v +
+               static_cast<double>(height) * normal;
+    return t;
+  }
+};
+
+TEST(FacingOf, SaysHowTheDistanceIsToThatOfThePlanes)
+{
+  Random random(45);
+  int over = 0, beside = 0, unknown = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Lattice lattice(random);
+    const int height = random.integer(1, 3);
+    const Triangle3 a = lattice.triangle(random, 0), b = lattice.triangle(random, height);
+    const Point3 shift = random.point([&] { return i % 2 == 0 ? 0.0 : random.uniform(-1, 1); });
+    const LongCorners long_a = cornersOf(a, shift), long_b = cornersOf(b, shift);
+    ASSERT_NE(areParallel(long_a, long_b), false);
+    const Rational squared = test::squaredDistance(rational(long_a), rational(long_b));
+    const Rational of_planes = Rational(height * height) * Rational(dot(lattice.normal, lattice.normal));
+    for (const Facing facing : {facingOf(long_a, long_b), facingOf(long_b, long_a)}) {
+      if (facing == Facing::over) ASSERT_EQ(squared, of_planes) << i;
+      if (facing == Facing::beside) ASSERT_GT(squared, of_planes) << i;
+      ++(facing == Facing::over ? over : facing == Facing::beside ? beside : unknown);
+    }
+  }
+  EXPECT_GT(over, 1000);
+  EXPECT_GT(beside, 1000);
+  EXPECT_LT(unknown, 1000); // segments, mostly
+}
+
+TEST(FacingOf, TakesParallelPlanesAlone)
+{
+  Random random(46);
+  for (int i = 0; i < 300; ++i) {
+    const Lattice lattice(random);
+    const Triangle3 a = lattice.triangle(random, 0);
+    Triangle3 b = lattice.triangle(random, 2);
+    const Point3 normal = cross(a[1] - a[0], a[2] - a[0]);
+    if (dot(normal, normal) == 0.0) continue;
+    EXPECT_EQ(areParallel(cornersOf(a), cornersOf(b)), true);
+    b[1] = b[1] + 0x1p-45 * lattice.normal;
+    EXPECT_EQ(areParallel(cornersOf(a), cornersOf(b)), false);
+    LongCorners unsure = cornersOf(a);
+    unsure[0][0] = {unsure[0][0].value(), 0.0, 1e-3};
+    EXPECT_NE(areParallel(unsure, cornersOf(lattice.triangle(random, 1))), true);
+  }
 }
 
 } // namespace

@@ -14,6 +14,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -236,6 +237,52 @@ TEST(TriangleDistance, ComparesDistancesAsTheDefinitionDoes)
     }
   report("comparisons of distances", stages);
   EXPECT_GT(ties, 100);
+}
+
+/// Cells of two walls that face each other.
+std::vector<Triangle3> cellsAt(double height, double shift, const Isometry3d& placed)
+{
+  std::vector<Triangle3> cells;
+  const auto at = [&](int i, int j) -> Point3 {
+    const Eigen::Vector3d p = placed * Eigen::Vector3d(0.3 * i + shift, 0.3 * j + shift, height);
+    return {p.x(), p.y(), p.z()};
+  };
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      cells.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      cells.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return cells;
+}
+
+/// All are as far apart, but for what is not opposite: posed by one turn, or turned and rounded.
+TEST(TriangleDistance, ComparesWhatFacesEachOtherAsTheDefinitionDoes)
+{
+  const Isometry3d turn = Random(3).pose(1), none = Isometry3d::Identity();
+  for (const bool rounded : {false, true})
+    for (const double shift : {0.0, 0.01, 0.15}) {
+      const Isometry3d pose = rounded ? none : turn, placed = rounded ? turn : none;
+      const TriangleDistance distance(pose, pose);
+      const std::vector<Triangle3> walls_a = cellsAt(0, 0, placed), walls_b = cellsAt(0.7, shift, placed);
+      Stages stages;
+      int asked = 0;
+      for (std::size_t i = 0; i < walls_a.size(); i += 4)
+        for (std::size_t j = 0; j < walls_b.size(); j += 2)
+          for (std::size_t k = 0; k < walls_b.size(); k += 3) {
+            TriangleDistance::Known of_first, of_second;
+            const TriangleDistance::TrianglePair first{walls_a[i], walls_b[j], 0.0, &of_first};
+            const TriangleDistance::TrianglePair second{walls_a[i], walls_b[k], 0.0, &of_second};
+            const Rational x = test::squaredDistance(posed(pose, first.a), posed(pose, first.b));
+            const Rational y = test::squaredDistance(posed(pose, second.a), posed(pose, second.b));
+            const int expected = signOf(x - y);
+            ASSERT_EQ(distance.compareGaps(first, distance, second, &stages), expected) << i << ' ' << j << ' ' << k;
+            ASSERT_EQ(distance.compareGaps(second, distance, first), -expected); // what is kept is that of each
+            ASSERT_EQ(distance.compareGaps({first.a, first.b}, distance, {second.a, second.b}), expected);
+            ++asked;
+          }
+      report(std::string(rounded ? "rounded" : "posed") + " walls", stages);
+      EXPECT_LT(stages.integers, static_cast<std::uint64_t>(asked) / 10) << rounded << ' ' << shift;
+    }
 }
 
 /// A corner in common is a place in common under one pose alone.

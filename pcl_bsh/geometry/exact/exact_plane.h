@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/geometry/exact/dyadic.h>
+#include <pcl_bsh/geometry/exact/long_number.h>
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
@@ -19,20 +20,29 @@ public:
   ExactPlane(const Point3& at, const Vector3<Dyadic>& normal) : at_(at), normal_(normal)
   {
     const Dyadic::Scaled scaled[3] = {normal[0].scaled(), normal[1].scaled(), normal[2].scaled()};
-    const int largest = std::max({scaled[0].exponent, scaled[1].exponent, scaled[2].exponent});
+    exponent_ = std::max({scaled[0].exponent, scaled[1].exponent, scaled[2].exponent});
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& [mantissa, exponent] = scaled[k];
-      const bool is_rough = exponent - largest > -500; // others might vanish
+      const bool is_rough = exponent - exponent_ > -500 && std::abs(exponent) < 500; // others might vanish
       rough_[k] = mantissa == 0.0 ? 0.0
-                  : is_rough      ? std::ldexp(mantissa, exponent - largest)
+                  : is_rough      ? std::ldexp(mantissa, exponent - exponent_)
                                   : std::numeric_limits<double>::quiet_NaN();
+      const auto partOf = [this](const Dyadic& x) { return std::ldexp(x.scaled().mantissa, x.scaled().exponent); };
+      longer_[k] = LongNumber(rough_[k]);
+      if (mantissa == 0.0 || !is_rough) continue;
+      const Dyadic left = normal[k] - Dyadic(partOf(normal[k]));
+      const double tail = left.sign() == 0 ? 0.0 : std::ldexp(partOf(left), -exponent_);
+      longer_[k] = {rough_[k], tail, left.sign() == 0 ? 0.0 : 2 * kDoubleUnit * std::abs(tail) + 0x1p-1000};
     }
     length_ = std::sqrt(rough_[0] * rough_[0] + rough_[1] * rough_[1] + rough_[2] * rough_[2]);
   }
 
-  /// Whether a finite place surely reaches beyond the plane by less than a length, as doubles tell; also of the plane
-  /// and the place under a pose, which may be off by as much as poses may.
-  bool isWithin(const Point3& place, double length) const
+  /// Heights are in this unit: 2^exponent() of the normal's own length is length().
+  int exponent() const { return exponent_; }
+  double length() const { return length_; }
+
+  /// No less than how far a finite place is beyond the plane, by double arithmetic; NaN where it cannot tell.
+  double heightAtMost(const Point3& place) const
   {
     double sum = 0.0, terms = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -40,8 +50,15 @@ public:
       sum += term;
       terms += std::abs(term);
     }
-    constexpr double off = 1e-5; // of the normal's length: rounding, too
-    return length > 0x1p-900 && sum + kFewDoubleRoundings * terms < (1.0 - off) * length * length_;
+    return sum + kFewDoubleRoundings * terms + 0x1p-900;
+  }
+
+  /// How far it is beyond.
+  LongNumber height(const Point3& place) const
+  {
+    LongNumber sum;
+    for (std::size_t k = 0; k < 3; ++k) sum += longer_[k] * (LongNumber(place[k]) - LongNumber(at_[k]));
+    return sum;
   }
 
   /// Whether a finite place is on the side that the normal points to (1), on the other (-1), or in the plane (0).
@@ -67,8 +84,10 @@ public:
 private:
   Point3 at_;
   Vector3<Dyadic> normal_;
-  Point3 rough_;  ///< the normal but for its length; NaN where that is out of range beside it
-  double length_; ///< of rough_
+  int exponent_ = 0;
+  Point3 rough_;               ///< the normal over 2^exponent_; NaN where that is out of range beside it
+  Vector3<LongNumber> longer_; ///< the same, with more digits
+  double length_ = 0.0;        ///< of rough_
 };
 
 } // namespace pcl_bsh

@@ -79,17 +79,16 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, do
   return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
-/// Whether one of the corners of t surely lies on a closed triangle, seen along an axis: where both touch along parts
-/// of their edges, no place is inside both.
-bool surelyTouch(const LongCorners& t, const LongCorners& closed, std::size_t x, std::size_t y)
+/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal: where both touch along
+/// parts of their edges, doubles know no place inside both. @param turnOf(from, to, corner): to which side it turns
+template <class TurnOf>
+bool surelyTouch(const LongCorners& t, const LongCorners& closed, const TurnOf& turnOf)
 {
   for (const Vector3<LongNumber>& p : t) {
     bool sure = true;
     int left = 0, right = 0;
     for (std::size_t j = 0; j < 3; ++j) {
-      const Vector3<LongNumber>&from = closed[j], &to = closed[(j + 1) % 3];
-      const LongNumber turned = (to[x] - from[x]) * (p[y] - from[y]) - (to[y] - from[y]) * (p[x] - from[x]);
-      const int sign = turned.sign(sure);
+      const int sign = turnOf(closed[j], closed[(j + 1) % 3], p).sign(sure);
       left += sign > 0, right += sign < 0;
     }
     if (sure && (left == 0) != (right == 0)) return true;
@@ -122,7 +121,11 @@ std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b
         return places;
       };
       const std::array<Place, 3> of_a = placesOf(a), of_b = placesOf(b);
-      if (!surelyMeet(of_a, of_b, error) && !surelyTouch(a, b, x, y) && !surelyTouch(b, a, x, y)) return std::nullopt;
+      const auto turnOf = [&](const auto& from, const auto& to, const auto& p) {
+        return (to[x] - from[x]) * (p[y] - from[y]) - (to[y] - from[y]) * (p[x] - from[x]);
+      };
+      if (!surelyMeet(of_a, of_b, error) && !surelyTouch(a, b, turnOf) && !surelyTouch(b, a, turnOf))
+        return std::nullopt;
     }
     const LongNumber gap = a[0][axis] - b[0][axis];
     bool sure = true;
@@ -133,23 +136,86 @@ std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b
   return std::nullopt;
 }
 
-bool areFacesBeyond(const LongCorners& a, const LongCorners& b, const LongNumber& length)
+bool areFacesBeyond(const LongCorners& a, const LongCorners& b, const LongNumber& numerator,
+                    const LongNumber& denominator)
 {
   for (const LongCorners* face : {&a, &b}) {
     const LongCorners &own = *face, &other = face == &a ? b : a;
     const Vector3<LongNumber> normal = cross(own[1] - own[0], own[2] - own[0]);
-    const LongNumber square = dot(normal, normal), limit = square * (length * length);
+    const LongNumber limit = dot(normal, normal) * numerator;
     int sides = 0;
     bool all_beyond = true;
     for (const Vector3<LongNumber>& corner : other) {
       const LongNumber height = dot(normal, corner - own[0]);
       bool sure = true;
       sides += height.sign(sure);
-      all_beyond = all_beyond && (height * height - limit).sign(sure) > 0;
+      all_beyond = all_beyond && (denominator * (height * height) - limit).sign(sure) > 0;
     }
     if (all_beyond && (sides == 3 || sides == -3)) return true;
   }
   return false;
+}
+
+namespace {
+
+/// Whether a line along an edge of t, seen along their normal, surely has t on one side and all of the other beyond it.
+template <class TurnOf>
+bool isApart(const LongCorners& t, const LongCorners& other, const TurnOf& turnOf)
+{
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Vector3<LongNumber>&from = t[j], &to = t[(j + 1) % 3];
+    bool sure = true;
+    const int own = turnOf(from, to, t[(j + 2) % 3]).sign(sure);
+    if (own != 0 && std::all_of(other.begin(), other.end(), [&](const Vector3<LongNumber>& corner) {
+          return turnOf(from, to, corner).sign(sure) == -own;
+        }))
+      return true;
+  }
+  return false;
+}
+
+Point3 roughly(const Vector3<LongNumber>& v)
+{
+  return {v[0].value(), v[1].value(), v[2].value()};
+}
+
+/// The greatest of a vector's errors.
+double errorOf(const Vector3<LongNumber>& v)
+{
+  return std::max({v[0].error(), v[1].error(), v[2].error()});
+}
+
+} // namespace
+
+Facing facingOf(const LongCorners& a, const LongCorners& b)
+{
+  // In doubles, along an edge of a and across it in the plane of a, both as long as the edge.
+  const Vector3<LongNumber> edge = a[1] - a[0], normal = cross(edge, a[2] - a[0]);
+  const Point3 along = roughly(edge), side = roughly(a[2] - a[0]), up = roughly(normal);
+  const double length = std::sqrt(dot(along, along)), height = std::sqrt(dot(up, up));
+  constexpr double needle = 0x1p-30; // the normal has more digits than doubles
+  if (!(height > needle * length * std::sqrt(dot(side, side)))) return Facing::unknown;
+  const Point3 across = (1.0 / height) * cross(up, along);
+  double farthest = 0.0, error = 0.0;
+  const auto placesOf = [&](const LongCorners& t) {
+    std::array<Place, 3> places;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3<LongNumber> from = t[i] - a[0];
+      const Point3 at = roughly(from);
+      places[i] = {dot(along, at), dot(across, at)};
+      farthest = std::max(farthest, dot(at, at));
+      error = std::max(error, errorOf(from));
+    }
+    return places;
+  };
+  const std::array<Place, 3> of_a = placesOf(a), of_b = placesOf(b);
+  const double off = length * (kFewDoubleRoundings * std::sqrt(farthest) + 4 * (error + errorOf(edge)));
+  if (surelyMeet(of_a, of_b, off)) return Facing::over;
+  const auto turnOf = [&normal](const auto& from, const auto& to, const auto& p) {
+    return dot(cross(normal, to - from), p - from);
+  };
+  if (isApart(a, b, turnOf) || isApart(b, a, turnOf)) return Facing::beside;
+  return surelyTouch(a, b, turnOf) || surelyTouch(b, a, turnOf) ? Facing::over : Facing::unknown;
 }
 
 } // namespace pcl_bsh

@@ -126,6 +126,7 @@ public:
   NearestFeatures(const Corners& a, const Corners& b, FeaturePairs pairs) : a_(a), b_(b)
   {
     const Vector normals[2] = {normalOf(a), normalOf(b)};
+    if (takeSeparated(normals, pairs)) return;
     if (pierces(a, b, normals[1]) || (sure_ && pierces(b, a, normals[0]))) {
       if (sure_) best_ = {Number(0.0), Number(1.0)}, found_ = true;
       return;
@@ -188,6 +189,99 @@ private:
     return false;
   }
 
+  /// Takes the two features whose nearest places have both triangles on the outer sides of the planes across the way
+  /// between them: the triangles are as far apart as these planes. Signs alone tell it, also where other features are
+  /// hardly farther apart. @return false where it is not sure of any two
+  bool takeSeparated(const Vector (&normals)[2], FeaturePairs pairs)
+  {
+    for (std::size_t k = 0; k < 6; ++k) {
+      if ((pairs.faces >> k & 1) == 0) continue;
+      const std::size_t i = k % 3;
+      if (k < 3 ? isLowestOver(a_, i, b_, normals[1]) : isLowestOver(b_, i, a_, normals[0]))
+        return k < 3 ? take(Features::corner_face, i, 0) : take(Features::face_corner, 0, i);
+    }
+    for (std::size_t k = 0; k < 9; ++k)
+      if ((pairs.edges >> k & 1) != 0 && areEdgesBetween(k / 3, k % 3)) return take(Features::edges, k / 3, k % 3);
+    for (std::size_t k = 0; k < 9; ++k) {
+      if ((pairs.edges >> k & 1) == 0) continue;
+      const std::size_t i = k / 3, j = k % 3;
+      for (const std::size_t corner : {i, (i + 1) % 3})
+        if (isEdgeBefore(a_, corner, b_, j)) return take(Features::corner_edge, corner, j);
+      for (const std::size_t corner : {j, (j + 1) % 3})
+        if (isEdgeBefore(b_, corner, a_, i)) return take(Features::edge_corner, i, corner);
+    }
+    for (std::size_t k = 0; k < 9; ++k)
+      if (areCornersBetween(k / 3, k % 3)) return take(Features::corners, k / 3, k % 3);
+    return false;
+  }
+
+  bool take(Features::Kind kind, std::size_t i, std::size_t j)
+  {
+    found_ = false;
+    offer(kind, i, j);
+    return true;
+  }
+
+  /// Whether two corners of a triangle are surely no farther along a direction than the one before them.
+  static bool areBehind(const Vector& direction, const Corners& t, std::size_t i, bool& sure)
+  {
+    for (const std::size_t k : {(i + 1) % 3, (i + 2) % 3})
+      if (signOf(dot(direction, t[k] - t[i]), sure) > 0 || !sure) return false;
+    return true;
+  }
+
+  /// Whether a corner is surely over a face, and no other corner of its triangle is nearer to the face's plane.
+  static bool isLowestOver(const Corners& t, std::size_t i, const Corners& face, const Vector& normal)
+  {
+    bool sure = true;
+    const int side = signOf(dot(normal, t[i] - face[0]), sure);
+    if (side == 0 || !areBehind(side > 0 ? -normal : normal, t, i, sure)) return false;
+    for (std::size_t j = 0; j < 3; ++j)
+      if (signOf(dot(normal, cross(face[(j + 1) % 3] - face[j], t[i] - face[j])), sure) < 0 || !sure) return false;
+    return true;
+  }
+
+  /// Whether the nearest places of two edges' lines are surely inside both, and the third corners not between the
+  /// planes through these edges.
+  bool areEdgesBetween(std::size_t i, std::size_t j) const
+  {
+    const Vector &from_a = a_[i], &from_b = b_[j];
+    const Vector u = a_[(i + 1) % 3] - from_a, v = b_[(j + 1) % 3] - from_b, w = from_a - from_b;
+    const Vector normal = cross(u, v);
+    bool sure = true;
+    const int side = signOf(dot(normal, w), sure);
+    if (side == 0 || side * signOf(dot(normal, a_[(i + 2) % 3] - from_a), sure) < 0 || !sure ||
+        side * signOf(dot(normal, b_[(j + 2) % 3] - from_b), sure) > 0 || !sure)
+      return false;
+    return isInside(normal, cross(v, w), sure) && isInside(normal, cross(u, w), sure);
+  }
+
+  /// The same of a corner i of a triangle and an edge j of another.
+  static bool isEdgeBefore(const Corners& t, std::size_t i, const Corners& ends, std::size_t j)
+  {
+    const Vector edge = ends[(j + 1) % 3] - ends[j], from = t[i] - ends[j];
+    const Number share = dot(from, edge), whole = dot(edge, edge);
+    bool sure = true;
+    if (signOf(share, sure) <= 0 || signOf(share - whole, sure) >= 0 || !sure) return false;
+    const Vector way = whole * from - share * edge; // from the edge to the corner
+    return signOf(dot(way, ends[(j + 2) % 3] - ends[j]), sure) <= 0 && sure && areBehind(-way, t, i, sure);
+  }
+
+  /// The same of two corners.
+  bool areCornersBetween(std::size_t i, std::size_t j) const
+  {
+    const Vector way = a_[i] - b_[j];
+    bool sure = true;
+    return areBehind(-way, a_, i, sure) && areBehind(way, b_, j, sure);
+  }
+
+  /// Whether the nearest place of an edge to another's line is inside the edge.
+  static bool isInside(const Vector& normal, const Vector& moment, bool& sure)
+  {
+    const Number share = dot(normal, moment);
+    return signOf(share, sure) > 0 && signOf(share - dot(normal, normal), sure) < 0 && sure;
+  }
+
   void offer(Features::Kind kind, std::size_t i, std::size_t j)
   {
     const Features features{kind, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)};
@@ -228,12 +322,8 @@ private:
     const Vector u = a_[next_i] - a_[i], v = b_[next_j] - b_[j], w = a_[i] - b_[j];
     const Vector normal = cross(u, v);
     if (!isZero(normal)) {
-      const Number square = dot(normal, normal);
-      const Number on_u = dot(normal, cross(v, w)), on_v = dot(normal, cross(u, w));
-      const bool inside = signOf(on_u, sure_) > 0 && signOf(on_u - square, sure_) < 0 && signOf(on_v, sure_) > 0 &&
-                          signOf(on_v - square, sure_) < 0;
-      if (inside && sure_) offer(Features::edges, i, j);
-      if (inside) return;
+      if (isInside(normal, cross(v, w), sure_) && isInside(normal, cross(u, w), sure_))
+        return offer(Features::edges, i, j);
     }
     offerEdge(i, j, true);
     offerEdge(next_i, j, true);

@@ -77,6 +77,15 @@ bool areOne(const Features& x, const Triangle3& of_x, const Features& y, const T
   return (from_x == from_y && to_x == to_y) || (from_x == to_y && to_x == from_y);
 }
 
+Vector3<LongNumber> asGiven(const Point3& p)
+{
+  return {LongNumber(p[0]), LongNumber(p[1]), LongNumber(p[2])};
+}
+LongCorners asGiven(const Triangle3& t)
+{
+  return {asGiven(t[0]), asGiven(t[1]), asGiven(t[2])};
+}
+
 } // namespace
 
 TriangleDistance::TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
@@ -224,16 +233,70 @@ Fraction<Number> TriangleDistance::squared(const Pair& pair, const Features& fea
   return squaredDistance<Number>(features, corner_a, [&](std::size_t j) { return placed<Number>(b_, pair.b[j]); });
 }
 
-/// The distance where it is known by the planes of both: of what features are nearest, long numbers cannot be sure
-/// where many are.
+/// The distance of triangles across one axis, where it is known by the planes of both: of what features are nearest,
+/// long numbers cannot be sure where many are.
 template <class Pair>
-std::optional<LongNumber> TriangleDistance::facing(const Pair& pair) const
+std::optional<LongNumber> TriangleDistance::acrossAxis(const Pair& pair) const
 {
   if (shareCorner(pair)) return LongNumber(0.0);
   if constexpr (std::is_same_v<Pair, PointPair>)
     return std::nullopt;
   else
     return gapOfFacing(longCorners(a_, pair.a), longCorners(b_, pair.b));
+}
+
+/// How they lie to each other if their planes are parallel.
+template <class Pair>
+Facing TriangleDistance::facing(const Pair& pair) const
+{
+  if constexpr (std::is_same_v<Pair, PointPair>) {
+    return Facing::unknown;
+  }
+  else {
+    if (pair.known == nullptr) return findFacing(pair);
+    if (!pair.known->facing) pair.known->facing = findFacing(pair);
+    return *pair.known->facing;
+  }
+}
+
+Facing TriangleDistance::findFacing(const TrianglePair& pair) const
+{
+  if (shareCorner(pair)) return Facing::unknown;
+  std::optional<bool> parallel = areParallelAsGiven(pair);
+  const LongCorners a = longCorners(a_, pair.a), b = longCorners(b_, pair.b);
+  if (!parallel) parallel = areParallel(a, b);
+  if (parallel == false) return Facing::unknown;
+  const Facing facing = facingOf(a, b);
+  if (parallel || facing == Facing::unknown) return facing;
+  const auto corners = [this](const Pose& pose, const Triangle3& t) -> std::array<Vector3<Dyadic>, 3> {
+    return {placed<Dyadic>(pose, t[0]), placed<Dyadic>(pose, t[1]), placed<Dyadic>(pose, t[2])};
+  };
+  return *areParallel(corners(a_, pair.a), corners(b_, pair.b)) ? facing : Facing::unknown;
+}
+
+/// Whether planes are parallel, in the given coordinates: those of one pose have short numbers there. Nothing where
+/// that is not known.
+std::optional<bool> TriangleDistance::areParallelAsGiven(const TrianglePair& pair) const
+{
+  if (a_ != b_) return std::nullopt;
+  return areParallel(asGiven(pair.a), asGiven(pair.b));
+}
+
+/// Sign of the distance of the planes of the first pair less that of the second, which are all parallel. Of one pose,
+/// in the given coordinates: the pose stretches all gaps alike. Nothing where that is not known.
+std::optional<int> TriangleDistance::comparePlanesAsGiven(const TrianglePair& first, const TrianglePair& second) const
+{
+  if (a_ != b_) return std::nullopt;
+  const LongCorners a = asGiven(first.a), other = asGiven(second.a);
+  if (areParallel(a, other) != true) return std::nullopt;
+  const Vector3<LongNumber> normal = cross(a[1] - a[0], a[2] - a[0]);
+  const Vector3<LongNumber> way = asGiven(first.b[0]) - a[0], other_way = asGiven(second.b[0]) - other[0];
+  bool sure = true;
+  const int up = dot(normal, way).sign(sure), other_up = dot(normal, other_way).sign(sure);
+  if (up == 0) return sure ? std::optional(other_up == 0 ? 0 : -1) : std::nullopt;
+  const Vector3<LongNumber> more = up == other_up ? way - other_way : way + other_way;
+  const int side = up * dot(normal, more).sign(sure);
+  return sure ? std::optional(side) : std::nullopt;
 }
 
 /// Whether both have a corner at one place for certain: of a mesh against itself nearly all that meet do.
@@ -254,7 +317,23 @@ bool TriangleDistance::shareCorner(const Pair& pair) const
 template <class Pair>
 Features TriangleDistance::nearestFeatures(const Pair& pair, bool& by_integers) const
 {
+  if constexpr (std::is_same_v<Pair, TrianglePair>) {
+    Known* const known = pair.known;
+    if (known != nullptr && known->has_features) return {static_cast<Features::Kind>(known->kind), known->i, known->j};
+    const Features found = findFeatures(pair, facing(pair), by_integers);
+    if (known != nullptr) *known = {known->facing, found.kind, found.i, found.j, true};
+    return found;
+  }
+  else {
+    return findFeatures(pair, Facing::unknown, by_integers);
+  }
+}
+
+template <class Pair>
+Features TriangleDistance::findFeatures(const Pair& pair, Facing facing, bool& by_integers) const
+{
   if (shareCorner(pair)) return {Features::meeting, 0, 0};
+  if (facing == Facing::over) return {Features::corner_face, 0, 0};
   const Seen at = seen(pair.a, pair.b);
   if (isFinite(at.a) && isFinite(at.b) && std::isfinite(at.error)) {
     const auto rough = [&](const Triangle3& t) {
@@ -301,7 +380,8 @@ int TriangleDistance::settle(const Pair& pair, const ExactDistance::Sum& reach, 
       if (sure) return ++stages.long_numbers, side;
     }
     sure = true;
-    if (length.sign(sure) >= 0 && sure && areFacesBeyond(a, b, length)) return ++stages.long_numbers, 1;
+    if (length.sign(sure) >= 0 && sure && areFacesBeyond(a, b, length * length, LongNumber(1.0)))
+      return ++stages.long_numbers, 1;
   }
   sure = true;
   const Features features = nearestFeatures(pair, by_integers);
@@ -325,21 +405,44 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
   if (this == &other && first.a == second.a && first.b == second.b && shift == 0.0) return ++stages.doubles, 0;
   bool by_integers = false, sure = true;
   if (first.radius == second.radius) {
-    const std::optional<LongNumber> gap = facing(first), other_gap = gap ? other.facing(second) : std::nullopt;
+    const std::optional<LongNumber> gap = acrossAxis(first), other_gap = gap ? other.acrossAxis(second) : std::nullopt;
     if (gap && other_gap) {
       const int side = (*gap - *other_gap).sign(sure);
       if (sure) return ++stages.long_numbers, side;
       sure = true;
     }
   }
-  const Features of_first = nearestFeatures(first, by_integers);
-  const Features of_second = other.nearestFeatures(second, by_integers);
-  if (first.radius == second.radius) {
-    if (this == &other && first.a == second.a && areOne(of_first, first.b, of_second, second.b))
-      return ++stages.doubles, 0;
+  const auto compareSquares = [&](const Features& of_first, const Features& of_second) {
     const int side =
         compareFractions(squared<LongNumber>(first, of_first), other.squared<LongNumber>(second, of_second), sure);
     if (sure) return ++(by_integers ? stages.integers : stages.long_numbers), side;
+    sure = true, ++stages.integers;
+    return compareFractions(squared<Dyadic>(first, of_first), other.squared<Dyadic>(second, of_second), sure);
+  };
+  const Facing faces_first = facing(first), faces_second = other.facing(second);
+  if (first.radius == second.radius && faces_first != Facing::unknown && faces_second != Facing::unknown) {
+    constexpr Features kPlanes = {Features::corner_face, 0, 0};
+    std::optional<int> as_given;
+    if constexpr (std::is_same_v<Pair, TrianglePair>)
+      if (this == &other) as_given = comparePlanesAsGiven(first, second);
+    if (as_given) ++stages.long_numbers;
+    const int side = as_given ? *as_given : compareSquares(kPlanes, kPlanes);
+    if (faces_first == Facing::over && faces_second == Facing::over) return side;
+    if (faces_second == Facing::over && side >= 0) return 1;
+    if (faces_first == Facing::over && side <= 0) return -1;
+  }
+  const Features of_second = other.nearestFeatures(second, by_integers);
+  if constexpr (std::is_same_v<Pair, TrianglePair>) {
+    const Fraction<LongNumber> known = other.squared<LongNumber>(second, of_second);
+    if (first.radius == second.radius &&
+        areFacesBeyond(longCorners(a_, first.a), longCorners(b_, first.b), known.numerator, known.denominator))
+      return ++stages.long_numbers, 1;
+  }
+  const Features of_first = nearestFeatures(first, by_integers);
+  if (first.radius == second.radius) {
+    if (this == &other && first.a == second.a && areOne(of_first, first.b, of_second, second.b))
+      return ++stages.doubles, 0;
+    return compareSquares(of_first, of_second);
   }
   ++stages.integers;
   return compareShiftedRoots(squared<Dyadic>(first, of_first), Dyadic(second.radius) - Dyadic(first.radius),
@@ -351,7 +454,7 @@ double TriangleDistance::rounded(const Pair& pair, Stages& stages) const
 {
   bool by_integers = false;
   if (pair.radius == 0.0) {
-    if (const std::optional<LongNumber> gap = facing(pair)) return ++stages.long_numbers, gap->value();
+    if (const std::optional<LongNumber> gap = acrossAxis(pair)) return ++stages.long_numbers, gap->value();
   }
   const Features features = nearestFeatures(pair, by_integers);
   if (pair.radius == 0.0) {

@@ -24,6 +24,7 @@ namespace pcl_bsh {
 class ExactPlane;
 struct Features;
 class LongNumber;
+enum class Facing : std::uint8_t;
 template <class Number>
 struct Fraction;
 template <class Number>
@@ -61,9 +62,17 @@ public:
     Triangle3 b;
     double radius = 0.0; ///< of the point: of a ball
   };
+  /// What was found of a pair of triangles under one pair of poses.
+  struct Known {
+    std::optional<Facing> facing;
+    std::uint8_t kind = 0, i = 0, j = 0; ///< of the nearest features
+    bool has_features = false;
+  };
+
   struct TrianglePair {
     Triangle3 a, b;
     double radius = 0.0;
+    Known* known = nullptr; ///< kept for later, if not null
   };
 
   /// Sign of the pair's gap, which is the distance less the radius, less the sum of the terms of `reach`.
@@ -115,11 +124,18 @@ private:
   template <class Number, class Pair>
   Fraction<Number> squared(const Pair& pair, const Features& features) const;
   template <class Pair>
-  std::optional<LongNumber> facing(const Pair& pair) const;
+  std::optional<LongNumber> acrossAxis(const Pair& pair) const;
+  template <class Pair>
+  Facing facing(const Pair& pair) const;
+  Facing findFacing(const TrianglePair& pair) const;
+  std::optional<bool> areParallelAsGiven(const TrianglePair& pair) const;
+  std::optional<int> comparePlanesAsGiven(const TrianglePair& first, const TrianglePair& second) const;
   template <class Pair>
   bool shareCorner(const Pair& pair) const;
   template <class Pair>
   Features nearestFeatures(const Pair& pair, bool& by_integers) const;
+  template <class Pair>
+  Features findFeatures(const Pair& pair, Facing facing, bool& by_integers) const;
   template <class Pair>
   int compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const;
   template <class Pair>

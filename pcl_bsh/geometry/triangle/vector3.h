@@ -17,6 +17,12 @@ Vector3<Number> operator-(const Vector3<Number>& a, const Vector3<Number>& b)
 }
 
 template <class Number>
+Vector3<Number> operator-(const Vector3<Number>& a)
+{
+  return {-a[0], -a[1], -a[2]};
+}
+
+template <class Number>
 Vector3<Number> operator+(const Vector3<Number>& a, const Vector3<Number>& b)
 {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
