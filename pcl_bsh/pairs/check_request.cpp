@@ -14,6 +14,7 @@ void check(const Placed& a, const Placed& b, const AnyRequest& request)
 
 void check(const Placed& a, const Placed& b, const DistanceRequest& request)
 {
+  checkMaxDistance(request.max_distance);
   checkAccuracy(request.accuracy);
   checkPoses(a.pose, b.pose);
 }

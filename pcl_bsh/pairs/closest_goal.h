@@ -7,19 +7,25 @@
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/stop_rule.h>
 
+#include <cmath>
 #include <limits>
 
 namespace pcl_bsh {
 
 struct ClosestGoal {
-  explicit ClosestGoal(const Accuracy& accuracy)
+  explicit ClosestGoal(const Accuracy& accuracy, double up_to = std::numeric_limits<double>::infinity())
   : rule(accuracy),
-    tolerance(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0)
+    tolerance(accuracy.mode == Accuracy::Mode::tolerance ? accuracy.value : 0.0),
+    max_distance(up_to)
   {
   }
 
+  /// Pairs that are no nearer than this are passed over from the start.
+  double most() const { return std::nextafter(max_distance, std::numeric_limits<double>::infinity()); }
+
   StopRule rule;
-  double tolerance; ///< the pair may be this much farther apart than the closest one
+  double tolerance;    ///< the pair may be this much farther apart than the closest one
+  double max_distance; ///< no pair that is farther apart is looked for; inclusive
   /// All that is asked is whether the distance exceeds this.
   double clearance = std::numeric_limits<double>::infinity();
 };

@@ -127,7 +127,7 @@ HWY_EXPORT(searchWithinOnTarget);
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request)
 {
   check(a, b, request);
-  const ClosestGoal goal(request.accuracy);
+  const ClosestGoal goal(request.accuracy, request.max_distance);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
   const unsigned threads = request.accuracy.isExact() ? threadCount(request.threads) : 1;

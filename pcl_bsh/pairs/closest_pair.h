@@ -18,16 +18,21 @@ struct DistanceRequest : Effort {
   using Effort::Effort;
   /** All. */ DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
   DistanceRequest() = default;
+
+  /// No pair that is farther apart is found: what is beyond costs as little as anyCollision(). >= 0, inclusive,
+  /// infinity for no limit.
+  double max_distance = std::numeric_limits<double>::infinity();
 };
 
 /// What closestPair() found.
 struct DistanceResult {
   /// Smallest |T_a p - T_b q|, less the two points' radii where given (then negative = depth of overlap); rounded to
-  /// the nearest double. Infinity when a cloud has no finite point.
+  /// the nearest double. Infinity when a cloud has no finite point, or no pair is within max_distance.
   double distance = std::numeric_limits<double>::infinity();
   std::optional<PointPair> pair; ///< the pair that realises it; of several, the smallest (a, b)
   /// Holds the smallest distance for certain. The neighbouring doubles of `distance` when the request's accuracy is
-  /// exact; otherwise `distance` and `pair` are those of the nearest pair that was found, and the upper end.
+  /// exact; otherwise `distance` and `pair` are those of the nearest pair that was found, and the upper end. Without a
+  /// pair, from what is known, at most max_distance, to infinity.
   Interval interval;
   Work work;
 };
@@ -35,7 +40,8 @@ struct DistanceResult {
 /// The smallest distance and the pair that realises it. Several threads share a search that takes longer than about
 /// 0.05 ms; its work then varies, for it depends on which of them finds a near pair when. Accuracies other
 /// than exact take one thread.
-/// @throws std::invalid_argument when the accuracy or a pose is not what its declaration asks for. Cancelled.
+/// @throws std::invalid_argument when max_distance, the accuracy or a pose is not what its declaration asks for.
+///   Cancelled.
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
 
 } // namespace pcl_bsh

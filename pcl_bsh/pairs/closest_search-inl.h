@@ -66,6 +66,7 @@ public:
     others_(std::move(others))
   {
     walk_.makeWholes();
+    best_.to_beat = goal_.most();
     sharp_ = 0x1p-36 * smallerRadius();
     if (goal_.rule.isTimed()) walk_.pairs_before_points = kPairsBeforePoints;
   }
@@ -104,7 +105,7 @@ public:
   DistanceResult result(const Work& work)
   {
     others_.hear(best_);
-    if (!best_.pair) return {kInfinity, std::nullopt, {kInfinity, kInfinity}, work};
+    if (!best_.pair) return {kInfinity, std::nullopt, {leastBeyond(), kInfinity}, work};
     const double gap = pairs_.gap(*best_.pair);
     return {gap, best_.pair, intervalOf(gap), work};
   }
@@ -123,7 +124,7 @@ public:
 
   /// Distances above this are of no interest. A dive is for a nearer pair, though it may not be nearer by the
   /// tolerance.
-  double reach() const { return std::max(diving_ ? best_.high : best_.to_beat, 0.0); }
+  double reach() const { return std::max(diving_ && best_.pair ? best_.high : best_.to_beat, 0.0); }
 
   /// Whether there is time for what opening a pair takes.
   bool opens(const LanePair& pair, Opened opened)
@@ -328,6 +329,13 @@ private:
     return overlap < 2.0f ? overlap - 2.0f : 0.0f;
   }
 
+  /// No pair is nearer, as none was found.
+  double leastBeyond() const
+  {
+    const bool is_empty = walk_.a.storage.size == 0 || walk_.b.storage.size == 0;
+    return is_empty ? kInfinity : std::min(static_cast<double>(left_over_), goal_.max_distance);
+  }
+
   /// Nothing was passed over but what is no nearer than the best less the tolerance.
   Interval intervalOf(double gap) const
   {
@@ -345,7 +353,7 @@ private:
   {
     const double bound = std::max(pair.key, lowest_key_);
     if (bound < best_.to_beat) return true;
-    if (bound > best_.to_beat || goal_.tolerance > 0.0) return false;
+    if (bound > best_.to_beat || goal_.tolerance > 0.0 || !best_.pair) return false;
     return walk_.lowest(pair) < *best_.pair;
   }
 
@@ -435,9 +443,12 @@ private:
     ++walk_.work.exact_decisions;
     ++steps_in_vain_;
     planes_.decidedInVain();
-    if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, best_.high)) return;
+    const double most = best_.pair ? best_.high : goal_.max_distance;
+    if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, most)) return;
+    if (planes_.areBeyond(candidate)) return;
     if (best_.pair) {
-      const int sign = pairs_.distance.compareGaps(posed, pairs_.posed(*best_.pair));
+      if (!(best_posed_.records == *best_.pair)) best_posed_ = pairs_.posed(*best_.pair);
+      const int sign = pairs_.distance.compareGaps(posed, best_posed_);
       if (sign > 0 || (sign == 0 && *best_.pair < candidate)) return;
       if (sign == 0) {
         best_lower_ = std::max(best_lower_, static_cast<double>(at_least_));
@@ -446,7 +457,11 @@ private:
         return;
       }
     }
+    else if (goal_.max_distance < kInfinity && pairs_.distance.compare(posed, goal_.max_distance) > 0) {
+      return;
+    }
     best_.pair = candidate;
+    best_posed_ = posed;
     steps_in_vain_ = 0, has_looked_round_ = false;
     planes_.clear(), planes_of_ = kInfinity;
     best_lower_ = static_cast<double>(at_least_);
@@ -503,6 +518,7 @@ private:
   StopCheck stop_check_;
   Others others_;
   Nearest best_;
+  RecordDistance::Pair best_posed_; ///< of the best pair, or of one before it
 
   PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage}; ///< of the best pair; by its decisions
   double planes_of_ = kInfinity;                                            ///< Nearest::high of the pair they are of

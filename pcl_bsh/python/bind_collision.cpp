@@ -8,6 +8,7 @@
 #include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/question/held.h>
 
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -113,6 +114,8 @@ constexpr auto kClosestPair = R"(The smallest distance of two clouds, and the pa
 Parameters
 ----------
 a, b : SphereHierarchy
+max_distance : float
+    No pair that is farther apart is looked for, so that what is beyond costs little. Inclusive.
 pose_a, pose_b, accuracy, threads, solid, input_solid
     As of `collision_flags`.
 
@@ -120,7 +123,7 @@ Returns
 -------
 ClosestPair
     `distance` (less the points' radii; negative of what a solid holds, the depth of the deepest; infinity when a cloud is
-    empty), rows `a` and `b` (None when there is no pair; of
+    empty, or no pair is within `max_distance`), rows `a` and `b` (None when there is no pair; of
     several pairs the smallest), and the `interval` that holds the distance for certain.
 
 Examples
@@ -131,6 +134,8 @@ Examples
 >>> pair = pcl_bsh.closest_pair(a, b)
 >>> pair.distance, pair.a, pair.b
 (5.0, 0, 1)
+>>> pcl_bsh.closest_pair(a, b, max_distance=4.0).distance
+inf
 )";
 
 bool isNotBoth(py::handle side)
@@ -238,12 +243,14 @@ bool isColliding(const AnyResult& result)
 }
 
 DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
-                             const AccuracyLike& accuracy, unsigned threads, bool solid, bool input_solid)
+                             double max_distance, const AccuracyLike& accuracy, unsigned threads, bool solid,
+                             bool input_solid)
 {
   Asked asked(a, pose_a, b, pose_b);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   DistanceRequest request;
+  request.max_distance = max_distance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = asked.question.threads = threads;
   const auto find = [&] {
@@ -312,7 +319,8 @@ void bindCollision(py::module_& module)
   module.def("any_collision", &anyCollisionOf, kAnyCollision, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
              "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
   module.def("closest_pair", &closestPairOf, kClosestPair, "a"_a, "b"_a, py::kw_only(), "pose_a"_a = none,
-             "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false, "input_solid"_a = false);
+             "pose_b"_a = none, "max_distance"_a = std::numeric_limits<double>::infinity(), "accuracy"_a = none,
+             "threads"_a = 1, "solid"_a = false, "input_solid"_a = false);
 }
 
 } // namespace pcl_bsh::python

@@ -32,6 +32,13 @@ void checkClearance(double clearance)
       .withValue(clearance);
 }
 
+void checkMaxDistance(double max_distance)
+{
+  if (max_distance >= 0.0) return;
+  throw InvalidInput(Input::max_distance, "max_distance", plainText(max_distance), "give a length >= 0, or infinity")
+      .withValue(max_distance);
+}
+
 void checkAccuracy(const Accuracy& accuracy)
 {
   if (std::isfinite(accuracy.value) && accuracy.value >= 0.0) return;

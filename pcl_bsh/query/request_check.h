@@ -21,6 +21,9 @@ inline constexpr double rigidity_tolerance = 1e-6;
 /// Refuses a clearance that is negative or not finite.
 PCL_BSH_EXPORT_INTERNAL void checkClearance(double clearance);
 
+/// Refuses a greatest distance that is negative or NaN.
+PCL_BSH_EXPORT_INTERNAL void checkMaxDistance(double max_distance);
+
 /// Refuses a value of the accuracy that is negative or not finite.
 PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
 

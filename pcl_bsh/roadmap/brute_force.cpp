@@ -10,6 +10,7 @@
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pcl_bsh::brute_force {
 namespace {
@@ -113,6 +114,8 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
       ++result.work.exact_decisions;
       const RecordDistance::Pair pair = distance.pair({p.record, q.record});
       if (result.pair && distance.compareGaps(pair, closest) >= 0) continue;
+      if (!result.pair && std::isfinite(request.max_distance) && distance.compare(pair, request.max_distance) > 0)
+        continue;
       closest = pair;
       result.pair = PointPair{p.record, q.record};
     }
@@ -142,7 +145,8 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
   for (std::size_t i = 0; i < T_world_b.size(); ++i) {
     const DistanceResult found = brute_force::closestPair(a, {b, T_world_b[i]}, request);
     result.distances.push_back(found.distance);
-    if (found.pair) result.pairs.push_back(*found.pair);
+    if (!a.hierarchy().empty() && !b.empty())
+      result.pairs.push_back(found.pair.value_or(PointPair{kNothing, kNothing}));
     result.work += found.work;
   }
   return result;

@@ -77,8 +77,11 @@ AnyAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseList& T_w
 DistancesAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                         const DistanceRequest& request, DistancesAtPoses&& memory)
 {
+  checkMaxDistance(request.max_distance);
   checkAtPoses(a, T_world_b, request.accuracy, request.threads);
   const DefaultFloatEnvironment environment;
+  DistanceRequest at_pose(request.accuracy, 1);
+  at_pose.max_distance = request.max_distance;
   DistancesAtPoses result;
   result.distances.swap(memory.distances);
   result.pairs.swap(memory.pairs);
@@ -89,9 +92,9 @@ DistancesAtPoses answer(const Placed& a, const SphereHierarchy& b, const PoseLis
   result.pairs.resize(T_world_b.size());
   result.work = forEachInBatches(T_world_b.size(), request.threads, progress, [&] {
     return [&](std::size_t i, Work& work) {
-      const DistanceResult found = closestPair(a, {b, T_world_b[i]}, {request.accuracy, 1});
+      const DistanceResult found = closestPair(a, {b, T_world_b[i]}, at_pose);
       result.distances[i] = found.distance;
-      result.pairs[i] = *found.pair;
+      result.pairs[i] = found.pair.value_or(PointPair{kNothing, kNothing});
       work += found.work;
     };
   });

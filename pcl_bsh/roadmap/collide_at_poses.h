@@ -37,7 +37,8 @@ struct AnyAtPoses {
 struct DistancesAtPoses {
   /// One per pose: what closestPair() answers there.
   std::vector<double> distances;
-  std::vector<PointPair> pairs; ///< likewise; empty when a cloud has no finite point
+  /// Likewise, of kNothing where no pair is within max_distance; empty when a cloud has no finite point.
+  std::vector<PointPair> pairs;
   Work work;
 };
 

@@ -51,6 +51,25 @@ TEST(CheckRequest, NamesABadClearance)
   EXPECT_THAT(verdict(-0.5, turned(), turned()), HasSubstr("-0.5"));
 }
 
+TEST(CheckRequest, NamesABadGreatestDistance)
+{
+  const SphereHierarchy empty{PointsView{}};
+  const auto verdictOn = [&](double max_distance) -> std::string {
+    DistanceRequest request;
+    request.max_distance = max_distance;
+    try {
+      check({empty}, {empty}, request);
+      return {};
+    }
+    catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+  };
+  for (const double good : {0.0, 2.5, infinity}) EXPECT_EQ(verdictOn(good), "");
+  for (const double bad : {-0.5, -infinity, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THAT(verdictOn(bad), HasSubstr("max_distance")) << bad;
+}
+
 TEST(CheckRequest, NamesThePoseThatIsNotRigid)
 {
   const auto refused = [](auto spoil) {

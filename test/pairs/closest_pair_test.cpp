@@ -9,11 +9,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -54,6 +56,56 @@ TEST(ClosestPair, SameAsBruteForceOfTriangles)
 {
   for (std::uint64_t seed = 0; seed < 300; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 60));
   for (std::uint64_t seed = 300; seed < 306; ++seed) expectSameAsBruteForce(test::anyMeshScene(seed, 400));
+}
+
+/// Up to the distance itself, just below, and elsewhere.
+TEST(ClosestPair, UpToADistanceIsAsBruteForce)
+{
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene scene = seed % 2 == 0 ? test::anyScene(seed, 100) : test::anyMeshScene(seed, 40);
+    const SphereHierarchy a(scene.a.view()), b(scene.b.view());
+    const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
+    const DistanceResult all = closestPair(placed_a, placed_b);
+    const double distance = std::max(all.distance, 0.0);
+    if (!std::isfinite(distance)) continue;
+    for (const double most : {distance, std::nextafter(distance, infinity),
+                              std::max(0.0, std::nextafter(distance, 0.0)), 0.5 * distance, 2.0 * distance})
+      for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.01 * distance), Accuracy::pairs(50)}) {
+        DistanceRequest request{Effort(accuracy)};
+        request.max_distance = most;
+        const DistanceResult expected = brute_force::closestPair(placed_a, placed_b, request);
+        const DistanceResult found = closestPair(placed_a, placed_b, request);
+        EXPECT_LE(found.interval.lower, all.distance);
+        EXPECT_GE(found.interval.upper, all.distance);
+        if (found.pair) EXPECT_LE(found.distance, std::nextafter(most, infinity));
+        if (!accuracy.isExact()) continue;
+        ASSERT_EQ(found.pair, expected.pair);
+        ASSERT_EQ(found.distance, expected.distance);
+      }
+  }
+}
+
+/// Beyond the distance that is asked about, a search costs about as much as that for any collision.
+TEST(ClosestPair, BeyondTheGreatestDistanceTakesLittleWork)
+{
+  Random random(9);
+  std::vector<Point3> ground, body;
+  for (int i = 0; i < 20000; ++i) ground.push_back({random.uniform(-10, 10), random.uniform(-10, 10), 0.0});
+  for (int i = 0; i < 2000; ++i) body.push_back({random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(1, 2)});
+  const Cloud cloud_a(ground), cloud_b(body);
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  DistanceRequest request;
+  request.max_distance = 0.1;
+  const DistanceResult none = closestPair({a}, {b}, request);
+  EXPECT_FALSE(none.pair);
+  EXPECT_EQ(none.distance, infinity);
+  EXPECT_EQ(none.interval.lower, 0.1);
+  EXPECT_EQ(none.interval.upper, infinity);
+  EXPECT_LE(none.work.node_pairs, 2 * anyCollision({a}, {b}, 0.1).work.node_pairs + 16);
+  EXPECT_GT(closestPair({a}, {b}).work.node_pairs, 10 * none.work.node_pairs);
+  request.threads = 3;
+  EXPECT_FALSE(closestPair({a}, {b}, request).pair);
 }
 
 TEST(ClosestPair, OfTouchingPointsIsKnownToBeZero)

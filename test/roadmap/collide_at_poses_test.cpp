@@ -95,6 +95,12 @@ TEST(AtPoses, SameAsBruteForce)
     const DistancesAtPoses brute = brute_force::closestPairAtPoses(placed, b, poses);
     EXPECT_EQ(closest.distances, brute.distances) << scene.name;
     EXPECT_EQ(closest.pairs, brute.pairs) << scene.name;
+    DistanceRequest up_to;
+    up_to.max_distance = brute.distances.empty() ? 0.0 : std::max(0.0, brute.distances[poses.size() / 2]);
+    const DistancesAtPoses near = closestPairAtPoses(placed, b, poses, up_to);
+    const DistancesAtPoses brute_near = brute_force::closestPairAtPoses(placed, b, poses, up_to);
+    EXPECT_EQ(near.distances, brute_near.distances) << scene.name;
+    EXPECT_EQ(near.pairs, brute_near.pairs) << scene.name;
   }
 }
 
