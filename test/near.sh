@@ -29,7 +29,7 @@ rooms() {
     function room_of(file, part) { # pcl_bsh/pairs/trace.h, test/pairs/trace_test.cpp: pairs
       sub(/^filters\/pipeline\/.*/, "test/pipeline/", file)
       sub(/^filters\/.*/, "test/filters/", file)
-      sub(/\/(io|tools)\//, "/", file)
+      sub(/\/(io|tools|examples)\//, "/", file)
       split(file, part, "/")
       return file ~ /\/.*\// ? part[2] : ""
     }
@@ -51,7 +51,7 @@ rooms() {
       gsub(/^.*include [<"]|[>"]$/, "", path)
       folder = FILENAME
       sub(/\/[^\/]*$/, "", folder)
-      if (path !~ /^(pcl_bsh|filters)\//) {
+      if (path !~ /^(pcl_bsh|filters|examples)\//) {
         includers[folder "/" path] = includers[folder "/" path] " " FILENAME
         path = "test/" path # "support/...": what tests share
       }

@@ -98,6 +98,6 @@ view "$work/room.pcd" "$work/pillar.off" "$work/scanner.off" --camera=3,-6.2,7.6
 # What accuracy costs in time: measured, so draw it while nothing else runs. OpenMP of one thread is a call, as for the
 # rows of BENCHMARK.md: PCL's times are half as long so.
 alone="$(realpath "$programs/../test/benchmark/libone_thread_openmp.so")" # of the preset benchmark
-LD_PRELOAD="$alone" "$programs/pcl_bsh_accuracy" "$scans/building.ply" "$scans/man.off" --vertices-only --clearance 0.5 \
-  --pose=-7,0,-2.6,0,0,0 --poses 10 --unit m --peers --out "$work/study" >/dev/null
+LD_PRELOAD="$alone" "${alone%/*}/bench_accuracy" "$scans/building.ply" "$scans/man.off" --vertices-only --clearance 0.5 \
+  --pose=-7,0,-2.6,0,0,0 --poses 10 --unit m --out "$work/study" >/dev/null
 mv "$work/study/accuracy.png" examples/pictures/accuracy.png

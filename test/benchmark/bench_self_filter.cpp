@@ -2,7 +2,7 @@
 // Workload R: a robot of ten links is cut out of what its depth camera sees, frame after frame.
 #include "harness.h"
 #include "program.h"
-#include <pcl_bsh/tools/self_filter/made_robot.h>
+#include <examples/robot/made_robot.h>
 #include <pcl_bsh/tools/self_filter/self_filter.h>
 
 #include <algorithm>

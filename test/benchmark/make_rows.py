@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What makes the files of results/: programs of a built preset `benchmark`, run one after another."""
 import csv
+import json
 import os
 import pathlib
 import re
@@ -101,6 +102,32 @@ def of_programs(build, name):
     return rows
 
 
+def rivals_of(study):
+    """Each of PCL's ways, and what of ours answers it: of the settings certified to at most its error, the fastest."""
+    rows = []
+    for peer in filter(lambda m: m["peer"], study):
+        row = {"query": peer["query"], "PCL": peer["knob"], "setting": peer["setting"], "error measured": f"{peer['actual_error']:.3g}",
+               **times_of(peer, ("time [us]", "quartile 1 [us]", "quartile 3 [us]")), "once [us]": microseconds(peer["once"]["median"])}
+        ours = [m for m in study if m["query"] == peer["query"] and m["certified"] and m["certified_error"] <= peer["actual_error"]
+                and not (m["query"] == "flags" and m["knob"] == "tolerance")]  # which is another question
+        best = min(ours, key=lambda m: m["seconds"]["median"], default=None)
+        once = min(ours, key=lambda m: m["once"]["median"], default=None)
+        row |= {"pcl_bsh": best["setting"] if best else "none", "error at most": f"{best['certified_error']:.3g}" if best else "",
+                **times_of(best, ("time of pcl_bsh [us]", "its quartile 1 [us]", "its quartile 3 [us]")),
+                "pcl_bsh once": once["setting"] if once else "none",
+                "once of pcl_bsh [us]": microseconds(once["once"]["median"]) if once else ""}
+        rows.append(row)
+    return rows
+
+
+def microseconds(seconds):
+    return f"{1e6 * seconds:.4g}"
+
+
+def times_of(measured, names):
+    return {name: microseconds(measured["seconds"][key]) if measured else "" for name, key in zip(names, ("median", "low", "high"))}
+
+
 def studies(build):
     """PCL's ways and ours on all clouds; and our settings of the smallest distance at near poses."""
     rivals, dial = [], []
@@ -109,13 +136,13 @@ def studies(build):
         for clouds, (options, count, near, far) in STUDIES.items():
             for poses, pose in (("near", near), ("far", far)):
                 where = [f"--pose={pose}", "--poses", str(count)] if pose else ["--trajectory", f"{work}/tunnel/poses.txt"]
-                command = [build / "bin" / "pcl_bsh_accuracy", *options.format(work=work).split(), *where, "--peers",
+                command = [build / "test" / "benchmark" / "bench_accuracy", *options.format(work=work).split(), *where,
                            "--unit", "m", "--out", f"{work}/study"]
                 print(" ".join(map(str, command)), flush=True)
                 subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=alone(build))
                 front = {**stamp(build), "clock": "cpu", "clouds": clouds, "poses": poses}
-                with open(f"{work}/study/rivals.csv", newline="") as file:
-                    rivals += [{**front, **row} for row in csv.DictReader(file)]
+                study = json.loads(pathlib.Path(f"{work}/study/accuracy.json").read_text())
+                rivals += [{**front, **row} for row in rivals_of(study["measurements"])]
                 with open(f"{work}/study/accuracy.csv", newline="") as file:
                     dial += [{**front, **row} for row in csv.DictReader(file)
                              if poses == "near" and row["query"] == "distance" and row["certified"] == "1"]

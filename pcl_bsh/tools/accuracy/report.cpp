@@ -2,7 +2,6 @@
 #include "report.h"
 
 #include "picture.h"
-#include "rivals.h"
 #include <pcl_bsh/tools/cli/json_output.h>
 
 #include <pcl_bsh/geometry/counted.h>
@@ -46,29 +45,6 @@ void writeCsv(std::ostream& out, const Study& study)
   }
 }
 
-/// What the table of PCL's ways says.
-void writeRivalsCsv(std::ostream& out, const Study& study)
-{
-  out << "query,PCL,setting,error measured,time [us],quartile 1 [us],quartile 3 [us],once [us],pcl_bsh,error at most,"
-         "time of pcl_bsh [us],its quartile 1 [us],its quartile 3 [us],pcl_bsh once,once of pcl_bsh [us]\n";
-  const auto times = [](const Spread& s) {
-    return format("%.4g,%.4g,%.4g", 1e6 * s.median, 1e6 * s.low, 1e6 * s.high);
-  };
-  for (const Rival& rival : rivalsOf(study)) {
-    const Measurement& peer = *rival.peer;
-    out << peer.query << ',' << peer.knob << ',' << peer.setting << ',' << format("%.3g,", peer.actual_error)
-        << times(peer.seconds) << format(",%.4g,", 1e6 * peer.once.median);
-    if (rival.ours)
-      out << rival.ours->setting << format(",%.3g,", rival.ours->certified_error) << times(rival.ours->seconds);
-    else
-      out << "none,,,,";
-    if (rival.once)
-      out << ',' << rival.once->setting << format(",%.4g\n", 1e6 * rival.once->once.median);
-    else
-      out << ",none,\n";
-  }
-}
-
 /// All that the others have.
 nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject, const Study& study)
 {
@@ -93,14 +69,6 @@ nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject
                                       {"certified_error", m.certified_error},
                                       {"actual_error", m.actual_error},
                                       {"wrong", m.wrong}});
-  report["rivals"] = Json::array();
-  for (const Rival& rival : rivalsOf(study))
-    report["rivals"].push_back({{"query", rival.peer->query},
-                                {"peer", rival.peer->knob + ' ' + rival.peer->setting},
-                                {"ours", rival.ours ? Json(rival.ours->setting) : Json()},
-                                {"met", rival.isMet()},
-                                {"ours_once", rival.once ? Json(rival.once->setting) : Json()},
-                                {"met_once", rival.isMetOnce()}});
   for (const FitMeasurement& m : study.fits)
     report["fits"].push_back({{"fit", m.fit},
                               {"build", spread(m.build)},
@@ -128,50 +96,6 @@ void writeTable(std::ostream& out, const Study& study, const std::string& query)
         << (m.peer ? std::string("-") : std::to_string(m.work.node_pairs / std::max<std::size_t>(m.poses, 1)))
         << " |\n";
   }
-}
-
-/// Each of PCL's ways to an answer, and what is certified to its error: the rows that we lose are named.
-void writeRivals(std::ostream& out, const Study& study, const std::string& query)
-{
-  std::vector<Rival> rivals = rivalsOf(study);
-  rivals.erase(std::remove_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return r.peer->query != query; }),
-               rivals.end());
-  if (rivals.empty()) return;
-  const bool distance = query == "distance";
-  const char* const unit = distance ? "[unit]" : "[%]";
-  const auto error = [&](double value) { return format("%.3g", distance ? value : 100.0 * value); };
-  const auto setting = [](const Measurement* ours, double seconds) {
-    return ours ? '`' + ours->setting + "` " + milliseconds(seconds) : std::string("none");
-  };
-  out << "\n### Against PCL's ways\n\nFor each of them, the fastest setting that is certified to at most the error "
-         "measured of it; *once*: with all that has to be made for one question, thinned clouds and trees.\n\n"
-      << "| PCL | error measured " << unit << " | time [ms] | pcl_bsh [ms] | error at most " << unit
-      << " | sooner | once [ms] | pcl_bsh once [ms] | sooner |\n|---|---:|---:|---|---:|---|---:|---|---|\n";
-  std::string lost;
-  for (const Rival& rival : rivals) {
-    const Measurement& peer = *rival.peer;
-    out << "| " << peer.knob << " `" << peer.setting << "` | " << error(peer.actual_error) << " | "
-        << milliseconds(peer.seconds.median) << " | "
-        << setting(rival.ours, rival.ours ? rival.ours->seconds.median : 0.0) << " | "
-        << (rival.ours ? error(rival.ours->certified_error) : "-") << " | " << (rival.isMet() ? "pcl_bsh" : "**PCL**")
-        << " | " << milliseconds(peer.once.median) << " | "
-        << setting(rival.once, rival.once ? rival.once->once.median : 0.0) << " | "
-        << (rival.isMetOnce() ? "pcl_bsh" : "**PCL**") << " |\n";
-    for (const auto& [met, when] : {std::pair(rival.isMet(), ""), std::pair(rival.isMetOnce(), ", once")})
-      if (!met) lost += (lost.empty() ? "" : "; ") + peer.knob + " `" + peer.setting + '`' + when;
-  }
-  out << "\nPCL is sooner: " << (lost.empty() ? "nowhere" : lost) << ".\n";
-}
-
-/// Settings that contradict each other.
-void writeBeaten(std::ostream& out, const Study& study)
-{
-  const std::vector<Beaten> beaten = beatenOf(study);
-  if (beaten.empty()) return;
-  out << "\nSettings that another one beats, being no wider and more than 5 % faster:";
-  for (const Beaten& b : beaten)
-    out << (&b == &beaten.front() ? " `" : ", `") << b.setting->setting << "` (`" << b.by->setting << "`)";
-  out << ".\n";
 }
 
 /// Where the frontier bends: farthest below the straight line between its ends, both axes logarithmic.
@@ -225,20 +149,13 @@ void writeMarkdown(std::ostream& out, const std::string& heading, const Subject&
       << advice(subject, study)
       << "\n![error against time](accuracy.png)\n\n"
          "The line joins the settings that no other setting beats in both time and error. Its errors are guaranteed.";
-  if (std::any_of(study.measurements.begin(), study.measurements.end(), [](const Measurement& m) { return m.peer; }))
-    out << " PCL's errors are the largest that were measured at these poses: nothing bounds them at others. PCL's "
-           "times include moving the points of the smaller cloud to the pose, and for each of them a search in a tree "
-           "of the larger cloud.";
   out << "\n\n## Smallest distance\n\n"
          "The answer is an interval that holds the exact distance. Its width, the largest over the poses, is the "
          "error.\n\n";
   writeTable(out, study, "distance");
-  writeRivals(out, study, "distance");
-  writeBeaten(out, study);
   out << "\n## Flags per point\n\nAn undecided point is called neither free nor colliding. The "
          "wrong answers of a tolerance are those that it allows.\n\n";
   writeTable(out, study, "flags");
-  writeRivals(out, study, "flags");
   out << "\n## Any collision\n\nThe share of poses that stay undecided.\n\n";
   writeTable(out, study, "any");
   out << "\n## Fits of spheres\n\n| fit | build, both clouds [ms] | mean leaf radius [unit] | exact flags [ms] | exact "
@@ -287,8 +204,6 @@ void writeReports(const std::filesystem::path& folder, const std::string& headin
                   const Study& study)
 {
   files::replaceFile(folder / "accuracy.csv", [&](std::ostream& out) { writeCsv(out, study); });
-  if (!rivalsOf(study).empty())
-    files::replaceFile(folder / "rivals.csv", [&](std::ostream& out) { writeRivalsCsv(out, study); });
   cli::writeJson(folder / "accuracy.json", toJson(heading, subject, study));
   files::replaceFile(folder / "accuracy.md", [&](std::ostream& out) { writeMarkdown(out, heading, subject, study); });
   vtk::writeChartsPng(chartsOf(subject, study), 1600, 800, folder / "accuracy.png");

@@ -8,8 +8,7 @@
 
 namespace pcl_bsh::accuracy {
 
-/// Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png into a folder that exists, and rivals.csv where
-/// peers were measured.
+/// Writes accuracy.csv, accuracy.json, accuracy.md and accuracy.png into a folder that exists.
 /// @param heading what was compared, one line
 /// @throws std::exception naming the file that cannot be written
 void writeReports(const std::filesystem::path& folder, const std::string& heading, const Subject& subject,

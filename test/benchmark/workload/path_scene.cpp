@@ -3,7 +3,7 @@
 
 #include "random.h"
 
-#include <pcl_bsh/tools/tunnel/tunnel.h>
+#include <examples/tunnel/tunnel.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -18,7 +18,7 @@ struct PathScene {
   double clearance = 0.0;
 };
 
-/// tunnel: a railway wagon in a tunnel (pcl_bsh/tools/tunnel): the model fills its box.
+/// tunnel: a railway wagon in a tunnel (examples/tunnel): the model fills its box.
 /// tight: the same wagon in one long bend whose vault grazes its upper edges, points in random order.
 /// crane: a carriage in an aisle of a store, its mast and its jib above the racks, driving and slewing: its box is full
 /// of racks that it never nears. 15 M scan points, 1 M model points, 10,000 poses at scale 1.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/programs/program_run.h"
-#include <pcl_bsh/tools/self_filter/made_robot.h>
+#include <examples/robot/made_robot.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 

@@ -3,7 +3,7 @@
 
 #include "io/clouds/samples.h"
 #include "support/verdicts.h"
-#include <pcl_bsh/tools/self_filter/made_robot.h>
+#include <examples/robot/made_robot.h>
 #include <pcl_bsh/tools/self_filter/surface.h>
 
 #include <gmock/gmock.h>

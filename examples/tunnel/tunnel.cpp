@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/tools/tunnel/tunnel.h>
+#include <examples/tunnel/tunnel.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "peers.h"
+#include "accuracy_peers.h"
 
-#include "stopwatch.h"
+#include <pcl_bsh/tools/accuracy/stopwatch.h>
 
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/kdtree/kdtree_flann.h>
@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 
 namespace pcl_bsh::accuracy {
 namespace {
@@ -313,6 +314,8 @@ private:
 
 std::vector<Measurement> measurePeers(const Subject& subject, unsigned repetitions, const Progress& progress)
 {
+  if (subject.a.triangles || subject.b.triangles)
+    throw std::invalid_argument("A, B: a mesh has faces, and PCL's ways ask about points: give --vertices-only");
   return Peers(subject, repetitions, progress).run();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "made_robot.h"
 
-#include "surface.h"
+#include <pcl_bsh/tools/self_filter/surface.h>
 
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>

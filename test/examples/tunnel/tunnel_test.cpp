@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/verdicts.h"
 
-#include <pcl_bsh/tools/tunnel/tunnel.h>
+#include <examples/tunnel/tunnel.h>
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>

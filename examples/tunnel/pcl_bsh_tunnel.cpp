@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes a question along a path to try the tools on: a tunnel, a wagon, and the wagon's poses on its way through.
+#include <examples/tunnel/tunnel.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/step.h>
-#include <pcl_bsh/tools/tunnel/tunnel.h>
 
 #include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
