@@ -2,7 +2,7 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/find_field.h>
 #include <pcl_bsh/trajectory/trajectory.h>

@@ -4,9 +4,9 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 

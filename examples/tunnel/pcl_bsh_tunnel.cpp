@@ -4,7 +4,7 @@
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/step.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/records.h>

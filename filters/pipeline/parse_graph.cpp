@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/json/nearest_name.h>
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/format_error.h>

@@ -3,7 +3,7 @@
 #include <pcl_bsh/filters/pipeline/option_json.h>
 
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/clashes/far_places.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/clashes/extent.h>
 #include <pcl_bsh/clusters/clusters.h>
-#include <pcl_bsh/geometry/counted.h>
 
 #include <algorithm>
 #include <cmath>

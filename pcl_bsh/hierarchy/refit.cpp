@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres follow points that move: every voxel keeps its points and its tree, its frame and spheres are measured anew.
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/frame_between.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>

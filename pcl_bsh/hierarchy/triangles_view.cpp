@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/large_buffer.h>
 #include <pcl_bsh/geometry/apart.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 #include <pcl_bsh/hierarchy/triangle_balls.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/update.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/bounds.h>
 #include <pcl_bsh/hierarchy/build/cell_numbers-inl.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/build/morton.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/hierarchy/view_check.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/geometry/counted.h>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/ask.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/depths/content_part.h>
 #include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/flags/collision_flags.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/question/options.h>

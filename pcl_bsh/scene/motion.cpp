@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/scene/motion.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/polar_decomposition.h>
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/query/request_check.h>

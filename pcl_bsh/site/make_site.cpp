@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/retained_memory.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/site/see_site.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/ball_about_box.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/question/model_stray.h>
 #include <pcl_bsh/seen/looked_at.h>
 #include <pcl_bsh/seen/unseen_points.h>

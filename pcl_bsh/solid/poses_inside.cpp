@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/solid/poses_inside.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/parallel.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/prefetch.h>
 #include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/label_walk.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/solid/solid.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/solid/columns.h>
 #include <pcl_bsh/solid/open_edges.h>
 

@@ -8,8 +8,8 @@
 #include <pcl_bsh/tools/scene/explain.h>
 #include <pcl_bsh/tools/scene/report.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>

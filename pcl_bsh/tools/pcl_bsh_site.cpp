@@ -7,7 +7,7 @@
 #include <pcl_bsh/tools/site/collide.h>
 #include <pcl_bsh/tools/site/options.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/one_line.h>
 #include <pcl_bsh/io/files/output_folder.h>

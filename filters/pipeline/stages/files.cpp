@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Readers and writers of all formats that pcl_bsh/io/clouds reads and writes.
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>

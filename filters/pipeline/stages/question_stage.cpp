@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>

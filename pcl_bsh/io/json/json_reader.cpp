@@ -6,8 +6,8 @@
 #include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/io/text/format_error.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>

@@ -10,8 +10,8 @@
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/query/request_check.h>
 
 #include <algorithm>

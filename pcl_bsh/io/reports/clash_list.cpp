@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/json/json_reader.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>

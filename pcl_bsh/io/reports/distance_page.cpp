@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; distance_page.html has the page itself.
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
 

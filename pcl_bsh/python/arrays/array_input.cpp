@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/python/arrays/array_input.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/python/arrays/array_layout.h>
 #include <pcl_bsh/question/uncertainty.h>
 

@@ -10,7 +10,7 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/collide/options.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>

@@ -4,7 +4,7 @@
 #include "picture.h"
 #include <pcl_bsh/tools/cli/json_output.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
 #include <nlohmann/json.hpp>

@@ -4,9 +4,9 @@
 #include "command_line.h"
 #include "step.h"
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
-#include <pcl_bsh/geometry/counted.h>
 
 namespace pcl_bsh::cli {
 

@@ -3,10 +3,10 @@
 
 #include <pcl_bsh/tools/cli/step.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/filters/used_vertices.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <stdexcept>

@@ -4,7 +4,7 @@
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/step.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
 #include <iostream>

@@ -12,7 +12,7 @@
 
 #ifdef PCL_BSH_SITE_QUERIES
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/free_space.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>

@@ -5,7 +5,7 @@
 #include <pcl_bsh/tools/viewer/actors/coloring.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>

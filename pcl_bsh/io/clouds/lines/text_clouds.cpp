@@ -3,7 +3,7 @@
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/text/header_count.h>
 #include <pcl_bsh/io/text/small_letters.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/lines/column_kinds.h>
 #include <pcl_bsh/io/clouds/lines/field_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>

@@ -2,7 +2,7 @@
 // Numbers as they stand in titles.
 #pragma once
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 
 #include <iomanip>
 #include <sstream>

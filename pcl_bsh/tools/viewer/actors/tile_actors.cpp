@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tile_actors.h"
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 
 #include "coloring.h"
 #include "text.h"

@@ -6,9 +6,9 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/uncertainty.h>
-#include <pcl_bsh/geometry/counted.h>
 #include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>

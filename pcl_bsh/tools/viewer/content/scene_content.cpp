@@ -5,7 +5,7 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/search/cloud_view.h>

@@ -5,7 +5,7 @@
 #include "viewed_cloud.h"
 #include <pcl_bsh/tools/viewer/options.h>
 
-#include <pcl_bsh/geometry/counted.h>
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/pairs/trace.h>
 
 #include <Eigen/Geometry>
