@@ -4,10 +4,10 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/uncertainty.h>
 
 #include <pcl/PolygonMesh.h>
 #include <pcl/common/io.h>

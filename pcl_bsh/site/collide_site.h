@@ -22,12 +22,12 @@
 
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/question/shape.h>
+#include <pcl_bsh/search/uncertainty.h>
 #include <pcl_bsh/site/site.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

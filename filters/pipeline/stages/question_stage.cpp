@@ -2,12 +2,12 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/uncertainty.h>
 
 #include <limits>
 #include <memory>

@@ -6,9 +6,9 @@
 //   for (std::size_t i = 0; i < file.steps; ++i) report(world.scene().step(file.dt));
 #pragma once
 
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/scene/scene.h>
+#include <pcl_bsh/search/uncertainty.h>
 
 #include <pcl/PCLPointCloud2.h>
 

@@ -2,8 +2,8 @@
 // Which tiles of a site can matter to a question, told by boxes alone: a tile that is left out cannot.
 #pragma once
 
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/search/uncertainty.h>
 #include <pcl_bsh/site/site.h>
 #include <pcl_bsh/site/tiles/path_boxes.h>
 

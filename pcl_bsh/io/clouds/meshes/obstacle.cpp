@@ -3,12 +3,12 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/uncertainty.h>
 
 #include <string_view>
 

@@ -8,12 +8,12 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/uncertainty.h>
 #include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/warnings/warnings.h>
+#include <pcl_bsh/search/uncertainty.h>
 #include <pcl_bsh/seen/seen_space.h>
 
 #include <algorithm>
