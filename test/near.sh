@@ -39,7 +39,7 @@ rooms() {
       queue[++last] = file
     }
     FILENAME == "ARCHITECTURE.md" { # a row of the table: | `pcl_bsh/ROOM` | target | lives | never | includes |
-      if (split($0, column, "|") != 7 || column[2] !~ /^ `pcl_bsh\/[a-z]+` $/) next
+      if (split($0, column, "|") != 7 || column[2] !~ /^ `pcl_bsh\/[a-z_]+` $/) next
       room = column[2]
       gsub(/[ `]|pcl_bsh\//, "", room)
       count = split(column[6], included, /[ ,]+/)

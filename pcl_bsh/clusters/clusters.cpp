@@ -259,26 +259,5 @@ void euclideanClusters(const SphereHierarchy& cloud, double distance, Clusters& 
   result = std::move(found);
 }
 
-Clusters brute_force::euclideanClusters(const SphereHierarchy& cloud, double distance)
-{
-  requireDistance(distance);
-  const DefaultFloatEnvironment environment;
-  const PointsView& view = cloud.view();
-  const std::vector<std::uint32_t> records = finiteRecords(view);
-  const RecordDistance exact(view, Eigen::Isometry3d::Identity(), view, Eigen::Isometry3d::Identity());
-  DisjointSets sets(view.count);
-  Clusters result;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      ++result.work.exact_decisions;
-      if (exact.compare({records[i], records[j]}, RecordDistance::Sum{distance}) <= 0) {
-        sets.unite(records[i], records[j]);
-      }
-    }
-  }
-  number(std::move(sets), view, result);
-  return result;
-}
-
 } // namespace pcl_bsh
 #endif

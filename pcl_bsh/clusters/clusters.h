@@ -29,12 +29,5 @@ Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const 
 
 /// The same into a result whose memory is used again; it is empty should anything be thrown.
 void euclideanClusters(const SphereHierarchy& cloud, double distance, Clusters& result, const Effort& effort = {});
-
-namespace brute_force {
-
-/// The same, pair by pair in exact arithmetic.
-Clusters euclideanClusters(const SphereHierarchy& cloud, double distance);
-
-} // namespace brute_force
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -61,15 +61,5 @@ DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, c
 /// The same into a result whose memory is used again; it is empty should anything be thrown.
 void closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                         const DistanceRequest& request, DistancesAtPoses& result);
-
-namespace brute_force {
-
-/// The oracle, pose by pose and pair by pair in exact arithmetic.
-AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request = {});
-DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request = {});
-
-} // namespace brute_force
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

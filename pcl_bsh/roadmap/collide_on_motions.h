@@ -67,13 +67,5 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
 /// The same into a result whose memory is used again; it is empty should anything be thrown.
 void anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
                            const std::vector<PoseMotion>& motions, const MotionsRequest& request, AnyOnMotions& result);
-
-namespace brute_force {
-
-/// The oracle, motion by motion and pair by pair. Between clearance and clearance + `swept` its verdicts may differ.
-AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& model, const PoseList& poses,
-                                   const std::vector<PoseMotion>& motions, const MotionsRequest& request);
-
-} // namespace brute_force
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -2,9 +2,11 @@
 #include <pcl_bsh/seen/unseen_points.h>
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/seen/model_ball.h>
 #include <pcl_bsh/seen/storage.h>
@@ -14,6 +16,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -189,6 +192,17 @@ private:
 };
 
 } // namespace
+
+void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts)
+{
+  checkClearance(request.clearance);
+  checkPose("pose of the model", model.pose);
+  const std::size_t records = model.hierarchy().view().count;
+  if (verdicts == records) return;
+  throw InvalidInput(Input::result, "verdicts",
+                     "are " + std::to_string(verdicts) + " of " + std::to_string(records) + " points",
+                     "give one per record of the model");
+}
 
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,
                         std::vector<Verdict>& verdicts)

@@ -68,14 +68,5 @@ struct UnseenResult {
 /// @throws std::invalid_argument naming the value: a clearance, a pose, or a number of verdicts. Cancelled
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,
                         std::vector<Verdict>& verdicts);
-
-namespace brute_force {
-
-/// The oracle: each ball against each beam and each cell of directions. Quadratic.
-/// @param angle as SeenOptions has it, of all scans
-UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const Placed& model,
-                        const UnseenRequest& request, std::vector<Verdict>& verdicts);
-
-} // namespace brute_force
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -2,7 +2,7 @@
 #include <pcl_bsh/clashes/far_places.h>
 #include <pcl_bsh/distances/statistics.h>
 
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 
 #include <gmock/gmock.h>
 

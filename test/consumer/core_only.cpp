@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The core alone: C++17, Eigen, no PCL.
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/version.h>
 
 #include <cstdio>

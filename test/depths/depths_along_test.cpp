@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/depths/brute_force_depths.h>
 #include <pcl_bsh/depths/depths_along.h>
 
 #include <pcl_bsh/geometry/rigid_motion.h>
 
 #include "solid/meshes.h"
+#include "support/brute_force/depths.h"
 #include "support/random.h"
 
 #include <gmock/gmock.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/depths/brute_force_depths.h>
 #include <pcl_bsh/depths/depths.h>
 
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include "solid/meshes.h"
+#include "support/brute_force/depths.h"
 #include "support/random.h"
 
 #include <gmock/gmock.h>

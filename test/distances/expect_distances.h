@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/distances/point_distances.h>
 
 #include <gtest/gtest.h>

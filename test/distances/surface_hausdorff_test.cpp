@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The Hausdorff distance of surfaces: known ones, and intervals against the distances of many places.
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/distances/point_distances.h>
 
 #include "support/made_meshes.h"

@@ -2,8 +2,8 @@
 // The filter where points may be elsewhere than they were measured: a length of all points, or a field of sigmas.
 #include <pcl_bsh/filters/collision_filter.h>
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "clouds.h"
 #include "support/verdicts.h"

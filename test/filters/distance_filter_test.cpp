@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/filters/distance_filter.h>
 
 #include "clouds.h"

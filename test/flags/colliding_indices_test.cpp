@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/flags/colliding_indices.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/facing_sheets.h"
 #include "support/kd_tree.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points that follow each other in a scan, flagged by their first query without a tree of theirs: the same answers as
 // with it, whatever comes before and between.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

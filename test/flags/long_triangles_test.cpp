@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Triangles that are as long as all of their mesh, where spheres of nodes tell nothing: flags are those of brute force,
 // and their work grows with the triangles.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/made_meshes.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flags of points with uncertainties of their own, where whole nodes are settled by the extremes of theirs: as
 // colliding, as free, as undecided.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flags of surfaces of which all triangles are hardly farther apart than the clearance.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/tied_meshes.h"
 #include "support/verdicts.h"

@@ -6,9 +6,9 @@
 #include "support/question.h"
 #include "target.h"
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <cmath>
 #include <optional>

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "questions.h"
+#include "support/brute_force/clusters.h"
+#include "support/brute_force/neighbors.h"
 #include "support/question.h"
 
 #include "bytes.h"
 #include "target.h"
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/record_distance.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>

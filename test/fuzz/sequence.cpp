@@ -7,8 +7,8 @@
 #include "surface_questions.h"
 #include "target.h"
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/query/record_distance.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <algorithm>

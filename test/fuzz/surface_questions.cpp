@@ -8,15 +8,15 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/depths/brute_force_depths.h>
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/geometry/triangle/winding.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/roadmap/brute_force.h>
-#include <pcl_bsh/solid/brute_force_labels.h>
 #include <pcl_bsh/solid/poses_inside.h>
 #include <pcl_bsh/solid/triangle_labels.h>
+
+#include "support/brute_force/depths.h"
+#include "support/brute_force/labels.h"
 
 #include <algorithm>
 #include <cmath>

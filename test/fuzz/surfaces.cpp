@@ -8,8 +8,8 @@
 #include "target.h"
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/query/record_distance.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <cmath>

@@ -8,6 +8,8 @@
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
+#include "support/brute_force/unseen.h"
+
 #include <cmath>
 #include <string>
 #include <vector>

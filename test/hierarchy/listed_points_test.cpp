@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in the order of a scan are listed, and copied when their voxel is first visited; whatever happens before.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -5,8 +5,8 @@
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include "support/refusal.h"
 #include "support/verdicts.h"
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever edge is asked for, and however far points reach: memory and work stay proportional to the points.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/neighbors/neighbors.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "clouds.h"
 #include "support/every_allocation.h"

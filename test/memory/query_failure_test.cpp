@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/distances/point_distances.h>
@@ -7,7 +8,6 @@
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/solid/labels.h>

@@ -3,10 +3,10 @@
 // points were when they were sorted. Here are the states in which points are elsewhere.
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/scene/scene.h>
 
+#include "support/brute_force/neighbors.h"
 #include "support/random_clouds.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
+#include "support/brute_force/neighbors.h"
 #include "support/random_clouds.h"
 
 #include <gmock/gmock.h>

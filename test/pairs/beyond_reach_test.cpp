@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Any collision of surfaces of which all triangles are hardly farther apart than the clearance; and what planes know of
 // nodes, against all pairs below them.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/traversal/beyond_reach.h>
 
 #include "support/tied_meshes.h"

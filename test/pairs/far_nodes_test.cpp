@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nodes far from each other for their size, which are compared by how far they reach towards each other: clouds of
 // which spheres say little, at the very distance of two of their points.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/update.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/traversal/far_nodes.h>
 
 #include "support/adversarial_clouds.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sheets that face each other, turned, so small or so large that their voxels measure in other units: in one, or each
 // in its own. Slabs, which decide there, are in these units.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/storage.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

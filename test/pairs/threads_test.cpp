@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One search by several threads: the answer, and of any collision the work, of one thread.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 
 #include "support/random_clouds.h"

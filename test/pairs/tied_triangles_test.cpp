@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Closest pairs of surfaces of which all triangles are equally near: bounds cannot tell them apart, and the answer is
 // the pair with the smallest numbers.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/tied_meshes.h"
 

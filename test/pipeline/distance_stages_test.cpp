@@ -4,7 +4,7 @@
 #include "io/clouds/samples.h"
 #include "run_stage.h"
 
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 

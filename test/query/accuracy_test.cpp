@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/question.h"
 #include "support/random_clouds.h"

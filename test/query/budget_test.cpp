@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Budgets: spent once, however many questions share them, and spent on what decides.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/query/accuracy.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 
 #include "support/adversarial_clouds.h"
 #include "support/facing_sheets.h"

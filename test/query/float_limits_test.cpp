@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where float arithmetic is at its limits: every rounding in the same direction, coordinates of every magnitude.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include "support/brute_force/neighbors.h"
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Inputs that other tools are known to answer wrongly, or not at all, each under its catalogue number, with the answer
 // of exact arithmetic. Every query, fit and instruction set, one thread and several.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
-#include <pcl_bsh/distances/brute_force_distances.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "../distances/expect_distances.h"

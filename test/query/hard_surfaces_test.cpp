@@ -2,10 +2,10 @@
 // The catalogue of test/hard_cases/surfaces: surfaces and solids that other tools answer wrongly, or not at all, with
 // the answers of exact arithmetic. Every query of two clouds, instruction set, one thread and several.
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/solid/triangle_labels.h>
 #include <pcl_bsh/trajectory/trajectory.h>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Options that are each right by themselves may not be so together: all of them at once, against brute force.
 #include "../fuzz/questions.h"
+#include "support/brute_force/neighbors.h"
 #include "support/question.h"
 #include "support/random_clouds.h"
-
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
 
 #include <gtest/gtest.h>
 

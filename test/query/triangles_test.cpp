@@ -2,6 +2,7 @@
 // Clouds of triangles in every query: uncertain places, every accuracy, refits, one centre for many, what is refused.
 // What is exact is compared with brute force beside the tests of each query.
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
@@ -12,9 +13,9 @@
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/meshes.h"
 
 #include <gtest/gtest.h>

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points that may be elsewhere than they were measured: colliding for certain, free for certain, or undecided.
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"

@@ -7,9 +7,9 @@
 #include <pcl_bsh/question/options.h>
 
 #include <pcl_bsh/flags/collision_flags.h>
-#include <pcl_bsh/solid/brute_force_labels.h>
 
 #include "solid/meshes.h"
+#include "support/brute_force/labels.h"
 #include "support/random.h"
 #include "support/verdicts.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A hundred thousand poses within the bound of each kind of question: none contradicts what was called free or
 // colliding.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/question/pose_uncertainty.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/scene/scene.h>

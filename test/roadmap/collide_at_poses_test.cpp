@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many poses at once: each answer is that of the single query, for any order of the list and any number of threads.
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
+#include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/random_clouds.h"
 #include "support/refusal.h"
 #include "support/verdicts.h"

@@ -5,6 +5,7 @@
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/roadmap/motions_query.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/journeys.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"

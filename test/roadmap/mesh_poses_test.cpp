@@ -3,6 +3,7 @@
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/journeys.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists of poses of bodies whose lengths are so small that squares of them vanish.
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 

@@ -2,9 +2,9 @@
 // Random scenes, and their answers by brute force over all objects.
 #pragma once
 
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "scene_worlds.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects of triangles in a scene: effects as the queries of the same name, sweeps and responses replayed by brute
 // force.
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "scene_worlds.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects that give way: stop, slide, gravity.
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "scene_worlds.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects, pairs and the effects that only look; what moves by itself is in scene_response_test.cpp.
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "random_world.h"

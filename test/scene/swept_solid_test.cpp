@@ -4,10 +4,10 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/record_corners.h>
 #include <pcl_bsh/scene/scene.h>
-#include <pcl_bsh/solid/brute_force_labels.h>
 
 #include "scene_worlds.h"
 #include "solid/meshes.h"
+#include "support/brute_force/labels.h"
 #include "support/random.h"
 
 #include <gmock/gmock.h>

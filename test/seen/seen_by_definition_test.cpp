@@ -5,6 +5,7 @@
 #include <pcl_bsh/seen/seen_space.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
+#include "support/brute_force/unseen.h"
 #include "support/made_scans.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

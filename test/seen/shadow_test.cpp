@@ -3,6 +3,7 @@
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
+#include "support/brute_force/unseen.h"
 #include "support/made_scans.h"
 
 #include <gtest/gtest.h>

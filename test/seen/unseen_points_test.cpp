@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/query/result.h>
 
+#include "support/brute_force/unseen.h"
 #include "support/made_scans.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -2,9 +2,8 @@
 // What solids hold, and the bodies that do, against every place, every body and every triangle in exact arithmetic.
 #include <pcl_bsh/solid/enclosure.h>
 
-#include <pcl_bsh/solid/brute_force_labels.h>
-
 #include "meshes.h"
+#include "support/brute_force/labels.h"
 #include "support/verdicts.h"
 
 #include <gmock/gmock.h>

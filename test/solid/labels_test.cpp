@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Labels against every triangle in exact arithmetic.
 #include <pcl_bsh/solid/bodies.h>
-#include <pcl_bsh/solid/brute_force_labels.h>
 #include <pcl_bsh/solid/labels.h>
+
+#include "support/brute_force/labels.h"
 
 #include "meshes.h"
 

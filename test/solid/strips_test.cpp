@@ -3,10 +3,11 @@
 // others.
 #include <pcl_bsh/solid/strips.h>
 
-#include <pcl_bsh/solid/brute_force_labels.h>
 #include <pcl_bsh/solid/columns.h>
 #include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/solid/solid.h>
+
+#include "support/brute_force/labels.h"
 
 #include "meshes.h"
 

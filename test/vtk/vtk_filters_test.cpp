@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/options.h>
-#include <pcl_bsh/roadmap/brute_force.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 #include <pcl_bsh/vtk/cloud_data.h>
 #include <pcl_bsh/vtk_filters/vtkBSHCollisionFilter.h>

@@ -5,7 +5,7 @@
 
 #include <pcl_bsh/tools/viewer/content/clouds_content.h>
 
-#include <pcl_bsh/distances/brute_force_distances.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 
 #include <gmock/gmock.h>

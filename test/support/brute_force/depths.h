@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle of depths: every place against every triangle. For tests and for doubt.
+// The oracle of depths: every place against every triangle.
 #pragma once
 
 #include <pcl_bsh/depths/depths.h>

@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/seen/unseen_points.h>
+#include "unseen.h"
 
 #include <pcl_bsh/base/float_environment.h>
-#include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/query/request_check.h>
-#include <pcl_bsh/query/result.h>
 #include <pcl_bsh/seen/direction_cells.h>
 #include <pcl_bsh/seen/model_ball.h>
 #include <pcl_bsh/seen/storage.h>
 #include <pcl_bsh/seen/triangle_parts.h>
 
 #include <algorithm>
-#include <string>
 
-namespace pcl_bsh {
-
-void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts)
-{
-  checkClearance(request.clearance);
-  checkPose("pose of the model", model.pose);
-  const std::size_t records = model.hierarchy().view().count;
-  if (verdicts == records) return;
-  throw InvalidInput(Input::result, "verdicts",
-                     "are " + std::to_string(verdicts) + " of " + std::to_string(records) + " points",
-                     "give one per record of the model");
-}
-
-namespace brute_force {
+namespace pcl_bsh::brute_force {
 namespace {
 
 /// Whether a beam is seen on a side of a cell from each of its corners.
@@ -161,5 +144,4 @@ UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const
   return result;
 }
 
-} // namespace brute_force
-} // namespace pcl_bsh
+} // namespace pcl_bsh::brute_force

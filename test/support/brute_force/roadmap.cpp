@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "roadmap.h"
+
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/roadmap/motions_query.h>
@@ -73,6 +76,34 @@ AnyOnMotions anyCollisionOnMotions(const Placed& scan, const SphereHierarchy& mo
     const bool certain = !uncertain || collides(Places::certain);
     result.flags[m] = certain ? Verdict::colliding : Verdict::undecided;
     ++(certain ? result.colliding : result.undecided);
+  }
+  return result;
+}
+
+AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                               const AnyRequest& request)
+{
+  AnyAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
+    result.flags.push_back(found.verdict);
+    result.colliding += found.verdict == Verdict::colliding;
+    result.undecided += found.verdict == Verdict::undecided;
+    result.work += found.work;
+  }
+  return result;
+}
+
+DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
+                                    const DistanceRequest& request)
+{
+  DistancesAtPoses result;
+  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
+    const DistanceResult found = brute_force::closestPair(a, {b, T_world_b[i]}, request);
+    result.distances.push_back(found.distance);
+    if (!a.hierarchy().empty() && !b.empty())
+      result.pairs.push_back(found.pair.value_or(PointPair{kNothing, kNothing}));
+    result.work += found.work;
   }
   return result;
 }

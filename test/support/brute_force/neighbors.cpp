@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/neighbors/brute_force_neighbors.h>
+#include "neighbors.h"
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/exact_distance.h>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/depths/brute_force_depths.h>
+#include "depths.h"
+
+#include "labels.h"
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/query/record_distance.h>
-#include <pcl_bsh/solid/brute_force_labels.h>
 
 #include <algorithm>
 #include <cmath>

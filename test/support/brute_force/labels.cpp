@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/solid/brute_force_labels.h>
+#include "labels.h"
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/geometry/triangle/winding.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The oracle itself, against answers known beforehand.
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 
+#include "support/brute_force/roadmap.h"
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/roadmap/brute_force.h>
+#include <pcl_bsh/brute_force/brute_force.h>
 
 #include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/distances/check_distances.h>
+#include <pcl_bsh/distances/greatest_distance.h>
 #include <pcl_bsh/flags/check_request.h>
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/pair_reach.h>
+#include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include <algorithm>
 #include <cmath>
@@ -124,31 +126,28 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceReque
   return result;
 }
 
-AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                               const AnyRequest& request)
+PointDistances pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request)
 {
-  AnyAtPoses result;
-  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
-    const AnyResult found = brute_force::anyCollision(a, {b, T_world_b[i]}, request);
-    result.flags.push_back(found.verdict);
-    result.colliding += found.verdict == Verdict::colliding;
-    result.undecided += found.verdict == Verdict::undecided;
-    result.work += found.work;
+  check(a, b, request);
+  const DefaultFloatEnvironment environment;
+  const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
+  PointDistances result;
+  result.distance.assign(a.hierarchy().view().count, std::numeric_limits<double>::quiet_NaN());
+  result.closest_point.assign(a.hierarchy().view().count, kNothing);
+  const std::vector<FinitePoint> others = finitePoints(b.hierarchy().view());
+  for (const FinitePoint& p : finitePoints(a.hierarchy().view())) {
+    const FinitePoint* nearest = nullptr;
+    const auto pairWith = [&](const FinitePoint& q) { return distance.pair({p.record, q.record}); };
+    for (const FinitePoint& q : others) {
+      ++result.work.exact_decisions;
+      if (!nearest || distance.compareGaps(pairWith(q), pairWith(*nearest)) < 0) nearest = &q;
+    }
+    if (!nearest) continue;
+    if (distance.compare(pairWith(*nearest), request.max_distance) > 0) continue;
+    result.distance[p.record] = distance.gap(pairWith(*nearest));
+    result.closest_point[p.record] = nearest->record;
   }
-  return result;
-}
-
-DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
-                                    const DistanceRequest& request)
-{
-  DistancesAtPoses result;
-  for (std::size_t i = 0; i < T_world_b.size(); ++i) {
-    const DistanceResult found = brute_force::closestPair(a, {b, T_world_b[i]}, request);
-    result.distances.push_back(found.distance);
-    if (!a.hierarchy().empty() && !b.empty())
-      result.pairs.push_back(found.pair.value_or(PointPair{kNothing, kNothing}));
-    result.work += found.work;
-  }
+  findGreatest(a, b, result);
   return result;
 }
 

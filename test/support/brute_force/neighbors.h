@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle of neighbors.h: every query again, point by point in exact arithmetic. For tests and for doubt.
+// The oracle of neighbors.h: every query again, point by point in exact arithmetic.
 #pragma once
 
-#include <pcl_bsh/export.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
-PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::brute_force {
 
 /// Same contracts as their namesakes in neighbors.h.
@@ -17,4 +15,3 @@ std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Poi
                       std::vector<std::int32_t>& indices);
 
 } // namespace pcl_bsh::brute_force
-PCL_BSH_EXPORT_END

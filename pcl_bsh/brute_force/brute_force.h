@@ -2,6 +2,7 @@
 // The oracle: every query again, pair by pair in exact arithmetic. Quadratic; for tests and for doubt.
 #pragma once
 
+#include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/any_collision.h>
@@ -15,6 +16,9 @@ namespace pcl_bsh::brute_force {
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request);
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
 DistanceResult closestPair(const Placed& a, const Placed& b, const DistanceRequest& request = {});
+
+/// As the others, but that it is exact whatever the accuracy, takes one thread and reports no progress.
+PointDistances pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
 } // namespace pcl_bsh::brute_force
 PCL_BSH_EXPORT_END
