@@ -151,30 +151,13 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, const 
                               ? options.cluster_distance
                               : io::clusterDistanceFor(*question.clearance, *report.answer.density.input);
   const std::vector<Eigen::Isometry3d> poses = report.question.poses();
-  const TrajectoryResult& found = report.answer.collisions;
-  io::ClashReport list{.question = question,
-                       .cluster_distance = distance,
-                       .clashes = findClashes(a.view(), found, distance),
-                       .scan = a.view(),
-                       .model = b.view(),
-                       .poses = poses,
-                       .found = found,
-                       .survey = {poses, extentOf(a.view())},
-                       .unit = options.unit,
-                       .coordinate_system = report.coordinate_system,
-                       .surface = report.surface ? &*report.surface : nullptr,
-                       .unseen = report.question.seen ? &report.answer.unseen : nullptr};
-  io::listUnseen(list);
-  if (earlier) {
-    TrajectoryRequest motion;
-    motion.swept = question.sweptTolerance();
-    motion.threads = report.question.threads;
-    for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, [&](FormerPlaces& former) {
-           former.visit(b, poses, motion);
-           former.scan(a.view());
-         }))
+  io::ClashReport list =
+      io::clashesOf(question, a, b, poses, report.answer, distance, report.surface ? &*report.surface : nullptr);
+  list.unit = options.unit;
+  list.coordinate_system = report.coordinate_system;
+  if (earlier)
+    for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, a, b))
       report.warnings.push_back(std::move(warning));
-  }
   for (const fs::path& file : options.clashes) io::writeClashes(file, list);
   report.seconds.clashes = step.done(io::clashCounts(list));
   return io::clashCounts(list);

@@ -19,7 +19,8 @@ void writeNothing(std::ostream&, const pcl::PCLPointCloud2&)
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   const auto pts = [](std::string_view file) { return io::parsePts(file); };
-  fuzz::readAny(data, size, pts, io::parsePtsHeader, writeNothing);
+  const auto pts_header = [](std::string_view file) { return io::parsePtsHeader(file); };
+  fuzz::readAny(data, size, pts, pts_header, writeNothing);
   for (const std::optional<std::size_t> scan : {std::optional<std::size_t>(), std::optional<std::size_t>(1)}) {
     const auto parse = [&](std::string_view file) {
       io::Viewpoint viewpoint;

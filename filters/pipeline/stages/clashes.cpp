@@ -67,31 +67,13 @@ private:
     const double distance =
         cluster_distance ? *cluster_distance : io::clusterDistanceFor(*question.clearance, spacingOf(input));
     const std::vector<Eigen::Isometry3d> poses = question.poses();
-    const TrajectoryResult& collisions = found.answer.collisions;
-    io::ClashReport report{.question = asked(),
-                           .cluster_distance = distance,
-                           .clashes = findClashes(input.view(), collisions, distance),
-                           .scan = input.view(),
-                           .model = other.view(),
-                           .poses = poses,
-                           .found = collisions,
-                           .survey = {poses, extentOf(input.view())},
-                           .unit = unit,
-                           .coordinate_system = coordinate_system,
-                           .surface = found.compared.isSurface() ? &found.compared : nullptr,
-                           .unseen = question.seen ? &found.answer.unseen : nullptr};
-    io::listUnseen(report);
-    if (previous) {
-      TrajectoryRequest motion;
-      motion.swept = question.sweptTolerance();
-      motion.threads = question.threads;
-      for (const std::string& warning :
-           io::compareWithList(report, previous->path, earlier_, [&](FormerPlaces& former) {
-             former.visit(other, poses, motion);
-             former.scan(input.view());
-           }))
+    io::ClashReport report = io::clashesOf(asked(), input, other, poses, found.answer, distance,
+                                           found.compared.isSurface() ? &found.compared : nullptr);
+    report.unit = unit;
+    report.coordinate_system = coordinate_system;
+    if (previous)
+      for (const std::string& warning : io::compareWithList(report, previous->path, earlier_, input, other))
         warn(warning);
-    }
     io::writeClashes(filename.path, report);
     if (also) io::writeClashes(also->path, report);
   }

@@ -123,7 +123,7 @@ pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view f
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
   if (extension == ".stl") return parseStlHeader(file);
-  if (extension == ".pts") return parsePtsBeginning(file, whole);
+  if (extension == ".pts") return parsePtsHeader(file, whole);
   if (extension == ".ptx") return parsePtxHeader(file, {}, settings.allow_scale);
   return parseColumnNames(file, whole, settings.columns);
 }

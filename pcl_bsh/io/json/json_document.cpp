@@ -3,6 +3,7 @@
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -50,6 +51,11 @@ std::string shown(const Json& value)
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (text.size() > longest) text = text.substr(0, longest) + "...";
   return text;
+}
+
+Json orNull(double number)
+{
+  return std::isfinite(number) ? Json(number) : Json();
 }
 
 std::string printed(const Json& json)

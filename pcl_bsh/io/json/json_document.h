@@ -22,6 +22,9 @@ std::string shown(const Json& value);
 /// The text with U+FFFD in place of bytes that are not UTF-8.
 std::string validUtf8(std::string_view text);
 
+/// A finite number, or null: NaN and infinity have no place in JSON.
+Json orNull(double number);
+
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
 std::string printed(const Json& json);
 

@@ -208,6 +208,25 @@ std::string clashCounts(const ClashReport& report)
   return text;
 }
 
+ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const SphereHierarchy& model,
+                      const std::vector<Eigen::Isometry3d>& poses, const Answer& answer, double cluster_distance,
+                      const Obstacle* surface)
+{
+  const bool seen = question.seen;
+  ClashReport report{.question = std::move(question),
+                     .cluster_distance = cluster_distance,
+                     .clashes = findClashes(scan.view(), answer.collisions, cluster_distance),
+                     .scan = scan.view(),
+                     .model = model.view(),
+                     .poses = poses,
+                     .found = answer.collisions,
+                     .survey = {poses, extentOf(scan.view())},
+                     .surface = surface,
+                     .unseen = seen ? &answer.unseen : nullptr};
+  listUnseen(report);
+  return report;
+}
+
 void listUnseen(ClashReport& report)
 {
   if (!report.unseen) return;
@@ -228,6 +247,19 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
     former.judge();
   }
   return surveyWarnings(file, earlier, report.survey, *report.question.clearance + report.cluster_distance);
+}
+
+std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
+                                         const ClashList& earlier, const SphereHierarchy& scan,
+                                         const SphereHierarchy& model)
+{
+  TrajectoryRequest motion;
+  motion.swept = report.question.sweptTolerance();
+  motion.threads = report.question.threads;
+  return compareWithList(report, file, earlier, [&](FormerPlaces& former) {
+    former.visit(model, report.poses, motion);
+    former.scan(scan.view());
+  });
 }
 
 double clusterDistanceFor(double clearance, const Spacing& scan)

@@ -113,6 +113,11 @@ void requireClashFormat(const std::filesystem::path& path);
 /// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
 std::string clashCounts(const ClashReport& report);
 
+/// The clashes of two clouds in memory, and what of the obstacle is unseen. All but the question is borrowed.
+ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const SphereHierarchy& model,
+                      const std::vector<Eigen::Isometry3d>& poses, const Answer& answer, double cluster_distance,
+                      const Obstacle* surface);
+
 /// Appends what of the obstacle is unseen along the path (findUnseenPlaces()), where that was asked. Before lists are
 /// compared.
 void listUnseen(ClashReport& report);
@@ -124,6 +129,11 @@ void listUnseen(ClashReport& report);
 /// @return warnings of surveyWarnings()
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const std::function<void(FormerPlaces&)>& look);
+
+/// As above, of what clashesOf() made of these hierarchies.
+std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
+                                         const ClashList& earlier, const SphereHierarchy& scan,
+                                         const SphereHierarchy& model);
 
 /// The distance within which colliding points are one clash where the user says none: a power of two of at least the
 /// clearance and four times the scan's spacing, so that it stays the same from run to run.

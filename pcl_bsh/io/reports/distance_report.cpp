@@ -11,12 +11,6 @@
 namespace pcl_bsh::io {
 namespace {
 
-/// A finite number, or null.
-Json lengthJson(double length)
-{
-  return std::isfinite(length) ? Json(length) : Json();
-}
-
 /// A point of the input, and a point or a triangle of the obstacle.
 Json pairJson(const std::optional<PointPair>& pair)
 {
@@ -42,30 +36,30 @@ Json toJson(const DistanceSide& side, bool is_input)
   const DistanceStatistics& statistics = side.statistics;
   Json percentiles;
   for (std::size_t i = 0; i < statistics.percents.size(); ++i)
-    percentiles[std::to_string(statistics.percents[i])] = lengthJson(statistics.percentiles[i]);
+    percentiles[std::to_string(statistics.percents[i])] = orNull(statistics.percentiles[i]);
   std::optional<PointPair> farthest = side.found.greatest_pair;
   if (farthest && !is_input) farthest = PointPair{farthest->b, farthest->a};
   Json json = {{"points", side.points},
                {"statistics_of", side.meaning()},
                {"count", statistics.count},
                {"farther", side.farther()},
-               {"mean", lengthJson(statistics.mean)},
-               {"rms", lengthJson(statistics.rms)},
-               {"median", lengthJson(statistics.median)},
+               {"mean", orNull(statistics.mean)},
+               {"rms", orNull(statistics.rms)},
+               {"median", orNull(statistics.median)},
                {"percentiles", percentiles},
-               {"maximum", lengthJson(statistics.maximum)},
+               {"maximum", orNull(statistics.maximum)},
                {"farthest_pair", pairJson(farthest)},
-               {"places_beyond", lengthJson(side.beyond)},
+               {"places_beyond", orNull(side.beyond)},
                {"places", Json::array()}};
   for (std::size_t i = 0; i < std::min(side.places.size(), most_far_places); ++i) {
     const FarPlace& place = side.places[i];
     const Eigen::Vector3d at = side.placeOf(place.point);
     const bool known = place.closest_point != kNothing;
     json["places"].push_back({{"points", place.records.size()},
-                              {"distance", lengthJson(place.distance)},
+                              {"distance", orNull(place.distance)},
                               {side.part, place.point},
                               {"closest_point", known ? Json(place.closest_point) : Json()},
-                              {"at", {lengthJson(at.x()), lengthJson(at.y()), lengthJson(at.z())}}});
+                              {"at", {orNull(at.x()), orNull(at.y()), orNull(at.z())}}});
   }
   return json;
 }
@@ -112,14 +106,13 @@ Json distanceJson(const DistanceReport& report)
           {"coordinate_system", question.coordinate_system.empty() ? Json() : Json(question.coordinate_system)},
           {"surface", question.surfaceToTell()},
           {"unit", question.unit.empty() ? Json() : Json(question.unit)},
-          {"max_distance", lengthJson(question.request.max_distance)},
+          {"max_distance", orNull(question.request.max_distance)},
           {"accuracy", question.request.accuracy.text()},
           {"input_to_obstacle", toJson(report.input, true)},
           {"obstacle_to_input", toJson(report.obstacle, false)},
-          {"hausdorff", lengthJson(report.hausdorff)},
+          {"hausdorff", orNull(report.hausdorff)},
           {"hausdorff_pair", pairJson(report.hausdorff_pair)},
-          {"hausdorff_interval",
-           {lengthJson(report.hausdorff_interval.lower), lengthJson(report.hausdorff_interval.upper)}}};
+          {"hausdorff_interval", {orNull(report.hausdorff_interval.lower), orNull(report.hausdorff_interval.upper)}}};
 }
 
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report)

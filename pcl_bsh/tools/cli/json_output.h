@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/query/work.h>
 
 #include <filesystem>
 #include <iostream>
@@ -21,6 +22,13 @@ inline void writeJson(std::ostream& out, const nlohmann::ordered_json& report)
 inline void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& report)
 {
   files::replaceFile(file, [&](std::ostream& out) { writeJson(out, report); });
+}
+
+inline nlohmann::ordered_json workJson(const Work& work)
+{
+  return {{"node_pairs", work.node_pairs},           {"volumes_carried", work.volumes_carried},
+          {"volumes_built", work.volumes_built},     {"leaf_pairs", work.leaf_pairs},
+          {"exact_decisions", work.exact_decisions}, {"voxels_built", work.voxels_built}};
 }
 
 /// What `check` returns. Where it throws, and `json` is set, standard output gets `failure` with the text as `error`.

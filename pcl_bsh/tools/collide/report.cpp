@@ -13,12 +13,6 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// A finite number, or null.
-nlohmann::ordered_json orNull(double number)
-{
-  return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
-}
-
 nlohmann::ordered_json toJson(const CloudReport& cloud)
 {
   return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
@@ -45,7 +39,7 @@ nlohmann::ordered_json pathJson(const Question& question, const Answer& answer)
     json["table"].push_back({{"pose", k},
                              {"colliding", pose.colliding_points},
                              {"undecided", pose.undecided_points},
-                             {"distance", orNull(pose.distance)},
+                             {"distance", io::orNull(pose.distance)},
                              {"closest_pair", nullptr}});
     if (const auto& pair = answer.pose_pairs.at(k)) json["table"].back()["closest_pair"] = {pair->a, pair->b};
   }
@@ -88,7 +82,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   }
   json["distance_interval"] = nullptr;
   if (!question.path || std::isfinite(closest.interval.lower))
-    json["distance_interval"] = {orNull(closest.interval.lower), orNull(closest.interval.upper)};
+    json["distance_interval"] = {io::orNull(closest.interval.lower), io::orNull(closest.interval.upper)};
   json["accuracy"] = question.swept > 0.0 ? "swept" : question.accuracy.text();
   json["density"] = {{"input", toJson(answer.density.input.value_or(Spacing()))},
                      {"obstacle", answer.density.obstacle ? toJson(*answer.density.obstacle) : nullptr},
@@ -97,13 +91,8 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
                      {"could_hide_collisions", answer.density.couldHide(clearance)}};
   if (question.path) json["path"] = pathJson(question, answer);
   if (report.distances) json["distances"] = *report.distances;
-  json["work"] = {{"node_pairs", answer.work.node_pairs},
-                  {"volumes_carried", answer.work.volumes_carried},
-                  {"volumes_built", answer.work.volumes_built},
-                  {"leaf_pairs", answer.work.leaf_pairs},
-                  {"exact_decisions", answer.work.exact_decisions},
-                  {"voxels_built", answer.work.voxels_built},
-                  {"voxels_total", report.voxels_total}};
+  json["work"] = workJson(answer.work);
+  json["work"]["voxels_total"] = report.voxels_total;
   json["seconds"] = {{"load", report.seconds.load},       {"build", report.seconds.build},
                      {"query", report.seconds.query},     {"distances", report.seconds.distances},
                      {"clashes", report.seconds.clashes}, {"write", report.seconds.write}};

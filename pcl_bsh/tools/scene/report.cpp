@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
+#include <pcl_bsh/tools/cli/json_output.h>
+
+#include <pcl_bsh/io/text/number_text.h>
+
 #include <algorithm>
-#include <charconv>
 #include <ostream>
 
 namespace pcl_bsh::cli {
@@ -22,13 +25,6 @@ std::size_t undecidedPairs(const SceneResult& result, bool of_one)
                                                 [&](const PartPair& pair) { return (pair.a == pair.b) == of_one; }));
 }
 
-/// A number as text that reads as the same number, with no more digits than that takes.
-std::string shortest(double number)
-{
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr};
-}
-
 /// How many there are, and the smallest value, empty where there is none.
 template <class Item>
 void writeSmallest(std::ostream& out, const std::vector<Item>& items, double Item::*value)
@@ -37,14 +33,7 @@ void writeSmallest(std::ostream& out, const std::vector<Item>& items, double Ite
   if (items.empty()) return;
   double smallest = items.front().*value;
   for (const Item& item : items) smallest = std::min(smallest, item.*value);
-  out << shortest(smallest);
-}
-
-nlohmann::ordered_json toJson(const Work& work)
-{
-  return {{"node_pairs", work.node_pairs},           {"volumes_carried", work.volumes_carried},
-          {"volumes_built", work.volumes_built},     {"leaf_pairs", work.leaf_pairs},
-          {"exact_decisions", work.exact_decisions}, {"voxels_built", work.voxels_built}};
+  out << io::numberText(smallest);
 }
 
 } // namespace
@@ -107,7 +96,7 @@ void SceneTable::writeHeader(std::ostream& out) const
 
 void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult& result) const
 {
-  out << step << ',' << shortest(result.time) << ',' << result.broad_phase.moved << ','
+  out << step << ',' << io::numberText(result.time) << ',' << result.broad_phase.moved << ','
       << result.broad_phase.candidates;
   for (std::size_t e = 0; e < kEffects; ++e) {
     const auto effect = static_cast<Effect>(e);
@@ -132,7 +121,7 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
     if (effect == Effect::self) counts(result.self.size(), undecidedPairs(result, true));
     const EffectCost& cost = result.cost(effect);
     out << ',' << cost.pairs << ',' << cost.reused << ',' << cost.work.node_pairs << ',' << cost.work.updates() << ','
-        << shortest(cost.seconds);
+        << io::numberText(cost.seconds);
   }
   if (sweeps()) out << ',' << result.unswept.size();
   if (moves()) {
@@ -145,14 +134,15 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
       travelled += outcome.travelled;
       wanted += outcome.wanted;
     }
-    out << ',' << touched << ',' << stuck << ',' << grounded << ',' << shortest(travelled) << ',' << shortest(wanted);
+    out << ',' << touched << ',' << stuck << ',' << grounded << ',' << io::numberText(travelled) << ','
+        << io::numberText(wanted);
   }
   out << '\n';
 }
 
 nlohmann::ordered_json toJson(const EffectCost& cost)
 {
-  return {{"queries", cost.pairs}, {"reused", cost.reused}, {"work", toJson(cost.work)}, {"seconds", cost.seconds}};
+  return {{"queries", cost.pairs}, {"reused", cost.reused}, {"work", workJson(cost.work)}, {"seconds", cost.seconds}};
 }
 
 nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const Scene& scene)

@@ -2,6 +2,7 @@
 #include "surface.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/small_letters.h>
@@ -9,8 +10,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
@@ -88,10 +87,8 @@ Surface readCollada(const fs::path& path)
 
 Surface readSurface(const fs::path& path)
 {
-  const std::string extension = io::extensionOf(path);
-  if (extension == ".dae") return readCollada(path);
-  constexpr std::array meshes = {".stl", ".obj", ".ply", ".off"};
-  if (std::find(meshes.begin(), meshes.end(), extension) == meshes.end())
+  if (io::extensionOf(path) == ".dae") return readCollada(path);
+  if (!io::mayHaveFaces(path))
     throw files::FileError(path, "is no file of a mesh that is read",
                            std::string("save it as ") + readable + ", in metres");
   io::Mesh read = io::readMesh(path);

@@ -244,8 +244,8 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
   case SiteQuestion::closest: {
     const site::SiteClosest found = site::closestPair(site, obstacle.placed(), request);
     nearest = found.distance;
-    report["distance"] = orNull(found.distance);
-    report["distance_interval"] = {orNull(found.interval.lower), orNull(found.interval.upper)};
+    report["distance"] = io::orNull(found.distance);
+    report["distance_interval"] = {io::orNull(found.interval.lower), io::orNull(found.interval.upper)};
     if (found.point) {
       report["point"] = named(site, *found.point);
       obstacle.putNearest(report, found);
@@ -256,9 +256,9 @@ std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
   case SiteQuestion::distances: {
     const double most = question.max_distance.value_or(std::numeric_limits<double>::infinity());
     const site::SiteDistances found = site::pointDistances(site, obstacle.placed(), most, request, out.distances());
-    report["max_distance"] = orNull(most);
+    report["max_distance"] = io::orNull(most);
     report["measured"] = found.measured;
-    report["greatest"] = orNull(found.greatest);
+    report["greatest"] = io::orNull(found.greatest);
     put_tiles(found);
     break;
   }

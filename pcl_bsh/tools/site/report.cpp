@@ -6,8 +6,6 @@
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/site/site_clashes.h>
 
-#include <cmath>
-
 namespace pcl_bsh::cli {
 
 site::SiteRequest requestOf(const SiteOptions& options, Step* step)
@@ -38,11 +36,6 @@ Json beginReport(const site::Site& site, const SiteOptions& options)
   return report;
 }
 
-Json orNull(double number)
-{
-  return std::isfinite(number) ? Json(number) : Json(nullptr);
-}
-
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles)
 {
   report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
@@ -53,7 +46,7 @@ void putPassage(Json& report, const site::SitePassage& found, const Question& qu
   report["poses"] = question.poses().size();
   report["colliding"] = found.colliding;
   report["undecided"] = found.undecided;
-  report["distance"] = orNull(double{found.distance});
+  report["distance"] = io::orNull(double{found.distance});
   report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
   if (question.swept > 0.0) report["swept"] = question.swept;
   const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {

@@ -22,9 +22,6 @@ site::SiteRequest requestOf(const SiteOptions& options, Step* step);
 /// What was asked.
 Json beginReport(const site::Site& site, const SiteOptions& options);
 
-/// NaN and infinity have no place in JSON.
-Json orNull(double number);
-
 /// @param key of the report
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 

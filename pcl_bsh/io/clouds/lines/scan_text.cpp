@@ -325,12 +325,7 @@ pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* re
   return std::move(rows).finished();
 }
 
-pcl::PCLPointCloud2 parsePtsHeader(std::string_view file)
-{
-  return parsePtsBeginning(file, true);
-}
-
-pcl::PCLPointCloud2 parsePtsBeginning(std::string_view file, bool whole)
+pcl::PCLPointCloud2 parsePtsHeader(std::string_view file, bool whole)
 {
   if (isPtsOfColumns(file)) return parseColumnNames(file, whole);
   TextCursor text(file);

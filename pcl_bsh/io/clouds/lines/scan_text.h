@@ -24,11 +24,9 @@ namespace pcl_bsh::io {
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* remarks = nullptr);
 
-/// Only the fields that parsePts() makes. @throws FormatError
-pcl::PCLPointCloud2 parsePtsHeader(std::string_view file);
-
-/// As parsePtsHeader(), of a file's beginning. @param whole as of parseColumnNames()
-pcl::PCLPointCloud2 parsePtsBeginning(std::string_view file, bool whole);
+/// Only the fields that parsePts() makes, from a file's beginning. @param whole as of parseColumnNames()
+/// @throws FormatError
+pcl::PCLPointCloud2 parsePtsHeader(std::string_view file, bool whole = true);
 
 /// .ptx: scans, each of ten lines (columns, rows, the scanner's registered position and axes, a 4 x 4 transform whose
 /// rows are applied to a point from the left) and columns x rows points, column by column. All points are transformed
