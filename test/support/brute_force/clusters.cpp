@@ -6,13 +6,17 @@
 #include <pcl_bsh/query/brute_force_points.h>
 #include <pcl_bsh/query/record_distance.h>
 
+#include <algorithm>
+
 namespace pcl_bsh::brute_force {
 
 Clusters euclideanClusters(const SphereHierarchy& cloud, double distance)
 {
   const DefaultFloatEnvironment environment;
   const PointsView& view = cloud.view();
-  const std::vector<FinitePoint> points = finitePoints(view);
+  std::vector<FinitePoint> points = finitePoints(view); // a view may name a record twice
+  const auto is_same = [](const FinitePoint& p, const FinitePoint& q) { return p.record == q.record; };
+  points.erase(std::unique(points.begin(), points.end(), is_same), points.end());
   const RecordDistance exact(view, Eigen::Isometry3d::Identity(), view, Eigen::Isometry3d::Identity());
   DisjointSets sets(view.count);
   Clusters result;
