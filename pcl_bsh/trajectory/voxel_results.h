@@ -12,7 +12,7 @@ namespace pcl_bsh {
 struct NearestPoint {
   double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
   double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of triangles: no less than that
-  bool meets = false;                                   ///< it is 0: nothing is nearer
+  bool meets = false;                                   ///< it is 0, swept up to rounding: nothing is nearer
   std::uint32_t record = kNothing;
   float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
   float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance

@@ -291,5 +291,59 @@ TEST(TrianglesAlongPaths, SweptMotionThatGrazesEnds)
   EXPECT_LT(most, 2000000u);
 }
 
+std::uint64_t countOf(const Work& work)
+{
+  return work.node_pairs + work.leaf_pairs + work.exact_decisions;
+}
+
+/// A square sheet of 2 n n triangles in a plane z = height, 2 half wide.
+Mesh sheetAt(double height, double half, int n)
+{
+  Mesh mesh;
+  const auto corner = [&](int i, int j) { return Point3{half * (2.0 * i / n - 1), half * (2.0 * j / n - 1), height}; };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      mesh.add(corner(i, j), corner(i, j + 1), corner(i + 1, j));
+      mesh.add(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1));
+    }
+  return mesh;
+}
+
+test::Cloud cloudOf(const Mesh& mesh)
+{
+  test::Cloud cloud(mesh.vertices, test::Layout{Scalar::float64, 0, 0});
+  cloud.setTriangles(mesh.corners);
+  return cloud;
+}
+
+TEST(TrianglesAlongPaths, DistancesOfSurfacesThatCrossTakeNoMoreWorkWhereTheToleranceIsSmall)
+{
+  // A crate is carried through a floor, straight and turning: most of the way its walls cross it.
+  Mesh crate_mesh;
+  for (const auto& t : test::boxOf({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})) crate_mesh.add(t[0], t[1], t[2]);
+  const test::Cloud of_crate = cloudOf(crate_mesh), of_floor = cloudOf(sheetAt(0.0, 10.5, 40));
+  const SphereHierarchy crate(of_crate.view()), floor(of_floor.view());
+  for (const double turn : {0.0, 1.0}) {
+    Poses poses(2, Eigen::Isometry3d(Eigen::Translation3d(-10, 0.013, 0.1)));
+    poses[1] = Eigen::Translation3d(10, 0.5, 0.1) * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+    std::uint64_t least = 0;
+    for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+      SCOPED_TRACE(std::to_string(tolerance) + ", turn " + std::to_string(turn));
+      TrajectoryRequest request = flagsOnly(0.0);
+      request.swept = tolerance;
+      request.first_poses = true;
+      const std::uint64_t flags = countOf(collideAlong({floor}, crate, poses, request).work);
+      request.distances = request.closest_poses = true;
+      const TrajectoryResult found = collideAlong({floor}, crate, poses, request);
+      if (tolerance == 1e-2) least = countOf(found.work);
+      EXPECT_LT(countOf(found.work), turn == 0.0 ? 2 * least : 2 * flags + least); // what turns is cut into parts
+      std::size_t crossed = 0;
+      for (std::size_t i = 0; i < found.flags.size(); ++i)
+        crossed += found.flags[i] == Verdict::colliding && found.distance[i] < 1e-12f;
+      EXPECT_GT(crossed, 100u);
+    }
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh

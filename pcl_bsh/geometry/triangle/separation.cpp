@@ -267,6 +267,7 @@ private:
 
   void find(const Near& near, double s)
   {
+    ++found_.looks;
     const double distance = near.at.high;
     if (!(distance <= near_enough_)) return;
     if (!found_.contact || s < found_.enter) found_.enter = s;
@@ -275,6 +276,7 @@ private:
       found_.at = s;
     }
     found_.contact = true;
+    found_.meets = found_.meets || near.length <= near.error;
   }
 
   /// Whether a contact from this instant on may be the first that counts.
@@ -286,7 +288,7 @@ private:
     if (!may_be_first && !nearest_) return false;
     const double least = moving_.leastApart(direction, begin, end);
     if (least > near_enough_ - resolution_) return false; // so that each instant is of one kind or the other
-    return may_be_first || least < found_.distance - resolution_;
+    return may_be_first || std::max(least, 0.0) < found_.distance - resolution_; // nothing is nearer than at 0
   }
 
   void halve(double begin, double end)

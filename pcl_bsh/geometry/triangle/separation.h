@@ -63,8 +63,10 @@ private:
 
 /// When two of them come near.
 struct Approach {
-  bool contact = false;                         ///< whether they come near enough; the others are set only then
+  bool contact = false;                         ///< whether they come near enough; the next are set only then
   double distance = 0.0, at = 0.0, enter = 0.0; ///< the smallest one, when that is, and the first instant near enough
+  bool meets = false;                           ///< whether they meet at an instant looked at, up to rounding
+  std::uint32_t looks = 0;                      ///< instants that were looked at
 };
 
 /// There is no contact where both stay beyond `near_enough`, and there is one where they come nearer than that by more

@@ -87,7 +87,7 @@ public:
     stack_.clear();
     on_arcs_.finish(leaf, motion);
     if (query_.request.pose_summaries) at_pose_.countPoses(leaf, motion, node.points(lane));
-    if (!query_.everything()) results_.settled[slot] = results_.hit[slot];
+    settle(leaf);
     return (all & ~results_.settled[slot]) != 0;
   }
 
@@ -95,6 +95,18 @@ public:
   const UncertainReach& reach() const { return at_pose_.reach(); }
 
 private:
+  /// After a leaf was compared during a motion: points that no later motion changes.
+  void settle(const LeafVisit& leaf)
+  {
+    std::uint32_t settled = results_.hit[leaf.slot];
+    if (query_.request.pose_summaries) return;
+    for (std::uint32_t bits = query_.closest ? settled : 0; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (!results_.best[leaf.points.begin + i].meets) settled &= ~(1u << i);
+    }
+    results_.settled[leaf.slot] = static_cast<std::uint16_t>(settled);
+  }
+
   /// The candidates by their distance from the leaf, at one pose: the sooner its points' bounds are small, the fewer
   /// boxes are opened.
   void nearestFirst(const std::vector<Siblings>& candidates, const LeafRange& points, const VoxelMotion& motion)

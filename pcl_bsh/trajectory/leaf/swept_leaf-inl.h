@@ -62,6 +62,7 @@ public:
         const Approach approach = segment ? segment->approachTo(query_, pair.b, near_enough)
                                           : course->approachTo(query_, pair.b, *motion.interval, near_enough,
                                                                query_.closest, earlyEnough(begin, steps));
+        results_.work.node_pairs += approach.looks;
         if (!approach.contact) continue;
         if (query_.witness) return keepWitness(leaf, pair);
         keep(leaf, i, pair, approach, begin, steps);
@@ -135,6 +136,7 @@ private:
     NearestPoint& best = results_.best[point];
     consider(best, approach.distance - radii, begin + steps * approach.at, pair.b);
     best.reach = std::min(best.reach, roundUp(std::max(0.0, best.gap)));
+    best.meets = best.meets || (approach.meets && radii == 0.0);
   }
 
   void keepWitness(LeafVisit& leaf, const PointPair& pair)
