@@ -173,14 +173,16 @@ private:
       }
       return;
     }
+    const std::uint32_t beside = leaves_.besideOf(node, open_lanes_[index], motion);
+    if ((open_lanes_[index] & ~beside) == 0) return;
     if (visits_.size() <= depth) visits_.resize(depth + 1);
     NodeVisit& visit = visits_[depth];
     begin(visit, index, motion);
     model_.near(visit.around, candidates, motion.steps, visit.candidates);
     if (motion.at_rest) boundDistances(visit, index, motion);
     if (settling_) settleByPoints(visit, index, motion);
-    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index]);
-    for (std::uint32_t bits = open_lanes_[index]; bits != 0 && !isDone(); bits &= bits - 1) {
+    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index] & ~beside);
+    for (std::uint32_t bits = open_lanes_[index] & ~beside; bits != 0 && !isDone(); bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (visit.near[lane].empty()) continue;
       bool open = true;
@@ -201,12 +203,11 @@ private:
   }
 
   /// Whether poses are taken one by one: few of them, and a reach in which a node's points differ by little. A pose by
-  /// itself has distances, which bound those of a whole node.
+  /// itself has distances, which bound those of a whole node, and nothing strays across a plane beside the model.
   bool isWorthEachPose(const VoxelMotion& motion, float largest) const
   {
-    const std::uint32_t steps = motion.interval->last - motion.interval->first;
-    return !query_.path.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses &&
-           query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest));
+    return leaves_.isWorthEachPose(motion) &&
+           (leaves_.hasPlane() || query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest)));
   }
 
   void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Triangles along a path: as the model, as the scan, as both.
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "geometry/soups.h"
@@ -342,6 +343,61 @@ TEST(TrianglesAlongPaths, DistancesOfSurfacesThatCrossTakeNoMoreWorkWhereTheTole
         crossed += found.flags[i] == Verdict::colliding && found.distance[i] < 1e-12f;
       EXPECT_GT(crossed, 100u);
     }
+  }
+}
+
+TEST(TrianglesAlongPaths, PlatesHardlyBeyondTheClearanceTakeNoMoreWorkThanTheirPoses)
+{
+  std::uint64_t before = 0;
+  for (const int n : {32, 64}) {
+    const test::Cloud of_scan = cloudOf(sheetAt(0.0, 1.0, n)), of_model = cloudOf(sheetAt(0.25, 1.0, n));
+    const SphereHierarchy scan(of_scan.view()), model(of_model.view());
+    for (const double below : {1e-3, 1e-6, 1e-12})
+      for (const double turn : {0.0, 0.2}) {
+        SCOPED_TRACE(std::to_string(n) + ", below by " + std::to_string(below) + ", turn " + std::to_string(turn));
+        Poses poses;
+        for (int k = 0; k < 5; ++k)
+          poses.push_back(Eigen::Translation3d(0.025 * k, 0.0075 * k, 0.0) *
+                          Eigen::AngleAxisd(0.25 * turn * k, Eigen::Vector3d::UnitZ()));
+        const double clearance = 0.25 * (1.0 - below);
+        std::uint64_t single = 0;
+        for (const Eigen::Isometry3d& pose : poses) {
+          FlagsRequest request;
+          request.clearance = clearance;
+          const FlagsResult found = collisionFlags({scan}, {model, pose}, request);
+          EXPECT_EQ(found.colliding_a, 0u);
+          single += countOf(found.work);
+        }
+        const TrajectoryResult found = collideAlong({scan}, model, poses, flagsOnly(clearance));
+        EXPECT_EQ(found.colliding, 0u);
+        EXPECT_LT(countOf(found.work), 2 * single);
+        if (n == 64) {
+          EXPECT_LT(countOf(found.work), 8 * before); // of four times as many triangles
+        }
+        if (below == 1e-6 && turn == 0.0) before = countOf(found.work);
+      }
+  }
+}
+
+TEST(TrianglesAlongPaths, PlatesHardlyBeyondTheClearanceAgreeWithBruteForceWhereTheyAreUneven)
+{
+  Random random(5);
+  for (int i = 0; i < 40; ++i) {
+    Mesh scan_mesh = sheetAt(0.0, 1.0, 8), model_mesh = sheetAt(0.25, 1.0, 8);
+    for (Mesh* mesh : {&scan_mesh, &model_mesh})
+      for (Point3& p : mesh->vertices)
+        if (random.chance(0.02)) p[2] += random.uniform(-0.02, 0.02);
+    const test::Cloud of_scan = cloudOf(scan_mesh), of_model = cloudOf(model_mesh);
+    const SphereHierarchy scan(of_scan.view()), model(of_model.view());
+    const double turn = i % 2 == 0 ? 0.0 : random.uniform(0, 0.3);
+    Poses poses;
+    for (int k = 0; k < 4; ++k)
+      poses.push_back(Eigen::Translation3d(0.1 * k, random.uniform(0, 0.1), 0.001 * k) *
+                      Eigen::AngleAxisd(turn * k, Eigen::Vector3d::UnitZ()));
+    SCOPED_TRACE(i);
+    const TrajectoryRequest all = everything(0.25 * (1.0 - std::exp2(-random.uniform(6, 40))));
+    expectSame(collideAlong({scan}, model, poses, all), brute_force::collideAlong({scan}, model, poses, all));
+    if (HasFailure()) return;
   }
 }
 

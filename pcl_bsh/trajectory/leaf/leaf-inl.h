@@ -55,6 +55,13 @@ public:
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
     }
+    if (hasPlane() && isWorthEachPose(motion)) {
+      for (std::uint32_t k = motion.interval->first; k <= motion.interval->last; ++k) {
+        PathInterval one;
+        compare(slot, points, node, lane, voxel_frame_.motionAt(k, one), candidates, bound);
+      }
+      return (all & ~results_.settled[slot]) != 0;
+    }
     LeafVisit leaf;
     leaf.points = points;
     leaf.slot = slot;
@@ -89,6 +96,28 @@ public:
     if (query_.request.pose_summaries) at_pose_.countPoses(leaf, motion, node.points(lane));
     settle(leaf);
     return (all & ~results_.settled[slot]) != 0;
+  }
+
+  /// Whether poses may be taken one by one: few of them.
+  bool isWorthEachPose(const VoxelMotion& motion) const
+  {
+    const std::uint32_t steps = motion.interval->last - motion.interval->first;
+    return !path_.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses;
+  }
+
+  /// Whether there is a plane beside the model. Nothing strays across it at single poses.
+  bool hasPlane() const { return records_.hasPlane(); }
+
+  /// Bits of a node's children of which no record matters during a motion, as a plane beside the model shows.
+  std::uint32_t besideOf(const Node& node, std::uint32_t lanes, const VoxelMotion& motion)
+  {
+    if (HWY_LIKELY(!hasPlane())) return 0;
+    std::uint32_t beside = 0;
+    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (records_.areBeside(node.begin[lane], node.begin[lane + 1], motion)) beside |= 1u << lane;
+    }
+    return beside;
   }
 
   /// Of pairs of points with uncertainties of their own.

@@ -11,6 +11,7 @@
 
 #include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
+#include <pcl_bsh/trajectory/leaf/plane_beside.h>
 #include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
@@ -35,12 +36,33 @@ public:
     results_(results),
     at_pose_(at_pose),
     compared_(compared),
-    long_(long_triangles)
+    long_(long_triangles),
+    plane_(query)
   {
   }
 
   /// Before a leaf is compared during a motion.
-  void beginVisit() { known_ = 0; }
+  void beginVisit()
+  {
+    known_ = 0;
+    asked_ = 0;
+  }
+
+  /// Whether a plane beside the model shows that no record of the scan's voxel from `begin` to `end` matters during a
+  /// motion.
+  bool areBeside(std::uint32_t begin, std::uint32_t end, const VoxelMotion& motion)
+  {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (plane_.number() == 0) return false;
+      ++results_.work.node_pairs;
+      const RecordCourse course(query_, voxel_frame_.voxel.records()[i], *motion.interval);
+      if (!plane_.isBeside(course.arcs, seenOf(query_.reach) + motion.stray)) return false;
+    }
+    return true;
+  }
+
+  /// Whether there is such a plane.
+  bool hasPlane() const { return plane_.number() != 0; }
 
   /// A leaf of the model, at the poses that bring it near; of a triangle in parts at all poses, once.
   void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
@@ -52,6 +74,10 @@ public:
       if (other.is_part) bits = compared_.add(other.record(j), bits);
       for (; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (HWY_UNLIKELY(hasPlane()) && isBeside(leaf, i, motion)) {
+          leaf.open &= ~(1u << i); // for the time of this motion
+          continue;
+        }
         const PointPair pair{leaf.points.record(i), other.record(j)};
         const auto [least, most] = query_.of_pairs.around(pair);
         if (most < 0.0) continue;
@@ -113,10 +139,28 @@ private:
     return courses_[i];
   }
 
+  /// Whether the plane beside the model shows that a record does not matter during the motion; asked once of each
+  /// plane.
+  bool isBeside(const LeafVisit& leaf, std::uint32_t i, const VoxelMotion& motion)
+  {
+    if (asked_plane_ != plane_.number()) asked_ = 0;
+    asked_plane_ = plane_.number();
+    if ((asked_ >> i & 1) != 0) return false;
+    asked_ |= 1u << i;
+    ++results_.work.node_pairs;
+    return plane_.isBeside(courseOf(leaf, i, motion).arcs, seenOf(query_.reach) + motion.stray);
+  }
+
   /// A distance seen by the model that is longer is longer than this.
-  double seenOf(double length) const { return length * (1.0 + query_.path.skew) * (1.0 + kDoubleMargin) + placing_; }
+  double seenOf(double length) const
+  {
+    return (length * (1.0 + query_.path.skew) + placing_) * (1.0 + kFewDoubleRoundings);
+  }
   /// One that is seen is no longer than this.
-  double highOf(double seen) const { return (seen + placing_) * (1.0 + query_.path.skew) * (1.0 + kDoubleMargin); }
+  double highOf(double seen) const
+  {
+    return (seen + placing_) * (1.0 + query_.path.skew) * (1.0 + kFewDoubleRoundings);
+  }
 
   /// Up to which distance the pair matters from a pose on.
   double mattering(const Pair& pair, std::uint32_t from) const
@@ -145,7 +189,10 @@ private:
     const std::uint32_t middle = first + (last - first) / 2;
     ++results_.work.node_pairs;
     const Separation apart = separationOf(pair.course.seenAt(query_.path.poses[middle]), pair.moving.b.at(0.0));
-    if (apart.low <= seenOf(pair.most)) look(pair, middle, apart);
+    if (apart.low > seenOf(pair.most))
+      plane_.decidedInVain(apart);
+    else
+      look(pair, middle, apart);
     if (middle > first && mayMatter(pair, apart.direction, first, middle - 1)) halve(pair, first, middle - 1);
     if (middle < last && mayMatter(pair, apart.direction, middle + 1, last)) halve(pair, middle + 1, last);
   }
@@ -161,7 +208,7 @@ private:
   void look(const Pair& pair, std::uint32_t k, const Separation& apart)
   {
     const bool for_pose = query_.request.pose_summaries && (may_overlap_ || results_.poseReach(k) > 0.0f);
-    const double low = (apart.low - placing_) * (1.0 - query_.path.skew) * (1.0 - kDoubleMargin) - pair.radii;
+    const double low = (apart.low - placing_) * (1.0 - query_.path.skew) * (1.0 - kFewDoubleRoundings) - pair.radii;
     const double high = highOf(apart.high) - pair.radii;
     const std::uint32_t step = k - pair.motion.interval->first;
     const bool hit_before = query_.request.pose_summaries
@@ -170,7 +217,7 @@ private:
     const bool for_point = query_.closest && isNearer(pair, k, low);
     const bool matters_for_pose = for_pose && low <= static_cast<double>(results_.poseReach(k));
     if (hit_before && !for_point && !matters_for_pose) return;
-    if (high + pair.radii > pair.least && !results_.collide(pair.records, k)) return;
+    if (high + pair.radii > pair.least && !results_.collide(pair.records, k)) return plane_.decidedInVain(apart);
     at_pose_.noteHits(pair.leaf, 1u << pair.i, k, pair.motion);
     if (for_point) considerForPoint(pair, k, high);
     if (matters_for_pose) {
@@ -239,6 +286,8 @@ private:
   LongTriangles& long_;
   RecordCourse courses_[kLeafPoints];
   std::uint32_t known_ = 0; ///< bits of those that are set
+  PlaneBeside plane_;
+  std::uint32_t asked_ = 0, asked_plane_ = 0; ///< bits of points of the leaf that it was asked about, and its number
 };
 
 } // namespace HWY_NAMESPACE
