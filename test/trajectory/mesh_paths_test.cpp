@@ -401,5 +401,45 @@ TEST(TrianglesAlongPaths, PlatesHardlyBeyondTheClearanceAgreeWithBruteForceWhere
   }
 }
 
+TEST(TrianglesAlongPaths, ALargeTriangleAmongSmallOnesTakesLittleMoreWorkWhereMotionIsSwept)
+{
+  Poses poses(2, Eigen::Isometry3d::Identity());
+  poses[1].translation() = Eigen::Vector3d(1, 0.5, 0.2);
+  TrajectoryRequest request = flagsOnly(0.01);
+  request.swept = 0.01;
+  request.distances = request.first_poses = true;
+  for (const int count : {100, 400}) {
+    Random random(7);
+    const auto soup = [&] {
+      Mesh mesh;
+      for (int i = 0; i < count; ++i) {
+        const Point3 at = random.point([&] { return 3 * random.uniform(-1, 1); });
+        const auto beside = [&] {
+          const Point3 by = random.point([&] { return 0.2 * random.uniform(-1, 1); });
+          return Point3{at[0] + by[0], at[1] + by[1], at[2] + by[2]};
+        };
+        mesh.add(at, beside(), beside());
+      }
+      return mesh;
+    };
+    const Mesh small = soup();
+    Mesh with_large = small;
+    with_large.add({-20, -20, -15}, {1e6, -20, -15}, {-20, 1e6, -15}); // beside them, and near none of the scan's
+    const test::Cloud of_scan = cloudOf(soup()), of_small = cloudOf(small), of_all = cloudOf(with_large);
+    const SphereHierarchy scan(of_scan.view());
+    const TrajectoryResult without = collideAlong({scan}, SphereHierarchy(of_small.view()), poses, request);
+    const TrajectoryResult found = collideAlong({scan}, SphereHierarchy(of_all.view()), poses, request);
+    SCOPED_TRACE(count);
+    EXPECT_GT(found.colliding, 0u);
+    EXPECT_LT(countOf(found.work), 3 * countOf(without.work));
+    EXPECT_EQ(found.flags, without.flags); // none is within the tolerance of the clearance
+    EXPECT_EQ(found.first_pose, without.first_pose);
+    for (std::size_t i = 0; i < found.distance.size(); ++i)
+      if (found.flags[i] == Verdict::colliding) {
+        EXPECT_NEAR(found.distance[i], without.distance[i], *request.swept) << i;
+      }
+  }
+}
+
 } // namespace
 } // namespace pcl_bsh

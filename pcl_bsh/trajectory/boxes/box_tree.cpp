@@ -149,6 +149,36 @@ private:
 /// Of places of halved triangles, relative to the largest coordinate: each halving rounds once.
 constexpr double kPartRoundings = 128 * kDoubleUnit;
 
+double medianOf(std::vector<double>& numbers)
+{
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  if (numbers.size() % 2 != 0) return *middle;
+  return 0.5 * (*std::max_element(numbers.begin(), middle) + *middle);
+}
+
+constexpr std::size_t kRecordsForOrigin = 1024; // that are looked at
+constexpr double kLarge = 64.0;                 // times as large as most of them
+
+/// The middle of a cloud; near most records where one of them is much larger, so that the middle is far away from them:
+/// floats would not tell them apart there.
+Point3 originOf(const SphereHierarchy::Storage& storage)
+{
+  if (arePoints(storage.view) || storage.size == 0) return storage.frame.origin;
+  std::vector<double> places[3], radii;
+  const std::size_t step = storage.size / kRecordsForOrigin + 1;
+  std::size_t i = 0;
+  for (std::uint32_t v = 0; v < storage.voxel_count; ++v)
+    storage.forEachRecord(v, [&](std::uint32_t record) {
+      if (i++ % step != 0) return;
+      const Point3 place = storage.view.point(record);
+      for (std::size_t axis = 0; axis < 3; ++axis) places[axis].push_back(place[axis]);
+      radii.push_back(storage.view.radius(record));
+    });
+  if (!(storage.largest_radius > kLarge * medianOf(radii))) return storage.frame.origin;
+  return {medianOf(places[0]), medianOf(places[1]), medianOf(places[2])};
+}
+
 /// Of the whole model: thinner boxes of triangles are not divided.
 constexpr double kThinShare = 0x1p-8;
 
@@ -156,7 +186,7 @@ constexpr double kThinShare = 0x1p-8;
 
 BoxTree::BoxTree(const SphereHierarchy::Storage& of, const Travel& travel, const Division& division)
 : storage(of),
-  origin(of.frame.origin),
+  origin(originOf(of)),
   division_(division),
   voxels_(std::make_unique<Entry[]>(of.voxel_count))
 {
