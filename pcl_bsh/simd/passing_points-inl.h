@@ -118,60 +118,6 @@ private:
   LaneVector first_[3], way_[3], inverse_, slack_, limit_;
 };
 
-/// Bit i of `lanes`: arc i may come within its reach of one of `count` points, at (x, y, z) + shift, at an instant
-/// j / steps (at any instant when steps is 0) of its clipped part. That part is taken for a segment: it bows by the
-/// square of its share of the whole. Few arcs reach into a box: each by itself, against all points at once.
-/// @param x, y, z readable for whole vectors. @param rounding in lengths: what that may amount to, at least 64 u of the
-///   largest coordinate
-/// @param clipped becomes when that is: from the first instant for any of the points to the last; of lanes whose bit is
-///   set
-template <std::size_t Count>
-HWY_INLINE std::uint32_t segmentsNearPoints(const Segments<Count>& segments, std::uint32_t lanes, const float* x,
-                                            const float* y, const float* z, std::size_t count, const float* shift,
-                                            float steps, float smallest, float rounding,
-                                            ClippedSegments<Count>& clipped)
-{
-  const LaneTag d;
-  const LaneVector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  std::uint32_t near_lanes = 0;
-  for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const float begin = clipped.from[i], end = clipped.to[i], part = end - begin;
-    float first[3], way[3], reach = segments.reach[0][i] + rounding;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float bow = segments.bow[axis][i];
-      const auto place = [&](float t) {
-        return segments.start[axis][i] + t * (segments.motion[axis][i] + 4.0f * bow * (1.0f - t));
-      };
-      const float at = place(begin);
-      first[axis] = at - shift[axis];
-      way[axis] = place(end) - at;
-      reach += std::abs(bow) * (part * part);
-    }
-    const LineLanes line(first, way, reach, smallest, rounding);
-    LaneVector from = one, to = zero;
-    for (std::size_t j = 0; j < count; j += hn::Lanes(d)) {
-      const Passage by = line.past(hn::LoadU(d, x + j), hn::LoadU(d, y + j), hn::LoadU(d, z + j));
-      const auto within = hn::And(hn::FirstN(d, count - j), by.isWithin());
-      if (hn::AllFalse(d, within)) continue;
-      const LaneVector half = line.halfStay(by);
-      // Of the whole way.
-      const LaneVector enter =
-          hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Max(hn::Sub(by.at, half), zero)));
-      const LaneVector leave =
-          hn::Add(hn::Set(d, begin), hn::Mul(hn::Set(d, part), hn::Min(hn::Add(by.at, half), one)));
-      const auto near = hn::And(within, isInsideAtStep(d, {enter, leave}, steps));
-      if (hn::AllFalse(d, near)) continue;
-      near_lanes |= 1u << i;
-      from = hn::Min(from, hn::IfThenElse(near, enter, one));
-      to = hn::Max(to, hn::IfThenElse(near, leave, zero));
-    }
-    clipped.from[i] = hn::GetLane(hn::MinOfLanes(d, from));
-    clipped.to[i] = std::min(hn::GetLane(hn::MaxOfLanes(d, to)), 1.0f);
-  }
-  return near_lanes;
-}
-
 /// How one straight segment passes points.
 template <std::size_t Count>
 struct Passages {
@@ -192,7 +138,9 @@ struct Passages {
   }
 };
 
-/// The chord of arc i, without its bow, past `count` points; other parameters as segmentsNearPoints() has them.
+/// The chord of arc i, without its bow, past `count` points at (x, y, z) + shift.
+/// @param x, y, z readable for whole vectors. @param rounding in lengths: what that may amount to, at least 64 u of the
+///   largest coordinate
 /// @param reach any, `rounding` included
 template <std::size_t Count>
 HWY_INLINE void passPoints(const Segments<Count>& segments, std::uint32_t i, const float* x, const float* y,

@@ -131,7 +131,7 @@ public:
     const double bow = setBow(motion);
     motion.steps = path.is_swept ? 0.0f : static_cast<float>(interval.last - interval.first);
     const double reach = query_.reach * (1.0 + path.skew) + placing_ + motion.stray;
-    // What is far away in a box rounds in proportion to how far it is: only points have places there.
+    // A difference from the end of a box rounds in proportion to itself: only places of points count.
     const double places = query_.of_points ? tree.radius : 0.0;
     const double rounding =
         static_cast<double>(kSegmentRounding) * (coordinate + 2.01 * radius + places + reach + 8 * bow) +

@@ -268,7 +268,7 @@ double boxFraction(const Numbers& n)
   }
   const float low[3] = {floatOf(n[11]), -1, -1}, high[3] = {low[0] + std::abs(floatOf(n[12])), 1, 1};
   const Real reach = std::abs(n[13]), motion = true_ends[1] - true_ends[0];
-  largest = std::max({largest + reach, Real{1}}); // not of the box: what is far away in it rounds as it is far
+  largest = std::max({largest + reach, Real{1}}); // not of the box: its ends round as the gap to them
   if (!(largest < 16 && motion != 0)) return 0.0;
   const Real at_low = (low[0] - reach - true_ends[0]) / motion, at_high = (high[0] + reach - true_ends[0]) / motion;
   const Real enter = std::max(Real{0}, std::min(at_low, at_high)), leave = std::min(Real{1}, std::max(at_low, at_high));
@@ -317,7 +317,7 @@ double bowedFraction(const Numbers& n)
     bow[k] = floatOf(n[6 + k]);
     low[k] = floatOf(n[9 + k]);
     high[k] = low[k] + std::abs(floatOf(n[12 + k]));
-    largest = std::max({largest, std::abs(Real{start[k]}), std::abs(Real{end[k]})}); // not of the box, likewise
+    largest = std::max({largest, std::abs(Real{start[k]}), std::abs(Real{end[k]})}); // not of the box
   }
   if (!(largest < 16)) return 0.0;
   const auto distanceAt = [&](Real t) {

@@ -176,6 +176,34 @@ TEST(GrazingPaths, AnswerAsBruteForce)
     }
 }
 
+/// Points take few looks at single poses, with or without summaries of these.
+TEST(GrazingPaths, AskedAboutPointsTakeNoMoreLooksThanAboutPoses)
+{
+  Random random(3);
+  Cloud wall, side;
+  for (int i = 0; i < 4000; ++i) wall.push_back({random.uniform(-4, 4), 0.0, random.uniform(0, 0.3)});
+  for (int i = 0; i < 4000; ++i) side.push_back({random.uniform(-2, 2), 0.045, random.uniform(0, 0.3)});
+  for (Cloud* cloud : {&wall, &side})
+    for (Eigen::Vector3d& p : *cloud) p += noise(random);
+  Poses poses;
+  for (int k = 0; k < 300; ++k) poses.push_back(placed(1e-4 * k, Eigen::Vector3d::UnitZ(), {0.02 * k - 3, 0, 0}));
+  const SphereHierarchy scan(viewOf(wall)), model(viewOf(side));
+  TrajectoryRequest request = everything(kClearance);
+  const TrajectoryResult summed = collideAlong({scan}, model, poses, request);
+  request.pose_summaries = false;
+  const TrajectoryResult found = collideAlong({scan}, model, poses, request);
+  EXPECT_GT(found.colliding, 1000u);
+  EXPECT_LT(found.work.leaf_pairs, summed.work.leaf_pairs);
+  EXPECT_THAT(found.distance, Pointwise(NanSensitiveFloatEq(), summed.distance));
+  EXPECT_EQ(found.first_pose, summed.first_pose);
+  EXPECT_EQ(found.closest_pose, summed.closest_pose);
+  EXPECT_EQ(found.closest_point, summed.closest_point);
+  request.distances = request.closest_poses = false;
+  const TrajectoryResult first = collideAlong({scan}, model, poses, request);
+  EXPECT_LT(4 * first.work.leaf_pairs, found.work.leaf_pairs);
+  EXPECT_EQ(first.first_pose, summed.first_pose);
+}
+
 /// Around each point of the scan, points of the model at just the clearance, all along a way that floats hardly see: so
 /// that each pair has to be compared at each pose. What is kept of that until then is little.
 TEST(GrazingPaths, PassManyPointsAtTheClearance)

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// With summaries of poses a point matters at each pose at which it collides, and most do so near several points of the
+/// A point matters at many poses, with summaries at each at which it collides, and mostly near several points of the
 /// model. How far it is from its arc at most is known: so its distances there, of many poses at once, say for certain
 /// that it collides, or that it passes. What they do not decide is compared at the pose itself once all boxes were
 /// seen: by then another point of the model has decided most of it, or is nearer. Where very many pairs are at just the
@@ -28,15 +28,19 @@ public:
     tree_(query.boxes),
     results_(results),
     at_pose_(at_pose),
-    summing_(query.request.pose_summaries && query.of_points && query.nearestDecides() &&
-             voxel_frame.frame.unit == 1.0),
+    voxel_frame_(voxel_frame),
+    summing_(query.request.pose_summaries),
+    say_something_(query.of_points && query.nearestDecides() && voxel_frame.frame.unit == 1.0),
     surely_(std::sqrt(voxel_frame.band.hit) * (1.0f - kRadiusMargin))
   {
   }
 
   /// Whether distances on arcs say something: not where points have reaches of their own, where floats do not hold
   /// the squares, nor of more poses than floats count.
-  bool areFor(const VoxelMotion& motion) const { return summing_ && motion.squares && motion.steps <= kMostSteps; }
+  bool areFor(const VoxelMotion& motion) const
+  {
+    return say_something_ && motion.squares && motion.steps <= kMostSteps;
+  }
 
   /// Of a model's leaf whose frame has the clouds' unit. @param ranges the poses at which points may be near it
   void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
@@ -50,7 +54,9 @@ public:
     const auto at_once = static_cast<std::uint32_t>(hn::Lanes(d));
     for (std::uint32_t bits = ranges.lanes; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const std::uint32_t end = ranges.last[i] - motion.interval->first + 1;
+      std::uint32_t end = ranges.last[i] - motion.interval->first + 1;
+      if (!query_.everything())
+        end = static_cast<std::uint32_t>(std::clamp(knownFrom(leaf, i), 0.0f, static_cast<float>(end)));
       for (std::uint32_t k = ranges.first[i] - motion.interval->first; k < end; k += at_once) {
         const PlacesOnArc at(leaf.segments, i, k, motion.steps);
         const LaneVector limits = limitsAt(leaf, i, k);
@@ -89,10 +95,12 @@ private:
   void begin(const VoxelMotion& motion)
   {
     is_begun_ = true;
+    first_pose_ = motion.interval->first;
     astray_ = motion.reach + motion.rounding - static_cast<float>(query_.reach);
     miss_ = squareOver(motion.reach + motion.rounding);
     const float sure = surely_ - static_cast<float>(motion.stray) - 2 * motion.rounding;
     sure_ = sure > 0.0f ? sure * sure * (1.0f - kRadiusMargin) : -1.0f;
+    if (!summing_) return;
     const std::uint32_t poses = motion.interval->last - motion.interval->first + 1;
     limits_.resize(poses + kLanes);
     for (std::uint32_t k = 0; k < poses; ++k) limits_[k] = limitOf(results_.poseReach(motion.interval->first + k));
@@ -105,15 +113,33 @@ private:
               [](const Candidate& a, const Candidate& b) { return a.squared < b.squared; });
     for (const Candidate& candidate : candidates_) {
       const std::uint32_t i = candidate.point, k = candidate.step;
-      if (isHit(i, k) && candidate.squared > std::max(limits_[k], bestLimit(leaf, i))) continue;
+      if (isHit(leaf, i, k) && candidate.squared > limitAt(leaf, i, k)) continue;
       const std::uint32_t pose = motion.interval->first + k;
       at_pose_.compare(leaf, 1u << i, candidate.box, pose, motion);
-      limits_[k] = std::min(limits_[k], limitOf(results_.poseReach(pose)));
+      if (summing_) limits_[k] = std::min(limits_[k], limitOf(results_.poseReach(pose)));
     }
     candidates_.clear();
   }
 
-  bool isHit(std::uint32_t i, std::uint32_t k) const { return (at_pose_.hits()[k] >> i & 1) != 0; }
+  /// The step from which on nothing matters of a point but what is nearer than its nearest so far. Without summaries.
+  float knownFrom(const LeafVisit& leaf, std::uint32_t i) const
+  {
+    if ((results_.hit[leaf.slot] >> i & 1) == 0) return std::numeric_limits<float>::infinity();
+    return query_.first ? static_cast<float>(results_.first[leaf.points.begin + i] - first_pose_) : 0.0f;
+  }
+
+  /// Whether that a point collides at a step is known, or changes nothing.
+  bool isHit(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
+  {
+    if (!summing_) return static_cast<float>(k) >= knownFrom(leaf, i);
+    return (at_pose_.hits()[k] >> i & 1) != 0;
+  }
+
+  /// A larger squared distance on the arc of a point that is hit changes nothing.
+  float limitAt(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
+  {
+    return summing_ ? std::max(limits_[k], bestLimit(leaf, i)) : bestLimit(leaf, i);
+  }
 
   static float squareOver(float length) { return length * length * (1.0f + kRadiusMargin); }
 
@@ -123,7 +149,7 @@ private:
   /// The same, of the nearest that is known of a point.
   float bestLimit(const LeafVisit& leaf, std::uint32_t i) const
   {
-    return query_.closest ? limitOf(results_.best[leaf.points.begin + i].reach) : 0.0f;
+    return query_.closest ? limitOf(results_.best[leaf.points.begin + i].reach) : -1.0f;
   }
 
   /// From step k on: larger squared distances change nothing. Of a point that is known to collide at a pose only a
@@ -131,11 +157,16 @@ private:
   LaneVector limitsAt(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
   {
     const LaneTag d;
+    const LaneVector best = hn::Set(d, bestLimit(leaf, i));
+    if (!summing_) {
+      const LaneVector steps = hn::Iota(d, static_cast<float>(k));
+      return hn::IfThenElse(hn::Ge(steps, hn::Set(d, knownFrom(leaf, i))), best, hn::Set(d, miss_));
+    }
     const hn::RebindToUnsigned<LaneTag> counts;
     const hn::Rebind<std::uint16_t, LaneTag> halves;
     const auto hits = hn::PromoteTo(counts, hn::LoadU(halves, at_pose_.hits() + k));
     const auto is_hit = hn::RebindMask(d, hn::TestBit(hits, hn::Set(counts, 1u << i)));
-    const LaneVector nearer = hn::Max(hn::LoadU(d, limits_.data() + k), hn::Set(d, bestLimit(leaf, i)));
+    const LaneVector nearer = hn::Max(hn::LoadU(d, limits_.data() + k), best);
     return hn::IfThenElse(is_hit, nearer, hn::Set(d, miss_));
   }
 
@@ -144,40 +175,37 @@ private:
             const VoxelMotion& motion)
   {
     const std::uint32_t pose = motion.interval->first + k;
-    if (!isHit(i, k) && squared <= sure_) {
-      at_pose_.hits()[k] = static_cast<std::uint16_t>(at_pose_.hits()[k] | 1u << i);
-      results_.hit[leaf.slot] = static_cast<std::uint16_t>(results_.hit[leaf.slot] | 1u << i);
-      if (query_.first) {
-        double& first = results_.first[leaf.points.begin + i];
-        first = std::min(first, static_cast<double>(pose));
-      }
-    }
-    const bool hit = isHit(i, k);
-    if (hit && squared > std::max(limits_[k], bestLimit(leaf, i))) return;
+    if (!isHit(leaf, i, k) && squared <= sure_) at_pose_.noteHits(leaf, 1u << i, pose, motion);
+    const bool hit = isHit(leaf, i, k);
+    if (hit && squared > limitAt(leaf, i, k)) return;
     if (candidates_.size() == kMostCandidates) compareCandidates(leaf, motion);
     candidates_.push_back({box, i, k, squared});
     if (!hit) return;
     const float high =
         roundUp((std::sqrt(static_cast<double>(squared)) * (1.0 + kRadiusMargin) + astray_) * (1.0 + query_.path.skew));
-    results_.lowerPoseLimit(pose, std::numeric_limits<float>::infinity(), high);
-    limits_[k] = std::min(limits_[k], limitOf(high));
-    if (query_.closest) {
-      float& reach = results_.best[leaf.points.begin + i].reach;
-      reach = std::min(reach, high);
+    if (summing_) {
+      results_.lowerPoseLimit(pose, std::numeric_limits<float>::infinity(), high);
+      limits_[k] = std::min(limits_[k], limitOf(high));
     }
+    if (!query_.closest) return;
+    float& reach = results_.best[leaf.points.begin + i].reach;
+    reach = std::min(reach, high);
+    if (results_.bestBounds(leaf.points.begin + i, first_pose_)) leaf.lowerReach(voxel_frame_, i, reach, motion);
   }
 
   const TrajectoryQuery& query_;
   const BoxTree& tree_;
   VoxelResults& results_;
   LeafAtPose& at_pose_;
-  const bool summing_;
+  const VoxelInModelFrame& voxel_frame_;
+  const bool summing_, say_something_;
   const float surely_; // pairs nearer than this, in floats at a pose, collide
   bool is_begun_ = false;
-  float astray_ = 0.0f;       // how much farther two points may be from each other on the arc than at the pose
-  float miss_ = 0.0f;         // a larger squared distance on the arc: they do not collide
-  float sure_ = 0.0f;         // no larger: they do
-  std::vector<float> limits_; // per step: limitOf() the pose
+  std::uint32_t first_pose_ = 0; // of the motion
+  float astray_ = 0.0f;          // how much farther two points may be from each other on the arc than at the pose
+  float miss_ = 0.0f;            // a larger squared distance on the arc: they do not collide
+  float sure_ = 0.0f;            // no larger: they do
+  std::vector<float> limits_;    // per step: limitOf() the pose
   std::vector<Candidate> candidates_;
   alignas(64) float nearest_[kLanes];
 };

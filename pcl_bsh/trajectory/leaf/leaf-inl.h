@@ -244,11 +244,9 @@ private:
                                const ModelBox& box, const VoxelMotion& motion)
   {
     if (!query_.of_points) return records_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
-    const bool narrows = motion.squares && tree_.unit(box.voxel) == 1.0;
-    if (narrows && on_arcs_.areFor(motion))
-      return on_arcs_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
-    if (narrows) lanes = nearPoints(leaf, lanes, box, motion, clipped);
-    eachPose(leaf, rangesOf(lanes, clipped, motion), box, motion);
+    const PoseRanges ranges = rangesOf(lanes, clipped, motion);
+    if (on_arcs_.areFor(motion) && tree_.unit(box.voxel) == 1.0) return on_arcs_.compare(leaf, ranges, box, motion);
+    eachPose(leaf, ranges, box, motion);
   }
 
   /// Points against a box, at each pose that brings them near.
@@ -269,15 +267,6 @@ private:
       else
         at_pose_.meetInDoubles(leaf, here, box, k, motion);
     }
-  }
-
-  /// Bits of the leaf's points whose segments come near to points of the model's leaf, and when.
-  std::uint32_t nearPoints(const LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, const VoxelMotion& motion,
-                           ClippedSegments<kLeafPoints>& clipped) const
-  {
-    const BoxLeaf other = box.points(tree_);
-    return segmentsNearPoints(leaf.segments, lanes, other.x(), other.y(), other.z(), other.count,
-                              tree_.shift(box.voxel).data(), motion.steps, motion.smallest, motion.rounding, clipped);
   }
 
   const TrajectoryQuery& query_;

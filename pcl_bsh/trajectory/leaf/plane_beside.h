@@ -27,7 +27,7 @@ public:
     if (++decisions_ == next_) lay();
   }
 
-  /// Of the planes laid so far; 0 while no plane is laid.
+  /// Counts the planes laid so far; 0 while no plane is laid.
   std::uint32_t number() const { return is_laid_ ? number_ : 0; }
 
   /// Whether a record of the scan stays farther than a distance from all of the model, on its arcs. @pre number() != 0
