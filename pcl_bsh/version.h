@@ -5,7 +5,7 @@
 /// Before 1.0, a new minor version may change interfaces and layouts: libraries are named after both numbers, as are
 /// the versions of their symbols, so that two of them can be in one process.
 #define PCL_BSH_VERSION_MAJOR 0
-#define PCL_BSH_VERSION_MINOR 1
+#define PCL_BSH_VERSION_MINOR 2
 #define PCL_BSH_VERSION_PATCH 0
 
 /// One number to compare with: 100 is 0.1.0.

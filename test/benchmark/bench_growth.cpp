@@ -182,26 +182,51 @@ void measure(const Corner& corner, const Query& query, const Options& options, T
   });
 }
 
-/// Two square plates of about so many triangles each, of cells of 0.2, 0.25 apart: ten of all pairs within 0.27.
-void measurePlates(const std::string& name, double noise, const Eigen::Isometry3d& pose, const Options& options,
-                   Table& table)
+/// Two square plates of cells of 0.2 that face each other, 0.25 apart.
+struct Plates {
+  std::string name;
+  double aside = 0.04; ///< of the cells of one to those of the other
+  double noise = 0.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();   ///< of both
+  Eigen::Isometry3d placed = Eigen::Isometry3d::Identity(); ///< their corners, rounded
+};
+
+void measurePlates(const Plates& plates, const Options& options, Table& table)
 {
-  measure(name, "10 contacts", options, table, [&](std::size_t size) {
-    const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(size) / 2)));
-    const auto plate = [&](double aside, double height) {
-      Random random(height > 0.0 ? 2 : 1);
-      return test::gridMesh(cells, cells, [&](double u, double v) -> Point3 {
-        return {0.2 * cells * u + aside, 0.2 * cells * v + aside, height + noise * random.uniform(-1, 1)};
-      });
-    };
-    return [low = plate(0, 0), high = plate(0.04, 0.25), pose](double& seconds) {
-      const SphereHierarchy a(viewOf(low.trianglesView())), b(viewOf(high.trianglesView()));
-      const Stopwatch watch;
-      const Work work = nearestContacts({a, pose}, {b, pose}, {0.27, 10}).work;
-      seconds = watch.seconds();
-      return work;
-    };
-  });
+  const std::vector<Query> asked = {
+      {"closest pair",
+       [&](const SphereHierarchy& a, const SphereHierarchy& b, double) {
+         return closestPair({a, plates.pose}, {b, plates.pose}).work;
+       }},
+      {"distances of all triangles",
+       [&](const SphereHierarchy& a, const SphereHierarchy& b, double) {
+         return pointDistances({a, plates.pose}, {b, plates.pose}).work;
+       }},
+      {"10 contacts",
+       [&](const SphereHierarchy& a, const SphereHierarchy& b, double) {
+         return nearestContacts({a, plates.pose}, {b, plates.pose}, {0.27, 10}).work;
+       }},
+  };
+  for (const Query& query : asked) {
+    measure(plates.name, query.name, options, table, [&](std::size_t size) {
+      const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(size) / 2)));
+      const auto plate = [&](double aside, double height) {
+        Random random(height > 0.0 ? 2 : 1);
+        test::TestMesh mesh = test::gridMesh(cells, cells, [&](double u, double v) -> Point3 {
+          return {0.2 * cells * u + aside, 0.2 * cells * v + aside, height + plates.noise * random.uniform(-1, 1)};
+        });
+        mesh.move(plates.placed);
+        return mesh;
+      };
+      return [&query, low = plate(0, 0), high = plate(plates.aside, 0.25)](double& seconds) {
+        const SphereHierarchy a(viewOf(low.trianglesView())), b(viewOf(high.trianglesView()));
+        const Stopwatch watch;
+        const Work work = query.ask(a, b, 0.0);
+        seconds = watch.seconds();
+        return work;
+      };
+    });
+  }
 }
 
 } // namespace
@@ -223,11 +248,15 @@ int main(int argc, char** argv)
   return runProgram(app, argc, argv, options, table, [&](Table& rows) {
     for (const Corner& corner : corners())
       for (const Query& query : queries()) measure(corner, query, options, rows);
-    const Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();
-    const Eigen::Isometry3d turned(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized()));
-    measurePlates("flat plates of triangles", 0.0, flat, options, rows);
-    measurePlates("the same, turned", 0.0, turned, options, rows);
-    measurePlates("with noise of 0.001", 1e-3, flat, options, rows);
+    const Eigen::Isometry3d none = Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d turn(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized()));
+    for (const Plates& plates : {Plates{"flat plates of triangles", 0.04, 0.0, none, none},
+                                 Plates{"the same, posed by one turn", 0.04, 0.0, turn, none},
+                                 Plates{"the same, turned and rounded", 0.04, 0.0, none, turn},
+                                 Plates{"corner over corner, posed by one turn", 0.0, 0.0, turn, none},
+                                 Plates{"corner over corner, turned and rounded", 0.0, 0.0, none, turn},
+                                 Plates{"with noise of 0.001", 0.04, 1e-3, none, none}})
+      measurePlates(plates, options, rows);
     return true;
   });
 }

@@ -217,13 +217,13 @@ def motions(rows):
 def growth(rows):
     yield "| clouds | flags | closest pair | path of 5 poses, flags | path, distances | distances of all points |"
     yield "|---|---|---|---|---|---|"
-    for clouds in dict.fromkeys(row["clouds"] for row in rows if row["query"] != "10 contacts"):
+    for clouds in dict.fromkeys(row["clouds"] for row in rows.where(query="flags")):
         yield f"| {clouds} | " + " | ".join(grown(rows.where(clouds=clouds))) + " |"
 
 
 def plates(rows):
-    yield "| surfaces | 10 contacts |"
-    yield "|---|---|"
+    yield "| surfaces | closest pair | distances of all triangles | 10 contacts |"
+    yield "|---|---|---|---|"
     for clouds in dict.fromkeys(row["clouds"] for row in rows.where(query="10 contacts")):
         yield f"| {clouds} | " + " | ".join(grown(rows.where(clouds=clouds))) + " |"
 
