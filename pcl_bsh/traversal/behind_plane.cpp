@@ -42,7 +42,7 @@ double greater(double x, double y)
   return std::isnan(x) || y <= x ? x : y;
 }
 
-/// The same, if that is known.
+/// The greater number, if both are known.
 std::optional<LongNumber> greater(const std::optional<LongNumber>& x, const std::optional<LongNumber>& y)
 {
   if (!x || !y) return std::nullopt;

@@ -54,7 +54,7 @@ run(${CMAKE_COMMAND} --build "${WORK}/told/build")
 foreach(component IN ITEMS core search filters pipeline sites certify)
   file(WRITE "${WORK}/${component}/CMakeLists.txt"
        "cmake_minimum_required(VERSION 3.16)\nproject(alone CXX)\n"
-       "find_package(pcl_bsh 0.1 REQUIRED CONFIG COMPONENTS core OPTIONAL_COMPONENTS ${component})\n"
+       "find_package(pcl_bsh 0.2 REQUIRED CONFIG COMPONENTS core OPTIONAL_COMPONENTS ${component})\n"
        "add_library(alone OBJECT alone.cpp)\nif(TARGET pcl_bsh::${component})\n"
        "  target_link_libraries(alone PRIVATE pcl_bsh::${component})\nendif()\n")
   file(WRITE "${WORK}/${component}/alone.cpp" "#include <pcl_bsh/collide.h>\nint one() { return 1; }\n")

@@ -256,7 +256,7 @@ private:
     return isInside(normal, cross(v, w), sure) && isInside(normal, cross(u, w), sure);
   }
 
-  /// The same of a corner i of a triangle and an edge j of another.
+  /// Whether a corner i of a triangle and the inside of an edge j of another have both triangles so.
   static bool isEdgeBefore(const Corners& t, std::size_t i, const Corners& ends, std::size_t j)
   {
     const Vector edge = ends[(j + 1) % 3] - ends[j], from = t[i] - ends[j];
@@ -267,7 +267,7 @@ private:
     return signOf(dot(way, ends[(j + 2) % 3] - ends[j]), sure) <= 0 && sure && areBehind(-way, t, i, sure);
   }
 
-  /// The same of two corners.
+  /// Whether two corners have both triangles so.
   bool areCornersBetween(std::size_t i, std::size_t j) const
   {
     const Vector way = a_[i] - b_[j];
