@@ -56,19 +56,10 @@ std::optional<LongNumber> greater(const std::optional<LongNumber>& x, const std:
 
 } // namespace
 
-template <class Member, class Look>
-auto BehindPlane::remembered(const NodeChild& child, std::uint64_t& looks, Member member, const Look& look)
+BehindPlane::Known& BehindPlane::known(const NodeChild& child)
 {
-  using Found = typename std::remove_reference_t<decltype(std::declval<Known>().*member)>::value_type;
   const Range below = pointsBelow(cloud_, child);
-  std::optional<Found>& found = found_[std::uint64_t{below.begin} << 32 | below.end].*member;
-  const std::uint64_t count = below.end - below.begin;
-  if (!found) {
-    if (count > looks) return std::optional<Found>();
-    looks -= count;
-    found = look();
-  }
-  return found;
+  return found_[std::uint64_t{below.begin} << 32 | below.end];
 }
 
 template <class Visit>
@@ -99,28 +90,30 @@ std::optional<LongNumber> BehindPlane::height(std::uint32_t record) const
 
 std::optional<double> BehindPlane::heightAtMost(const NodeChild& child, std::uint64_t& looks)
 {
-  return remembered(child, looks, &Known::height, [&] {
-    double most = -std::numeric_limits<double>::infinity();
-    forEachRecord(child, [&](std::uint32_t record) { most = greater(most, heightAtMost(record)); });
-    return most;
-  });
+  std::optional<double>& most = known(child).height;
+  if (most) return most;
+  const Range below = pointsBelow(cloud_, child);
+  if (below.end - below.begin > looks) return std::nullopt;
+  looks -= below.end - below.begin;
+  most = -std::numeric_limits<double>::infinity();
+  forEachRecord(child, [&](std::uint32_t record) { most = greater(*most, heightAtMost(record)); });
+  return most;
 }
 
-std::optional<LongNumber> BehindPlane::height(const NodeChild& child, std::uint64_t& looks)
+std::optional<LongNumber> BehindPlane::height(const NodeChild& child)
 {
-  const std::optional<std::optional<LongNumber>> found = remembered(child, looks, &Known::longer, [&] {
-    std::optional<LongNumber> most = LongNumber(-std::numeric_limits<double>::max());
-    forEachRecord(child, [&](std::uint32_t record) { most = greater(most, height(record)); });
-    return most;
-  });
-  return found ? *found : std::nullopt;
+  std::optional<std::optional<LongNumber>>& most = known(child).longer;
+  if (most) return *most;
+  most = LongNumber(-std::numeric_limits<double>::max());
+  forEachRecord(child, [&](std::uint32_t record) { *most = greater(*most, height(record)); });
+  return *most;
 }
 
-std::optional<BehindPlane::Touching> BehindPlane::touching(const NodeChild& child, std::uint64_t& looks)
+std::optional<BehindPlane::Touching> BehindPlane::touching(const NodeChild& child)
 {
-  const std::optional<std::optional<Touching>> found =
-      remembered(child, looks, &Known::touching, [&] { return look(child); });
-  return found ? *found : std::nullopt;
+  std::optional<std::optional<Touching>>& found = known(child).touching;
+  if (!found) found = look(child);
+  return *found;
 }
 
 int BehindPlane::sideOf(std::uint32_t record) const

@@ -45,16 +45,15 @@ public:
   /// cannot tell.
   std::optional<double> heightAtMost(const NodeChild& child, std::uint64_t& looks);
 
-  /// The same with more digits; nothing where these cannot tell, too.
-  std::optional<LongNumber> height(const NodeChild& child, std::uint64_t& looks);
+  /// With more digits; nothing where these cannot tell. @pre heightAtMost() has paid for looking at the child
+  std::optional<LongNumber> height(const NodeChild& child);
 
   /// Of a record.
   double heightAtMost(std::uint32_t record) const;
   std::optional<LongNumber> height(std::uint32_t record) const;
 
-  /// What touches the plane below a child, if nothing there is beyond it; exact. Nothing, too, where more records would
-  /// have to be looked at than `looks`.
-  std::optional<Touching> touching(const NodeChild& child, std::uint64_t& looks);
+  /// What touches the plane below a child, if nothing there is beyond it; exact. @pre as of height()
+  std::optional<Touching> touching(const NodeChild& child);
 
   /// The side that a record reaches to: 1 beyond the plane, 0 in it, -1 behind.
   int sideOf(std::uint32_t record) const;
@@ -67,8 +66,7 @@ private:
     std::optional<std::optional<Touching>> touching;
   };
 
-  template <class Member, class Look>
-  auto remembered(const NodeChild& child, std::uint64_t& looks, Member member, const Look& look);
+  Known& known(const NodeChild& child);
   template <class Visit>
   void forEachRecord(const NodeChild& child, const Visit& visit) const;
   bool touchesElsewhere(std::uint32_t record) const;

@@ -78,11 +78,9 @@ public:
     const auto height_b = height_a ? behind_b_->heightAtMost(b, looks) : std::nullopt;
     if (height_a && height_b && isBeyond(*height_a, *height_b)) return Touching();
     if (less_ != 0.0 || !height_b) return std::nullopt;
-    const auto longer_a = behind_a_->height(a, looks);
-    const auto longer_b = longer_a ? behind_b_->height(b, looks) : std::nullopt;
-    if (isBeyond(longer_a, longer_b)) return Touching();
-    const auto of_a = behind_a_->touching(a, looks);
-    const auto of_b = of_a ? behind_b_->touching(b, looks) : std::nullopt;
+    if (isBeyond(behind_a_->height(a), behind_b_->height(b))) return Touching();
+    const auto of_a = behind_a_->touching(a);
+    const auto of_b = of_a ? behind_b_->touching(b) : std::nullopt;
     return of_b ? std::optional(Touching{*of_a, *of_b}) : std::nullopt;
   }
 

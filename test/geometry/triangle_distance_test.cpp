@@ -281,7 +281,7 @@ TEST(TriangleDistance, ComparesWhatFacesEachOtherAsTheDefinitionDoes)
             ++asked;
           }
       report(std::string(rounded ? "rounded" : "posed") + " walls", stages);
-      EXPECT_LT(stages.integers, static_cast<std::uint64_t>(asked) / 10) << rounded << ' ' << shift;
+      EXPECT_LT(stages.integers, static_cast<std::uint64_t>(asked) / 6) << rounded << ' ' << shift;
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace pcl_bsh {
@@ -281,9 +282,18 @@ struct Shifted {
 
   bool known()
   {
-    const NodeChild all_a{kAboveVoxels, asked.of_a.storage().top[0], 0};
-    const NodeChild all_b{kAboveVoxels, asked.of_b.storage().top[0], 0};
-    return asked.beyond.knows(all_a, all_b);
+    return asked.beyond.knows(childWith(asked.of_a, 0), childWith(asked.of_b, 64));
+  }
+
+  /// Of the whole, the child that holds a record.
+  static NodeChild childWith(const SphereHierarchy& of, std::uint32_t record)
+  {
+    const Node& top = of.storage().top[0];
+    for (std::uint32_t lane = 0;; ++lane) {
+      const NodeChild child{kAboveVoxels, top, lane};
+      const std::vector<std::uint32_t> below = recordsBelow(of, child);
+      if (lane + 1 == top.count || std::find(below.begin(), below.end(), record) != below.end()) return child;
+    }
   }
 
   const test::TestMesh a = test::tied()[1].make(64).a, b = shifted();

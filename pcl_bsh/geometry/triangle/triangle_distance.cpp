@@ -77,6 +77,9 @@ bool areOne(const Features& x, const Triangle3& of_x, const Features& y, const T
   return (from_x == from_y && to_x == to_y) || (from_x == to_y && to_x == from_y);
 }
 
+/// The distance of parallel planes: of a corner from the first face, which has a normal.
+constexpr Features kPlanes = {Features::face_corner, 0, 0};
+
 Vector3<LongNumber> asGiven(const Point3& p)
 {
   return {LongNumber(p[0]), LongNumber(p[1]), LongNumber(p[2])};
@@ -333,7 +336,7 @@ template <class Pair>
 Features TriangleDistance::findFeatures(const Pair& pair, Facing facing, bool& by_integers) const
 {
   if (shareCorner(pair)) return {Features::meeting, 0, 0};
-  if (facing == Facing::over) return {Features::corner_face, 0, 0};
+  if (facing == Facing::over) return kPlanes;
   const Seen at = seen(pair.a, pair.b);
   if (isFinite(at.a) && isFinite(at.b) && std::isfinite(at.error)) {
     const auto rough = [&](const Triangle3& t) {
@@ -421,7 +424,6 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
   };
   const Facing faces_first = facing(first), faces_second = other.facing(second);
   if (first.radius == second.radius && faces_first != Facing::unknown && faces_second != Facing::unknown) {
-    constexpr Features kPlanes = {Features::corner_face, 0, 0};
     std::optional<int> as_given;
     if constexpr (std::is_same_v<Pair, TrianglePair>)
       if (this == &other) as_given = comparePlanesAsGiven(first, second);
