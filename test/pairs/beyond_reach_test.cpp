@@ -280,10 +280,7 @@ struct Shifted {
     return mesh;
   }
 
-  bool known()
-  {
-    return asked.beyond.knows(childWith(asked.of_a, 0), childWith(asked.of_b, 64));
-  }
+  bool known() { return asked.beyond.knows(childWith(asked.of_a, 0), childWith(asked.of_b, 64)); }
 
   /// Of the whole, the child that holds a record.
   static NodeChild childWith(const SphereHierarchy& of, std::uint32_t record)

@@ -71,7 +71,8 @@ TEST(ClosestPair, UpToADistanceIsAsBruteForce)
     if (!std::isfinite(distance)) continue;
     for (const double most : {distance, std::nextafter(distance, infinity),
                               std::max(0.0, std::nextafter(distance, 0.0)), 0.5 * distance, 2.0 * distance})
-      for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::tolerance(0.01 * distance), Accuracy::nodePairs(50)}) {
+      for (const Accuracy& accuracy :
+           {Accuracy::exact(), Accuracy::tolerance(0.01 * distance), Accuracy::nodePairs(50)}) {
         DistanceRequest request{Effort(accuracy)};
         request.max_distance = most;
         const DistanceResult expected = brute_force::closestPair(placed_a, placed_b, request);

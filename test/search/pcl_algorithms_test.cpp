@@ -16,8 +16,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 namespace pcl_bsh::search {
 namespace {
@@ -192,7 +194,9 @@ Cloud keypointsBy(const Cloud::Ptr& cloud)
   detector.setSalientRadius(0.3);
   detector.setNonMaxRadius(0.2);
   Cloud keypoints;
-  detector.compute(keypoints);
+  detector.compute(keypoints); // by OpenMP, so in any order
+  std::sort(keypoints.begin(), keypoints.end(),
+            [](const Point& p, const Point& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); });
   return keypoints;
 }
 

@@ -12,6 +12,9 @@ namespace {
 /// Refuses to go on after the first point; nanoflann compares with <, so the bound is one float above d * d.
 class FirstHit {
 public:
+  using DistanceType = float; // as nanoflann 1.5 and later asks
+  void sort() {}
+
   explicit FirstHit(float d) : bound_(std::nextafter(d * d, std::numeric_limits<float>::infinity())) {}
 
   bool addPoint(float, std::uint32_t)

@@ -127,6 +127,9 @@ private:
 /// Takes every point within the bound; nanoflann compares with <.
 class FlagAll {
 public:
+  using DistanceType = float; // as nanoflann 1.5 and later asks
+  void sort() {}
+
   FlagAll(float d, std::vector<std::uint8_t>& flags)
   : bound_(std::nextafter(d * d, std::numeric_limits<float>::infinity())),
     flags_(flags)
