@@ -8,7 +8,7 @@
 #include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/question/held.h>
 
-#include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -114,7 +114,7 @@ constexpr auto kClosestPair = R"(The smallest distance of two clouds, and the pa
 Parameters
 ----------
 a, b : SphereHierarchy
-max_distance : float
+max_distance : float, optional
     No pair that is farther apart is looked for, so that what is beyond costs little. Inclusive.
 pose_a, pose_b, accuracy, threads, solid, input_solid
     As of `collision_flags`.
@@ -243,14 +243,14 @@ bool isColliding(const AnyResult& result)
 }
 
 DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
-                             double max_distance, const AccuracyLike& accuracy, unsigned threads, bool solid,
-                             bool input_solid)
+                             std::optional<double> max_distance, const AccuracyLike& accuracy, unsigned threads,
+                             bool solid, bool input_solid)
 {
   Asked asked(a, pose_a, b, pose_b);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   DistanceRequest request;
-  request.max_distance = max_distance;
+  if (max_distance) request.max_distance = *max_distance;
   request.accuracy = accuracyOf(accuracy);
   request.threads = asked.question.threads = threads;
   const auto find = [&] {
@@ -319,8 +319,8 @@ void bindCollision(py::module_& module)
   module.def("any_collision", &anyCollisionOf, kAnyCollision, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
              "pose_a"_a = none, "pose_b"_a = none, "accuracy"_a = none, "threads"_a = 1);
   module.def("closest_pair", &closestPairOf, kClosestPair, "a"_a, "b"_a, py::kw_only(), "pose_a"_a = none,
-             "pose_b"_a = none, "max_distance"_a = std::numeric_limits<double>::infinity(), "accuracy"_a = none,
-             "threads"_a = 1, "solid"_a = false, "input_solid"_a = false);
+             "pose_b"_a = none, "max_distance"_a = none, "accuracy"_a = none, "threads"_a = 1, "solid"_a = false,
+             "input_solid"_a = false);
 }
 
 } // namespace pcl_bsh::python

@@ -45,7 +45,7 @@ using Records = As<"npt.NDArray[np.void]">;
 
 } // namespace pcl_bsh::python
 
-template <pcl_bsh::python::TypeText type, bool (*accepts)(pybind11::handle)>
-struct pybind11::detail::handle_type_name<pcl_bsh::python::As<type, accepts>> {
-  static constexpr auto name = const_name(type.chars);
+template <pcl_bsh::python::TypeText text, bool (*accepts)(pybind11::handle)>
+struct pybind11::detail::handle_type_name<pcl_bsh::python::As<text, accepts>> {
+  static constexpr auto name = const_name(text.chars);
 };

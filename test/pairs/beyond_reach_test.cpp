@@ -282,7 +282,7 @@ struct Shifted {
 
   bool known() { return asked.beyond.knows(childWith(asked.of_a, 0), childWith(asked.of_b, 64)); }
 
-  /// Of the whole, the child that holds a record.
+  /// The child of the whole that holds a record.
   static NodeChild childWith(const SphereHierarchy& of, std::uint32_t record)
   {
     const Node& top = of.storage().top[0];
