@@ -36,6 +36,7 @@ constexpr std::size_t kFinerEntries = 16, kFinerCells = 8;
 constexpr std::uint32_t kCrowded = 128;
 constexpr std::uint32_t kTooCrowded = 4096;  ///< for a column without strips
 constexpr std::uint32_t kMostColumns = 4096; ///< along an axis
+constexpr std::uint32_t kSampled = 8;        ///< places along an axis that tell what a ray costs
 
 /// Of so many cells along a length, how many there are for each unit; 0, which puts all into the first, where there is
 /// no such number.
@@ -54,9 +55,9 @@ std::size_t withRoom(std::size_t size)
 /// The middle of most triangles, whatever lies far off: what is near it has the most precise boxes.
 Point3 middleOf(const TrianglesView& view)
 {
-  constexpr std::size_t kSamples = 1023;
+  constexpr std::size_t kMostSampled = 1023;
   std::array<std::vector<double>, 3> samples;
-  const std::size_t step = std::max<std::size_t>(1, view.count / kSamples);
+  const std::size_t step = std::max<std::size_t>(1, view.count / kMostSampled);
   for (std::size_t i = 0; i < view.count; i += step) {
     const Triangle3 t = view.triangle(static_cast<std::uint32_t>(i));
     if (!isFinite(t)) continue;
@@ -184,7 +185,8 @@ bool Columns::makeGrid(const Point3& low, const Point3& high, const Range& trian
   if (makeFiner() < kFewColumns * count && !finer) {
     most_entries += static_cast<double>(moreEntries(triangles.size()));
     const double cells = makeFiner();
-    if (makeStrips(triangles, 0.5 * shadows.entries(per) / cells)) return true;
+    const double most = 0.5 * shadows.entries(per) / cells;
+    if (makeStrips(triangles, most) || makeBundles(triangles, most)) return true;
   }
   Grid grid;
   std::vector<std::uint32_t> ends;
@@ -220,22 +222,45 @@ Columns::Cell Columns::inStrips(std::uint32_t begin, std::uint32_t count)
   return {Cell::kStrips, static_cast<std::uint32_t>(stripped_.size() - 1)};
 }
 
+/// Calls look(at) for places that are spread over all triangles.
+template <class Look>
+void Columns::sample(const Look& look) const
+{
+  for (std::uint32_t i = 0; i < kSampled; ++i)
+    for (std::uint32_t j = 0; j < kSampled; ++j) {
+      const auto at = [&](double step, std::size_t k) { return low_[k] + (high_[k] - low_[k]) * step / kSampled; };
+      look({at(i + 0.37, 0), at(j + 0.73, 1), at((3 * i + 5 * j) % kSampled + 0.59, 2)}); // on no diagonal
+    }
+}
+
+/// In place of all grids: bundles. @return false where a ray looks at more than `most` triangles on the mean, for few
+/// of them lie alike
+bool Columns::makeBundles(const Range& triangles, double most)
+{
+  constexpr double kOfBundle = 1.5; // a look at one takes as long as at so many triangles
+  std::uint32_t* const entries = entries_.append(triangles.size());
+  std::copy(triangles.begin(), triangles.end(), entries);
+  bundles_.emplace(
+      entries, entries + triangles.size(), [this](std::uint32_t i) { return seenTriangle(i); }, boxes_.data());
+  std::vector<std::uint32_t> found;
+  std::uint64_t looked_at = 0;
+  sample([&](const Point3& at) { bundles_->collect(entries, at, 0.0, found, looked_at); });
+  const double cost = kOfBundle * static_cast<double>(looked_at) + static_cast<double>(found.size());
+  if (cost <= most * kSampled * kSampled) return true;
+  entries_.clear();
+  bundles_.reset();
+  return false;
+}
+
 /// In place of the first grid: one column, in strips. @return false where a ray meets more than `most` of them on the
 /// mean, for they lie in all directions
 bool Columns::makeStrips(const Range& triangles, double most)
 {
-  constexpr std::uint32_t kSamples = 8; // along each axis
   std::copy(triangles.begin(), triangles.end(), entries_.append(triangles.size()));
   const Cell cell = inStrips(0, static_cast<std::uint32_t>(triangles.size()));
   std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < kSamples; ++i)
-    for (std::uint32_t j = 0; j < kSamples; ++j) {
-      const auto at = [&](std::uint32_t step, std::size_t k) {
-        return low_[k] + (high_[k] - low_[k]) * (step + 0.37) / kSamples;
-      };
-      stripped_[cell.end].strips.collect(entries_.data(), {at(i, 0), at(j, 1), low_[2]}, 0.0, found);
-    }
-  if (static_cast<double>(found.size()) > most * kSamples * kSamples) {
+  sample([&](const Point3& at) { stripped_[cell.end].strips.collect(entries_.data(), at, 0.0, found); });
+  if (static_cast<double>(found.size()) > most * kSampled * kSampled) {
     entries_.clear();
     stripped_.clear();
     return false;
@@ -296,6 +321,7 @@ void Columns::refine()
     for (std::size_t i = grids_[grid].first; i < grids_[grid].first + cells; ++i)
       if (cells_[i].end - cells_[i].begin > kCrowded) crowded.emplace(cells_[i].end - cells_[i].begin, i, grid);
   };
+  if (bundles_) return;
   note(0);
   std::vector<std::uint32_t> some;
   while (!crowded.empty()) {
@@ -344,6 +370,12 @@ void Columns::collect(std::uint32_t index, const Point3& at, double error, std::
 
 Columns::Range Columns::above(const Point3& at, double error, std::vector<std::uint32_t>& several) const
 {
+  if (bundles_) {
+    several.clear();
+    std::uint64_t bundles = 0;
+    const int turns = bundles_->collect(entries_.data(), at, error, several, bundles);
+    return {several.data(), several.data() + several.size(), turns, bundles};
+  }
   for (std::uint32_t index = 0;;) {
     const Grid& grid = grids_[index];
     if (!(error <= grid.pad)) break;
@@ -368,8 +400,8 @@ std::size_t Columns::bytes() const noexcept
 {
   std::size_t strips = stripped_.capacity() * sizeof(Stripped);
   for (const Stripped& of : stripped_) strips += of.strips.bytes();
-  return strips + boxes_.bytes() + grids_.capacity() * sizeof(Grid) + cells_.bytes() + entries_.bytes() +
-         cubes_.bytes();
+  return strips + (bundles_ ? bundles_->bytes() : 0) + boxes_.bytes() + grids_.capacity() * sizeof(Grid) +
+         cells_.bytes() + entries_.bytes() + cubes_.bytes();
 }
 
 } // namespace pcl_bsh

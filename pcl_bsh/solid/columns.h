@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd, and in
-// strips where they are long for it.
+// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd. Where
+// they are long for it, they are in strips, and in bundles where they are large and lie alike.
 //
 // A point's winding number needs the triangles of its own column only. Beside the grid stands a coarse one of cubes
 // that tells where the surface surely is not.
@@ -9,6 +9,7 @@
 #include <pcl_bsh/base/large_array.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/solid/bundles.h>
 #include <pcl_bsh/solid/cubes.h>
 #include <pcl_bsh/solid/strips.h>
 #include <pcl_bsh/solid/upward_ray.h>
@@ -16,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace pcl_bsh {
@@ -51,13 +53,16 @@ public:
   /// Triangles, each once.
   struct Range {
     const std::uint32_t *first, *last;
+    int turns = 0;             ///< how often the ray surely crosses others, fronts less backs
+    std::uint64_t bundles = 0; ///< that were looked at
     const std::uint32_t* begin() const noexcept { return first; }
     const std::uint32_t* end() const noexcept { return last; }
     std::size_t size() const noexcept { return static_cast<std::size_t>(last - first); }
   };
 
-  /// All triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps others.
-  /// @param several memory for those of several columns, where the place may be in more than one
+  /// All triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps others. Not
+  /// those of bundles that it surely crosses, whose turns are told.
+  /// @param several memory for those of several columns, where the place may be in more than one, and of bundles
   Range above(const Point3& at, double error, std::vector<std::uint32_t>& several) const;
 
   /// Whether all places within `reach` of `at`, per axis, are outside of the box of all triangles.
@@ -103,6 +108,9 @@ private:
   void refine();
   Cell inStrips(std::uint32_t begin, std::uint32_t count);
   bool makeStrips(const Range& triangles, double most);
+  bool makeBundles(const Range& triangles, double most);
+  template <class Look>
+  void sample(const Look& look) const;
   void collect(std::uint32_t grid, const Point3& at, double error, std::vector<std::uint32_t>& found) const;
 
   TrianglesView view_;
@@ -115,6 +123,7 @@ private:
   LargeArray<Cell> cells_;
   LargeArray<std::uint32_t> entries_;
   std::vector<Stripped> stripped_;
+  std::optional<Bundles> bundles_; ///< of all entries, in place of all grids
   Cubes cubes_;
 };
 

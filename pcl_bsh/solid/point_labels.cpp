@@ -104,8 +104,10 @@ std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const De
 {
   if (columns_.isBeyond(at, error)) return 0;
   const UpwardRay ray(at, error);
-  int turns = 0;
-  for (const std::uint32_t i : columns_.above(at, error, several_)) {
+  Columns::Range above = columns_.above(at, error, several_);
+  pulse_.count(above.bundles);
+  int turns = above.turns;
+  for (const std::uint32_t i : above) {
     const FloatBox& box = columns_.box(i);
     if (ray.misses(box)) continue;
     pulse_.count(1);

@@ -166,6 +166,24 @@ TEST(Labels, OfNestedOverlappingAndDoubledShells)
   EXPECT_EQ(labelPlace(solid, {std::numeric_limits<double>::quiet_NaN(), 0, 0}), Label::outside);
 }
 
+TEST(Labels, OfManyBoxesInsideEachOther)
+{
+  for (const bool hollows : {false, true})
+    for (const double step : {0.0, 0.002, 1e-9, 1e-17}) { // none: all are equal
+      Mesh mesh;
+      for (int i = 0; i < 250; ++i) {
+        const double edge = 1.0 - i * step;
+        mesh.add(test::boxMesh(), edge, {-edge / 2, -edge / 2, -edge / 2}, hollows && i % 2 == 1);
+      }
+      const std::string what = std::to_string(hollows) + " " + std::to_string(step);
+      std::vector<double> points = test::pointsAbout(mesh, 100, 1e-3, 6);
+      const std::vector<double> others = somewhere(100, -0.6, 0.6, 7);
+      points.insert(points.end(), others.begin(), others.end());
+      expectExact(mesh, points, Isometry3d::Identity(), Isometry3d::Identity(), what);
+      expectExact(mesh, points, poseOf(0.7, {1, 2, 3}), poseOf(0.7 + step, {1, 2, 3}), what);
+    }
+}
+
 TEST(Labels, OfABumpySurfaceAndAFan)
 {
   const Mesh bumpy = test::bumpyMesh(24, 0.3), fan = test::fanMesh(3000);
