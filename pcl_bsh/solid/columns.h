@@ -65,6 +65,12 @@ public:
   /// @param several memory for those of several columns, where the place may be in more than one, and of bundles
   Range above(const Point3& at, double error, std::vector<std::uint32_t>& several) const;
 
+  /// All triangles that may come within `error` of the line along the ray's axis through a place; perhaps others.
+  Range along(const Point3& at, double error, std::vector<std::uint32_t>& several) const
+  {
+    return bundles_ ? Range{entries_.begin(), entries_.end()} : above(at, error, several);
+  }
+
   /// Whether all places within `reach` of `at`, per axis, are outside of the box of all triangles.
   bool isBeyond(const Point3& at, double reach) const noexcept
   {

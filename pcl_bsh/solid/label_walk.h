@@ -31,6 +31,9 @@ public:
 
   const SphereHierarchy::Storage& cloud() const noexcept { return cloud_; }
 
+  /// Takes over the gaps that another walk of the same cloud and solid, at the same poses, has found.
+  void takeGaps(const LabelWalk& other) { labels_.takeGaps(other.labels_); }
+
   /// Of a child of a node above the voxels.
   Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
 

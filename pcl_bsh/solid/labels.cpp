@@ -118,10 +118,8 @@ void labelPoints(const Placed& cloud, const PlacedSolid& solid, LabelsResult& re
   found.labels.assign(cloud.hierarchy().view().count, labelOf(Label::outside));
   const SphereHierarchy::Storage& storage = cloud.hierarchy().storage();
   Voxels voxels;
-  if (!cloud.hierarchy().empty()) {
-    LabelWalk walk(cloud, solid, found.work);
-    sortOut(walk, 0, voxels);
-  }
+  LabelWalk above_voxels(cloud, solid, found.work);
+  if (!cloud.hierarchy().empty()) sortOut(above_voxels, 0, voxels);
   LabelArray whole{found.labels.data()};
   for (const std::uint32_t v : voxels.inside)
     storage.forEachRecord(v, [&](std::uint32_t record) { whole.one(record, Label::inside); });
@@ -131,6 +129,7 @@ void labelPoints(const Placed& cloud, const PlacedSolid& solid, LabelsResult& re
   parallelFor(parts, threadCount(threads), [&](std::size_t part) {
     LabelArray array{found.labels.data()};
     LabelWalk walk(cloud, solid, shares[part].second);
+    walk.takeGaps(above_voxels);
     const std::size_t end = std::min(voxels.open.size(), (part + 1) * kVoxelsTogether);
     for (std::size_t i = part * kVoxelsTogether; i < end; ++i) walk.labelVoxel(voxels.open[i], array);
     shares[part].first = array;

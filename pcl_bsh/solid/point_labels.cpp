@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/geometry/exact/long_number.h>
 #include <pcl_bsh/geometry/rounding.h>
+#include <pcl_bsh/solid/clip.h>
 #include <pcl_bsh/solid/upward_ray.h>
 
 #include <algorithm>
@@ -13,6 +14,8 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kFrameError = 1024 * kDoubleUnit;
+constexpr std::uint64_t kManyExact = 64; ///< decisions of a place, after which the gap about it is kept
+constexpr std::size_t kMostGaps = 8;     ///< that are kept
 
 /// What a ray from the origin makes of a triangle that is seen from there.
 enum class Crossing : std::uint8_t { none, front, back, unknown };
@@ -127,9 +130,53 @@ std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const De
   return turns;
 }
 
+const PointLabels::Gap* PointLabels::gapAt(const Point3& at, double error)
+{
+  const auto gap = std::find_if(gaps_.begin(), gaps_.end(), [&](const Gap& g) { return g.holds(at, error); });
+  if (gap == gaps_.end()) return nullptr;
+  ++gaps_met_;
+  return &*gap;
+}
+
+/// Between the triangles that are next above and below a place, within a little of its ray. Where a ray passes by many
+/// edges and corners, as on the axis of a shape that is round, other points are on it, too. Nothing is kept where they
+/// are not.
+void PointLabels::addGap(const Point3& at, double error, Label label)
+{
+  if (label == Label::surface || gaps_made_ > gaps_met_ + kMostGaps) return;
+  if (!(error < 0x1p900)) return; // nothing below leaves the range of double
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  // The error has room for a rounding of any coordinate: so 64 of it have, for what clipping makes of them.
+  const double off = 65.0 * error, aside = 2.0 * off, clipped = 2.0 * aside;
+  Gap gap{{at[0] - aside, at[1] - aside, -kEndless}, {at[0] + aside, at[1] + aside, kEndless}, label};
+  const UpwardRay line({at[0], at[1], -std::numeric_limits<double>::max()}, clipped);
+  for (const std::uint32_t i : columns_.along(at, clipped, several_)) {
+    if (line.misses(columns_.box(i))) continue;
+    pulse_.count(1);
+    const Triangle3 t = columns_.seenTriangle(i);
+    std::array<Point3, 9> part;
+    std::size_t corners = 0;
+    forEachCorner(t.data(), 3, 0, at[0] - clipped, at[0] + clipped, [&](const Point3& p) { part[corners++] = p; });
+    double least = kEndless, most = -kEndless;
+    forEachCorner(part.data(), corners, 1, at[1] - clipped, at[1] + clipped,
+                  [&](const Point3& p) { least = std::min(least, p[2]), most = std::max(most, p[2]); });
+    if (least > most) continue;
+    gap.low[2] = most + off < at[2] ? std::max(gap.low[2], most + off) : gap.low[2];
+    gap.high[2] = most + off < at[2] ? gap.high[2] : std::min(gap.high[2], least - off);
+  }
+  if (!gap.holds(at, error)) return;
+  if (gaps_.size() == kMostGaps) gaps_.erase(gaps_.begin());
+  gaps_.push_back(gap);
+  ++gaps_made_;
+}
+
 std::optional<Label> PointLabels::labelAround(const Point3& at, double error)
 {
   if (!std::isfinite(at[0] + at[1] + at[2] + error)) return std::nullopt;
+  if (const Gap* const gap = gapAt(at, error)) return gap->label;
+  // A ray in doubt about a gap's would pass by as many edges.
+  if (std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) { return gap.touches(at, error); }))
+    return std::nullopt;
   const std::optional<int> turns = turnsAt(at, error, [](std::uint32_t) { return std::nullopt; });
   if (!turns) return std::nullopt;
   return *turns != 0 ? Label::inside : Label::outside;
@@ -138,8 +185,11 @@ std::optional<Label> PointLabels::labelAround(const Point3& at, double error)
 Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exact_decisions)
 {
   const Point3 at = seen(frame, {p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]});
+  const std::uint64_t before = exact_decisions;
   std::optional<int> turns;
-  if (std::isfinite(at[0] + at[1] + at[2] + frame.error)) {
+  const bool is_seen = std::isfinite(at[0] + at[1] + at[2] + frame.error);
+  if (is_seen) {
+    if (const Gap* const gap = gapAt(at, frame.error)) return gap->label;
     turns = turnsAt(at, frame.error, [&](std::uint32_t i) -> std::optional<int> {
       ++exact_decisions;
       const Winding::Crossing exact = winding_.crossing(p, triangles_.triangle(i));
@@ -152,7 +202,9 @@ Label PointLabels::label(const Frame& frame, const Point3& p, std::uint64_t& exa
     turns = winding_.number(p, triangles_.count,
                             [&](std::size_t i) { return triangles_.triangle(static_cast<std::uint32_t>(i)); });
   }
-  return !turns ? Label::surface : *turns != 0 ? Label::inside : Label::outside;
+  const Label label = !turns ? Label::surface : *turns != 0 ? Label::inside : Label::outside;
+  if (is_seen && exact_decisions - before >= kManyExact) addGap(at, frame.error, label);
+  return label;
 }
 
 } // namespace pcl_bsh

@@ -56,7 +56,31 @@ public:
   /// The label of all places within `error` of `at`, per axis, as seen; nothing where double arithmetic cannot tell.
   std::optional<Label> labelAround(const Point3& at, double error);
 
+  /// Takes over those that others at the same poses have found.
+  void takeGaps(const PointLabels& other) { gaps_ = other.gaps_; }
+
 private:
+  /// A box that no triangle meets: all in it have one label.
+  struct Gap {
+    Point3 low, high;
+    Label label;
+
+    bool holds(const Point3& at, double error) const noexcept
+    {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!(at[k] - error > low[k] && at[k] + error < high[k])) return false;
+      return true;
+    }
+    bool touches(const Point3& at, double error) const noexcept
+    {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (at[k] + error < low[k] || at[k] - error > high[k]) return false;
+      return true;
+    }
+  };
+
+  const Gap* gapAt(const Point3& at, double error);
+  void addGap(const Point3& at, double error, Label label);
   template <class Decide>
   std::optional<int> turnsAt(const Point3& at, double error, const Decide& decide);
 
@@ -66,6 +90,8 @@ private:
   Eigen::Isometry3d pose_a_, pose_b_;
   std::array<Point3, 3> rotation_, inverse_; ///< rows, in the order of the columns' axes
   std::vector<std::uint32_t> several_;
+  std::vector<Gap> gaps_;
+  std::size_t gaps_met_ = 0, gaps_made_ = 0;
   Pulse pulse_; ///< of triangles above a place
 };
 

@@ -184,6 +184,59 @@ TEST(Labels, OfManyBoxesInsideEachOther)
     }
 }
 
+/// Two cones of so many triangles about the last axis, base to base.
+Mesh bipyramid(std::uint32_t around)
+{
+  Mesh mesh;
+  const std::uint32_t top = mesh.vertex(0, 0, 1), bottom = mesh.vertex(0, 0, -1);
+  for (std::uint32_t i = 0; i < around; ++i)
+    mesh.vertex(std::cos(2 * M_PI * i / around), std::sin(2 * M_PI * i / around), 0);
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t a = 2 + i, b = 2 + (i + 1) % around;
+    mesh.triangle(top, a, b);
+    mesh.triangle(bottom, b, a);
+  }
+  return mesh;
+}
+
+std::vector<double> onTheAxis(std::size_t count, double low, double high)
+{
+  Random random(3);
+  std::vector<double> points;
+  for (std::size_t i = 0; i < count; ++i) points.insert(points.end(), {0.0, 0.0, random.uniform(low, high)});
+  return points;
+}
+
+/// All rays meet all triangles at the tip.
+TEST(Labels, OfPointsOnTheAxisOfARoundShape)
+{
+  Mesh shape = bipyramid(500);
+  shape.add(bipyramid(70), 0.25, {0, 0, 0.25}, true); // a hollow
+  std::vector<double> points = onTheAxis(150, -1.1, 1.1);
+  for (const double z : {-1.0, 0.0, 0.5, 1.0}) points.insert(points.end(), {0.0, 0.0, z});
+  const std::vector<double> beside = onTheAxis(150, -1.1, 1.1);
+  for (std::size_t i = 0; i < beside.size(); ++i) points.push_back(beside[i] + (i % 3 == 0 ? 1e-15 : 0.0));
+  for (const double angle : {0.0, 0.4}) {
+    expectExact(shape, points, poseOf(angle, {1, 2, 3}), poseOf(angle, {1, 2, 3}), std::to_string(angle));
+    expectExact(shape, points, Isometry3d::Identity(), poseOf(angle, {0, 0, 0}), std::to_string(angle));
+  }
+}
+
+TEST(Labels, OfPointsOnTheAxisTakeFewDecisions)
+{
+  const Mesh shape = bipyramid(2000);
+  for (const double low : {-1.2, 0.999}) {
+    const std::vector<double> points = onTheAxis(5000, low, 1.0);
+    const SphereHierarchy cloud(viewOf(points.data(), points.size() / 3));
+    for (const bool built : {false, true}) {
+      if (built) cloud.buildAll();
+      const LabelsResult found = labelPoints(cloud, Solid(shape.view()));
+      EXPECT_GT(found.inside, 4000u);
+      EXPECT_LT(found.work.exact_decisions, 20u * 4000u) << "of 20 million";
+    }
+  }
+}
+
 TEST(Labels, OfABumpySurfaceAndAFan)
 {
   const Mesh bumpy = test::bumpyMesh(24, 0.3), fan = test::fanMesh(3000);
