@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint32_t kSmallest = 8; ///< triangles of a bundle that has none below it
 constexpr std::uint32_t kFewest = 16;  ///< each part has at least this share of a bundle's triangles
 
-/// How often the ray upward from the origin crosses a triangle that is within `error` per axis of these corners, 0
-/// where it passes it; unknown where that is not the same of all.
+/// How often the ray upward from the origin crosses a triangle whose corners are within `error` per axis of these; 0
+/// where it passes. Unknown where that differs among such triangles.
 constexpr int kUnknown = 2;
 int crossingsOf(const Triangle3& t, double error, bool above)
 {

@@ -27,7 +27,8 @@ public:
           const FloatBox* boxes);
 
   /// Appends the triangles that the ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps
-  /// others. @param first numbers of the triangles, as the constructor left them @param looked_at bundles are added
+  /// others.
+  /// @param first numbers of the triangles, as the constructor left them. @param looked_at bundles are added
   /// @return how often the ray surely crosses triangles that are not appended, fronts less backs
   int collect(const std::uint32_t* first, const Point3& at, double error, std::vector<std::uint32_t>& found,
               std::uint64_t& looked_at) const;
