@@ -208,7 +208,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return posed({cube(n, 1), cube(n, 2)}, {1000, 0, 0});
        },
-       6.5, 5.5, 5, 11.5}, // 250 points: bounds of leaves' points leave little to do
+       6.5, 5.5, 5, 17.5}, // 250 points: bounds of leaves' points leave little to do
       {"a rod in a pipe",
        [](std::size_t n) {
          return HardPair{onCylinder(n, 1, 10, 1), onCylinder(n, 1.05, 10, 2)};
@@ -218,7 +218,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{axis(n, 1), onCylinder(n, 1, 1, 1)};
        },
-       11.5, 10, 10, 10.5},
+       11.5, 10, 10, 11.5},
       {"a short axis and a circle",
        [](std::size_t n) {
          return HardPair{axis(n, 0.01), helix(n, 1, 0)};
@@ -228,7 +228,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{axis(n, 1), helix(n, 100, 0.01)};
        },
-       17.5, 11, 21, 12.5},
+       17.5, 11, 23.5, 14},
       {"concentric shells",
        [](std::size_t n) {
          return HardPair{onShell(n, 1, 1), onShell(n, 1.5, 2)};
@@ -248,7 +248,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{unitSheet(n, 0, 0), unitSheet(n, 0.5, 0.1)};
        },
-       15.1, 8.5, 7, 9.5},
+       15.1, 8.5, 7.5, 9.5},
       {"a line above a sheet",
        [](std::size_t n) {
          HardPair pair{unitSheet(n, 0, 0), axis(n, 0.5)};
@@ -265,12 +265,12 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{comb(n, 0), comb(n, 0.5)};
        },
-       6, 5.5, 5, 6.5},
+       6, 5.5, 6.5, 6.5},
       {"two helices",
        [](std::size_t n) {
          return HardPair{helix(n, 30, 0.05), helix(n, 30, 0.05, 0.5)};
        },
-       12, 5, 12, 5},
+       12, 5, 12, 7},
       {"clouds of ten octaves",
        [](std::size_t n) {
          return HardPair{octaves(n, 10, 1), octaves(n, 10, 2)};

@@ -27,7 +27,7 @@ public:
       rough_[k] = mantissa == 0.0 ? 0.0
                   : is_rough      ? std::ldexp(mantissa, exponent - exponent_)
                                   : std::numeric_limits<double>::quiet_NaN();
-      const auto partOf = [this](const Dyadic& x) { return std::ldexp(x.scaled().mantissa, x.scaled().exponent); };
+      const auto partOf = [](const Dyadic& x) { return std::ldexp(x.scaled().mantissa, x.scaled().exponent); };
       longer_[k] = LongNumber(rough_[k]);
       if (mantissa == 0.0 || !is_rough) continue;
       const Dyadic left = normal[k] - Dyadic(partOf(normal[k]));
