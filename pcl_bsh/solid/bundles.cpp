@@ -66,7 +66,7 @@ Bundles::Bundles(std::uint32_t* first, std::uint32_t* last, const std::function<
     const Triangle3 t = seen(*i);
     const auto height = [&](std::size_t corner) { return t[corner][2] + 0.77 * t[corner][1] + 0.59 * t[corner][0]; };
     std::size_t lowest = 0;
-    for (const std::size_t corner : {1, 2})
+    for (const std::size_t corner : {std::size_t{1}, std::size_t{2}})
       if (height(corner) < height(lowest)) lowest = corner;
     Alike& alike = all.emplace_back();
     for (std::size_t k = 0; k < 9; ++k) alike.corners[k] = roundToFloat(t[(lowest + k / 3) % 3][k % 3]);
