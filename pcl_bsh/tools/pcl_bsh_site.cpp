@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <optional>
 #include <set>
@@ -41,7 +42,7 @@ double shareOf(std::uint64_t done, std::uint64_t all)
 std::string rated(std::uint64_t points, double seconds)
 {
   const double millions = static_cast<double>(points) / std::max(seconds, 1e-3) / 1e6;
-  return counted(points, "point") + ", " + std::to_string(static_cast<long>(millions * 10) / 10.0).substr(0, 5) +
+  return counted(points, "point") + ", " + std::to_string(std::floor(millions * 10) / 10).substr(0, 5) +
          " million a second";
 }
 

@@ -114,7 +114,7 @@ void RenderView::writeTexts()
   if (extras_.level) title += "\nspheres of level " + std::to_string(*extras_.level);
   vtkIdType left_out = 0;
   for (const auto& cloud : clouds_) left_out += cloud->leftOut();
-  if (left_out > 0) title += "\nfar off and not drawn: " + counted(left_out, "point");
+  if (left_out > 0) title += "\nfar off and not drawn: " + counted(static_cast<std::uint64_t>(left_out), "point");
   caption_.setTitle(title);
   caption_.setLegend(legend());
 }
