@@ -10,12 +10,16 @@
 
 #include <gtest/gtest.h>
 
-struct PointFromDrone {
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wgnu-anonymous-struct" // of PCL's macro
+#pragma clang diagnostic ignored "-Wnested-anon-types"
+#endif
+struct EIGEN_ALIGN16 PointFromDrone {
   double time;
   std::uint16_t ring;
   PCL_ADD_POINT4D;
   PCL_MAKE_ALIGNED_OPERATOR_NEW
-} EIGEN_ALIGN16;
+};
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(PointFromDrone, (double, time, time)(std::uint16_t, ring,
                                                                        ring)(float, x, x)(float, y, y)(float, z, z))

@@ -52,7 +52,7 @@ inline void addScan(LasSample& sample, std::size_t count, unsigned seed = 1, uns
       if (rarely()) point[15] = static_cast<char>(below(256));
       if (rarely()) put(point, 18, static_cast<std::uint16_t>(below(4)));
     }
-    for (const std::size_t byte : {16, 17})
+    for (const std::size_t byte : {16u, 17u})
       if (rarely()) point[byte] = static_cast<char>(below(256));
     if (timed) put(point, time_at, times[line]);
     if (coloured) {

@@ -161,7 +161,7 @@ TEST(Laz, StreamsInBatchesOfAnySize)
   allocate(read, 1000);
   const std::size_t step = read.point_step;
   std::size_t done = 0;
-  for (const std::size_t most : {1, 99, 250, 33}) done += stream->read(&read.data[done * step], most);
+  for (const std::size_t most : {1u, 99u, 250u, 33u}) done += stream->read(&read.data[done * step], most);
   stream->skip(400);
   std::copy_n(&expected.data[done * step], 400 * step, &read.data[done * step]);
   done += 400;

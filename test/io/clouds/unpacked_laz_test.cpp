@@ -143,7 +143,7 @@ TEST(UnpackedLaz, ChunksOfOneSizeNeedNoTable)
   options.without_table = true;
   const std::string laz = compressed(las, options);
   const auto file = unpackedLaz(std::make_unique<HeldBytes>(laz), 2);
-  for (const std::size_t point : {8999, 50, 8800, 4000, 3999, 200, 8500, 0}) {
+  for (const std::size_t point : {8999u, 50u, 8800u, 4000u, 3999u, 200u, 8500u, 0u}) {
     const std::size_t at = get<std::uint32_t>(las, 96) + point * sample.length();
     ASSERT_EQ(file->text(at, sample.length()), las.substr(at, sample.length())) << point;
   }
@@ -274,7 +274,7 @@ TEST(UnpackedLaz, LargeChunksInAnyOrder)
   const std::string laz = compressed(las, options);
   EXPECT_EQ(differenceOf(unpacked(laz, 2), las), "");
   const auto file = unpackedLaz(std::make_unique<HeldBytes>(laz), 2);
-  for (const std::size_t point : {8999, 50, 8800, 4000, 3999, 200, 8500, 8899, 8900, 100}) {
+  for (const std::size_t point : {8999u, 50u, 8800u, 4000u, 3999u, 200u, 8500u, 8899u, 8900u, 100u}) {
     const std::size_t at = get<std::uint32_t>(las, 96) + point * sample.length();
     ASSERT_EQ(file->text(at, sample.length()), las.substr(at, sample.length())) << point;
   }
