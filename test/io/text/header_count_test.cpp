@@ -40,7 +40,7 @@ TEST(HeaderCount, NoLineMayFollow)
 TEST(HeaderCount, NoRecordMayFollow)
 {
   const HeaderCount two{2};
-  for (const std::uint64_t part : {0, 1, 11}) {
+  for (const std::uint64_t part : {0u, 1u, 11u}) {
     EXPECT_NO_THROW(requireNoMoreBytes(two, part, 12)) << part;
     EXPECT_FALSE(remarkOnMoreBytes(two, part, std::string(part, 'x'), 12)) << part;
   }

@@ -58,7 +58,7 @@ protected:
   {
     double area = 0;
     for (const Triangle& t : surface.triangles) {
-      const auto edge = [&](int k) {
+      const auto edge = [&](std::size_t k) {
         const Point3 &from = surface.vertices[t[0]], &to = surface.vertices[t[k]];
         return Eigen::Vector3d(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
       };
