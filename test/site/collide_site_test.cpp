@@ -95,7 +95,7 @@ protected:
     const auto nameOf = [&](std::size_t i) {
       return std::pair{i < half ? 0u : 1u, static_cast<std::uint32_t>(i < half ? i : i - half)};
     };
-    for (const std::uint64_t tile_points : {100000, 700, 40}) {
+    for (const std::uint64_t tile_points : {100000u, 700u, 40u}) {
       SCOPED_TRACE(tile_points);
       MakeOptions options;
       options.tile_points = tile_points;
@@ -236,7 +236,7 @@ void expectSamePassage(const std::vector<Point3>& points, const SphereHierarchy&
     wanted.swept = swept;
     wanted.distances = wanted.first_poses = wanted.closest_poses = true;
     const TrajectoryResult path = pcl_bsh::collideAlong({all}, model, poses, wanted);
-    for (const std::uint64_t tile_points : {100000, 300, 9}) {
+    for (const std::uint64_t tile_points : {100000u, 300u, 9u}) {
       SCOPED_TRACE(std::to_string(tile_points) + (swept ? " swept" : ""));
       MakeOptions options;
       options.tile_points = tile_points;

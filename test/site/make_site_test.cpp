@@ -84,7 +84,7 @@ TEST(MakeSite, HoldsEachPointOnceAndGivesItBack)
   const Cloud uneven = unevenCloud(20000, 1), all_types = io::randomCloud<double>(60, 50, io::pcd_datatypes);
   writeBinary(folder / "uneven.pcd", uneven);
   writeBinary(folder / "types.pcd", asRow(all_types));
-  for (const std::uint64_t most : {1000000, 3000, 100}) {
+  for (const std::uint64_t most : {1000000u, 3000u, 100u}) {
     SCOPED_TRACE(most);
     const fs::path place = folder / ("site" + std::to_string(most));
     const Site made = makeSite({folder / "uneven.pcd", folder / "types.pcd"}, place, tilesOf(most));
@@ -517,7 +517,7 @@ TEST(DensityTree, LimitsTilesWhateverTheDensity)
                           scale * size * unit(random)});
       }
       if (shuffled) std::shuffle(points.begin(), points.end(), random);
-      for (const std::uint64_t most : {200, 5000}) {
+      for (const std::uint64_t most : {200u, 5000u}) {
         const std::vector<std::uint64_t> counts = tilesFor(points, most);
         EXPECT_LE(*std::max_element(counts.begin(), counts.end()), most);
         EXPECT_LE(counts.size(), 2.5 * static_cast<double>(points.size()) / static_cast<double>(most));

@@ -73,7 +73,7 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
   const PointDistances distances = pcl_bsh::pointDistances({all}, {other}, {});
   const double least = pcl_bsh::closestPair({all}, {other}, {}).distance;
   std::size_t left_undecided = 0;
-  for (const std::uint64_t tile_points : {100000, 200, 20}) {
+  for (const std::uint64_t tile_points : {100000u, 200u, 20u}) {
     const Site site = siteOf(tile_points);
     for (const char* text :
          {"exact", "tolerance=0.05", "level=0", "level=2", "pairs=3", "pairs=300", "time=0", "time=10"}) {

@@ -133,7 +133,7 @@ protected:
       ASSERT_GE(expected.back().size(), least);
     }
     std::vector<std::vector<SitePoint>> drawn;
-    for (const std::uint64_t tile_points : {100000, 200, 9}) {
+    for (const std::uint64_t tile_points : {100000u, 200u, 9u}) {
       SCOPED_TRACE(tile_points);
       MakeOptions options;
       options.tile_points = tile_points;

@@ -89,7 +89,7 @@ protected:
 TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
 {
   bool saw_any[3] = {false, false, false};
-  for (const std::uint64_t tile_points : {100000, 150, 9}) {
+  for (const std::uint64_t tile_points : {100000u, 150u, 9u}) {
     const Site site = siteOf(tile_points);
     for (const Uncertainty& of_site : {Uncertainty(), Uncertainty(0.06), Uncertainty("sigma", 1.5)}) {
       for (const Uncertainty& of_machine : {Uncertainty(), Uncertainty("sigma", 2.0)}) {
@@ -156,7 +156,7 @@ TEST_F(UncertainSite, CollidingWinsOverUndecided)
 TEST_F(UncertainSite, PathsAreThoseOfMemory)
 {
   const SphereHierarchy b(withUncertainty(viewOf(machine), machine.fields, "machine", {"sigma", 2.0}));
-  for (const std::uint64_t tile_points : {150, 9}) {
+  for (const std::uint64_t tile_points : {150u, 9u}) {
     const Site site = siteOf(tile_points);
     for (const Uncertainty& of_site : {Uncertainty(0.06), Uncertainty("sigma", 1.5)}) {
       for (const std::optional<double> swept : {std::optional<double>(), std::optional<double>(0.01)}) {

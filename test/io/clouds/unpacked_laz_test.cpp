@@ -64,7 +64,7 @@ TEST(UnpackedLaz, EveryFormatAndVersionOfItemsIsTheSameByteForByte)
   for (std::uint8_t format = 0; format <= 10; ++format) {
     for (const unsigned version : versionsOf(format)) {
       for (const unsigned channels : {1U, 4U}) {
-        for (const std::size_t extra : {0, 1, 7}) {
+        for (const std::size_t extra : {0u, 1u, 7u}) {
           SCOPED_TRACE("format " + std::to_string(format) + ", version " + std::to_string(version) + ", extra bytes " +
                        std::to_string(extra) + ", channels " + std::to_string(channels));
           LazOptions options;
@@ -527,7 +527,7 @@ TEST(UnpackedLaz, ManySmallChunks)
   const std::string laz = compressed(las);
   for (const unsigned threads : {1U, 2U}) {
     const auto file = unpackedLaz(std::make_unique<HeldBytes>(laz), threads);
-    for (const std::size_t point : {0, 1040, 1050, 1099, 1100, 2499, 2200, 99, 100}) {
+    for (const std::size_t point : {0u, 1040u, 1050u, 1099u, 1100u, 2499u, 2200u, 99u, 100u}) {
       const std::size_t at = get<std::uint32_t>(las, 96) + point * sample.length();
       ASSERT_EQ(file->text(at, sample.length()), las.substr(at, sample.length())) << point;
     }
