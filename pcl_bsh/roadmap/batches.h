@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries about lists of poses and of motions share: checks, and how a list is divided among threads.
+// Lists of poses and of motions: how they are checked, and divided among threads.
 #pragma once
 
 #include <pcl_bsh/base/parallel.h>

@@ -47,13 +47,13 @@ Eigen::Vector3d seen(const Eigen::Isometry3d& pose, const Eigen::Vector3d& world
   return pose.linear().transpose() * (world - pose.translation());
 }
 
-/// Of one motion after another whether points collide that are where `places` says.
+/// Tells of each motion in turn whether points collide that are where `places` says.
 class MotionSearch {
 public:
   MotionSearch(const MotionsQuery& query, Places places) : query_(query), places_(places) {}
 
-  /// What collides at an instant, decided exactly, collides on the motion, too. What does not collide at the instants
-  /// that are tried needs the motion's own search.
+  /// A pair that collides at an instant, decided exactly, collides on the motion, too. A motion without one at the
+  /// instants that are tried needs its own search.
   bool collides(const RigidMotion& motion, Work& work)
   {
     if (witness_ && collideNearest(motion, *witness_, work)) return true;

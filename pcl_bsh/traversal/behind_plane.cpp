@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/traversal/behind_plane.h>
 
-#include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/hierarchy/record_corners.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
-#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -26,14 +24,6 @@ Range pointsBelow(const SphereHierarchy::Storage& cloud, const NodeChild& child)
   }
   const Voxel& last = cloud.voxels[end - 1];
   return {cloud.voxels[begin].begin, last.begin + last.count};
-}
-
-/// Calls visit(corner) for the corners of a triangle, or for a point.
-template <class Visit>
-void forEachCorner(const PointsView& view, std::uint32_t record, const Visit& visit)
-{
-  if (!view.triangles) return visit(view.point(record));
-  for (const Point3& corner : view.triangles->triangle(record)) visit(corner);
 }
 
 /// The greater one; NaN where one of them is.
@@ -77,14 +67,16 @@ void BehindPlane::forEachRecord(const NodeChild& child, const Visit& visit) cons
 double BehindPlane::heightAtMost(std::uint32_t record) const
 {
   double most = -std::numeric_limits<double>::infinity();
-  forEachCorner(cloud_.view, record, [&](const Point3& corner) { most = greater(most, plane_.heightAtMost(corner)); });
+  const Corners corners = cornersOf(cloud_.view, record);
+  for (std::uint32_t i = 0; i < corners.count; ++i) most = greater(most, plane_.heightAtMost(corners.at[i]));
   return most;
 }
 
 std::optional<LongNumber> BehindPlane::height(std::uint32_t record) const
 {
   std::optional<LongNumber> most = LongNumber(-std::numeric_limits<double>::max());
-  forEachCorner(cloud_.view, record, [&](const Point3& corner) { most = greater(most, plane_.height(corner)); });
+  const Corners corners = cornersOf(cloud_.view, record);
+  for (std::uint32_t i = 0; i < corners.count; ++i) most = greater(most, plane_.height(corners.at[i]));
   return most;
 }
 
@@ -119,7 +111,8 @@ std::optional<BehindPlane::Touching> BehindPlane::touching(const NodeChild& chil
 int BehindPlane::sideOf(std::uint32_t record) const
 {
   int side = -1;
-  forEachCorner(cloud_.view, record, [&](const Point3& corner) { side = std::max(side, plane_.side(corner)); });
+  const Corners corners = cornersOf(cloud_.view, record);
+  for (std::uint32_t i = 0; i < corners.count; ++i) side = std::max(side, plane_.side(corners.at[i]));
   return side;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of nodes of one cloud: how far they reach beyond a plane, whether all of them is behind it, and what touches it
-// there.
+// How far nodes of one cloud reach beyond a plane, whether they lie behind it, and which records touch it there.
 #pragma once
 
 #include <pcl_bsh/geometry/exact/exact_plane.h>
@@ -38,8 +37,6 @@ public:
   {
   }
 
-  const ExactPlane& plane() const { return plane_; }
-
   /// No less than how far anything below a child reaches beyond the plane, in the plane's unit. Nothing where more
   /// records would have to be looked at than `looks`, which those that are looked at are taken from; NaN where doubles
   /// cannot tell.
@@ -48,11 +45,11 @@ public:
   /// With more digits; nothing where these cannot tell. @pre heightAtMost() has paid for looking at the child
   std::optional<LongNumber> height(const NodeChild& child);
 
-  /// Of a record.
+  /// Both heights of one record.
   double heightAtMost(std::uint32_t record) const;
   std::optional<LongNumber> height(std::uint32_t record) const;
 
-  /// What touches the plane below a child, if nothing there is beyond it; exact. @pre as of height()
+  /// The records below a child that touch the plane, if none there is beyond it; exact. @pre as of height()
   std::optional<Touching> touching(const NodeChild& child);
 
   /// The side that a record reaches to: 1 beyond the plane, 0 in it, -1 behind.

@@ -62,7 +62,7 @@ public:
     Triangle3 b;
     double radius = 0.0; ///< of the point: of a ball
   };
-  /// What was found of a pair of triangles under one pair of poses.
+  /// Keeps the facing and the nearest features of two triangles under one pair of poses.
   struct Known {
     std::optional<Facing> facing;
     std::uint8_t kind = 0, i = 0, j = 0; ///< of the nearest features

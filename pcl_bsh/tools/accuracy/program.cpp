@@ -106,7 +106,7 @@ io::Obstacle load(const char* program, const Options& options, const std::filesy
   return loaded;
 }
 
-/// What was compared.
+/// Names the file, and counts its records.
 std::string describe(const io::Obstacle& compared, const std::filesystem::path& path)
 {
   return "`" + path.filename().string() + "` (" + counted(compared.view().count, compared.partName()) + ")";
