@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One question about several obstacles: each has its own pose and, where it is given, its own clearance, solidity and
+// uncertainty.
+//
+//   std::vector<PlacedShape> machines = {{press, T_hall_press}, {mill, T_hall_mill}};
+//   machines[1].clearance = 0.1;
+//   const ObstaclesAnswer answer = ask(question, hall, machines);
+//   if (answer.each[0].verdict == Verdict::colliding) ...
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/ask.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// An obstacle of several. Members without a value are those of the question.
+struct PlacedShape {
+  Shape shape;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape: the question's poses stand before it
+  std::optional<double> clearance = {};
+  std::optional<bool> solid = {};
+  std::optional<Uncertainty> uncertainty = {}; ///< of its points
+};
+
+/// The question about one of several obstacles. A product of two poses that both move is rounded in double.
+Question questionOf(const Question& question, const PlacedShape& obstacle);
+
+/// What was found of one obstacle.
+struct ObstacleAnswer {
+  /// The gravest of the input's records as to this obstacle, and of its own that are unseen.
+  Verdict verdict = Verdict::free;
+  std::size_t colliding = 0, undecided = 0, sparse = 0; ///< records of the input
+  std::size_t unseen = 0;                               ///< records of the obstacle
+  /// With Wanted::closest: the smallest distance. Along a path it is that of what collides; of an obstacle that nothing
+  /// collides with, that at the poses, however far.
+  DistanceResult closest;
+  std::int32_t closest_pose = -1; ///< of the path, at which that is; -1: at one pose
+};
+
+struct ObstaclesAnswer {
+  /// Of all obstacles together. Flags are the gravest; distances, poses and intervals those of the nearest obstacle, of
+  /// several the first. Counts at the poses of a path add up: a record that collides with two obstacles counts twice.
+  /// Of the obstacles' own records there is nothing here, and nothing of what is unseen.
+  Answer all;
+  std::vector<std::uint32_t> closest_obstacle; ///< with contacts, distances along a path, or distances: per record the
+                                               ///< obstacle of `closest_point`; kNothing where there is no such point
+  std::uint32_t closest = kNothing;            ///< the obstacle of `all.closest`
+  std::vector<ObstacleAnswer> each;            ///< in the order of the obstacles
+};
+
+/// Called for each obstacle in turn, with the question about it and its answer. Of an obstacle that nothing collides
+/// with, flags and what is told with them may be empty.
+using AnswerOf = std::function<void(std::size_t obstacle, const Question& question, Answer& answer)>;
+
+/// Asks about each obstacle. What is built of the input is shared. Where poses alone are asked about, an obstacle that
+/// anyCollision() finds free costs no more than that and its smallest distance.
+/// @throws InvalidInput for no obstacle; as ask() of one does
+ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
+                    const AnswerOf& told = nullptr);
+
+/// Two obstacles as they stand to each other, by their numbers.
+struct ObstaclePair {
+  std::uint32_t first = 0, second = 0;
+  Verdict verdict = Verdict::free; ///< up to the greater of the two clearances
+  DistanceResult closest;          ///< records of the first and of the second
+};
+
+/// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not
+/// count.
+/// @param wanted whether a pair counts, by its numbers
+/// @throws as ask() does
+std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
+                                     const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Several obstacles against one cloud of all their points, and against questions about one at a time.
+#include <pcl_bsh/question/obstacles.h>
+#include <pcl_bsh/question/options.h>
+
+#include "support/made_meshes.h"
+#include "support/random_clouds.h"
+
+#include <pcl_bsh/hierarchy/triangles_view.h>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A scan and three obstacles at places that floats hold exactly, and all obstacles as one cloud.
+struct Crowd {
+  explicit Crowd(std::uint64_t seed) : random(seed)
+  {
+    scan = test::makePoints(test::Shape::uniform, 1200, 1.0, random);
+    scan[7][0] = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = 0; k < 3; ++k) {
+      places.push_back(test::makePoints(test::Shape::uniform, 150 + 40 * k, 0.3, random));
+      for (Point3& place : places[k])
+        for (double& x : place) x = std::round(x * 1024) / 1024;
+      shifts.emplace_back(0.5 * static_cast<double>(k) - 0.5, 0.25, 0.125);
+      for (const Point3& p : places[k])
+        together.push_back({p[0] + shifts[k].x(), p[1] + shifts[k].y(), p[2] + shifts[k].z()});
+    }
+  }
+
+  std::vector<PlacedShape> obstacles() const
+  {
+    std::vector<PlacedShape> all;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      all.push_back({Shape("obstacle " + std::to_string(k), viewOf(places[k][0].data(), places[k].size()))});
+      all.back().pose.translation() = shifts[k];
+    }
+    return all;
+  }
+
+  Shape input() const { return {"scan", viewOf(scan[0].data(), scan.size())}; }
+  Shape union_() const { return {"all", viewOf(together[0].data(), together.size())}; }
+
+  /// Of a record of the cloud of all.
+  std::uint32_t obstacleOf(std::uint32_t record) const
+  {
+    std::uint32_t k = 0;
+    for (; record >= places[k].size(); ++k) record -= static_cast<std::uint32_t>(places[k].size());
+    return k;
+  }
+
+  test::Random random;
+  std::vector<Point3> scan, together;
+  std::vector<std::vector<Point3>> places;
+  std::vector<Eigen::Vector3d> shifts;
+};
+
+Question contactsWithin(double clearance)
+{
+  Question question;
+  question.clearance = clearance;
+  question.wanted.flags = question.wanted.contacts = question.wanted.closest = true;
+  return question;
+}
+
+template <class T>
+void expectSame(const std::vector<T>& found, const std::vector<T>& expected)
+{
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] == expected[i]) continue;
+    EXPECT_TRUE(found[i] != found[i] && expected[i] != expected[i]) << i; // NaN
+  }
+}
+
+TEST(Obstacles, AnswerAsTheCloudOfAllTheirPoints)
+{
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Crowd crowd(seed);
+    Shape input = crowd.input(), together = crowd.union_();
+    std::vector<PlacedShape> obstacles = crowd.obstacles();
+    const Question question = contactsWithin(0.05);
+    const ObstaclesAnswer found = ask(question, input, obstacles);
+    const Answer expected = ask(question, input, together);
+    EXPECT_GT(expected.collisions.colliding, 0U);
+    EXPECT_EQ(found.all.collisions.colliding, expected.collisions.colliding);
+    expectSame(found.all.collisions.flags, expected.collisions.flags);
+    expectSame(found.all.collisions.distance, expected.collisions.distance);
+    expectSame(found.all.collisions.first_pose, expected.collisions.first_pose);
+    EXPECT_EQ(found.all.closest.distance, expected.closest.distance);
+    ASSERT_TRUE(expected.closest.pair);
+    EXPECT_EQ(found.all.closest.pair->a, expected.closest.pair->a);
+    EXPECT_EQ(found.closest, crowd.obstacleOf(expected.closest.pair->b));
+    for (std::size_t i = 0; i < crowd.scan.size(); ++i) {
+      const std::uint32_t nearest = expected.collisions.closest_point[i];
+      if (nearest == kNothing)
+        EXPECT_EQ(found.closest_obstacle[i], kNothing);
+      else
+        EXPECT_EQ(found.closest_obstacle[i], crowd.obstacleOf(nearest));
+    }
+  }
+}
+
+TEST(Obstacles, FollowAPathTogether)
+{
+  const Crowd crowd(11);
+  Shape input = crowd.input(), together = crowd.union_();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  Question question = contactsWithin(0.06);
+  std::vector<Eigen::Isometry3d> path(4, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < path.size(); ++k) path[k].translation().x() = 0.25 * static_cast<double>(k) - 1.0;
+  question.path = path;
+  const ObstaclesAnswer found = ask(question, input, obstacles);
+  const Answer expected = ask(question, input, together);
+  EXPECT_GT(expected.collisions.colliding, 0U);
+  expectSame(found.all.collisions.flags, expected.collisions.flags);
+  expectSame(found.all.collisions.distance, expected.collisions.distance);
+  expectSame(found.all.collisions.first_pose, expected.collisions.first_pose);
+  expectSame(found.all.collisions.closest_pose, expected.collisions.closest_pose);
+  question.swept = 1e-3;
+  const ObstaclesAnswer swept = ask(question, input, obstacles);
+  const Answer swept_together = ask(question, input, together);
+  expectSame(swept.all.collisions.flags, swept_together.collisions.flags);
+  ASSERT_TRUE(swept.all.collisions.first_contact);
+  EXPECT_EQ(swept.all.collisions.first_contact->pose, swept_together.collisions.first_contact->pose);
+}
+
+TEST(Obstacles, MeasureToTheNearestOfAll)
+{
+  const Crowd crowd(12);
+  Shape input = crowd.input(), together = crowd.union_();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  for (const double least : {0.0, 0.1}) {
+    Question question;
+    question.wanted.distances = question.wanted.within = true;
+    question.limits = {least, 0.4};
+    const ObstaclesAnswer found = ask(question, input, obstacles);
+    const Answer expected = ask(question, input, together);
+    expectSame(found.all.distances.a.distance, expected.distances.a.distance);
+    EXPECT_EQ(found.all.within, expected.within);
+    EXPECT_EQ(found.all.distances.a.measured, expected.distances.a.measured);
+    EXPECT_EQ(found.all.distances.a.greatest, expected.distances.a.greatest);
+    EXPECT_EQ(found.all.distances.a.greatest_pair->a, expected.distances.a.greatest_pair->a);
+  }
+}
+
+TEST(Obstacles, ListWhatCollidesOnce)
+{
+  const Crowd crowd(13);
+  Shape input = crowd.input(), together = crowd.union_();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  Question question;
+  question.clearance = 0.08;
+  question.wanted.indices = question.wanted.any = true;
+  const ObstaclesAnswer found = ask(question, input, obstacles);
+  std::vector<std::int32_t> expected = ask(question, input, together).indices.a;
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(found.all.indices.a, expected);
+  EXPECT_EQ(found.all.any.verdict, Verdict::colliding);
+}
+
+TEST(Obstacles, AreToldOneByOneAsIfAskedAlone)
+{
+  const Crowd crowd(14);
+  Shape input = crowd.input();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  obstacles[1].clearance = 0.0;
+  obstacles[2].pose.translation().x() = 20.0; // far away
+  std::vector<std::size_t> told;
+  const Question question = contactsWithin(0.05);
+  const ObstaclesAnswer found =
+      ask(question, input, obstacles, [&](std::size_t i, const Question& asked, Answer& answer) {
+        told.push_back(i);
+        EXPECT_EQ(*asked.clearance, i == 1 ? 0.0 : 0.05);
+        Shape alone = crowd.obstacles()[i].shape;
+        const Answer expected = ask(asked, input, alone);
+        EXPECT_EQ(answer.collisions.colliding, expected.collisions.colliding);
+        Question however_far = asked;
+        however_far.wanted = {};
+        however_far.wanted.closest = true;
+        EXPECT_FLOAT_EQ(static_cast<float>(answer.closest.distance),
+                        static_cast<float>(ask(however_far, input, alone).closest.distance));
+        if (expected.collisions.colliding > 0)
+          expectSame(answer.collisions.distance, expected.collisions.distance);
+        else
+          EXPECT_THAT(answer.collisions.flags, IsEmpty());
+      });
+  EXPECT_THAT(told, ElementsAre(0U, 1U, 2U));
+  EXPECT_EQ(found.each[0].verdict, Verdict::colliding);
+  EXPECT_EQ(found.each[2].verdict, Verdict::free);
+  EXPECT_GT(found.each[2].closest.distance, 15.0);
+}
+
+TEST(Obstacles, OneOfThemCostsAsMuchAsAskedAlone)
+{
+  const Crowd crowd(15);
+  const Question question = contactsWithin(0.05);
+  Shape input = crowd.input(), fresh = crowd.input();
+  std::vector<PlacedShape> one = {crowd.obstacles()[0]};
+  Shape alone = crowd.obstacles()[0].shape;
+  const ObstaclesAnswer found = ask(question, input, one);
+  const Answer expected = ask(questionOf(question, one[0]), fresh, alone);
+  EXPECT_EQ(found.all.work.node_pairs, expected.work.node_pairs);
+  EXPECT_EQ(found.all.work.leaf_pairs, expected.work.leaf_pairs);
+  EXPECT_EQ(found.all.work.exact_decisions, expected.work.exact_decisions);
+}
+
+TEST(Obstacles, ThatAreFreeLeaveOneEntryPerRecord)
+{
+  const Crowd crowd(16);
+  Shape input = crowd.input();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  for (PlacedShape& obstacle : obstacles) obstacle.pose.translation().x() += 50.0;
+  const ObstaclesAnswer found = ask(contactsWithin(0.05), input, obstacles);
+  EXPECT_EQ(found.all.collisions.flags.size(), crowd.scan.size());
+  EXPECT_THAT(found.all.collisions.flags, Each(Verdict::free));
+  EXPECT_EQ(found.all.collisions.distance.size(), crowd.scan.size());
+  EXPECT_EQ(found.all.collisions.closest_pose.size(), crowd.scan.size());
+  EXPECT_EQ(found.all.collisions.first_pose.size(), crowd.scan.size());
+  EXPECT_EQ(found.closest_obstacle.size(), crowd.scan.size());
+}
+
+TEST(Obstacles, ThatAreFreeAlongAPathHaveTheirNearestPose)
+{
+  const Crowd crowd(18);
+  Shape input = crowd.input();
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  for (PlacedShape& obstacle : obstacles) obstacle.pose.translation().z() += 5.0;
+  Question question = contactsWithin(0.05);
+  question.path.emplace(3, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < 3; ++k) (*question.path)[k].translation().z() = k == 1 ? -1.0 : 0.5;
+  const ObstaclesAnswer found = ask(question, input, obstacles);
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    EXPECT_EQ(found.each[k].verdict, Verdict::free);
+    EXPECT_EQ(found.each[k].closest_pose, 1);
+    Question at_pose;
+    at_pose.pose = questionOf(question, obstacles[k]).path->at(1);
+    at_pose.wanted.closest = true;
+    EXPECT_EQ(found.each[k].closest.distance, ask(at_pose, input, obstacles[k].shape).closest.distance);
+  }
+}
+
+TEST(Obstacles, StandAgainstEachOther)
+{
+  const test::TestMesh box = test::boxMesh(1, 1, 1);
+  const Shape shape("box", viewOf(box.trianglesView()));
+  std::vector<PlacedShape> boxes(3, {shape});
+  boxes[1].pose.translation().x() = 0.5;
+  boxes[2].pose.translation().x() = 4.0;
+  Question question;
+  question.clearance = 0.1;
+  const auto all = [](std::uint32_t, std::uint32_t) { return true; };
+  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, all);
+  ASSERT_EQ(pairs.size(), 3U);
+  EXPECT_EQ(pairs[0].verdict, Verdict::colliding);
+  EXPECT_EQ(pairs[1].verdict, Verdict::free);
+  EXPECT_EQ(pairs[1].closest.distance, 3.0);
+  boxes[2].clearance = 3.0;
+  EXPECT_EQ(askBetween(question, boxes, all)[1].verdict, Verdict::colliding);
+  EXPECT_THAT(askBetween(question, boxes, [](std::uint32_t, std::uint32_t) { return false; }), IsEmpty());
+}
+
+TEST(Obstacles, OfAListWithoutAnyAreRefused)
+{
+  const Crowd crowd(17);
+  Shape input = crowd.input();
+  std::vector<PlacedShape> none;
+  EXPECT_THROW(ask(contactsWithin(0.1), input, none), InvalidInput);
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  Question question = contactsWithin(0.1);
+  question.wanted.obstacle_flags = true;
+  EXPECT_THROW(ask(question, input, obstacles), InvalidInput);
+  question = {};
+  question.wanted.within = question.wanted.distances = true;
+  question.limits = {0.1, 0.5};
+  question.max_distance = 0.2;
+  EXPECT_THROW(ask(question, input, obstacles), InvalidOption);
+}
+
+} // namespace
+} // namespace pcl_bsh
