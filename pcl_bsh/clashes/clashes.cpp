@@ -151,18 +151,24 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 void nameClashes(std::vector<Clash>& clashes, double cluster_distance)
 {
   giveIds(clashes, "C", cluster_distance);
-  std::sort(clashes.begin(), clashes.end(), [](const Clash& a, const Clash& b) {
-    const bool perhaps_a = !a.isCertain(), perhaps_b = !b.isCertain();
-    return std::tie(perhaps_a, a.distance, b.points, a.id) < std::tie(perhaps_b, b.distance, a.points, b.id);
-  });
+  std::sort(clashes.begin(), clashes.end(), isMoreSevere);
+}
+
+bool isMoreSevere(const Clash& one, const Clash& other)
+{
+  const auto key = [](const Clash& clash) {
+    const double distance = clash.wasNoClash() ? std::numeric_limits<double>::infinity() : clash.distance;
+    return std::tuple(!clash.isCertain(), distance);
+  };
+  return std::tuple_cat(key(one), std::tie(other.points, one.id)) <
+         std::tuple_cat(key(other), std::tie(one.points, other.id));
 }
 
 void nameUnseenPlaces(std::vector<Clash>& places, double cluster_distance)
 {
   for (Clash& place : places) place.place = middleOf(place);
   giveIds(places, "U", cluster_distance);
-  std::sort(places.begin(), places.end(),
-            [](const Clash& a, const Clash& b) { return std::tie(b.points, a.id) < std::tie(a.points, b.id); });
+  std::sort(places.begin(), places.end(), isMoreSevere);
 }
 
 std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What collides along a path, place by place: clusters of colliding points, with names that last from run to run.
+// Clashes of a path: clusters of colliding points, with names that last from run to run.
 #pragma once
 
 #include <pcl_bsh/clashes/extent.h>
@@ -57,6 +57,10 @@ struct Clash {
 
   bool wasNoClash() const { return std::isnan(distance); } ///< unseen, and nothing else is known of it
 };
+
+/// Whether a clash stands before another: certain before perhaps, then the smaller distance, more points, the id.
+/// Unseen places come last, those of most points first.
+bool isMoreSevere(const Clash& one, const Clash& other);
 
 /// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
 /// first. Clusters with a point that collides for certain come before those that collide only perhaps. Then the order

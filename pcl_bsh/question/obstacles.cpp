@@ -69,7 +69,8 @@ public:
     joined_.closest = static_cast<std::uint32_t>(joined_.each.size() - 1);
   }
 
-  ObstaclesAnswer finish()
+  /// @param moves whether there is a path
+  ObstaclesAnswer finish(bool moves)
   {
     Answer& all = joined_.all;
     TrajectoryResult& found = all.collisions;
@@ -87,13 +88,19 @@ public:
                                    return std::binary_search(all.indices.a.begin(), all.indices.a.end(), record);
                                  }),
                   perhaps.end());
+    if (!moves)
+      for (ObstacleAnswer& one : joined_.each) one.closest_pose = -1;
     return std::move(joined_);
   }
 
+  /// Adds an obstacle that is not asked about.
+  void skip() { joined_.each.emplace_back().asked = false; }
+
   /// The answer has an entry for each record also where nothing was asked about the obstacles one by one.
-  void fill(bool contacts, bool first_poses)
+  void fill(bool contacts, bool first_poses, std::size_t poses)
   {
     TrajectoryResult& found = joined_.all.collisions;
+    if (wanted_.poses) found.poses.resize(poses);
     if (wanted_.flags || wanted_.contacts || wanted_.poses) found.flags.resize(records_, Verdict::free);
     if (contacts) {
       found.distance.resize(records_, std::numeric_limits<float>::quiet_NaN());
@@ -237,7 +244,7 @@ Wanted withoutCollisions(Wanted wanted)
 bool maySpare(const Question& question)
 {
   return question.wanted.collisions() && !question.path && !question.seen && !question.density &&
-         !question.wanted.poses && !question.accuracy.stopsEarly();
+         !question.accuracy.stopsEarly();
 }
 
 /// Asks about one obstacle, whose records are not told where it is free.
@@ -255,16 +262,18 @@ Answer askOrSpare(const Question& question, Shape& input, Shape& obstacle)
   return answer;
 }
 
-/// The smallest distance at the poses of a path, and the first pose that has it. Motion between poses does not count.
+/// The smallest distance at the pose, or at those of a path, and the first pose that has it. Motion between poses does
+/// not count.
 std::pair<DistanceResult, std::int32_t> closestAlong(const Question& question, Shape& input, Shape& obstacle)
 {
   const Placed a(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input);
   const SphereHierarchy& b = obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
   std::pair<DistanceResult, std::int32_t> best{{}, -1};
   DistanceRequest request;
-  for (std::size_t k = 0; k < question.path->size(); ++k) {
+  const std::vector<Eigen::Isometry3d> poses = question.poses();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
     request.max_distance = best.first.distance;
-    DistanceResult found = closestPair(a, {b, (*question.path)[k]}, request);
+    DistanceResult found = closestPair(a, {b, poses[k]}, request);
     const Work work = found.work;
     if (found.pair && isNearer(found.distance, best.first.distance)) {
       std::swap(found.work, best.first.work);
@@ -301,6 +310,10 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
   const std::size_t records = input.hierarchy(question.uncertaintyOfInput(), question.threads).view().count;
   JoinedAnswers joined(records, wanted);
   for (std::uint32_t i = 0; i < obstacles.size(); ++i) {
+    if (obstacles[i].ignores_input) {
+      joined.skip();
+      continue;
+    }
     Question one = questionOf(question, obstacles[i]);
     if (question.progress)
       one.progress = [&, i](double done) {
@@ -309,14 +322,14 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
     Answer answer =
         obstacles.size() == 1 ? ask(one, input, obstacles[i].shape) : askOrSpare(one, input, obstacles[i].shape);
     joined.add(i, answer);
-    if (one.path && wanted.closest && !answer.closest.pair) {
+    if (wanted.closest && !answer.closest.pair) {
       const auto [closest, pose] = closestAlong(one, input, obstacles[i].shape);
       joined.setClosest(closest, pose);
     }
     if (told) told(i, one, answer);
   }
-  joined.fill(wanted.contacts, wanted.contacts || wanted.first_poses);
-  return joined.finish();
+  joined.fill(wanted.contacts, wanted.contacts || wanted.first_poses, question.poses().size());
+  return joined.finish(question.path.has_value());
 }
 
 std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,

@@ -30,13 +30,15 @@ struct PlacedShape {
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {}; ///< of its points
+  bool ignores_input = false;                  ///< it is compared with other obstacles alone
 };
 
 /// The question about one of several obstacles. A product of two poses that both move is rounded in double.
 Question questionOf(const Question& question, const PlacedShape& obstacle);
 
-/// What was found of one obstacle.
+/// The answer about one obstacle.
 struct ObstacleAnswer {
+  bool asked = true; ///< false: it ignores the input, and the rest says nothing
   /// The gravest of the input's records as to this obstacle, and of its own that are unseen.
   Verdict verdict = Verdict::free;
   std::size_t colliding = 0, undecided = 0, sparse = 0; ///< records of the input
@@ -44,13 +46,13 @@ struct ObstacleAnswer {
   /// With Wanted::closest: the smallest distance. Along a path it is that of what collides; of an obstacle that nothing
   /// collides with, that at the poses, however far.
   DistanceResult closest;
-  std::int32_t closest_pose = -1; ///< of the path, at which that is; -1: at one pose
+  std::int32_t closest_pose = -1; ///< of the path, at which that is; -1: there is no path
 };
 
 struct ObstaclesAnswer {
-  /// Of all obstacles together. Flags are the gravest; distances, poses and intervals those of the nearest obstacle, of
-  /// several the first. Counts at the poses of a path add up: a record that collides with two obstacles counts twice.
-  /// Of the obstacles' own records there is nothing here, and nothing of what is unseen.
+  /// The answer about all obstacles together. Flags are the gravest; distances, poses and intervals those of the
+  /// nearest obstacle, of several the first. Counts at the poses of a path add up: a record that collides with two
+  /// obstacles counts twice. It tells nothing of the obstacles' own records, and nothing of unseen places.
   Answer all;
   std::vector<std::uint32_t> closest_obstacle; ///< with contacts, distances along a path, or distances: per record the
                                                ///< obstacle of `closest_point`; kNothing where there is no such point
@@ -58,12 +60,12 @@ struct ObstaclesAnswer {
   std::vector<ObstacleAnswer> each;            ///< in the order of the obstacles
 };
 
-/// Called for each obstacle in turn, with the question about it and its answer. Of an obstacle that nothing collides
-/// with, flags and what is told with them may be empty.
+/// Called for each obstacle in turn, with the question about it and its answer. Flags, contacts and poses may be empty
+/// where nothing collides with the obstacle.
 using AnswerOf = std::function<void(std::size_t obstacle, const Question& question, Answer& answer)>;
 
-/// Asks about each obstacle. What is built of the input is shared. Where poses alone are asked about, an obstacle that
-/// anyCollision() finds free costs no more than that and its smallest distance.
+/// Asks about each obstacle. All obstacles share the hierarchy of the input. Where poses alone are asked about, an
+/// obstacle that anyCollision() finds free costs no more than that and its smallest distance.
 /// @throws InvalidInput for no obstacle; as ask() of one does
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
                     const AnswerOf& told = nullptr);

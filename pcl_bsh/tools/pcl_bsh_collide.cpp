@@ -19,9 +19,11 @@
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
-#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -47,7 +49,7 @@ pcl::PCLPointCloud2 marked(const fs::path& path, const pcl::PCLPointCloud2& clou
   }
 }
 
-/// What the output gets beside all the input had. @param distances as it tells them
+/// The fields that the output gets beside those of the input. @param distances one per point
 std::vector<NewField> newFields(const Options& options, const TrajectoryResult& found,
                                 const std::vector<float>& distances)
 {
@@ -93,23 +95,35 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
   seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
 
-/// Asks as a step of the program. @param done of the answer, for the step's end
-template <typename Done>
-Answer askInStep(const std::string& what, Question question, Shape& input, Shape& obstacle, double& seconds,
-                 const Done& done)
+/// An obstacle, and what was asked about it and found.
+struct Compared {
+  std::string name; ///< empty: it is alone
+  fs::path file;
+  io::Obstacle loaded;
+  io::CloudFacts facts;
+  Question question = {};
+  Answer answer = {}; ///< where it is one of several; else the report has it
+  std::vector<Eigen::Isometry3d> poses = {};
+};
+
+/// Asks as a step of the program. @param ask of a question. @param done of the answer, for the step's end
+template <typename Ask, typename Done>
+auto askInStep(const std::string& what, Question question, double& seconds, const Ask& ask, const Done& done)
 {
   cli::Step step(what);
   question.progress = [&](double fraction) {
     step.share(fraction);
     return true;
   };
-  Answer answer = ask(question, input, obstacle);
+  auto answer = ask(question);
   seconds += step.done(done(answer));
   return answer;
 }
 
-/// What collides first, then all distances: each tells how long it takes.
-void answer(Shape& input, Shape& obstacle, bool lists_clashes, cli::CollisionReport& report)
+/// Asks for collisions first, then for all distances. Each step tells how long it takes.
+/// @param ask of a question, for an Answer: of one obstacle, or of several together
+template <typename Ask>
+void answer(const Ask& ask, bool lists_clashes, cli::CollisionReport& report)
 {
   Question question = report.question;
   Wanted& wanted = question.wanted;
@@ -118,58 +132,93 @@ void answer(Shape& input, Shape& obstacle, bool lists_clashes, cli::CollisionRep
   wanted.unseen_places = question.seen && lists_clashes;
   wanted.spacings = !all.measures(); // at last, for it builds voxels
   report.answer = askInStep(question.path ? "Following " + counted(question.path->size(), "pose") : "Comparing",
-                            question, input, obstacle, report.seconds.query, [](const Answer& found) {
+                            question, report.seconds.query, ask, [](const Answer& found) {
                               return std::to_string(found.collisions.colliding) + " colliding";
                             });
   if (!all.measures()) return;
   wanted = {};
   question.seen = false; // that is answered
   leaveOutWaiting(question);
-  wanted.distances = wanted.both_ways = wanted.spacings = true;
-  Answer measured =
-      askInStep("Measuring distances", question, input, obstacle, report.seconds.distances, [&](const Answer& found) {
-        return counted(found.distances.a.measured, input.isSurface() ? "triangle" : "point");
-      });
+  wanted.distances = wanted.spacings = true;
+  wanted.both_ways = all.both_ways;
+  Answer measured = askInStep("Measuring distances", question, report.seconds.distances, ask, [&](const Answer& found) {
+    return counted(found.distances.a.measured, report.input_is_surface ? "triangle" : "point");
+  });
   report.answer.distances = std::move(measured.distances);
   report.answer.density = measured.density;
   for (Warning& warning : measured.warnings) report.answer.warnings.push_back(std::move(warning));
   report.answer.work += measured.work;
 }
 
-io::ClashQuestion clashQuestion(const Options& options)
+io::ClashQuestion clashQuestion(const Options& options, const Question& question, const fs::path& obstacle)
 {
-  return {options.question, options.input.string(), options.obstacle.string()};
+  return {question, options.input.string(), obstacle.string()};
+}
+
+/// The clearance of all obstacles, the greatest where they have their own.
+double greatestClearance(const Options& options)
+{
+  double greatest = options.question.clearance.value_or(0.0);
+  for (const cli::ObstacleChoice& one : options.obstacles) greatest = std::max(greatest, one.clearance.value_or(0.0));
+  return greatest;
 }
 
 /// @return how many there are
-std::string listClashes(const Options& options, const SphereHierarchy& a, const SphereHierarchy& b,
-                        const std::optional<io::ClashList>& earlier, cli::CollisionReport& report)
+std::string listClashes(const Options& options, const SphereHierarchy& a, std::vector<Compared>& all,
+                        const std::vector<const SphereHierarchy*>& hierarchies,
+                        const std::vector<io::ClashList>& earlier, cli::CollisionReport& report)
 {
   cli::Step step("Listing clashes");
-  const io::ClashQuestion question = clashQuestion(options);
   const double distance = options.cluster_distance > 0
                               ? options.cluster_distance
-                              : io::clusterDistanceFor(*question.clearance, *report.answer.density.input);
-  const std::vector<Eigen::Isometry3d> poses = report.question.poses();
-  io::ClashReport list =
-      io::clashesOf(question, a, b, poses, report.answer, distance, report.surface ? &*report.surface : nullptr);
-  list.unit = options.unit;
-  list.coordinate_system = report.coordinate_system;
-  if (earlier)
-    for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, a, b))
+                              : io::clusterDistanceFor(greatestClearance(options), *report.answer.density.input);
+  io::ClashLists lists;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Compared& one = all[i];
+    one.poses = one.question.poses();
+    const Answer& answer = one.name.empty() ? report.answer : one.answer;
+    io::ClashReport list = io::clashesOf(clashQuestion(options, one.question, one.file), a, *hierarchies[i], one.poses,
+                                         answer, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
+    list.unit = options.unit;
+    list.coordinate_system = report.coordinate_system;
+    list.name = one.name;
+    if (!one.name.empty()) list.answer = &report.obstacles[i].found;
+    if (const io::ClashList* const before = io::findList(earlier, one.name, list.question))
+      for (std::string& warning : io::compareWithList(list, *options.previous, *before, a, *hierarchies[i]))
+        addOnce(std::move(warning), report.warnings);
+    else if (options.previous)
+      list.previous = options.previous->string();
+    lists.obstacles.push_back(std::move(list));
+  }
+  lists.between = report.between;
+  if (lists.haveNames() && options.previous)
+    for (std::string& warning : io::warningsOfGone(lists, *options.previous, earlier))
       report.warnings.push_back(std::move(warning));
-  for (const fs::path& file : options.clashes) io::writeClashes(file, list);
-  report.seconds.clashes = step.done(io::clashCounts(list));
-  return io::clashCounts(list);
+  for (const fs::path& file : options.clashes) io::writeClashes(file, lists);
+  report.seconds.clashes = step.done(io::clashCounts(lists));
+  return io::clashCounts(lists);
 }
 
-std::optional<io::ClashList> readEarlier(const Options& options, std::vector<std::string>& warnings)
+/// The question about an obstacle, as far as it is known before files are read.
+Question questionOf(const Question& question, const cli::ObstacleChoice& choice)
 {
-  if (!options.previous) return std::nullopt;
-  io::ClashList list = io::readClashes(*options.previous);
-  for (std::string& warning : io::requireComparable(*options.previous, list, clashQuestion(options)))
-    warnings.push_back(std::move(warning));
-  return list;
+  return pcl_bsh::questionOf(question, {Shape(), choice.pose, choice.clearance, choice.solid, choice.uncertainty});
+}
+
+std::vector<io::ClashList> readEarlier(const Options& options, const Question& question,
+                                       std::vector<std::string>& warnings)
+{
+  if (!options.previous) return {};
+  std::vector<io::ClashList> lists = io::readClashLists(*options.previous);
+  const auto compare = [&](const std::string& name, const Question& now, const fs::path& file) {
+    const io::ClashQuestion asked = clashQuestion(options, now, file);
+    if (const io::ClashList* const list = io::findList(lists, name, asked))
+      for (std::string& warning : io::requireComparable(*options.previous, *list, asked))
+        addOnce(std::move(warning), warnings);
+  };
+  if (options.obstacles.empty()) compare("", question, options.obstacle);
+  for (const cli::ObstacleChoice& one : options.obstacles) compare(one.name, questionOf(question, one), one.file);
+  return lists;
 }
 
 std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
@@ -214,42 +263,96 @@ void check(const Options& options, const Question& question)
   files::requireWritable(*options.distance_page);
 }
 
-/// From two things to all that is told of them.
-int tell(const Options& options, const Scan& input, Shape& scan, const io::Obstacle& obstacle,
-         const io::CloudFacts& facts_of_obstacle, const std::optional<io::ClashList>& earlier,
-         cli::CollisionReport& report)
+/// Asks about several obstacles, against the input and against each other.
+Answer askSeveral(const Options& options, const Question& question, Shape& scan, std::vector<PlacedShape>& obstacles,
+                  std::vector<Compared>& all, cli::CollisionReport& report)
+{
+  const bool first = report.obstacles.empty(); // distances come later
+  ObstaclesAnswer found = ask(question, scan, obstacles, [&](std::size_t i, const Question& asked, Answer& answer) {
+    if (!first) return;
+    all[i].question = asked;
+    all[i].question.progress = nullptr;
+    all[i].answer = std::move(answer);
+  });
+  if (!first) return std::move(found.all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    TrajectoryResult& told = all[i].answer.collisions;
+    if (told.flags.empty() && !options.clashes.empty()) { // nothing collides with it
+      told = {};
+      told.flags.assign(scan.hierarchy().view().count, Verdict::free);
+      told.distance.assign(told.flags.size(), std::numeric_limits<float>::quiet_NaN());
+      told.first_pose.assign(told.flags.size(), -1);
+      told.closest_pose = told.first_pose;
+      told.closest_point.assign(told.flags.size(), kNothing);
+    }
+    report.obstacles.push_back({all[i].name, all[i].file.string(), all[i].question, all[i].loaded, found.each[i]});
+  }
+  report.closest_obstacle = found.closest;
+  const cli::IgnoredPairs ignored = options.ignoredPairs();
+  if (options.between)
+    for (const ObstaclePair& pair : askBetween(question, obstacles, [&](std::uint32_t i, std::uint32_t k) {
+           return !ignored.holds(all[i].name, all[k].name);
+         }))
+      report.between.push_back({all[pair.first].name, all[pair.second].name,
+                                std::max(*all[pair.first].question.clearance, *all[pair.second].question.clearance),
+                                pair});
+  return std::move(found.all);
+}
+
+/// From the input and its obstacles to all that is told of them.
+int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Compared>& all,
+         const std::vector<io::ClashList>& earlier, cli::CollisionReport& report)
 {
   const Question& question = report.question;
-  Shape other = obstacle.shape(options.obstacle.string());
-  const auto built = [&](Shape& shape, const Uncertainty& uncertainty) -> const SphereHierarchy& {
-    return cli::build(shape, uncertainty, question.threads, report.seconds.build);
-  };
-  const SphereHierarchy& a = built(scan, question.uncertaintyOfInput());
-  const SphereHierarchy& b = built(other, question.uncertaintyOfObstacle());
+  const bool several = !options.obstacles.empty();
+  const SphereHierarchy& a = cli::build(scan, question.uncertaintyOfInput(), question.threads, report.seconds.build);
+  std::vector<PlacedShape> shapes;
+  std::vector<const SphereHierarchy*> hierarchies;
   report.input = {options.input.string(), a.view().count, a.size()};
-  report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
   report.input_is_surface = scan.isSurface();
-  if (obstacle.isSurface()) {
-    report.surface = obstacle;
-    const PointsView vertices = viewOf(obstacle.points());
+  const cli::IgnoredPairs ignored = options.ignoredPairs();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    shapes.push_back({all[i].loaded.shape(all[i].file.string())});
+    if (several) {
+      const cli::ObstacleChoice& choice = options.obstacles[i];
+      shapes.back() = {shapes.back().shape, choice.pose, choice.clearance, choice.solid, choice.uncertainty};
+    }
+    shapes.back().ignores_input = several && ignored.holds("input", all[i].name);
+    all[i].question = pcl_bsh::questionOf(question, shapes.back());
+    const SphereHierarchy& b = cli::build(shapes.back().shape, all[i].question.uncertaintyOfObstacle(),
+                                          question.threads, report.seconds.build);
+    hierarchies.push_back(&b);
+    report.obstacle = {all[i].file.string(), b.view().count, b.size()};
+    if (b.size() == 0 && several)
+      report.warnings.push_back(all[i].name + ": has nothing that is finite: it collides with nothing");
+  }
+  if (!several && all[0].loaded.isSurface()) {
+    report.surface = all[0].loaded;
+    const PointsView vertices = viewOf(all[0].loaded.points());
     report.obstacle.points = vertices.count;
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
-  answer(scan, other, !options.clashes.empty(), report);
-  report.voxels_total = a.statistics().voxels + b.statistics().voxels;
+  const auto ask_all = [&](const Question& asked) {
+    return several ? askSeveral(options, asked, scan, shapes, all, report) : ask(asked, scan, shapes[0].shape);
+  };
+  answer(ask_all, !options.clashes.empty(), report);
+  report.voxels_total = a.statistics().voxels;
+  for (const SphereHierarchy* const b : hierarchies) report.voxels_total += b->statistics().voxels;
   for (const std::string& remark : input.facts.remarks)
     addOnce(options.input.string() + ": " + remark, report.warnings);
   addTexts(report.answer.warnings, report.warnings);
-  for (std::string& remark : cli::warningsOf(obstacle, options.obstacle)) addOnce(std::move(remark), report.warnings);
+  for (const Compared& one : all)
+    for (std::string& remark : cli::warningsOf(one.loaded, one.file)) addOnce(std::move(remark), report.warnings);
 
   write(options, input, report.answer, report.seconds.write);
   if (options.obstacle_out) {
     cli::Step step("Writing " + options.obstacle_out->string());
-    cli::writeFlags(*options.obstacle_out, obstacle, report.answer.obstacle_flags, facts_of_obstacle);
-    report.seconds.write += step.done(counted(obstacle.view().count, obstacle.partName()));
+    cli::writeFlags(*options.obstacle_out, all[0].loaded, report.answer.obstacle_flags, all[0].facts);
+    report.seconds.write += step.done(counted(all[0].loaded.view().count, all[0].loaded.partName()));
   }
-  const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, b, earlier, report);
-  const std::optional<io::DistanceReport> measured = reportDistances(options, a, b, report);
+  const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, all, hierarchies, earlier, report);
+  const std::optional<io::DistanceReport> measured =
+      several ? std::nullopt : reportDistances(options, a, *hierarchies[0], report);
   if (measured) report.distances = io::distanceJson(*measured);
   if (options.report) cli::writeReport(*options.report, report);
   summarise(options, report, clashes, measured);
@@ -264,7 +367,7 @@ int collide(const Options& options)
   Question& question = report.question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &report.warnings);
   check(options, question);
-  const std::optional<io::ClashList> earlier = readEarlier(options, report.warnings);
+  const std::vector<io::ClashList> earlier = readEarlier(options, question, report.warnings);
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
@@ -272,12 +375,17 @@ int collide(const Options& options)
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
-  io::CloudFacts facts;                                                               // of the obstacle
-  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
-                                                  options.reading.of(options.obstacle), &facts, question.threads);
-  if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, obstacle);
-  return cli::named([&] { return tell(options, input, scan, obstacle, facts, earlier, report); }, question,
-                    options.names_of_poses);
+  std::vector<Compared> all;
+  const auto load = [&](const std::string& name, const fs::path& file) {
+    io::CloudFacts facts;
+    io::Obstacle loaded = cli::loadObstacle(file, {question.vertices_only}, report.seconds.load,
+                                            options.reading.of(file), &facts, question.threads);
+    all.push_back({name, file, std::move(loaded), std::move(facts)});
+  };
+  if (options.obstacles.empty()) load("", options.obstacle);
+  for (const cli::ObstacleChoice& one : options.obstacles) load(one.name, one.file);
+  if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, all[0].loaded);
+  return cli::named([&] { return tell(options, input, scan, all, earlier, report); }, question, options.names_of_poses);
 }
 
 } // namespace

@@ -45,12 +45,13 @@ void requireSameAgain(const io::ClashList& list)
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   try {
-    const io::ClashList list = io::parseClashes({reinterpret_cast<const char*>(data), size}, "fuzzed");
-    requireSameAgain(list);
-    std::vector<Clash> now = list.clashes;
-    for (Clash& clash : now) clash.id += '#';
-    compareWithEarlier(now, list.clashes, 1.0);
-    for (const Clash& clash : now) fuzz::require(!clash.id.empty(), "a clash without an id");
+    for (const io::ClashList& list : io::parseClashLists({reinterpret_cast<const char*>(data), size}, "fuzzed")) {
+      requireSameAgain(list);
+      std::vector<Clash> now = list.clashes;
+      for (Clash& clash : now) clash.id += '#';
+      compareWithEarlier(now, list.clashes, 1.0);
+      for (const Clash& clash : now) fuzz::require(!clash.id.empty(), "a clash without an id");
+    }
   }
   catch (const io::JsonError& error) {
     fuzz::requireReason(error);

@@ -52,7 +52,7 @@ struct Crowd {
   Shape input() const { return {"scan", viewOf(scan[0].data(), scan.size())}; }
   Shape union_() const { return {"all", viewOf(together[0].data(), together.size())}; }
 
-  /// Of a record of the cloud of all.
+  /// The obstacle that has this record of the cloud of all.
   std::uint32_t obstacleOf(std::uint32_t record) const
   {
     std::uint32_t k = 0;

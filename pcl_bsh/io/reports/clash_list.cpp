@@ -92,19 +92,22 @@ Clash clashFrom(const JsonReader& entry)
   return clash;
 }
 
-ClashQuestion questionFrom(const JsonReader& reader)
+/// A name, which may be empty.
+std::string nameFrom(const JsonReader& name)
+{
+  return name.json().is_string() ? name.json().get<std::string>() : name.text();
+}
+
+/// @param about what is stated of the obstacle: the whole document, or one of its obstacles
+ClashQuestion questionFrom(const JsonReader& reader, const JsonReader& about, const char* obstacle)
 {
   ClashQuestion question;
-  const auto name_of = [&](const char* key) { // which may be empty
-    const JsonReader cloud = reader.at(key);
-    return cloud.json().is_string() ? cloud.json().get<std::string>() : cloud.text();
-  };
-  question.input = name_of("input");
-  question.obstacle = name_of("obstacle");
-  question.clearance = reader.at("clearance").number(0, largest);
+  question.input = nameFrom(reader.at("input"));
+  question.obstacle = nameFrom(about.at(obstacle));
+  question.clearance = about.at("clearance").number(0, largest);
   if (!reader.at("swept").json().is_null()) question.swept = reader.at("swept").number(0, largest);
-  if (!reader.has("options")) return question;
-  for (const auto& [name, value] : reader.at("options").members()) {
+  if (!about.has("options")) return question;
+  for (const auto& [name, value] : about.at("options").members()) {
     try {
       setOption(question, name, value.text());
     }
@@ -115,10 +118,10 @@ ClashQuestion questionFrom(const JsonReader& reader)
   return question;
 }
 
-std::optional<Survey> surveyFrom(const JsonReader& reader)
+std::optional<Survey> surveyFrom(const JsonReader& reader, const JsonReader& about)
 {
-  if (!reader.has("path") || !reader.has("scan")) return std::nullopt;
-  const JsonReader path = reader.at("path");
+  if (!about.has("path") || !reader.has("scan")) return std::nullopt;
+  const JsonReader path = about.at("path");
   Survey survey;
   survey.poses = static_cast<std::size_t>(path.at("poses").whole(0, std::numeric_limits<std::int32_t>::max()));
   survey.path_checksum = path.at("checksum").text();
@@ -197,28 +200,96 @@ Survey::Survey(const std::vector<Eigen::Isometry3d>& all_poses, const std::optio
   }
 }
 
-ClashList readClashes(const std::filesystem::path& path)
+namespace {
+
+/// The clashes of obstacles with names: each has its obstacle's name before its id.
+void addClashes(const JsonReader& reader, std::vector<ClashList>& lists)
 {
-  const FileBytes file(path);
-  return parseClashes(file.view(), path.string());
+  std::set<std::string> ids;
+  for (const JsonReader& entry : reader.at("clashes").elements()) {
+    Clash clash = clashFrom(entry);
+    if (!ids.insert(clash.id).second) entry.at("id").fail("is the id of another clash, too", "remove one");
+    auto list = lists.begin();
+    if (!lists.front().name.empty()) {
+      const std::string name = nameFrom(entry.at("obstacle_name"));
+      list = std::find_if(lists.begin(), lists.end(), [&](const ClashList& one) { return one.name == name; });
+      if (list == lists.end())
+        entry.at("obstacle_name").fail("is none of the obstacles", "give the name of one of them");
+      if (clash.id.rfind(name + '/', 0) != 0) entry.at("id").fail("is no id of this obstacle", "begin with its name");
+      clash.id.erase(0, name.size() + 1);
+    }
+    list->clashes.push_back(std::move(clash));
+  }
 }
 
-ClashList parseClashes(std::string_view text, const std::string& name)
+} // namespace
+
+std::vector<ClashList> readClashLists(const std::filesystem::path& path)
+{
+  const FileBytes file(path);
+  return parseClashLists(file.view(), path.string());
+}
+
+std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name)
 {
   const std::string beginning = name + ": is no list of clashes"; // which JsonReader refers to
   const Json json = parseJson(text, beginning);
   const JsonReader reader(json, beginning);
-  ClashList list;
-  list.question = questionFrom(reader);
-  list.states_options = reader.has("options");
-  list.survey = surveyFrom(reader);
-  std::set<std::string> ids;
-  for (const JsonReader& entry : reader.at("clashes").elements()) {
-    list.clashes.push_back(clashFrom(entry));
-    if (!ids.insert(list.clashes.back().id).second)
-      entry.at("id").fail("is the id of another clash, too", "remove one");
+  std::vector<ClashList> lists;
+  const auto add = [&](const JsonReader& about, const char* obstacle) {
+    ClashList list;
+    list.question = questionFrom(reader, about, obstacle);
+    list.states_options = about.has("options");
+    list.survey = surveyFrom(reader, about);
+    lists.push_back(std::move(list));
+  };
+  if (!reader.has("obstacles")) {
+    add(reader, "obstacle");
   }
-  return list;
+  else {
+    std::set<std::string> names;
+    for (const JsonReader& obstacle : reader.at("obstacles").elements()) {
+      add(obstacle, "file");
+      lists.back().name = obstacle.at("name").text();
+      if (!names.insert(lists.back().name).second)
+        obstacle.at("name").fail("is the name of another obstacle, too", "give each its own");
+    }
+    if (lists.empty()) reader.at("obstacles").fail("is empty", "name one obstacle at least");
+  }
+  addClashes(reader, lists);
+  return lists;
+}
+
+const ClashList* findList(const std::vector<ClashList>& lists, const std::string& name, const ClashQuestion& question)
+{
+  const auto found = std::find_if(lists.begin(), lists.end(), [&](const ClashList& list) {
+    if (!list.name.empty() && !name.empty()) return list.name == name;
+    return (list.name.empty() && name.empty()) || std::filesystem::path(list.question.obstacle).filename() ==
+                                                      std::filesystem::path(question.obstacle).filename();
+  });
+  return found == lists.end() ? nullptr : &*found;
+}
+
+namespace {
+
+ClashList onlyOf(std::vector<ClashList> lists, const std::filesystem::path& path)
+{
+  if (!lists.front().name.empty())
+    throw files::FileError(path, "lists clashes of " + counted(lists.size(), "obstacle") + " with names",
+                           "compare with a list of one obstacle");
+  return std::move(lists.front());
+}
+
+} // namespace
+
+ClashList readClashes(const std::filesystem::path& path)
+{
+  return onlyOf(readClashLists(path), path);
+}
+
+ClashList parseClashes(std::string_view text, const std::string& name)
+{
+  return onlyOf(parseClashLists(text, name), name);
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a list of clashes was asked, and where its run looked: for lists of two runs, which are compared.
+// The question of a list of clashes, and where its run looked: so that lists of two runs can be compared.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -16,7 +16,7 @@
 
 namespace pcl_bsh::io {
 
-/// What is asked; of a list that was read its options alone. There is a clearance.
+/// A question with a clearance. A list that was read states its options alone.
 struct ClashQuestion : Question {
   std::string input, obstacle; ///< file names
 };
@@ -38,20 +38,30 @@ struct Survey {
   Survey(const std::vector<Eigen::Isometry3d>& poses, const std::optional<Extent>& scan);
 };
 
-/// What a run asked, and the clashes that it listed, without points and pairs.
+/// The question of a run about an obstacle, and the clashes that it listed, without points and pairs.
 struct ClashList {
+  std::string name; ///< of the obstacle, where the file lists several
   ClashQuestion question;
   bool states_options = true;   ///< false of lists of earlier versions: what was asked beside clearance is not known
   std::optional<Survey> survey; ///< none of lists of earlier versions
   std::vector<Clash> clashes;
 };
 
-/// What an earlier run listed, for compareWithEarlier().
+/// The lists of an earlier run, one for each of its obstacles, for compareWithEarlier().
 /// @throws files::FileError when the file cannot be read, JsonError naming the place in it that no run would have
 /// written
-ClashList readClashes(const std::filesystem::path& path);
+std::vector<ClashList> readClashLists(const std::filesystem::path& path);
 
 /// The same, of a text. @throws JsonError whose message begins with `name`
+std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name);
+
+/// Finds the list of an obstacle by its name or, where one of the two has no name, by its file. Returns null where
+/// there was no such obstacle.
+const ClashList* findList(const std::vector<ClashList>& lists, const std::string& name, const ClashQuestion& question);
+
+/// The list of an earlier run about one obstacle.
+/// @throws as readClashLists(); files::FileError for a file about several obstacles
+ClashList readClashes(const std::filesystem::path& path);
 ClashList parseClashes(std::string_view text, const std::string& name);
 
 /// Whether the earlier list, read from `path`, can tell what is new now.

@@ -2,6 +2,7 @@
 // The numbers of the page; clash_page.html has the page itself.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/obstacle_table.h>
 #include <pcl_bsh/io/reports/page_text.h>
 
 #include "clash_page.html.h"
@@ -27,74 +28,107 @@ double longestSide(const Clash& clash)
 
 class ClashPage {
 public:
-  explicit ClashPage(const ClashReport& report)
-  : report_(report),
-    closest_(closestOf(report)),
+  explicit ClashPage(const ClashLists& lists)
+  : lists_(lists),
+    first_(lists.obstacles.front()),
+    all_(lists.bySeverity()),
+    clearance_(greatestClearance(lists)),
+    closest_(closestOf(lists)),
     lowest_(std::isfinite(closest_) ? std::min(0.0, closest_) : 0.0),
-    range_(*report.question.clearance - lowest_)
+    range_(clearance_ - lowest_)
   {
   }
 
   std::string html() const { return rendered("clash_page.html", clash_page_html, contents()); }
 
 private:
+  static double greatestClearance(const ClashLists& lists)
+  {
+    double greatest = 0.0;
+    for (const ClashReport& report : lists.obstacles) greatest = std::max(greatest, *report.question.clearance);
+    return greatest;
+  }
+
   /// The smallest distance of all that are there now, infinity where there is none.
-  static double closestOf(const ClashReport& report)
+  static double closestOf(const ClashLists& lists)
   {
     double closest = std::numeric_limits<double>::infinity();
-    for (const Clash& clash : report.clashes)
-      if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
+    for (const ClashReport& report : lists.obstacles)
+      for (const Clash& clash : report.clashes)
+        if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
     return closest;
+  }
+
+  template <typename Holds>
+  bool any(const Holds& holds) const
+  {
+    return std::any_of(lists_.obstacles.begin(), lists_.obstacles.end(), holds);
+  }
+
+  bool isUncertain() const
+  {
+    return any([](const ClashReport& report) { return report.question.isUncertain(); });
   }
 
   /// Certain ones first.
   std::string headline() const
   {
-    const std::size_t perhaps = report_.question.isUncertain() ? report_.perhaps() : 0;
-    std::string line = counted(report_.present() - perhaps, "clash", "clashes");
-    if (report_.question.isUncertain()) line += ", " + std::to_string(perhaps) + " perhaps";
-    if (report_.unseen) line += ", " + std::to_string(report_.count(ClashStatus::unseen)) + " unseen";
+    const std::size_t perhaps = isUncertain() ? lists_.perhaps() : 0;
+    std::string line = counted(lists_.present() - perhaps, "clash", "clashes");
+    if (isUncertain()) line += ", " + std::to_string(perhaps) + " perhaps";
+    if (any([](const ClashReport& report) { return report.unseen != nullptr; }))
+      line += ", " + std::to_string(lists_.count(ClashStatus::unseen)) + " unseen";
     return line;
   }
 
-  /// What is uncertain, where anything is.
+  /// The uncertainties of both sides; false where there are no uncertainties.
   Data uncertainty() const
   {
-    const ClashQuestion& question = report_.question;
-    if (!question.isUncertain()) return false;
+    const ClashQuestion& question = first_.question;
+    if (!isUncertain()) return false;
     return Object{{"input_uncertainty", plain(uncertaintyText(question.uncertaintyOfInput()))},
                   {"obstacle_uncertainty", plain(uncertaintyText(question.uncertaintyOfObstacle()))},
-                  {"undecided", std::to_string(report_.found.undecided)}};
+                  {"undecided", std::to_string(sum(&TrajectoryResult::undecided))}};
+  }
+
+  std::size_t sum(std::size_t TrajectoryResult::*count) const
+  {
+    std::size_t all = 0;
+    for (const ClashReport& report : lists_.obstacles) all += report.found.*count;
+    return all;
   }
 
   Data contents() const
   {
-    const ClashQuestion& question = report_.question;
-    const std::string promise = report_.surface != nullptr ? promiseOf(*report_.surface, question.solid) : "";
-    Object page = pageAbout(question, report_.coordinate_system, question.accuracy.text(), promise);
+    const ClashQuestion& question = first_.question;
+    std::string promise = first_.surface != nullptr ? promiseOf(*first_.surface, question.solid) : "";
+    if (lists_.haveNames()) promise.clear();
+    Object page = pageAbout(question, first_.coordinate_system, question.accuracy.text(), promise);
+    if (lists_.haveNames()) page["obstacle"] = counted(lists_.obstacles.size(), "obstacle");
     page.insert({{"headline", headline()},
-                 {"unit", textOrNone(report_.unit)},
-                 {"in", report_.unit.empty() ? std::string() : " [" + plain(report_.unit) + "]"},
+                 {"unit", textOrNone(first_.unit)},
+                 {"in", first_.unit.empty() ? std::string() : " [" + plain(first_.unit) + "]"},
                  {"uncertainty", uncertainty()},
-                 {"poses", counted(report_.poses.size(), "pose")},
-                 {"clearance", number(*question.clearance)},
-                 {"colliding", std::to_string(report_.found.colliding)},
+                 {"poses", counted(first_.poses.size(), "pose")},
+                 {"clearance", number(clearance_)},
+                 {"colliding", std::to_string(sum(&TrajectoryResult::colliding))},
                  {"closest", std::isfinite(closest_) ? Data(distanceText(closest_)) : Data(false)},
                  {"swept", question.swept > 0.0 ? Data(number(question.swept)) : Data(false)},
-                 {"cluster_distance", number(report_.cluster_distance)},
+                 {"cluster_distance", number(first_.cluster_distance)},
                  {"compared", false},
                  {"previous", false},
+                 {"obstacles", obstacleTable(lists_)},
                  {"path", path()},
-                 {"nothing", report_.clashes.empty()},
+                 {"nothing", all_.empty()},
                  {"tables", tables()},
                  {"one_by_one", cards()}});
-    if (report_.previous) {
-      page["previous"] = plain(*report_.previous);
+    if (first_.previous) {
+      page["previous"] = plain(*first_.previous);
       List compared;
       for (std::size_t i = 0; i < clash_statuses; ++i) {
         const auto status = static_cast<ClashStatus>(i);
-        if (report_.count(status) == 0 && i > static_cast<std::size_t>(ClashStatus::resolved)) continue; // rare ones
-        compared.push_back(Object{{"count", std::to_string(report_.count(status))}, {"status", inWords(status)}});
+        if (lists_.count(status) == 0 && i > static_cast<std::size_t>(ClashStatus::resolved)) continue; // rare ones
+        compared.push_back(Object{{"count", std::to_string(lists_.count(status))}, {"status", inWords(status)}});
       }
       page["compared"] = compared;
     }
@@ -111,8 +145,7 @@ private:
   /// From deep red where clouds touch to pale yellow at the clearance.
   std::string colorOf(double distance) const
   {
-    const double clearance = *report_.question.clearance;
-    const double share = clearance > 0 ? std::clamp(distance / clearance, 0.0, 1.0) : 0.0;
+    const double share = clearance_ > 0 ? std::clamp(distance / clearance_, 0.0, 1.0) : 0.0;
     const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
     return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
   }
@@ -127,12 +160,15 @@ private:
   /// pose only.
   std::vector<double> nearestAtPoses() const
   {
-    std::vector<double> nearest(report_.poses.size(), std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < report_.found.poses.size(); ++k) nearest[k] = report_.found.poses[k].distance;
-    for (const Clash& clash : report_.clashes) {
-      for (const std::uint32_t record : clash.records) {
-        double& at_pose = nearest[static_cast<std::size_t>(report_.found.closest_pose[record])];
-        at_pose = std::min(at_pose, static_cast<double>(report_.found.distance[record]));
+    std::vector<double> nearest(first_.poses.size(), std::numeric_limits<double>::infinity());
+    for (const ClashReport& report : lists_.obstacles) {
+      for (std::size_t k = 0; k < report.found.poses.size(); ++k)
+        nearest[k] = std::min(nearest[k], report.found.poses[k].distance);
+      for (const Clash& clash : report.clashes) {
+        for (const std::uint32_t record : clash.records) {
+          double& at_pose = nearest[static_cast<std::size_t>(report.found.closest_pose[record])];
+          at_pose = std::min(at_pose, static_cast<double>(report.found.distance[record]));
+        }
       }
     }
     return nearest;
@@ -157,7 +193,7 @@ private:
                             {"color", colorOf(nearest)}});
     }
     return Object{{"bars", bars},
-                  {"limit", number(*report_.question.clearance, 3)},
+                  {"limit", number(clearance_, 3)},
                   {"lowest", number(lowest_, 3)},
                   {"last", std::to_string(poses.size() - 1)}};
   }
@@ -171,9 +207,9 @@ private:
     return least + " to " + most + " deep";
   }
 
-  static Object factsOf(const Clash& clash)
+  static Object factsOf(const ClashReport& report, const Clash& clash)
   {
-    return {{"id", plain(clash.id)},
+    return {{"id", plain(report.idOf(clash))},
             {"class", nameOf(clash.status)},
             {"status", inWords(clash.status)},
             {"perhaps", !clash.isCertain()},
@@ -197,10 +233,11 @@ private:
   {
     List rows;
     std::size_t cards = 0;
-    for (const Clash& clash : report_.clashes) {
+    for (const auto& [report, one] : all_) {
+      const Clash& clash = *one;
       const bool has_card = isPresent(clash.status) && cards++ < most_pictures;
       if (tableOf(clash) != table) continue;
-      Object row = factsOf(clash);
+      Object row = factsOf(*report, clash);
       row["size"] = number(longestSide(clash), 3);
       row["linked"] = has_card;
       row["unseen"] = table == Table::unseen;
@@ -229,11 +266,11 @@ private:
   {
     List cards;
     bool all = true;
-    for (const Clash& clash : report_.clashes) {
-      if (!isPresent(clash.status)) continue;
+    for (const auto& [report, clash] : all_) {
+      if (!isPresent(clash->status)) continue;
       all = cards.size() < most_pictures;
       if (!all) break;
-      cards.push_back(card(clash));
+      cards.push_back(card(*report, *clash));
     }
     if (cards.empty()) return false;
     return Object{{"cards", cards}, {"most_pictures", all ? Data(false) : Data(std::to_string(most_pictures))}};
@@ -247,87 +284,93 @@ private:
     return std::to_string(point.record) + " of " + plain(point.file);
   }
 
-  Data card(const Clash& clash) const
+  Data card(const ClashReport& report, const Clash& clash) const
   {
-    const Eigen::Vector3d p = report_.scanPoint(clash);
-    Object card = factsOf(clash);
-    card["scan_point"] = nameOfPart(report_.source_of, clash.scan_point, clash.scan_point);
+    const Eigen::Vector3d p = report.scanPoint(clash);
+    Object card = factsOf(report, clash);
+    card["scan_point"] = nameOfPart(report.source_of, clash.scan_point, clash.scan_point);
     card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
     card["model_part"] =
-        report_.partName() + (' ' + nameOfPart(report_.model_source_of, clash.model_point, clash.model_point));
-    card["top_view"] = topView(clash);
-    card["approach"] = approach(clash);
+        report.partName() + (' ' + nameOfPart(report.model_source_of, clash.model_point, clash.model_point));
+    card["model_name"] = report.name.empty() ? std::string("the obstacle") : plain(report.name);
+    card["top_view"] = topView(report, clash);
+    card["approach"] = approach(report, clash);
     return card;
   }
 
   /// Some of its points, evenly picked, as circles. These are too many to be data of the template.
   /// @param x, y where a record lies in the drawing
   template <typename X, typename Y>
-  std::string dotsOf(const Clash& clash, const X& x, const Y& y) const
+  std::string dotsOf(const ClashReport& report, const Clash& clash, const X& x, const Y& y) const
   {
     std::string dots;
     const std::size_t count = std::min(clash.records.size(), most_dots);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t record = clash.records[i * clash.records.size() / count];
-      const auto distance = static_cast<double>(report_.found.distance[record]);
+      const auto distance = static_cast<double>(report.found.distance[record]);
       dots += "<circle cx=\"" + coordinate(x(record)) + "\" cy=\"" + coordinate(y(record)) + "\" r=\"2\" fill=\"" +
               colorOf(distance) + "\"/>";
     }
     return dots;
   }
 
-  Data topView(const Clash& clash) const
+  Data topView(const ClashReport& report, const Clash& clash) const
   {
-    const Eigen::Vector3d scan = report_.scanPoint(clash), model = report_.modelPoint(clash);
+    const Eigen::Vector3d scan = report.scanPoint(clash), model = report.modelPoint(clash);
     Eigen::AlignedBox2d box(Eigen::Vector2d(clash.low[0], clash.low[1]), Eigen::Vector2d(clash.high[0], clash.high[1]));
     box.extend(model.head<2>());
-    const double least = std::max({box.sizes().maxCoeff() * 0.1, report_.cluster_distance, 1e-9});
+    const double least = std::max({box.sizes().maxCoeff() * 0.1, report.cluster_distance, 1e-9});
     const Eigen::Vector2d size = box.sizes().array() + least;
     const ViewFromAbove seen{top_view_area, box.center(), size};
-    return Object{{"dots", dotsOf(
-                               clash, [&](std::uint32_t record) { return seen.x(report_.scan.point(record)[0]); },
-                               [&](std::uint32_t record) { return seen.y(report_.scan.point(record)[1]); })},
-                  {"scan_x", coordinate(seen.x(scan.x()))},
-                  {"scan_y", coordinate(seen.y(scan.y()))},
-                  {"model_x", coordinate(seen.x(model.x()))},
-                  {"model_y", coordinate(seen.y(model.y()))},
-                  {"scale_width", coordinate(seen.bar * seen.scale)},
-                  {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
-                  {"scale_length", number(seen.bar)}};
+    return Object{
+        {"dots", dotsOf(
+                     report, clash, [&](std::uint32_t record) { return seen.x(report.scan.point(record)[0]); },
+                     [&](std::uint32_t record) { return seen.y(report.scan.point(record)[1]); })},
+        {"scan_x", coordinate(seen.x(scan.x()))},
+        {"scan_y", coordinate(seen.y(scan.y()))},
+        {"model_x", coordinate(seen.x(model.x()))},
+        {"model_y", coordinate(seen.y(model.y()))},
+        {"scale_width", coordinate(seen.bar * seen.scale)},
+        {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
+        {"scale_length", number(seen.bar)}};
   }
 
   /// Poses across, distances up.
-  Data approach(const Clash& clash) const
+  Data approach(const ClashReport& report, const Clash& clash) const
   {
     constexpr const Area& area = approach_area;
     std::int32_t first = clash.closest_pose, last = clash.closest_pose;
     for (const std::uint32_t record : clash.records) {
-      first = std::min(first, report_.found.closest_pose[record]);
-      last = std::max(last, report_.found.closest_pose[record]);
+      first = std::min(first, report.found.closest_pose[record]);
+      last = std::max(last, report.found.closest_pose[record]);
     }
     const auto x = [&](std::int32_t pose) {
       if (first == last) return area.left + area.width / 2;
       return area.left + 6 + (area.width - 12) * static_cast<double>(pose - first) / (last - first);
     };
     const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
-    const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report_.found.distance[record]); };
-    const double limit_y = y(*report_.question.clearance);
-    return Object{{"dots", dotsOf(
-                               clash, [&](std::uint32_t record) { return x(report_.found.closest_pose[record]); },
-                               [&](std::uint32_t record) { return y(distanceOf(record)); })},
-                  {"limit", number(*report_.question.clearance, 3)},
-                  {"limit_y", number(limit_y, 6)},
-                  {"limit_text_y", number(limit_y + 4, 6)},
-                  {"lowest", number(lowest_, 3)},
-                  {"lowest_text_y", number(y(lowest_) + 2, 6)},
-                  {"closest_x", coordinate(x(clash.closest_pose))},
-                  {"closest_y", coordinate(y(clash.distance))},
-                  {"only", first == last ? Data(std::to_string(first)) : Data(false)},
-                  {"first", std::to_string(first)},
-                  {"last", std::to_string(last)}};
+    const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report.found.distance[record]); };
+    const double limit_y = y(*report.question.clearance);
+    return Object{
+        {"dots", dotsOf(
+                     report, clash, [&](std::uint32_t record) { return x(report.found.closest_pose[record]); },
+                     [&](std::uint32_t record) { return y(distanceOf(record)); })},
+        {"limit", number(*report.question.clearance, 3)},
+        {"limit_y", number(limit_y, 6)},
+        {"limit_text_y", number(limit_y + 4, 6)},
+        {"lowest", number(lowest_, 3)},
+        {"lowest_text_y", number(y(lowest_) + 2, 6)},
+        {"closest_x", coordinate(x(clash.closest_pose))},
+        {"closest_y", coordinate(y(clash.distance))},
+        {"only", first == last ? Data(std::to_string(first)) : Data(false)},
+        {"first", std::to_string(first)},
+        {"last", std::to_string(last)}};
   }
 
-  const ClashReport& report_;
+  const ClashLists& lists_;
+  const ClashReport& first_;
+  const std::vector<std::pair<const ClashReport*, const Clash*>> all_;
+  const double clearance_; ///< the greatest of all obstacles
   const double closest_;
   const double lowest_; ///< where the scale of distances ends
   const double range_;  ///< from there to the clearance
@@ -335,9 +378,9 @@ private:
 
 } // namespace
 
-std::string clashPage(const ClashReport& report)
+std::string clashPage(const ClashLists& lists)
 {
-  return ClashPage(report).html();
+  return ClashPage(lists).html();
 }
 
 } // namespace pcl_bsh::io

@@ -5,7 +5,9 @@
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/question/options.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,12 +31,6 @@ Json intervalOf(const Clash& clash)
   return {clash.interval.lower, clash.interval.upper};
 }
 
-const char* certaintyOf(const Clash& clash)
-{
-  if (clash.wasNoClash()) return "unseen";
-  return clash.isCertain() ? "certain" : "perhaps";
-}
-
 Json textOrNull(const std::string& text)
 {
   return text.empty() ? Json() : Json(text);
@@ -42,8 +38,9 @@ Json textOrNull(const std::string& text)
 
 Json toJson(const ClashReport& report, const Clash& clash)
 {
-  Json json = {{"id", clash.id},
-               {"status", nameOf(clash.status)},
+  Json json = {{"id", report.idOf(clash)}};
+  if (!report.name.empty()) json["obstacle_name"] = report.name;
+  json.update({{"status", nameOf(clash.status)},
                {"certainty", certaintyOf(clash)},
                {"points", clash.points},
                {"certain_points", clash.certain_points},
@@ -53,7 +50,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
                {"distance", clash.wasNoClash() ? Json() : Json(clash.distance)},
                {"distance_interval", intervalOf(clash)},
                {"first_pose", clash.first_pose},
-               {"closest_pose", clash.closest_pose}};
+               {"closest_pose", clash.closest_pose}});
   if (!isPresent(clash.status)) return json;
   const auto side = [](Json named, const Eigen::Vector3d& at) {
     named["at"] = {at.x(), at.y(), at.z()};
@@ -68,12 +65,45 @@ Json toJson(const ClashReport& report, const Clash& clash)
   return json;
 }
 
+/// The question about an obstacle.
+Json askedJson(const ClashQuestion& question, const Obstacle* surface)
+{
+  return {{"surface", surfaceJson(surface, question.solid)},
+          {"clearance", *question.clearance},
+          {"options", optionsJson(question)},
+          {"uncertainty",
+           {{"input", uncertaintyJson(question.uncertaintyOfInput())},
+            {"obstacle", uncertaintyJson(question.uncertaintyOfObstacle())}}}};
+}
+
+Json pathJson(const Survey& survey)
+{
+  return {{"poses", survey.poses}, {"checksum", survey.path_checksum}, {"box", toJson(survey.path)}};
+}
+
+/// The smallest distance; null where there is no pair.
+Json closestJson(const DistanceResult& closest)
+{
+  return closest.pair ? Json(closest.distance) : Json();
+}
+
+Json pairJson(const DistanceResult& closest)
+{
+  return closest.pair ? Json{closest.pair->a, closest.pair->b} : Json();
+}
+
 std::string formatOf(const std::filesystem::path& path)
 {
   return io::formatOf(path, {".json", ".csv", ".html"});
 }
 
 } // namespace
+
+const char* certaintyOf(const Clash& clash)
+{
+  if (clash.wasNoClash()) return "unseen";
+  return clash.isCertain() ? "certain" : "perhaps";
+}
 
 Eigen::Vector3d ClashReport::modelPoint(const Clash& clash) const
 {
@@ -109,100 +139,123 @@ Json unseenJson(const Answer::Unseen& unseen)
           {"inside", unseen.inside.empty() ? Json() : Json(unseen.inside)}};
 }
 
-std::string clashJson(const ClashReport& report)
+std::vector<std::pair<const ClashReport*, const Clash*>> ClashLists::bySeverity() const
 {
-  const ClashQuestion& question = report.question;
-  const Survey& survey = report.survey;
-  Json json = {{"program", reportProgram()},
-               {"date", reportDate()},
-               {"input", question.input},
-               {"obstacle", question.obstacle},
-               {"unit", textOrNull(report.unit)},
-               {"coordinate_system", textOrNull(report.coordinate_system)},
-               {"surface", surfaceJson(report.surface, question.solid)},
-               {"clearance", *question.clearance},
-               {"options", optionsJson(question)},
-               {"uncertainty",
-                {{"input", uncertaintyJson(question.uncertaintyOfInput())},
-                 {"obstacle", uncertaintyJson(question.uncertaintyOfObstacle())}}},
-               {"accuracy", question.accuracy.text()},
-               {"cluster_distance", report.cluster_distance},
-               {"poses", report.poses.size()},
-               {"swept", question.swept > 0.0 ? Json(question.swept) : Json()},
-               {"path", {{"poses", survey.poses}, {"checksum", survey.path_checksum}, {"box", toJson(survey.path)}}},
-               {"scan", {{"box", toJson(survey.scan)}}},
-               {"previous", report.previous ? Json(*report.previous) : Json()},
-               {"clashes", Json::array()}};
-  for (const Clash& clash : report.clashes) json["clashes"].push_back(toJson(report, clash));
+  std::vector<std::pair<const ClashReport*, const Clash*>> all;
+  for (const ClashReport& report : obstacles)
+    for (const Clash& clash : report.clashes) all.emplace_back(&report, &clash);
+  if (obstacles.size() > 1)
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return isMoreSevere(*a.second, *b.second); });
+  return all;
+}
+
+std::size_t ClashLists::sum(std::size_t (ClashReport::*of)() const) const
+{
+  std::size_t all = 0;
+  for (const ClashReport& report : obstacles) all += (report.*of)();
+  return all;
+}
+
+std::size_t ClashLists::count(ClashStatus status) const
+{
+  std::size_t all = 0;
+  for (const ClashReport& report : obstacles) all += report.count(status);
+  return all;
+}
+
+const char* nameOfState(const ObstacleAnswer& found)
+{
+  return found.asked ? nameOfState(found.verdict) : "ignored";
+}
+
+const char* nameOfState(Verdict verdict)
+{
+  switch (verdict) {
+  case Verdict::colliding:
+    return "clash";
+  case Verdict::undecided:
+    return "perhaps";
+  case Verdict::sparse:
+    return "sparse";
+  case Verdict::unseen:
+    return "unseen";
+  case Verdict::free:
+    break;
+  }
+  return "clear";
+}
+
+Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
+                  const ObstacleAnswer& found)
+{
+  Json json = {{"name", name}, {"file", question.obstacle}};
+  json.update(askedJson(question, surface));
+  json.update({{"state", nameOfState(found)},
+               {"colliding", found.colliding},
+               {"undecided", found.undecided},
+               {"sparse", found.sparse},
+               {"unseen", found.unseen},
+               {"distance", closestJson(found.closest)},
+               {"closest_pose", found.closest_pose < 0 ? Json() : Json(found.closest_pose)},
+               {"closest_pair", pairJson(found.closest)}});
+  return json;
+}
+
+Json betweenJson(const BetweenObstacles& two)
+{
+  return {{"first", two.first},
+          {"second", two.second},
+          {"clearance", two.clearance},
+          {"state", nameOfState(two.pair.verdict)},
+          {"distance", closestJson(two.pair.closest)},
+          {"closest_pair", pairJson(two.pair.closest)}};
+}
+
+std::string clashJson(const ClashLists& lists)
+{
+  const ClashReport& first = lists.obstacles.front();
+  const ClashQuestion& question = first.question;
+  Json json = {{"program", reportProgram()}, {"date", reportDate()}, {"input", question.input}};
+  if (!lists.haveNames()) json["obstacle"] = question.obstacle;
+  json.update({{"unit", textOrNull(first.unit)}, {"coordinate_system", textOrNull(first.coordinate_system)}});
+  if (!lists.haveNames()) json.update(askedJson(question, first.surface));
+  json.update({{"accuracy", question.accuracy.text()},
+               {"cluster_distance", first.cluster_distance},
+               {"poses", first.poses.size()},
+               {"swept", question.swept > 0.0 ? Json(question.swept) : Json()}});
+  if (!lists.haveNames()) json["path"] = pathJson(first.survey);
+  json.update(
+      {{"scan", {{"box", toJson(first.survey.scan)}}}, {"previous", first.previous ? Json(*first.previous) : Json()}});
+  if (lists.haveNames()) {
+    json["obstacles"] = json["between"] = Json::array();
+    for (const ClashReport& report : lists.obstacles) {
+      json["obstacles"].push_back(obstacleJson(report.name, report.question, report.surface, *report.answer));
+      json["obstacles"].back().update({{"clashes", report.present()}, {"path", pathJson(report.survey)}});
+    }
+    for (const BetweenObstacles& two : lists.between) json["between"].push_back(betweenJson(two));
+  }
+  json["clashes"] = Json::array();
+  for (const auto& [report, clash] : lists.bySeverity()) json["clashes"].push_back(toJson(*report, *clash));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::string clashCsv(const ClashReport& report)
+std::string clashCounts(const ClashLists& lists)
 {
-  std::string csv = "id,status,points,distance,first_pose,closest_pose,min_x,min_y,min_z,max_x,max_y,max_z,"
-                    "input_" +
-                    std::string(report.source_of ? "source,input_record" : "point") +
-                    ",input_x,input_y,input_z,obstacle_" +
-                    (report.model_source_of ? "source,obstacle_record" : report.partName()) +
-                    ",obstacle_x,obstacle_y,obstacle_z,"
-                    "certainty,certain_points,clearance,input_uncertainty,obstacle_uncertainty,sigmas,accuracy,unit,"
-                    "coordinate_system,pose_uncertainty,distance_lower,distance_upper\n";
-  const ClashQuestion& question = report.question;
-  const auto cell = [&](const std::string& text) { csv += (csv.back() == '\n' ? "" : ",") + text; };
-  for (const Clash& clash : report.clashes) {
-    cell(csvText(clash.id));
-    cell(nameOf(clash.status));
-    cell(std::to_string(clash.points));
-    cell(clash.wasNoClash() ? "" : numberText(clash.distance));
-    cell(std::to_string(clash.first_pose));
-    cell(std::to_string(clash.closest_pose));
-    for (const Point3& corner : {clash.low, clash.high})
-      for (const double coordinate : corner) cell(numberText(coordinate));
-    const auto cell_of = [&](const auto& source_of, std::uint32_t number, std::uint32_t part) {
-      if (!source_of) return cell(std::to_string(part));
-      const SourcePoint point = source_of(number);
-      cell(csvText(point.file));
-      cell(std::to_string(point.record));
-    };
-    if (isPresent(clash.status)) {
-      cell_of(report.source_of, clash.scan_point, clash.scan_point);
-      for (const double coordinate : report.scanPoint(clash)) cell(numberText(coordinate));
-      cell_of(report.model_source_of, clash.model_point, clash.model_point);
-      for (const double coordinate : report.modelPoint(clash)) cell(numberText(coordinate));
-    }
-    else {
-      csv += std::string(8U + (report.source_of ? 1U : 0U) + (report.model_source_of ? 1U : 0U), ',');
-    }
-    cell(certaintyOf(clash));
-    cell(std::to_string(clash.certain_points));
-    cell(numberText(*question.clearance));
-    std::string sigmas;
-    for (const Uncertainty& uncertainty : {question.uncertaintyOfInput(), question.uncertaintyOfObstacle()}) {
-      cell(uncertainty.field.empty() ? numberText(uncertainty.length) : csvText(uncertainty.field));
-      if (!uncertainty.field.empty()) sigmas = numberText(uncertainty.sigmas);
-    }
-    cell(sigmas);
-    cell(question.accuracy.text());
-    cell(csvText(report.unit));
-    cell(csvText(report.coordinate_system));
-    cell(csvText(question.pose_uncertainty.text()));
-    for (const double end : {clash.interval.lower, clash.interval.upper}) cell(std::isnan(end) ? "" : numberText(end));
-    csv += '\n';
-  }
-  return csv;
-}
-
-std::string clashCounts(const ClashReport& report)
-{
-  const std::size_t present = report.present(), perhaps = report.perhaps();
+  const auto any = [&](const auto& holds) {
+    return std::any_of(lists.obstacles.begin(), lists.obstacles.end(), holds);
+  };
+  const std::size_t present = lists.present(), perhaps = lists.perhaps();
   std::string text = counted(present - perhaps, "clash", "clashes");
-  if (report.question.isUncertain()) text += ", " + std::to_string(perhaps) + " perhaps";
-  if (report.unseen) text += ", " + std::to_string(report.count(ClashStatus::unseen)) + " unseen";
-  if (!report.previous) return text;
+  if (any([](const ClashReport& report) { return report.question.isUncertain(); }))
+    text += ", " + std::to_string(perhaps) + " perhaps";
+  if (any([](const ClashReport& report) { return report.unseen != nullptr; }))
+    text += ", " + std::to_string(lists.count(ClashStatus::unseen)) + " unseen";
+  if (!lists.obstacles.front().previous) return text;
   for (const auto& [status, name] : {std::pair{ClashStatus::resolved, "resolved"},
                                      {ClashStatus::not_visited, "not visited"},
                                      {ClashStatus::not_scanned, "not scanned"}}) {
-    const std::size_t count = report.count(status);
+    const std::size_t count = lists.count(status);
     if (count > 0 || status == ClashStatus::resolved) text += ", " + std::to_string(count) + ' ' + name;
   }
   return text;
@@ -268,12 +321,23 @@ double clusterDistanceFor(double clearance, const Spacing& scan)
   return least > 0 ? std::exp2(std::ceil(std::log2(least))) : 1.0;
 }
 
-void writeClashes(const std::filesystem::path& path, const ClashReport& report)
+std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::filesystem::path& file,
+                                        const std::vector<ClashList>& earlier)
+{
+  std::vector<std::string> warnings;
+  for (const ClashList& list : earlier) {
+    const auto same = [&](const ClashReport& report) { return report.name == list.name; };
+    if (std::any_of(lists.obstacles.begin(), lists.obstacles.end(), same)) continue;
+    warnings.push_back(file.string() + ": lists clashes of '" + list.name +
+                       "', which is no obstacle now: its clashes are left out");
+  }
+  return warnings;
+}
+
+void writeClashes(const std::filesystem::path& path, const ClashLists& lists)
 {
   const std::string format = formatOf(path);
-  const std::string text = format == ".json"  ? clashJson(report)
-                           : format == ".csv" ? clashCsv(report)
-                                              : clashPage(report);
+  const std::string text = format == ".json" ? clashJson(lists) : format == ".csv" ? clashCsv(lists) : clashPage(lists);
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 

@@ -9,7 +9,7 @@
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/neighbors/spacing.h>
-#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/question/obstacles.h>
 
 #include <Eigen/Geometry>
 
@@ -18,6 +18,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -28,7 +29,7 @@ struct SourcePoint {
   std::uint32_t record = 0;
 };
 
-/// All that a list of clashes tells, in the frame of the input. Clouds and result are borrowed.
+/// Clashes of the input with an obstacle, in the frame of the input. Clouds and result are borrowed.
 struct ClashReport {
   ClashQuestion question;
   double cluster_distance = 0;
@@ -43,12 +44,17 @@ struct ClashReport {
   std::optional<std::string> previous = {}; ///< file name
   const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
   const Answer::Unseen* unseen = nullptr;   ///< of a question with `seen` and `unseen_places`
-  /// Of a point of `scan`, where the input is several files.
+  /// The source of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
   /// The same of a point of `model`.
   std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
+  std::string name = {};                  ///< of the obstacle, where it is one of several
+  const ObstacleAnswer* answer = nullptr; ///< set where the obstacle is one of several
 
-  /// Of the obstacle: a point, or a triangle.
+  /// As lists and pages tell it: of several obstacles, ids begin with their names.
+  std::string idOf(const Clash& clash) const { return name.empty() ? clash.id : name + '/' + clash.id; }
+
+  /// A record of the obstacle: a point, or a triangle.
   const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 
   std::size_t count(ClashStatus status) const
@@ -84,34 +90,75 @@ private:
   }
 };
 
+/// How two obstacles stand to each other.
+struct BetweenObstacles {
+  std::string first, second; ///< names
+  double clearance = 0.0;    ///< the greater of theirs
+  ObstaclePair pair;
+};
+
+/// All that a list of clashes tells: of one obstacle, or of several that have names. Borrows as its reports do.
+struct ClashLists {
+  std::vector<ClashReport> obstacles; ///< one at least
+  std::vector<BetweenObstacles> between = {};
+
+  ClashLists() = default;
+  /** One alone. */ ClashLists(ClashReport report) { obstacles.push_back(std::move(report)); }
+
+  /// Whether obstacles have names, and clashes tell these.
+  bool haveNames() const { return !obstacles.front().name.empty(); }
+
+  /// Each clash with its obstacle; of several obstacles the most severe first.
+  std::vector<std::pair<const ClashReport*, const Clash*>> bySeverity() const;
+
+  std::size_t present() const { return sum(&ClashReport::present); } ///< clashes that are there now
+  std::size_t perhaps() const { return sum(&ClashReport::perhaps); } ///< those that collide only perhaps
+  std::size_t count(ClashStatus status) const;
+
+private:
+  std::size_t sum(std::size_t (ClashReport::*of)() const) const;
+};
+
+/// certain, perhaps or unseen.
+const char* certaintyOf(const Clash& clash);
+
+/// clash, perhaps, sparse, unseen or clear: what was found of an obstacle.
+const char* nameOfState(Verdict verdict);
+const char* nameOfState(const ObstacleAnswer& found); ///< or ignored
+
 /// givenOptions() as an object.
 Json optionsJson(const Question& question);
 
-/// What an obstacle is compared as: null where that is its points.
+/// Tells that an obstacle is compared as a surface; null where its points are compared.
 Json surfaceJson(const Obstacle* surface, bool solid);
 
-/// What of an obstacle is unseen, without `where`.
+/// The unseen records of an obstacle, without `where`.
 Json unseenJson(const Answer::Unseen& unseen);
 
-/// One object per clash, with its closest pair if it is there now.
-std::string clashJson(const ClashReport& report);
+/// The question about an obstacle and its answer; the answer about two obstacles.
+Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
+                  const ObstacleAnswer& found);
+Json betweenJson(const BetweenObstacles& two);
+
+/// One object per clash, with its closest pair if it is there now. Several obstacles have one object each, too.
+std::string clashJson(const ClashLists& lists);
 
 /// One clash a line, lengths in the clouds' unit, each with the digits that read back to the same bits. One that is not
-/// there now has no pair. What was asked is repeated in each line.
-std::string clashCsv(const ClashReport& report);
+/// there now has no pair. Each line repeats the question.
+std::string clashCsv(const ClashLists& lists);
 
-/// A page that opens alone in a browser: a chart of the path, a table, and two pictures of each clash.
-std::string clashPage(const ClashReport& report);
+/// A page that opens alone in a browser: a chart of the path, tables, and two pictures of each clash.
+std::string clashPage(const ClashLists& lists);
 
 /// Writes what the extension says: .json, .csv or .html. The file appears complete or not at all.
 /// @throws files::FileError
-void writeClashes(const std::filesystem::path& path, const ClashReport& report);
+void writeClashes(const std::filesystem::path& path, const ClashLists& lists);
 
 /// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
 void requireClashFormat(const std::filesystem::path& path);
 
 /// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
-std::string clashCounts(const ClashReport& report);
+std::string clashCounts(const ClashLists& lists);
 
 /// The clashes of two clouds in memory, and what of the obstacle is unseen. All but the question is borrowed.
 ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const SphereHierarchy& model,
@@ -129,6 +176,10 @@ void listUnseen(ClashReport& report);
 /// @return warnings of surveyWarnings()
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const std::function<void(FormerPlaces&)>& look);
+
+/// Names of obstacles in the earlier lists that are not asked about now, a warning each.
+std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::filesystem::path& file,
+                                        const std::vector<ClashList>& earlier);
 
 /// As above, of what clashesOf() made of these hierarchies.
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,

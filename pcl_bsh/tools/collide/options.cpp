@@ -31,6 +31,9 @@ Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: where would a robot stand in what no scanner of the hall ever looked into?
   pcl_bsh_collide hall.ptx robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --seen
+Example: which of two machines stands too near to a hall's points or to the other, and where?
+  pcl_bsh_collide hall.las marked.las --obstacle "press=press.stl;pose=2,1,0,0,0,0" --obstacle mill=mill.stl
+      --between --clearance 0.05 --clashes clashes.html
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface?
@@ -55,11 +58,42 @@ void requireConsistent(const CollideOptions& options)
     refuse("--obstacle-out", "are flags at one pose: leave out the path and --clashes, or give --seen");
   if (!options.unit.empty() && !options.distances && options.clashes.empty())
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
+  if (options.obstacles.empty() && (options.between || !options.ignored.empty()))
+    refuse(options.between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
+  if (!options.obstacles.empty() && options.obstacle_out)
+    refuse("--obstacle-out", "is of one obstacle: leave it out, or give OBSTACLE alone");
+  if (!options.obstacles.empty() && options.distance_page)
+    refuse("--distance-page", "is of one obstacle: leave it out, or give OBSTACLE alone");
   if (!options.question.clearance && !options.distances)
     throw UsageError(std::string("command line: --clearance is required: see ") + collide_program + " --help");
 }
 
+/// Positional names and those of --obstacle: INPUT OBSTACLE OUTPUT, or INPUT OUTPUT where obstacles have names.
+void setObstacles(CollideOptions& options, const std::vector<std::string>& given)
+{
+  if (given.empty()) {
+    if (options.output.empty())
+      throw UsageError(std::string("command line: OUTPUT is required: see ") + collide_program + " --help");
+    return;
+  }
+  std::vector<std::string> all = given;
+  if (options.output.empty())
+    options.output = options.obstacle;
+  else
+    all.insert(all.begin(), options.obstacle.string());
+  options.obstacle.clear();
+  options.obstacles = parseObstacles(all, options.warnings);
+  options.ignoredPairs(); // fails now
+}
+
 } // namespace
+
+IgnoredPairs CollideOptions::ignoredPairs() const
+{
+  std::vector<std::string> names = {"input"};
+  for (const ObstacleChoice& one : obstacles) names.push_back(one.name);
+  return {ignored, names};
+}
 
 std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 {
@@ -67,13 +101,27 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   Question& question = options.question;
   question.threads = 0;
   std::string pose;
+  std::vector<std::string> obstacles;
   bool in_place = false;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(collide_footer);
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
-  app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
+  app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("");
+  app.add_option("--obstacle", obstacles,
+                 "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
+                 "again and again. Its own options follow after ';':\n"
+                 "\"NAME=FILE;pose=POSE;clearance=D;solid=true;uncertainty=U\". Without\n"
+                 "NAME= its name is the file's. A path moves all of them")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+  app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
+  app.add_option("--ignore", options.ignored,
+                 "two names that are not compared, of obstacles or `input`; * is any\n"
+                 "letters; may be given again and again")
+      ->type_name("FIRST:SECOND")
+      ->allow_extra_args(false);
   addQuestionOptions(app, question, {"clearance"});
   app.add_option("--pose", pose,
                  "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
@@ -123,7 +171,11 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
-  options.reading = reading.read({options.input, options.obstacle});
+  setObstacles(options, obstacles);
+  std::vector<std::filesystem::path> clouds = {options.input};
+  if (options.obstacles.empty()) clouds.push_back(options.obstacle);
+  for (const ObstacleChoice& one : options.obstacles) clouds.push_back(one.file);
+  options.reading = reading.read(clouds);
   path.requireConsistent(!pose.empty());
   if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
   options.trajectory = path.file;
@@ -136,10 +188,13 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.wanted.obstacle_flags = options.obstacle_out && !question.seen; // which brings them
   question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
   question.wanted.poses = question.wanted.contacts && (!path.swept || options.report); // swept, it takes longer
-  question.wanted.distances = question.wanted.both_ways = options.distances;
+  question.wanted.distances = options.distances;
+  question.wanted.both_ways = options.distances && options.obstacles.empty();
 
   CommandFiles& files = options.files;
   files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
+  for (const ObstacleChoice& one : options.obstacles)
+    files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));

@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_collide.
 #pragma once
 
+#include <pcl_bsh/tools/cli/obstacle_choice.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
@@ -22,7 +23,10 @@ enum class Keep { flagged, colliding, free };
 
 struct CollideOptions {
   std::filesystem::path input;
-  std::filesystem::path obstacle;
+  std::filesystem::path obstacle;        ///< where there are no `obstacles`
+  std::vector<ObstacleChoice> obstacles; ///< that have names, or none
+  std::vector<std::string> ignored;      ///< pairs of them, as typed
+  bool between = false;                  ///< whether they are compared with each other
   std::filesystem::path output;
   std::optional<std::filesystem::path> obstacle_out;
   std::optional<std::filesystem::path> report;
@@ -39,6 +43,9 @@ struct CollideOptions {
   std::vector<std::string> warnings;       ///< of the options themselves
   std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
   CommandFiles files;                      ///< all that are read or written
+
+  /// @throws UsageError as IgnoredPairs does
+  IgnoredPairs ignoredPairs() const;
 
   bool moves() const { return question.path.has_value() || !trajectory.empty(); }
 

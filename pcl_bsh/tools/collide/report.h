@@ -3,11 +3,13 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/question/obstacles.h>
 
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -30,12 +32,23 @@ struct Seconds {
   double write = 0;
 };
 
+/// One of several obstacles.
+struct ObstacleReport {
+  std::string name, file;
+  Question question; ///< as it was asked about it
+  io::Obstacle loaded;
+  ObstacleAnswer found;
+};
+
 struct CollisionReport {
   CloudReport input;
-  CloudReport obstacle;                ///< of a surface, its vertices
-  std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
-  bool input_is_surface = false;       ///< its numbers are those of triangles
-  std::string coordinate_system;       ///< of the input, where its file names one; else empty
+  CloudReport obstacle;                      ///< of a surface, its vertices
+  std::optional<io::Obstacle> surface;       ///< the obstacle, where it is one
+  std::vector<ObstacleReport> obstacles;     ///< where several are given, in place of the two above
+  std::vector<io::BetweenObstacles> between; ///< where several are compared with each other
+  std::uint32_t closest_obstacle = kNothing; ///< of several, that of the closest pair
+  bool input_is_surface = false;             ///< its numbers are those of triangles
+  std::string coordinate_system;             ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;
   std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for

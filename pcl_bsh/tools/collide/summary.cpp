@@ -38,6 +38,30 @@ std::string posesOfUnseen(const Answer::Unseen& unseen)
   return text.str();
 }
 
+/// One line for each of several obstacles, and for two of them.
+void tellObstacles(const CollisionReport& report, std::ostream& out)
+{
+  const auto distance = [](const DistanceResult& closest) {
+    std::ostringstream text;
+    if (!closest.pair) return std::string();
+    text << ", smallest distance " << closest.distance;
+    if (closest.distance < 0.0) text << " (" << -closest.distance << " deep)";
+    return text.str();
+  };
+  for (const ObstacleReport& one : report.obstacles) {
+    out << one.name << ": " << io::nameOfState(one.found);
+    if (one.found.colliding > 0)
+      out << " of " << counted(one.found.colliding, report.input_is_surface ? "triangle" : "point");
+    if (one.found.unseen > 0) out << ", " << counted(one.found.unseen, one.loaded.partName()) << " unseen";
+    out << distance(one.found.closest);
+    if (one.found.closest_pose >= 0) out << " at pose " << one.found.closest_pose;
+    out << '\n';
+  }
+  for (const io::BetweenObstacles& two : report.between)
+    out << two.first << " and " << two.second << ": " << io::nameOfState(two.pair.verdict) << distance(two.pair.closest)
+        << '\n';
+}
+
 /// With the unit, where it is known.
 std::string distanceSummary(const io::DistanceReport& report)
 {
@@ -59,6 +83,18 @@ std::string distanceSummary(const io::DistanceReport& report)
          "; Hausdorff distance " + length(report.hausdorff) + certainly;
 }
 
+/// The obstacle of the closest pair: a record of it, and its name.
+const char* partOf(const CollisionReport& report)
+{
+  if (!report.obstacles.empty()) return report.obstacles[report.closest_obstacle].loaded.partName();
+  return report.surface ? report.surface->partName() : "point";
+}
+
+std::string nameOf(const CollisionReport& report)
+{
+  return report.obstacles.empty() ? "the obstacle" : report.obstacles[report.closest_obstacle].name;
+}
+
 } // namespace
 
 void summarise(const CollideOptions& options, const CollisionReport& report, const std::string& clashes,
@@ -67,12 +103,13 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
   warn(collide_program, report.warnings);
   std::ostream& out = options.files.summary();
   const Answer& answer = report.answer;
+  tellObstacles(report, out);
   out << answer.collisions.colliding << " of "
       << counted(report.input.points, report.input_is_surface ? "triangle" : "point")
       << (report.input.points == 1 ? " collides" : " collide");
   if (report.mayLeaveUndecided()) out << ", " << answer.collisions.undecided << " are undecided";
   if (answer.widest_gap > 0) out << ", " << answer.sparse << " are not scanned densely enough";
-  if (report.question.seen) {
+  if (report.question.seen && report.obstacles.empty()) {
     out << "; of the obstacle, "
         << counted(answer.unseen.count, report.surface ? "triangle is" : "point is",
                    report.surface ? "triangles are" : "points are")
@@ -86,7 +123,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
     out << "; smallest distance " << distanceText(report);
     if (report.question.path && pair->a < poses.size()) out << " at pose " << poses[pair->a];
     out << ", between " << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "
-        << (report.surface ? report.surface->partName() : "point") << ' ' << pair->b << " of the obstacle";
+        << partOf(report) << ' ' << pair->b << " of " << nameOf(report);
   }
   if (report.question.path) out << "; " << counted(report.question.path->size(), "pose");
   if (const auto& first = answer.collisions.first_contact)

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/reports/obstacle_table.h>
+
+namespace pcl_bsh::io {
+namespace {
+
+/// In the input's frame.
+std::string placeOf(const ClashReport& report, std::uint32_t record)
+{
+  const Point3 p = report.scan.point(record);
+  return coordinate(p[0]) + ", " + coordinate(p[1]) + ", " + coordinate(p[2]);
+}
+
+std::string distanceOf(const DistanceResult& closest)
+{
+  return closest.pair ? distanceText(closest.distance) : std::string();
+}
+
+} // namespace
+
+Data obstacleTable(const ClashLists& lists)
+{
+  if (!lists.haveNames()) return false;
+  List rows, between;
+  for (const ClashReport& report : lists.obstacles) {
+    const ObstacleAnswer& found = *report.answer;
+    rows.push_back(Object{{"name", plain(report.name)},
+                          {"file", plain(report.question.obstacle)},
+                          {"state", nameOfState(found)},
+                          {"clearance", number(*report.question.clearance)},
+                          {"clashes", std::to_string(report.present())},
+                          {"points", std::to_string(found.colliding)},
+                          {"distance", distanceOf(found.closest)},
+                          {"place", found.closest.pair ? placeOf(report, found.closest.pair->a) : std::string()},
+                          {"pose", found.closest_pose < 0 ? std::string() : std::to_string(found.closest_pose)}});
+  }
+  for (const BetweenObstacles& two : lists.between)
+    between.push_back(Object{{"first", plain(two.first)},
+                             {"second", plain(two.second)},
+                             {"state", nameOfState(two.pair.verdict)},
+                             {"clearance", number(two.clearance)},
+                             {"distance", distanceOf(two.pair.closest)}});
+  const Data pairs = between.empty() ? Data(false) : Data(Object{{"rows", between}});
+  return Object{{"rows", rows}, {"between", pairs}};
+}
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "obstacle_choice.h"
+
+#include "command_line.h"
+#include "path.h"
+
+#include <pcl_bsh/question/options.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+namespace pcl_bsh::cli {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char between)
+{
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find(between); end != text.npos; end = text.find(between, begin)) {
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+/// An option of the question, by the name that it has of one obstacle.
+void set(ObstacleChoice& choice, const std::string& option, const std::string& value, const std::string& label,
+         std::vector<std::string>& warnings)
+{
+  if (option == "pose") {
+    choice.pose_text = value;
+    choice.pose = parsePose(label + ": pose", value, warnings);
+    return;
+  }
+  const std::string name = option == "uncertainty" ? "obstacle_uncertainty" : option;
+  if (name != "clearance" && name != "solid" && name != "obstacle_uncertainty")
+    throw UsageError(label + ": '" + option +
+                     "' is no option of an obstacle: give pose, clearance, solid or uncertainty");
+  Question question;
+  try {
+    setOption(question, name, value);
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError(label + ": " + option + ": " + error.advice());
+  }
+  if (option == "clearance") choice.clearance = question.clearance;
+  if (option == "solid") choice.solid = question.solid;
+  if (option == "uncertainty") choice.uncertainty = question.obstacle_uncertainty;
+}
+
+ObstacleChoice parseObstacle(const std::string& text, std::vector<std::string>& warnings)
+{
+  ObstacleChoice choice;
+  if (std::filesystem::exists(text)) {
+    choice.file = text;
+  }
+  else {
+    const std::vector<std::string> words = split(text, ';');
+    const std::size_t equals = words.front().find('=');
+    if (equals != text.npos) choice.name = words.front().substr(0, equals);
+    choice.file = equals == text.npos ? words.front() : words.front().substr(equals + 1);
+    if (choice.file.empty() || (equals != text.npos && choice.name.empty()))
+      throw UsageError("--obstacle: '" + text + "' names no " + (choice.file.empty() ? "file" : "obstacle") +
+                       ": give NAME=FILE");
+    const std::string label = "--obstacle " + (choice.name.empty() ? choice.file.string() : choice.name);
+    for (auto word = words.begin() + 1; word != words.end(); ++word) {
+      const std::size_t of_option = word->find('=');
+      if (of_option == word->npos)
+        throw UsageError(label + ": '" + *word + "' has no value: give OPTION=VALUE after ';'");
+      set(choice, word->substr(0, of_option), word->substr(of_option + 1), label, warnings);
+    }
+  }
+  if (choice.name.empty()) choice.name = choice.file.stem().string();
+  return choice;
+}
+
+/// @param pattern where * stands for any letters, none among them
+bool matches(const char* pattern, const char* name)
+{
+  if (*pattern == '\0') return *name == '\0';
+  if (*pattern == '*') return matches(pattern + 1, name) || (*name != '\0' && matches(pattern, name + 1));
+  return *pattern == *name && matches(pattern + 1, name + 1);
+}
+
+} // namespace
+
+std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings)
+{
+  std::vector<ObstacleChoice> choices;
+  std::set<std::string> names;
+  for (const std::string& text : texts) {
+    choices.push_back(parseObstacle(text, warnings));
+    const std::string& name = choices.back().name;
+    if (name == "input") throw UsageError("--obstacle: 'input' is the input's own name: give another, NAME=FILE");
+    if (!names.insert(name).second)
+      throw UsageError("--obstacle: two obstacles have the name '" + name + "': give each its own, NAME=FILE");
+  }
+  return choices;
+}
+
+IgnoredPairs::IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& names)
+{
+  for (const std::string& text : texts) {
+    const std::vector<std::string> two = split(text, ':');
+    if (two.size() != 2 || two[0].empty() || two[1].empty())
+      throw UsageError("--ignore: '" + text + "' is no pair of names: give FIRST:SECOND, where * is any letters");
+    for (const std::string& pattern : two) {
+      const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };
+      if (std::none_of(names.begin(), names.end(), fits))
+        throw UsageError("--ignore: '" + pattern + "' matches no obstacle: give input, or one of their names");
+    }
+    patterns_.emplace_back(two[0], two[1]);
+  }
+}
+
+bool IgnoredPairs::holds(const std::string& one, const std::string& other) const
+{
+  return std::any_of(patterns_.begin(), patterns_.end(), [&](const auto& pair) {
+    const auto fits = [&](const std::string& first, const std::string& second) {
+      return matches(pair.first.c_str(), first.c_str()) && matches(pair.second.c_str(), second.c_str());
+    };
+    return fits(one, other) || fits(other, one);
+  });
+}
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One of several obstacles, as a command line names it: NAME=FILE;pose=...;clearance=...;solid=...;uncertainty=...
+#pragma once
+
+#include <pcl_bsh/question/uncertainty.h>
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+/// What is not given is the question's.
+struct ObstacleChoice {
+  std::string name; ///< that lists and pages tell: the file's stem where none is given
+  std::filesystem::path file;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  std::string pose_text; ///< as typed, which may name a file
+  std::optional<double> clearance = {};
+  std::optional<bool> solid = {};
+  std::optional<Uncertainty> uncertainty = {};
+};
+
+/// The values of --obstacle. A text that is the name of a file as a whole is that file.
+/// @param warnings gets those of poses
+/// @throws UsageError for a word that is no option of an obstacle, a value that is none, two obstacles of one name;
+///   files::FileError for a file of a pose
+std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings);
+
+/// Two obstacles, or an obstacle and the input, that do not count against each other.
+class IgnoredPairs {
+public:
+  /// @param texts FIRST:SECOND each, where * stands for any letters. @param names all that there are
+  /// @throws UsageError for another text, and for a pattern that no name matches
+  IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& names);
+
+  bool holds(const std::string& one, const std::string& other) const;
+
+private:
+  std::vector<std::pair<std::string, std::string>> patterns_;
+};
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// pcl_bsh_collide with several obstacles in one question.
+#include "program_run.h"
+
+#include <pcl_bsh/io/clouds/cloud_file.h>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using SeveralJson = nlohmann::json;
+
+/// Points on a floor and two crates, a metre wide.
+class CollideObstacles : public testing::Test {
+protected:
+  Outcome collide(const std::string& arguments) const
+  {
+    return run("pcl_bsh_collide", "scan.xyz out.pcd --clearance 0.1 " + arguments, folder.path());
+  }
+
+  std::string refused(const std::string& arguments) const
+  {
+    const Outcome done = collide(arguments);
+    EXPECT_NE(done.exit_code, 0) << arguments;
+    return done.err;
+  }
+
+  std::vector<double> column(const std::string& name) const
+  {
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "out.pcd");
+    std::vector<double> values;
+    for (std::size_t i = 0; i < cloud.width; ++i) values.push_back(io::valueOf(cloud, i, name));
+    return values;
+  }
+
+  SeveralJson json(const std::string& file) const { return SeveralJson::parse(io::contentOf(folder / file)); }
+
+  io::TemporaryFolder folder;
+  std::filesystem::path crate =
+      folder.write("crate.off", "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+                                "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  std::filesystem::path copy = folder.write("copy.off", io::contentOf(crate));
+  std::filesystem::path scan = folder.write("scan.xyz", "0.5 0.5 0\n5.5 0.5 0.3\n9 9 9\n0.5 0.55 0\n");
+  const std::string two = "--obstacle press=crate.off --obstacle \"mill=copy.off;pose=5,0,0,0,0,0;solid=true\" ";
+};
+
+TEST_F(CollideObstacles, AreToldOneByOneAndTogether)
+{
+  const Outcome done = collide(two + "--clashes list.json --clashes list.csv --clashes list.html --report report.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("press: clash of 2 points, smallest distance 0\n"));
+  EXPECT_THAT(done.out, HasSubstr("mill: clash of 1 point, smallest distance -0.3 (0.3 deep)\n"));
+  EXPECT_THAT(done.out, HasSubstr("3 of 4 points collide"));
+  EXPECT_THAT(column("collision"), ElementsAre(1, 1, 0, 1));
+  const SeveralJson list = json("list.json");
+  EXPECT_FALSE(list.contains("obstacle"));
+  ASSERT_EQ(list["obstacles"].size(), 2U);
+  EXPECT_EQ(list["obstacles"][1]["name"], "mill");
+  EXPECT_EQ(list["obstacles"][1]["state"], "clash");
+  EXPECT_EQ(list["obstacles"][1]["options"]["solid"], "true");
+  EXPECT_FALSE(list["obstacles"][0]["options"].contains("solid"));
+  ASSERT_EQ(list["clashes"].size(), 2U); // the deepest first
+  EXPECT_EQ(list["clashes"][0]["obstacle_name"], "mill");
+  EXPECT_EQ(list["clashes"][0]["id"].get<std::string>().rfind("mill/C", 0), 0U);
+  EXPECT_EQ(list["clashes"][1]["points"], 2);
+  EXPECT_EQ(json("report.json")["obstacles"][0]["colliding"], 2);
+  EXPECT_EQ(json("report.json")["closest_obstacle"], "mill");
+  const std::string csv = io::contentOf(folder / "list.csv");
+  EXPECT_THAT(csv, HasSubstr("obstacle_name,obstacle_part,obstacle_record"));
+  EXPECT_THAT(csv, HasSubstr(",mill,triangle,"));
+  const std::string page = io::contentOf(folder / "list.html");
+  EXPECT_THAT(page, HasSubstr("By obstacle"));
+  EXPECT_THAT(page, HasSubstr("of mill;"));
+}
+
+TEST_F(CollideObstacles, OneWithoutANameIsAsItWas)
+{
+  const Outcome done =
+      run("pcl_bsh_collide", "scan.xyz crate.off out.pcd --clearance 0.1 --clashes list.json", folder.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, Not(HasSubstr("crate:")));
+  EXPECT_EQ(json("list.json")["obstacle"], "crate.off");
+  EXPECT_FALSE(json("list.json").contains("obstacles"));
+}
+
+TEST_F(CollideObstacles, JoinTheOneThatIsNamedFirst)
+{
+  const Outcome done =
+      run("pcl_bsh_collide", "scan.xyz crate.off out.pcd --clearance 0.1 --obstacle copy.off", folder.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("crate: clash of 2 points"));
+  EXPECT_THAT(done.out, HasSubstr("copy: clash of 2 points"));
+}
+
+TEST_F(CollideObstacles, StandAgainstEachOther)
+{
+  const std::string three = two + "--obstacle \"crane=copy.off;pose=1.05,0,0,0,0,0\" --report report.json --between ";
+  const Outcome done = collide(three);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("press and crane: clash, smallest distance 0.05\n"));
+  EXPECT_THAT(done.out, HasSubstr("press and mill: clear, smallest distance 4\n"));
+  EXPECT_EQ(json("report.json")["between"].size(), 3U);
+  EXPECT_THAT(collide(three + "--ignore \"press:c*\"").out, Not(HasSubstr("press and crane")));
+  EXPECT_THAT(collide(three + "--ignore \"mill:input\"").out, HasSubstr("mill: ignored\n"));
+}
+
+TEST_F(CollideObstacles, AreClearWithTheirSmallestDistance)
+{
+  const Outcome done = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --clashes list.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("crane: clear, smallest distance 2.7"));
+  EXPECT_EQ(json("list.json")["obstacles"][0]["state"], "clear");
+  EXPECT_EQ(json("list.json")["clashes"].size(), 0U);
+  const Outcome path = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --from 0,0,0,0,0,0 --to 0,0,2,0,0,0 "
+                               "--steps 2");
+  EXPECT_THAT(path.out, HasSubstr("at pose 0\n")) << path.err;
+}
+
+TEST_F(CollideObstacles, AreComparedWithAnEarlierListByName)
+{
+  ASSERT_EQ(collide(two + "--clashes list.json").exit_code, 0);
+  folder.write("scan.xyz", "0.5 0.5 0\n9 9 9\n0.5 0.55 0\n5.5 0.5 -3\n");
+  const Outcome done = collide(two + "--clashes now.json --previous list.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const SeveralJson now = json("now.json");
+  ASSERT_EQ(now["clashes"].size(), 2U) << now;
+  for (const SeveralJson& clash : now["clashes"])
+    EXPECT_EQ(clash["status"], clash["obstacle_name"] == "press" ? "persisting" : "not_scanned") << clash;
+  EXPECT_EQ(now["clashes"][0]["id"], json("list.json")["clashes"][1]["id"]);
+  EXPECT_THAT(collide("--obstacle press=crate.off --clashes one.json --previous list.json").err,
+              HasSubstr("lists clashes of 'mill', which is no obstacle now: its clashes are left out"));
+  const Outcome alone =
+      run("pcl_bsh_collide", "scan.xyz crate.off out.pcd --clearance 0.1 --clashes one.json --previous list.json",
+          folder.path());
+  EXPECT_EQ(alone.exit_code, 0) << alone.err; // found by its file
+  EXPECT_EQ(json("one.json")["clashes"][0]["status"], "persisting");
+  EXPECT_THAT(refused("--obstacle \"press=crate.off;solid=true\" --clashes one.json --previous list.json"),
+              HasSubstr("lists clashes with solid not given, now it is true"));
+}
+
+TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
+{
+  EXPECT_THAT(refused("--obstacle a=crate.off --obstacle a=copy.off"),
+              HasSubstr("--obstacle: two obstacles have the name 'a': give each its own, NAME=FILE"));
+  EXPECT_THAT(refused("--obstacle =crate.off"), HasSubstr("names no obstacle: give NAME=FILE"));
+  EXPECT_THAT(refused("--obstacle input=crate.off"), HasSubstr("'input' is the input's own name"));
+  EXPECT_THAT(refused("--obstacle \"crate.off;size=3\""),
+              HasSubstr("'size' is no option of an obstacle: give pose, clearance, solid or uncertainty"));
+  EXPECT_THAT(refused("--obstacle \"crate.off;solid\""), HasSubstr("'solid' has no value: give OPTION=VALUE"));
+  EXPECT_THAT(refused("--obstacle \"crate.off;clearance=-1\""), HasSubstr("clearance: '-1': give a finite length"));
+  EXPECT_THAT(refused("--obstacle none.off"), HasSubstr("none.off: no such file"));
+  EXPECT_THAT(refused("--obstacle crate.off --ignore a:b"), HasSubstr("--ignore: 'a' matches no obstacle"));
+  EXPECT_THAT(refused("--obstacle crate.off --ignore a"), HasSubstr("--ignore: 'a' is no pair of names"));
+  EXPECT_THAT(refused("--obstacle crate.off --obstacle-out o.ply"), HasSubstr("--obstacle-out: is of one obstacle"));
+  const Outcome one = run("pcl_bsh_collide", "scan.xyz crate.off out.pcd --clearance 0.1 --between", folder.path());
+  EXPECT_THAT(one.err, HasSubstr("--between: there is one obstacle: give --obstacle NAME=FILE for each"));
+  const Outcome none = run("pcl_bsh_collide", "scan.xyz crate.off --clearance 0.1", folder.path());
+  EXPECT_THAT(none.err, HasSubstr("OUTPUT is required"));
+}
+
+TEST_F(CollideObstacles, MeasureToTheNearestOfThem)
+{
+  ASSERT_EQ(collide(two + "--distances").exit_code, 0);
+  const std::vector<double> distances = column("distance");
+  EXPECT_EQ(distances[0], 0.0);
+  EXPECT_FLOAT_EQ(static_cast<float>(distances[1]), -0.3F);
+  EXPECT_THAT(refused(two + "--distances --distance-page p.html"), HasSubstr("--distance-page: is of one obstacle"));
+}
+
+} // namespace
+} // namespace pcl_bsh
