@@ -13,13 +13,12 @@
 #include <pcl_bsh/distances/gathered_spheres-inl.h>
 #include <pcl_bsh/simd/crossed_lanes-inl.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
+#include <pcl_bsh/traversal/list_walk-inl.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
-#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -105,11 +104,9 @@ struct DistanceRow {
 };
 
 /// One node of a, its children measured all at once.
-struct DistanceVisit {
-  const Node* node = nullptr;
-  std::uint64_t stamp = 0; ///< a number that no other visit or leaf has had
-  BoundingSphere around;   ///< holds them all; in the frame of a's voxel
-  std::uint32_t leaves = 0;
+struct DistanceVisit : ListVisit<NearSphere> {
+  std::uint64_t stamp = 0;                ///< a number that no other visit or leaf has had
+  BoundingSphere around;                  ///< holds them all; in the frame of a's voxel
   float large_leaf = 0.0f;                ///< a leaf of b with a greater radius is large beside a child
   float cut[kLanes];                      ///< what is farther than this is not the nearest of any point of the child
   float limit[kLanes];                    ///< spheres with a lower bound above it are outdone; infinite where none are
@@ -118,25 +115,26 @@ struct DistanceVisit {
   std::vector<DistanceRow> rows;          ///< of what the node itself was near to
   std::vector<DistanceRow> kept;          ///< of what its children are to be compared with
   std::vector<CarriedNode> carried;       ///< by obstacle
-  std::vector<NearSphere> near[kLanes];
 
-  void begin(const Node& entered, const BoundingSphere& holding_all, float upper, std::uint64_t number)
+  void begin(const NodeInSphere& entered, float upper, std::uint64_t number)
   {
+    ListVisit::begin(entered.node);
     stamp = number;
-    node = &entered;
-    around = holding_all;
-    leaves = 0;
+    around = entered.around;
     large_leaf = std::numeric_limits<float>::infinity();
-    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
-      if (entered.isLeaf(lane)) leaves |= 1u << lane;
-      large_leaf = std::min(large_leaf, kLargeLeaf * entered.r[lane]);
-    }
+    for (std::uint32_t lane = 0; lane < node->count; ++lane)
+      large_leaf = std::min(large_leaf, kLargeLeaf * node->r[lane]);
     for (float& value : cut) value = upper;
     for (std::uint8_t lane = 0; lane < kLanes; ++lane) order[lane] = lane;
     for (float& value : limit) value = std::numeric_limits<float>::infinity();
     rows.clear();
     kept.clear();
-    for (auto& list : near) list.clear();
+  }
+
+  std::size_t bytes() const noexcept
+  {
+    return ListVisit::bytes() + (rows.capacity() + kept.capacity()) * sizeof(DistanceRow) +
+           carried.capacity() * sizeof(CarriedNode);
   }
 
   /// Whether one of these children is small beside a leaf of b.
@@ -401,8 +399,8 @@ struct MaybeNearest {
 
 /// Memory of one walk after another, to be had by a ScratchLease.
 struct DistanceScratch {
-  std::uint64_t stamp = 0;          ///< the last one given
-  std::deque<DistanceVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  std::uint64_t stamp = 0; ///< the last one given
+  Visits<DistanceVisit> visits;
   std::vector<DistanceObstacle> obstacles;
   std::vector<NearSphere> roots;           ///< what the walk begins with
   std::vector<CarriedLeaf> leaves;         ///< by obstacle
@@ -415,17 +413,10 @@ struct DistanceScratch {
 
   std::size_t bytes() const noexcept
   {
-    std::size_t sum = visits.size() * sizeof(DistanceVisit) + obstacles.capacity() * sizeof(DistanceObstacle) +
-                      roots.capacity() * sizeof(NearSphere) + leaves.capacity() * sizeof(CarriedLeaf) +
-                      obstacle_of.capacity() * sizeof(std::uint32_t) + flat.bytes() +
-                      maybe_nearest.capacity() * sizeof(MaybeNearest) + near_leaves.capacity() * sizeof(NearLeaf) +
-                      long_triangles.bytes() + gathered.bytes();
-    for (const DistanceVisit& visit : visits) {
-      sum += (visit.rows.capacity() + visit.kept.capacity()) * sizeof(DistanceRow) +
-             visit.carried.capacity() * sizeof(CarriedNode);
-      for (const auto& list : visit.near) sum += list.capacity() * sizeof(NearSphere);
-    }
-    return sum;
+    return visits.bytes() + obstacles.capacity() * sizeof(DistanceObstacle) + roots.capacity() * sizeof(NearSphere) +
+           leaves.capacity() * sizeof(CarriedLeaf) + obstacle_of.capacity() * sizeof(std::uint32_t) + flat.bytes() +
+           maybe_nearest.capacity() * sizeof(MaybeNearest) + near_leaves.capacity() * sizeof(NearLeaf) +
+           long_triangles.bytes() + gathered.bytes();
   }
 };
 

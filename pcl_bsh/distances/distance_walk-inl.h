@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walk that measures the points of one voxel of a. Every node of a carries the list of the spheres of b that can
-// hold the nearest point of one of its points: those whose lower bound does not exceed the least upper bound of all,
-// for every sphere holds a point. The list begins with the spheres above the voxels of b, and becomes finer as the
-// nodes of a become smaller, so that the points of a share one descent.
+// The walk that measures the points of one voxel of a. A node's list holds the spheres of b that can hold the nearest
+// point of one of its points: their lower bounds do not exceed the least upper bound of all, because every sphere holds
+// a point. The list begins with the spheres above the voxels of b, and becomes finer as the nodes of a become smaller.
 
 #if defined(PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
@@ -22,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-class DistanceWalk {
+class DistanceWalk : public ListVisitor<DistanceVisit> {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr float kWide = 3.0f;       ///< wider than children by this, spheres are opened for them
   static constexpr std::uint32_t kAbove = 0; ///< the obstacle above the voxels of b
@@ -39,7 +38,8 @@ public:
     unit_(query.unit),
     max_(query.pairs.reach.most),
     compares_slabs_(a_.storage.view.triangles && !b_.storage.view.areBalls()),
-    leaf_(query, sheet, scratch, found.work)
+    leaf_(query, sheet, scratch, found.work),
+    walk_(rule, found.work.node_pairs, scratch.visits)
   {
     forgetObstacles();
     scratch_.flat.prepare(b_.storage);
@@ -75,7 +75,63 @@ public:
     scratch_.roots.clear();
     const float least = query_.pairs.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
     for (std::uint16_t lane = 0; lane < root.count; ++lane) scratch_.roots.push_back({{&root, lane, 0, kAbove}, least});
-    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, scratch_.roots, cut, 0);
+    walk_.descend(*this, Part{NodeInSphere::rootOf(*a_voxel_), cut}, scratch_.roots);
+  }
+
+  // As ListWalk asks.
+
+  /// A node of a. No point below it is farther from its nearest than the cut, unless that exceeds the greatest
+  /// distance.
+  struct Part : NodeInSphere {
+    float cut;
+  };
+
+  void left(const Part& part, const std::vector<NearSphere>& list)
+  {
+    leave(part.node.begin[0], part.node.begin[part.node.count], list, part.cut);
+  }
+
+  std::uint32_t refine(DistanceVisit& visit, const Part& part, const std::vector<NearSphere>& list)
+  {
+    visit.begin(part, part.cut, ++scratch_.stamp);
+    for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
+      visit.turn[lane] = outdoing_.turnOf(part.node.r[lane] * radius_unit_);
+    const std::uint32_t others =
+        firstBits(part.node.count) & ~measureAlone(visit, list, part.cut) & ~measureTriangles(visit, list, part.cut);
+    if (others == 0) return 0;
+    for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, others));
+    if (query_.reached) leaveNearer(visit);
+    for (const DistanceRow& row : visit.rows) take(visit, row);
+    for (const DistanceRow& row : visit.kept)
+      for (std::uint32_t bits = nearLanes(visit, row); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
+      }
+    return others;
+  }
+
+  static std::uint32_t childAt(const DistanceVisit& visit, std::uint32_t i) { return visit.order[i]; }
+
+  bool wants(const DistanceVisit& visit, std::uint32_t lane) const { return !query_.exceeds(visit.cut[lane]); }
+
+  void alone(const DistanceVisit& visit, std::uint32_t lane)
+  {
+    for (std::uint32_t i = visit.node->begin[lane]; i < visit.node->begin[lane + 1]; ++i)
+      setBeyond(a_voxel_->records()[i]);
+  }
+
+  void compare(const Part&, DistanceVisit& visit, std::uint32_t lane, std::size_t depth)
+  {
+    std::vector<NearSphere>& near = visit.near[lane];
+    if (rule_.mayStop() && (depth + 1 >= rule_.deepest || !areLeavesOfPoints(near)))
+      leave(visit.node->begin[lane], visit.node->begin[lane + 1], near, visit.cut[lane]);
+    else
+      leaf_.measure(*a_voxel_, visit, lane, near);
+  }
+
+  Part below(const Part& part, const DistanceVisit& visit, std::uint32_t lane) const
+  {
+    return {part.child(*a_voxel_, lane), visit.cut[lane]};
   }
 
   /// No point of the voxel is farther from b than this, in the clouds' unit. @pre neither cloud is empty
@@ -92,8 +148,7 @@ private:
   /// Whether the walk may go below the voxel of a, and has the time to build it.
   bool mayEnter() const
   {
-    return rule_.deepest > 0 && !rule_.isSpent(found.work.node_pairs) &&
-           rule_.leavesTimeToBuild(a_.storage.pointsToBuild(voxel_));
+    return !rule_.isSpent(found.work.node_pairs) && rule_.mayEnter([this] { return a_.storage.pointsToBuild(voxel_); });
   }
 
   /// Of the voxels of b, from the voxel of a.
@@ -104,43 +159,6 @@ private:
   {
     ++found.work.volumes_carried;
     return bounds().range(a_.storage.voxels[voxel_].radius, cut);
-  }
-
-  /// Takes a node of a, all its children at once, through the list; then each child through its own.
-  void descend(const Node& node, const BoundingSphere& around, const std::vector<NearSphere>& list, float cut,
-               std::size_t depth)
-  {
-    if (rule_.isSpent(found.work.node_pairs)) return leave(node.begin[0], node.begin[node.count], list, cut);
-    if (scratch_.visits.size() == depth) scratch_.visits.emplace_back();
-    DistanceVisit& visit = scratch_.visits[depth];
-    visit.begin(node, around, cut, ++scratch_.stamp);
-    for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
-      visit.turn[lane] = outdoing_.turnOf(node.r[lane] * radius_unit_);
-    const std::uint32_t others =
-        firstBits(node.count) & ~measureAlone(visit, list, cut) & ~measureTriangles(visit, list, cut);
-    if (others == 0) return;
-    for (const NearSphere& near : list) visit.rows.push_back(compare(visit, near.sphere, others));
-    if (query_.reached) leaveNearer(visit);
-    for (const DistanceRow& row : visit.rows) take(visit, row);
-    for (const DistanceRow& row : visit.kept)
-      for (std::uint32_t bits = nearLanes(visit, row); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
-      }
-    for (const std::uint8_t lane : visit.order) {
-      if ((others >> lane & 1) == 0 || query_.exceeds(visit.cut[lane])) continue;
-      std::vector<NearSphere>& near = visit.near[lane];
-      const std::uint32_t begin = node.begin[lane], end = node.begin[lane + 1];
-      if (near.empty())
-        for (std::uint32_t i = begin; i < end; ++i) setBeyond(a_voxel_->records()[i]);
-      else if (rule_.mayStop() && isLeft(visit, lane, depth))
-        leave(begin, end, near, visit.cut[lane]);
-      else if (node.isLeaf(lane))
-        leaf_.measure(*a_voxel_, visit, lane, near);
-      else
-        descend(a_voxel_->nodes[node.child[lane]], {{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]}, near,
-                visit.cut[lane], depth + 1);
-    }
   }
 
   /// Measures the leaves of a visit that go through its list by themselves: eight spheres at once, and the points of
@@ -197,13 +215,11 @@ private:
     for (DistanceRow& row : visit.rows) row.lanes &= wanted;
   }
 
-  /// Whether a child ends here undecided: the level does not go further down in one of the clouds.
-  bool isLeft(const DistanceVisit& visit, std::uint32_t lane, std::size_t depth) const
+  /// Whether all of a list are leaves of voxels: where the walk may stop, it may not have opened all.
+  static bool areLeavesOfPoints(const std::vector<NearSphere>& list)
   {
-    const auto is_of_points = [](const NearSphere& near) { return near.sphere.level > 0 && near.sphere.isLeaf(); };
-    const std::vector<NearSphere>& near = visit.near[lane];
-    return depth + 1 >= rule_.deepest ||
-           (visit.node->isLeaf(lane) && !std::all_of(near.begin(), near.end(), is_of_points));
+    return std::all_of(list.begin(), list.end(),
+                       [](const NearSphere& near) { return near.sphere.level > 0 && near.sphere.isLeaf(); });
   }
 
   /// Bounds the distances from the children of the visit that are in `lanes` to a sphere of b.
@@ -327,8 +343,8 @@ private:
   bool isOpened(const ObstacleSphere& sphere) const
   {
     if (sphere.level > 0) return !sphere.isLeaf() && sphere.level < rule_.deepest;
-    if (!sphere.isLeaf() || !rule_.isTimed()) return true;
-    return rule_.leavesTimeToBuild(b_.storage.pointsToBuild(sphere.node->begin[sphere.lane]));
+    return !sphere.isLeaf() ||
+           rule_.mayEnter([&] { return b_.storage.pointsToBuild(sphere.node->begin[sphere.lane]); });
   }
 
   /// The children of the visit among these that are smaller than the sphere.
@@ -464,6 +480,7 @@ private:
   const double max_;
   const bool compares_slabs_; ///< of both sides: of triangles, and of triangles or points that are no balls
   DistanceLeaf leaf_;
+  ListWalk<DistanceVisit> walk_;
   bool leaves_alone_ = false;      ///< whether leaves of a go through lists by themselves: see measureAlone()
   Outdoing outdoing_;              ///< of the voxel of a
   double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit

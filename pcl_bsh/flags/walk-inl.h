@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walk that flags the points of one voxel of a. Every node of a carries the list of the nodes of b that can still
-// matter, so that the points of a share one descent. A point is settled at its first neighbour, a node as soon as all
-// of its points are proven to be within the clearance of some point of b.
+// The walk that flags the points of one voxel of a. A node's list holds the spheres of b that can still matter. A point
+// is settled at its first neighbour. A node is settled as soon as all of its points are proven to be within the
+// clearance of some point of b.
 
 #if defined(PCL_BSH_FLAGS_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_FLAGS_WALK_INL_H_
@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-class FlagWalk {
+class FlagWalk : public ListVisitor<FlagVisit> {
 public:
   FlagWalk(const FlagQuery& query, const StopRule& rule, FlagWriter& writer, FlagScratch& scratch)
   : query_(query),
@@ -33,7 +33,7 @@ public:
     reach_(pairs_.reach.length()),
     rule_(rule),
     writer_(writer),
-    visits_(scratch.visits),
+    walk_(rule, found.work.node_pairs, scratch.visits),
     obstacles_(scratch.obstacles),
     spheres_(scratch.spheres),
     reached_(scratch.reached),
@@ -87,7 +87,56 @@ public:
     slabs_.begin(voxel, *a_voxel_);
     knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
     if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
-    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0, false);
+    walk_.descend(*this, Part{NodeInSphere::rootOf(*a_voxel_), false}, spheres_);
+  }
+
+  // As ListWalk asks.
+
+  /// A node of a; all points below it may collide, where they are uncertain, or may not.
+  struct Part : NodeInSphere {
+    bool may_collide;
+  };
+
+  void left(const Part& part, const std::vector<ObstacleSphere>&)
+  {
+    tell(Finding::left, part.node.begin[0], part.node.begin[part.node.count]);
+  }
+
+  std::uint32_t refine(FlagVisit& visit, const Part& part, const std::vector<ObstacleSphere>& candidates)
+  {
+    visit.begin(part, part.may_collide);
+    for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
+      const auto to =
+          std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
+      enter(visit, from->obstacle);
+      visit.has_slabs = false;
+      visit.may_have_slabs = slabs_.mayHave(visit);
+      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)))
+        slabs_.take(visit);
+      visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
+      if (query_.certain)
+        uncertain_.settle(visit, obstacles_[visit.obstacle], from, to, found.work,
+                          [&](std::uint32_t lane) { settleChild(visit, lane); });
+      else
+        for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
+      for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
+      compareLeaves(visit);
+      from = to;
+    }
+    if (rule_.mayStop()) clearLeaves(visit);
+    if (query_.certain) uncertain_.report(visit, writer_);
+    return visit.open & ~visit.leaves;
+  }
+
+  void alone(const FlagVisit& visit, std::uint32_t lane)
+  {
+    if (rule_.mayStop() && (visit.known >> lane & 1) == 0)
+      tell(Finding::free, visit.node->begin[lane], visit.node->begin[lane + 1]);
+  }
+
+  Part below(const Part& part, const FlagVisit& visit, std::uint32_t lane) const
+  {
+    return {part.child(*a_voxel_, lane), (visit.known >> lane & 1) != 0};
   }
 
   FlaggedVoxel found;
@@ -96,11 +145,11 @@ private:
   /// Whether the walk may go below voxels, and has the time to build those that it needs.
   bool mayEnter(std::uint32_t voxel) const
   {
-    if (rule_.deepest == 0 || rule_.isSpent(found.work.node_pairs)) return false;
-    if (!rule_.isTimed()) return true;
-    std::size_t points = a_.storage.pointsToBuild(voxel);
-    for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
-    return rule_.leavesTimeToBuild(points);
+    return !rule_.isSpent(found.work.node_pairs) && rule_.mayEnter([&] {
+      std::size_t points = a_.storage.pointsToBuild(voxel);
+      for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
+      return points;
+    });
   }
 
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
@@ -182,65 +231,20 @@ private:
                          [&](std::uint32_t j) -> const FlatRecord& { return flat_.of(b_.storage.view, leaf, j); });
   }
 
-  /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
-  /// @param may_collide all points below the node, where they are uncertain
-  void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
-               std::size_t depth, bool may_collide)
+  /// Where the walk may stop early: tells which points of leaves met nothing of b, and which stay undecided.
+  void clearLeaves(const FlagVisit& visit)
   {
-    if (rule_.isSpent(found.work.node_pairs)) return tell(Finding::left, node.begin[0], node.begin[node.count]);
-    if (visits_.size() == depth) visits_.emplace_back();
-    FlagVisit& visit = visits_[depth];
-    visit.begin(node, around, may_collide);
-    for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
-      const auto to =
-          std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
-      enter(visit, from->obstacle);
-      visit.has_slabs = false;
-      visit.may_have_slabs = slabs_.mayHave(visit);
-      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)))
-        slabs_.take(visit);
-      visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
-      if (query_.certain)
-        uncertain_.settle(visit, obstacles_[visit.obstacle], from, to, found.work,
-                          [&](std::uint32_t lane) { settleChild(visit, lane); });
-      else
-        for (auto c = from; c != to && visit.open != 0; ++c) settleByPoints(visit, *c);
-      for (auto c = from; c != to && visit.open != 0; ++c) take(visit, *c, visit.open);
-      compareLeaves(visit);
-      from = to;
-    }
-    if (rule_.mayStop()) clear(visit);
-    if (query_.certain) uncertain_.report(visit, writer_);
-    for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (visit.near[lane].empty()) continue;
-      if (depth + 1 >= rule_.deepest) {
-        tell(Finding::left, node.begin[lane], node.begin[lane + 1]);
-        continue;
-      }
-      const BoundingSphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
-      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1, (visit.known >> lane & 1) != 0);
-    }
-  }
-
-  /// Where the walk may stop early: reports to the writer which points met nothing of b, and which stay undecided.
-  void clear(const FlagVisit& visit)
-  {
-    for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
+    for (std::uint32_t bits = visit.open & visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
       const Finding finding = (visit.unsure >> lane & 1) != 0 ? Finding::left : Finding::free;
-      if ((visit.leaves >> lane & 1) == 0) {
-        if (visit.near[lane].empty() && (visit.known >> lane & 1) == 0) tell(Finding::free, begin, end);
-      }
-      else if (visit.node->isCoincident(lane)) {
+      if (visit.node->isCoincident(lane)) {
         if (visit.perhaps[lane] == 0) tell(finding, begin, end);
+        continue;
       }
-      else {
-        for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
-          const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
-          tell(finding, i, i + 1);
-        }
+      for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
+        const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
+        tell(finding, i, i + 1);
       }
     }
   }
@@ -483,7 +487,7 @@ private:
   std::uint64_t allowed_ = 0;      ///< steps, before slabs of long triangles are fitted
   bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
-  std::deque<FlagVisit>& visits_;
+  ListWalk<FlagVisit> walk_;
   std::vector<ObstacleVoxel>& obstacles_;
   std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
   std::vector<std::uint32_t>& reached_;
