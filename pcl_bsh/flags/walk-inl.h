@@ -12,10 +12,8 @@
 
 #include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/flags/leaf-inl.h>
-#include <pcl_bsh/flags/query.h>
+#include <pcl_bsh/flags/reached_voxels-inl.h>
 #include <pcl_bsh/flags/runs-inl.h>
-#include <pcl_bsh/flags/slabs-inl.h>
-#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
@@ -34,49 +32,26 @@ public:
     rule_(rule),
     writer_(writer),
     walk_(rule, found.work.node_pairs, scratch.visits),
-    obstacles_(scratch.obstacles),
-    spheres_(scratch.spheres),
-    reached_(scratch.reached),
+    reached_(query, a_, b_, scratch, found.work),
+    obstacles_(reached_.obstacles),
     flat_(scratch.flat),
-    slabs_(a_, b_, pairs_.ofTriangles(), obstacles_, reached_, found.work),
+    slabs_(a_, b_, pairs_.ofTriangles(), reached_.obstacles, reached_.numbers, found.work),
     uncertain_(query, scratch.uncertain),
     separation_(pairs_.distance, a_, b_, found.work)
   {
-    obstacles_.clear();
-    spheres_.clear();
-    reached_.clear();
-    flat_.prepare(b_.storage);
   }
 
   /// Flags the points of one voxel of a.
   void run(std::uint32_t voxel)
   {
-    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
     if (rule_.isSpent(found.work.node_pairs)) return leaveAll();
-    const bool apart = above.separates(reach_ + a_.storage.largest_radius + b_.storage.largest_radius);
-    if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
-    const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
-    if (all) return writer_.tellAll(Finding::colliding);
-    if (apart || reached_.empty()) return writer_.tellAll(Finding::free);
-    if (!mayEnter(voxel)) return leaveAll();
-    for (const std::uint32_t other : reached_) {
-      pulse_.look();
-      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
-      const auto flat = [&](double length) {
-        return b_.storage.view.triangles ? FlatRecord::usualBand(frame, length) : DistanceBand();
-      };
-      const Node& root = b_.voxel(other, found.work).nodes[0];
-      for (std::uint32_t lane = 0; lane < root.count; ++lane)
-        spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
-      obstacles_.push_back(
-          {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
-           frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
-           frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), query_.surely.band(flat), query_.acceptance.band(flat), nullptr, nullptr,
-           b_.storage.hasLongTriangles(other)});
-    }
+    if (const std::optional<Finding> all = reached_.find(voxel)) return writer_.tellAll(*all);
+    const auto toBuild = [&] { return a_.storage.pointsToBuild(voxel) + reached_.pointsToBuild(); };
+    if (rule_.isSpent(found.work.node_pairs) || !rule_.mayEnter(toBuild)) return leaveAll();
+    reached_.enter(voxel, pulse_);
     allowed_ = steps() + kStepsOfVoxel;
-    if (b_.storage.view.triangles && !isNearTriangles(voxel)) return writer_.tellAll(Finding::free);
+    if (b_.storage.view.triangles && !reached_.haveTrianglesNear(voxel, slabs_, [this] { return steps() > allowed_; }))
+      return writer_.tellAll(Finding::free);
     allowed_ += kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
@@ -84,10 +59,9 @@ public:
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
-    slabs_.begin(voxel, *a_voxel_);
-    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
-    if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
-    walk_.descend(*this, Part{NodeInSphere::rootOf(*a_voxel_), false}, spheres_);
+    slabs_.begin(voxel, *a_voxel_, mayUseKnownSlabs());
+    if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_.numbers, obstacles_);
+    walk_.descend(*this, Part{NodeInSphere::rootOf(*a_voxel_), false}, reached_.spheres);
   }
 
   // As ListWalk asks.
@@ -111,7 +85,7 @@ public:
       enter(visit, from->obstacle);
       visit.has_slabs = false;
       visit.may_have_slabs = slabs_.mayHave(visit);
-      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)))
+      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || slabs_.areKnown(visit.obstacle)))
         slabs_.take(visit);
       visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
       if (query_.certain)
@@ -142,16 +116,6 @@ public:
   FlaggedVoxel found;
 
 private:
-  /// Whether the walk may go below voxels, and has the time to build those that it needs.
-  bool mayEnter(std::uint32_t voxel) const
-  {
-    return !rule_.isSpent(found.work.node_pairs) && rule_.mayEnter([&] {
-      std::size_t points = a_.storage.pointsToBuild(voxel);
-      for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
-      return points;
-    });
-  }
-
   /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
   /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
   /// may fit them or not; the work then depends on that, the result does not.
@@ -160,75 +124,6 @@ private:
   std::uint64_t steps() const
   {
     return found.work.node_pairs + kLeafPoints * found.work.leaf_pairs + found.work.exact_decisions;
-  }
-
-  bool knowsSlabs(std::uint32_t obstacle) const
-  {
-    return knows_slabs_ && b_.storage.voxels[reached_[obstacle]].slabs.isFitted();
-  }
-
-  /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
-  bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node)
-  {
-    const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
-    const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(reach_),
-                         frame.acceptReach(query_.surely.hit) - radius * (1.0f + kSphereMargin)};
-    const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
-    found.work.node_pairs += node.count;
-    if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
-    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
-         near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (node.isLeaf(lane))
-        reached_.push_back(node.begin[lane]);
-      else if (!reach(voxel, frame, b_.storage.top[node.child[lane]]))
-        return false;
-    }
-    return true;
-  }
-
-  /// Whether a triangle may be near the sphere of a voxel of a, which need not be built if not.
-  HWY_NOINLINE bool isNearTriangles(std::uint32_t voxel)
-  {
-    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](ObstacleVoxel& obstacle) {
-      const Point center{obstacle.frame.g[0], obstacle.frame.g[1], obstacle.frame.g[2]};
-      const float radius = a_.storage.voxels[voxel].radius * obstacle.frame.stretch_a;
-      return isNearTriangles(obstacle, obstacle.voxel->nodes[0], center, radius);
-    });
-  }
-
-  /// The same of a sphere, carried, and the triangles below a node.
-  bool isNearTriangles(ObstacleVoxel& obstacle, const Node& node, const Point& center, float radius)
-  {
-    const SphereLanes spheres{node.x, node.y, node.z, node.r, obstacle.frame.stretch_b};
-    const QueryBall ball{center.x, center.y, center.z, radius + obstacle.reach, 0.0f};
-    found.work.node_pairs += node.count;
-    std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count);
-    if (near != 0 && obstacle.has_long_triangles && steps() > allowed_) {
-      slabs_.fit(obstacle);
-      near = slabs_.nearSphere(obstacle, node, spheres, center, radius, near);
-    }
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (!node.isLeaf(lane)) {
-        if (isNearTriangles(obstacle, obstacle.voxel->nodes[node.child[lane]], center, radius)) return true;
-        continue;
-      }
-      const LeafRange leaf{obstacle.voxel, node.begin[lane], node.comparedPoints(lane)};
-      alignas(64) float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
-      for (std::uint32_t i = 0; i < kLanes; ++i) x[i] = center.x, y[i] = center.y, z[i] = center.z, r[i] = radius;
-      found.work.node_pairs += leaf.count;
-      if (nearTo(leaf, obstacle, x, y, z, r, 1, -1.0f).near != 0) return true;
-    }
-    return false;
-  }
-
-  /// Of spheres in an obstacle's frame, eight lanes.
-  LanesNear nearTo(const LeafRange& leaf, const ObstacleVoxel& obstacle, const float* x, const float* y, const float* z,
-                   const float* r, std::uint32_t lanes, float sure_reach)
-  {
-    return trianglesNear(x, y, z, r, lanes, obstacle.frame, obstacle.reach, sure_reach, leaf.count,
-                         [&](std::uint32_t j) -> const FlatRecord& { return flat_.of(b_.storage.view, leaf, j); });
   }
 
   /// Where the walk may stop early: tells which points of leaves met nothing of b, and which stay undecided.
@@ -287,7 +182,7 @@ private:
     const std::uint32_t k = candidate.lane;
     const Point center{node.x[k], node.y[k], node.z[k]};
     const SphereLanes children{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    Voxel* const other_voxel = &b_.storage.voxels[reached_[visit.obstacle]];
+    Voxel* const other_voxel = &b_.storage.voxels[reached_.numbers[visit.obstacle]];
     const Facing facing{
         obstacle.frame, true,  &a_.storage.voxels[voxel_], *visit.node, children, other_voxel, node, k, center,
         radius,         reach_};
@@ -312,7 +207,8 @@ private:
     if (!(leaf.largestRadius() > kLargeBall * static_cast<double>(visit.smallest) * frame.unit)) return near;
     if (slabs_.isThin(visit, candidate)) return near; // slabs told what triangles can
     found.work.node_pairs += leaf.count;
-    const LanesNear lanes = nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
+    const LanesNear lanes =
+        reached_.nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
     for (std::uint32_t bits = lanes.inside; bits != 0; bits &= bits - 1)
       settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
     return lanes.near & visit.open;
@@ -447,7 +343,7 @@ private:
   /// Of the children in `near`, those that are not known to be beyond the reach from a sphere of b.
   HWY_NOINLINE std::uint32_t notBeyond(const FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
-    const NodeChild other{reached_[visit.obstacle], *candidate.node, candidate.lane};
+    const NodeChild other{reached_.numbers[visit.obstacle], *candidate.node, candidate.lane};
     for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (beyond_.knows({voxel_, *visit.node, lane}, other)) near &= ~(1u << lane);
@@ -485,12 +381,10 @@ private:
 
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   std::uint64_t allowed_ = 0;      ///< steps, before slabs of long triangles are fitted
-  bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
   ListWalk<FlagVisit> walk_;
-  std::vector<ObstacleVoxel>& obstacles_;
-  std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
-  std::vector<std::uint32_t>& reached_;
+  ReachedVoxels reached_;
+  const std::vector<ObstacleVoxel>& obstacles_;
   FlatRecords& flat_;
   FlagSlabs slabs_;
   UncertainWalk uncertain_; ///< where points are
