@@ -14,10 +14,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/trajectory/boxes/oriented_boxes-inl.h>
 #include <pcl_bsh/trajectory/leaf/leaf-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_probing-inl.h>
-#include <pcl_bsh/traversal/list_walk-inl.h>
+#include <pcl_bsh/trajectory/node_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -27,16 +26,6 @@ namespace {
 constexpr double kNodeStray = 0.03; // of a node's radius: an interval that strays farther is divided
 constexpr float kSeedSize = 0.5f;   // of the voxel's radius: larger boxes of the model are opened before its descent
 constexpr float kBoxSize = 2.0f;    // of a node's radius: a larger box of the model is opened
-
-/// A node of the scan that is tested against the model, all of its children at once.
-struct NodeVisit : ListVisit<Siblings> {
-  Segments<kLanes, 3> children;
-  Segment around;
-  float radius[kLanes];
-  std::vector<Siblings> candidates; ///< what all of them together may meet
-  // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
-  alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
-};
 
 /// Memory of one voxel's walk after another.
 struct WalkScratch {
@@ -133,7 +122,8 @@ public:
     const auto& [node, index, motion] = part;
     const std::uint32_t beside = leaves_.besideOf(node, open_lanes_[index], motion);
     if ((open_lanes_[index] & ~beside) == 0) return 0;
-    begin(visit, index, motion);
+    visit.begin(node, index, motion, voxel_frame_, oriented_boxes_);
+    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
     model_.near(visit.around, candidates, motion.steps, visit.candidates);
     if (motion.at_rest) boundDistances(visit, index, motion);
     if (settling_) settleByPoints(visit, index, motion);
@@ -231,35 +221,6 @@ private:
   {
     return leaves_.isWorthEachPose(motion) &&
            (leaves_.hasPlane() || query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest)));
-  }
-
-  void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
-  {
-    const Node& node = voxel_->nodes[index];
-    visit.ListVisit::begin(node);
-    alignas(64) float from[3][kLanes], to[3][kLanes], bow[3][kLanes];
-    carry(motion.from.m, motion.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
-    carry(motion.to.m, motion.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
-    carry(motion.bow.m, motion.bow.g, node.x, node.y, node.z, kLanes, bow[0], bow[1], bow[2]);
-    visit.children.set(from, to, bow, motion.smallest);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
-    alignas(64) float extent[3][kLanes];
-    oriented_boxes_.see(index, motion, visit.radius, extent);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-        visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
-    visit.children.ball = motion.reach * (1.0f + kReachMargin);
-    visit.around = voxel_frame_.aroundSegments(motion, from, to, bow, extent, node.count);
-    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
-    if (!motion.at_rest) return;
-    constexpr float unbounded = std::numeric_limits<float>::infinity();
-    std::fill(visit.bound, visit.bound + kLanes, unbounded);
-    std::fill(visit.near_squared, visit.near_squared + kLanes, voxel_frame_.nearSquared(motion, unbounded));
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        visit.low[axis][lane] = from[axis][lane] - extent[axis][lane] * (1.0f + kReachMargin);
-        visit.high[axis][lane] = from[axis][lane] + extent[axis][lane] * (1.0f + kReachMargin);
-      }
   }
 
   /// At one pose: every box holds a point of the model, or of a part of it, so that no point of a child is farther from
