@@ -121,7 +121,7 @@ public:
     most_(std::min(request.most, std::numeric_limits<std::size_t>::max() - 1) +
           1), // one more pair shows that some are left out
     reach_(request.clearance),
-    planes_(pairs.distance, a.hierarchy().storage(), b.hierarchy().storage())
+    planes_(pairs.distance, a.hierarchy().storage(), b.hierarchy().storage(), kDecisionsBeforePlanes)
   {
     kept_.clear();
   }
@@ -224,8 +224,10 @@ private:
   void decidedInVain()
   {
     looks_ += kLooksForDecision;
-    if (++in_vain_ < planes_at_ || !pairs.ofTriangles()) return;
-    planes_at_ = in_vain_ + in_vain_ / 8 + kDecisionsBeforePlanes;
+    planes_.policy.decidedInVain();
+    if (!planes_.policy.mayAsk() || !pairs.ofTriangles()) return;
+    const std::uint64_t in_vain = planes_.policy.decisionsInVain();
+    planes_.policy.wait(in_vain + in_vain / 8 + kDecisionsBeforePlanes);
     const PointPair farthest = kept_.front().pair;
     if (planes_of_ == farthest) return;
     planes_of_ = farthest;
@@ -258,7 +260,7 @@ private:
   PlanesBetween planes_; ///< of a pair that was the farthest
   PointPair planes_of_;
   bool none_nearer_ = false; ///< below the lanes that are visited
-  std::uint64_t in_vain_ = 0, planes_at_ = kDecisionsBeforePlanes, looks_ = 0;
+  std::uint64_t looks_ = 0;
   mutable std::uint64_t orders_ = 0;        ///< that doubles did not tell
   mutable std::vector<std::uint32_t> ties_; ///< of a tie another one that it is a part of, or itself
   mutable Pulse pulse_;                     ///< of ties
