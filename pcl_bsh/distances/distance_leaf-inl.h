@@ -45,23 +45,27 @@ public:
       shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
 
-  /// Whether measureBelow() may be called for what is plain.
-  bool mayMeasureBelow() const { return points_.mayFindBelow(); }
+  /// Whether measureAlone() may be called for what is plain.
+  bool mayMeasureAlone() const { return points_.mayFindBelow(); }
 
-  /// Takes the spheres that measureBelow() goes through.
-  void gather(const std::vector<NearSphere>& list) { points_.gather(list); }
-
-  /// Measures all points of a leaf by what is below the gathered spheres: these can hold a nearest point.
-  /// @param visit of the node it is a child of @param lane the child
-  /// @param cut no point of the leaf is farther from its nearest, unless that exceeds the greatest distance
-  void measureBelow(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut)
+  /// Measures the leaves of a visit that go through its list by themselves: eight spheres at once, and the points of
+  /// the nearest bound what is left better than spheres do.
+  /// @param cut no point is farther from its nearest, unless that exceeds the greatest distance @return the leaves
+  std::uint32_t measureAlone(const Voxel& voxel, const DistanceVisit& visit, const std::vector<NearSphere>& list,
+                             float cut)
   {
-    begin(voxel, visit, lane);
-    bounds_points_ = true;
-    if (points_.findBelow(cut)) writePoints(visit, lane, cut);
+    const std::uint32_t alone = leavesAlone(visit, list);
+    if (alone != 0) points_.gather(list);
+    for (std::uint32_t bits = alone; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      begin(voxel, visit, lane);
+      bounds_points_ = true;
+      if (points_.findBelow(cut)) writePoints(visit, lane, cut);
+    }
+    return alone;
   }
 
-  /// The same by leaves of b.
+  /// Measures all points of a leaf by leaves of b. @param visit of the node it is a child of @param lane the child
   /// @param near those that can hold a nearest point; left in another order
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
@@ -73,7 +77,7 @@ public:
     begin(voxel, visit, lane);
     bounds_points_ = false;
     if (points_.floatsTell(near)) {
-      gather(near);
+      points_.gather(near);
       if (points_.find(cut)) writePoints(visit, lane, cut);
       return;
     }
@@ -111,6 +115,25 @@ public:
   }
 
 private:
+  /// The leaves to which none of the list's spheres is above a voxel, in another unit, or to be told apart by the
+  /// points as given.
+  std::uint32_t leavesAlone(const DistanceVisit& visit, const std::vector<NearSphere>& list) const
+  {
+    if (visit.leaves == 0) return 0;
+    float least = 0.0f;
+    for (const NearSphere& near : list) {
+      const ObstacleSphere& sphere = near.sphere;
+      const DistanceObstacle& obstacle = leaf_.obstacles[sphere.obstacle];
+      if (sphere.level == 0 || !obstacle.is_plain) return 0;
+      least = std::max(least, obstacle.blunt_radius);
+      if (sphere.isLeaf()) least = std::max(least, sphere.node->r[sphere.lane] * (1.0f / kLargeLeaf));
+    }
+    std::uint32_t alone = 0;
+    for (std::uint32_t lane = 0; lane < visit.node->count; ++lane)
+      alone |= (visit.node->r[lane] > least ? 1u : 0u) << lane;
+    return alone & visit.leaves;
+  }
+
   void begin(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane)
   {
     leaf_.begin(voxel, visit, lane);

@@ -77,7 +77,8 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
                 Progress& progress, double from, double to)
 {
   const StopRule rule(request.accuracy);
-  if (request.flagged == Side::both && rule.mayStop()) {
+  const bool both = request.flagged == Side::both;
+  if (both && rule.mayStop()) {
     FlagSide side_a(a, b, request, places, rule, found.a, found.work, progress),
         side_b(b, a, request, places, rule, found.b, found.work, progress);
     progress.begin(to, 2 * side_a.steps(rule) + side_b.steps(rule)); // a may come to its turn again
@@ -86,20 +87,18 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
     found.colliding_b = side_b.colliding();
   }
   else {
-    if (request.flagged != Side::b) {
-      const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
-                                  b.hierarchy().view().count);
-      FlagSide side(a, b, request, places, rule, found.a, found.work, progress, patches);
-      progress.begin(request.flagged == Side::both ? 0.5 * (from + to) : to, side.steps(rule));
+    const auto collidingOf = [&](const Placed& of, const Placed& other, std::vector<Verdict>& flags, double end,
+                                 const PatchSpacings& patches_of_other) {
+      FlagSide side(of, other, request, places, rule, flags, found.work, progress, patches_of_other);
+      progress.begin(end, side.steps(rule));
       side.passes(rule, rule.node_pairs);
-      found.colliding_a = side.colliding();
-    }
-    if (request.flagged != Side::a) {
-      FlagSide side(b, a, request, places, rule, found.b, found.work, progress);
-      progress.begin(to, side.steps(rule));
-      side.passes(rule, rule.node_pairs);
-      found.colliding_b = side.colliding();
-    }
+      return side.colliding();
+    };
+    const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
+                                b.hierarchy().view().count);
+    if (request.flagged != Side::b)
+      found.colliding_a = collidingOf(a, b, found.a, both ? 0.5 * (from + to) : to, patches);
+    if (request.flagged != Side::a) found.colliding_b = collidingOf(b, a, found.b, to, {});
   }
   if (!request.accuracy.stopsEarly() && places != Places::either) return;
   found.undecided_a = countOf(found.a, Verdict::undecided);

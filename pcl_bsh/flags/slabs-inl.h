@@ -31,12 +31,19 @@ public:
   {
   }
 
-  /// Begins with a voxel of a, which is built.
-  void begin(std::uint32_t voxel, const Voxel& built)
+  /// Begins with a voxel of a, which is built. @param may_use_known whether those that are fitted may be used at once
+  void begin(std::uint32_t voxel, const Voxel& built, bool may_use_known)
   {
     own_ = &a_.storage.voxels[voxel];
     a_voxel_ = &built;
     has_long_triangles_ = a_.storage.hasLongTriangles(voxel);
+    uses_known_ = may_use_known && own_->slabs.isFitted();
+  }
+
+  /// Whether those of an obstacle may be used without fitting any.
+  bool areKnown(std::uint32_t obstacle) const
+  {
+    return uses_known_ && b_.storage.voxels[reached_[obstacle]].slabs.isFitted();
   }
 
   /// Fits those of a voxel of b, where no query has yet.
@@ -191,6 +198,7 @@ private:
   Work& work_;
   Voxel* own_ = nullptr; ///< of a
   const Voxel* a_voxel_ = nullptr;
+  bool uses_known_ = false;
   bool has_long_triangles_ = false; ///< a's voxel
 };
 

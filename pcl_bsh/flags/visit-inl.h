@@ -13,10 +13,9 @@
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/hierarchy/slabs.h>
 #include <pcl_bsh/traversal/flat_records-inl.h>
-#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+#include <pcl_bsh/traversal/list_walk-inl.h>
 #include <pcl_bsh/traversal/uncertain_reach.h>
 
-#include <deque>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -39,11 +38,9 @@ struct ObstacleVoxel {
   bool has_long_triangles = false;    ///< about as long as the voxel is wide: balls of nodes say little about them
 };
 
-/// One node of a on its way through b, its children tested all at once.
-struct FlagVisit {
-  const Node* node = nullptr;
-  std::uint32_t leaves = 0; ///< bits of the children that are leaves
-  std::uint32_t open = 0;   ///< bits of the children that are not settled yet
+/// One node of a on its way through b, its children tested all at once. Lists of leaves are of one obstacle.
+struct FlagVisit : ListVisit<ObstacleSphere> {
+  std::uint32_t open = 0; ///< bits of the children that are not settled yet
   std::uint32_t obstacle = 0;
   alignas(32) float x[kLanes], y[kLanes], z[kLanes], r[kLanes]; ///< their spheres in the obstacle voxel's frame
   float smallest = 0.0f;                                        ///< of r
@@ -55,11 +52,10 @@ struct FlagVisit {
   bool may_have_slabs = false;                                  ///< whether they may be asked for on the way
   alignas(32) float cx[kLanes], cy[kLanes], cz[kLanes];         ///< normals of the children's cross slabs
   const Slabs* cross_slabs = nullptr;
-  std::uint32_t carried = 0;                ///< bits of the leaves whose points are in `points`
-  LeafPoints points[kLanes];                ///< of leaves, in the obstacle voxel's frame
-  BoundingSphere around;                    ///< holds them all; in the frame of a's voxel
-  QueryBall ball;                           ///< likewise, in the obstacle voxel's frame
-  std::vector<ObstacleSphere> near[kLanes]; ///< what each child has to be compared with; of leaves, in this obstacle
+  std::uint32_t carried = 0; ///< bits of the leaves whose points are in `points`
+  LeafPoints points[kLanes]; ///< of leaves, in the obstacle voxel's frame
+  BoundingSphere around;     ///< holds them all; in the frame of a's voxel
+  QueryBall ball;            ///< likewise, in the obstacle voxel's frame
 
   std::vector<std::uint32_t> asked; ///< of each of near[lane], bits of points, while a leaf is compared with triangles
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
@@ -68,22 +64,21 @@ struct FlagVisit {
   std::uint32_t unsure = 0; ///< bits of leaves that met spheres which were not to be opened
 
   /// @param may_collide all points below the node
-  void begin(const Node& entered, const BoundingSphere& holding_all, bool may_collide)
+  void begin(const NodeInSphere& entered, bool may_collide)
   {
-    known = may_collide ? firstBits(entered.count) : 0;
+    ListVisit::begin(entered.node);
+    open = firstBits(node->count);
+    known = may_collide ? open : 0;
     unsure = 0;
-    around = holding_all;
-    node = &entered;
-    open = firstBits(entered.count);
-    leaves = 0;
-    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
-      near[lane].clear();
-      if (!entered.isLeaf(lane)) continue;
-      leaves |= 1u << lane;
-      open_points[lane] = firstBits(entered.comparedPoints(lane));
+    around = entered.around;
+    for (std::uint32_t bits = leaves; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      open_points[lane] = firstBits(node->comparedPoints(lane));
       perhaps[lane] = may_collide ? open_points[lane] : 0;
     }
   }
+
+  std::size_t bytes() const noexcept { return ListVisit::bytes() + asked.capacity() * sizeof(std::uint32_t); }
 };
 
 /// Tells a writer of some of sixteen points. @param bits of them. @param recordOf(i) of one
@@ -133,7 +128,7 @@ inline bool hasPointWithin(const Finder& finder, const ObstacleVoxel& obstacle, 
 
 /// Memory of one walk after another, to be had by a ScratchLease.
 struct FlagScratch {
-  std::deque<FlagVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  Visits<FlagVisit> visits;
   std::vector<ObstacleVoxel> obstacles;
   std::vector<ObstacleSphere> spheres;   ///< of the obstacles' roots
   std::vector<std::uint32_t> reached;    ///< voxels of b
@@ -142,14 +137,8 @@ struct FlagScratch {
 
   std::size_t bytes() const noexcept
   {
-    std::size_t sum = visits.size() * sizeof(FlagVisit) + obstacles.capacity() * sizeof(ObstacleVoxel) +
-                      spheres.capacity() * sizeof(ObstacleSphere) + reached.capacity() * sizeof(std::uint32_t) +
-                      uncertain.capacity() * sizeof(UncertainReach) + flat.bytes();
-    for (const FlagVisit& visit : visits) {
-      for (const auto& list : visit.near) sum += list.capacity() * sizeof(ObstacleSphere);
-      sum += visit.asked.capacity() * sizeof(std::uint32_t);
-    }
-    return sum;
+    return visits.bytes() + obstacles.capacity() * sizeof(ObstacleVoxel) + spheres.capacity() * sizeof(ObstacleSphere) +
+           reached.capacity() * sizeof(std::uint32_t) + uncertain.capacity() * sizeof(UncertainReach) + flat.bytes();
   }
 };
 

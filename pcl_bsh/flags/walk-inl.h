@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walk that flags the points of one voxel of a. Every node of a carries the list of the nodes of b that can still
-// matter, so that the points of a share one descent. A point is settled at its first neighbour, a node as soon as all
-// of its points are proven to be within the clearance of some point of b.
+// The walk that flags the points of one voxel of a. A node's list holds the spheres of b that can still matter. A point
+// is settled at its first neighbour. A node is settled as soon as all of its points are proven to be within the
+// clearance of some point of b.
 
 #if defined(PCL_BSH_FLAGS_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_FLAGS_WALK_INL_H_
@@ -12,10 +12,8 @@
 
 #include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/flags/leaf-inl.h>
-#include <pcl_bsh/flags/query.h>
+#include <pcl_bsh/flags/reached_voxels-inl.h>
 #include <pcl_bsh/flags/runs-inl.h>
-#include <pcl_bsh/flags/slabs-inl.h>
-#include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/separation-inl.h>
 
@@ -23,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-class FlagWalk {
+class FlagWalk : public ListVisitor<FlagVisit> {
 public:
   FlagWalk(const FlagQuery& query, const StopRule& rule, FlagWriter& writer, FlagScratch& scratch)
   : query_(query),
@@ -33,50 +31,27 @@ public:
     reach_(pairs_.reach.length()),
     rule_(rule),
     writer_(writer),
-    visits_(scratch.visits),
-    obstacles_(scratch.obstacles),
-    spheres_(scratch.spheres),
-    reached_(scratch.reached),
+    walk_(rule, found.work.node_pairs, scratch.visits),
+    reached_(query, a_, b_, scratch, found.work),
+    obstacles_(reached_.obstacles),
     flat_(scratch.flat),
-    slabs_(a_, b_, pairs_.ofTriangles(), obstacles_, reached_, found.work),
+    slabs_(a_, b_, pairs_.ofTriangles(), reached_.obstacles, reached_.numbers, found.work),
     uncertain_(query, scratch.uncertain),
     separation_(pairs_.distance, a_, b_, found.work)
   {
-    obstacles_.clear();
-    spheres_.clear();
-    reached_.clear();
-    flat_.prepare(b_.storage);
   }
 
   /// Flags the points of one voxel of a.
   void run(std::uint32_t voxel)
   {
-    const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
     if (rule_.isSpent(found.work.node_pairs)) return leaveAll();
-    const bool apart = above.separates(reach_ + a_.storage.largest_radius + b_.storage.largest_radius);
-    if (!apart) ++found.work.volumes_carried; // the voxel's own sphere
-    const bool all = !apart && !reach(voxel, above, b_.storage.top[0]);
-    if (all) return writer_.tellAll(Finding::colliding);
-    if (apart || reached_.empty()) return writer_.tellAll(Finding::free);
-    if (!mayEnter(voxel)) return leaveAll();
-    for (const std::uint32_t other : reached_) {
-      pulse_.look();
-      const RelativeFrame frame(a_.frame(voxel), a_.pose, b_.frame(other), b_.pose, query_.rotation);
-      const auto flat = [&](double length) {
-        return b_.storage.view.triangles ? FlatRecord::usualBand(frame, length) : DistanceBand();
-      };
-      const Node& root = b_.voxel(other, found.work).nodes[0];
-      for (std::uint32_t lane = 0; lane < root.count; ++lane)
-        spheres_.push_back({&root, static_cast<std::uint16_t>(lane), 1, static_cast<std::uint32_t>(obstacles_.size())});
-      obstacles_.push_back(
-          {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
-           frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
-           frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), query_.surely.band(flat), query_.acceptance.band(flat), nullptr, nullptr,
-           b_.storage.hasLongTriangles(other)});
-    }
+    if (const std::optional<Finding> all = reached_.find(voxel)) return writer_.tellAll(*all);
+    const auto toBuild = [&] { return a_.storage.pointsToBuild(voxel) + reached_.pointsToBuild(); };
+    if (rule_.isSpent(found.work.node_pairs) || !rule_.mayEnter(toBuild)) return leaveAll();
+    reached_.enter(voxel, pulse_);
     allowed_ = steps() + kStepsOfVoxel;
-    if (b_.storage.view.triangles && !isNearTriangles(voxel)) return writer_.tellAll(Finding::free);
+    if (b_.storage.view.triangles && !reached_.haveTrianglesNear(voxel, slabs_, [this] { return steps() > allowed_; }))
+      return writer_.tellAll(Finding::free);
     allowed_ += kMostStepsPerPoint * a_.storage.voxels[voxel].count;
     // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
@@ -84,120 +59,33 @@ public:
       return;
     voxel_ = voxel;
     a_voxel_ = &a_.voxel(voxel, found.work);
-    slabs_.begin(voxel, *a_voxel_);
-    knows_slabs_ = mayUseKnownSlabs() && a_.storage.voxels[voxel].slabs.isFitted();
-    if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_, obstacles_);
-    descend(a_voxel_->nodes[0], {{0.0f, 0.0f, 0.0f}, a_voxel_->radius}, spheres_, 0, false);
+    slabs_.begin(voxel, *a_voxel_, mayUseKnownSlabs());
+    if (query_.certain) uncertain_.begin(a_, voxel, b_, reached_.numbers, obstacles_);
+    walk_.descend(*this, Part{NodeInSphere::rootOf(*a_voxel_), false}, reached_.spheres);
   }
 
-  FlaggedVoxel found;
+  // As ListWalk asks.
 
-private:
-  /// Whether the walk may go below voxels, and has the time to build those that it needs.
-  bool mayEnter(std::uint32_t voxel) const
+  /// A node of a; all points below it may collide, where they are uncertain, or may not.
+  struct Part : NodeInSphere {
+    bool may_collide;
+  };
+
+  void left(const Part& part, const std::vector<ObstacleSphere>&)
   {
-    if (rule_.deepest == 0 || rule_.isSpent(found.work.node_pairs)) return false;
-    if (!rule_.isTimed()) return true;
-    std::size_t points = a_.storage.pointsToBuild(voxel);
-    for (const std::uint32_t other : reached_) points += b_.storage.pointsToBuild(other);
-    return rule_.leavesTimeToBuild(points);
+    tell(Finding::left, part.node.begin[0], part.node.begin[part.node.count]);
   }
 
-  /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
-  /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
-  /// may fit them or not; the work then depends on that, the result does not.
-  bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
-
-  std::uint64_t steps() const
+  std::uint32_t refine(FlagVisit& visit, const Part& part, const std::vector<ObstacleSphere>& candidates)
   {
-    return found.work.node_pairs + kLeafPoints * found.work.leaf_pairs + found.work.exact_decisions;
-  }
-
-  bool knowsSlabs(std::uint32_t obstacle) const
-  {
-    return knows_slabs_ && b_.storage.voxels[reached_[obstacle]].slabs.isFitted();
-  }
-
-  /// Collects the voxels of b that the voxel of a can reach. @return false when all of its points collide.
-  bool reach(std::uint32_t voxel, const RelativeFrame& frame, const Node& node)
-  {
-    const float radius = a_.storage.voxels[voxel].radius * frame.stretch_a;
-    const QueryBall ball{frame.g[0], frame.g[1], frame.g[2], radius + frame.pruneReach(reach_),
-                         frame.acceptReach(query_.surely.hit) - radius * (1.0f + kSphereMargin)};
-    const SphereLanes spheres{node.x, node.y, node.z, node.r, frame.stretch_b};
-    found.work.node_pairs += node.count;
-    if ((spheresInside(spheres, ball) & firstBits(node.count)) != 0) return false;
-    for (std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count); near != 0;
-         near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (node.isLeaf(lane))
-        reached_.push_back(node.begin[lane]);
-      else if (!reach(voxel, frame, b_.storage.top[node.child[lane]]))
-        return false;
-    }
-    return true;
-  }
-
-  /// Whether a triangle may be near the sphere of a voxel of a, which need not be built if not.
-  HWY_NOINLINE bool isNearTriangles(std::uint32_t voxel)
-  {
-    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](ObstacleVoxel& obstacle) {
-      const Point center{obstacle.frame.g[0], obstacle.frame.g[1], obstacle.frame.g[2]};
-      const float radius = a_.storage.voxels[voxel].radius * obstacle.frame.stretch_a;
-      return isNearTriangles(obstacle, obstacle.voxel->nodes[0], center, radius);
-    });
-  }
-
-  /// The same of a sphere, carried, and the triangles below a node.
-  bool isNearTriangles(ObstacleVoxel& obstacle, const Node& node, const Point& center, float radius)
-  {
-    const SphereLanes spheres{node.x, node.y, node.z, node.r, obstacle.frame.stretch_b};
-    const QueryBall ball{center.x, center.y, center.z, radius + obstacle.reach, 0.0f};
-    found.work.node_pairs += node.count;
-    std::uint32_t near = spheresNear(spheres, ball, nullptr) & firstBits(node.count);
-    if (near != 0 && obstacle.has_long_triangles && steps() > allowed_) {
-      slabs_.fit(obstacle);
-      near = slabs_.nearSphere(obstacle, node, spheres, center, radius, near);
-    }
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-      if (!node.isLeaf(lane)) {
-        if (isNearTriangles(obstacle, obstacle.voxel->nodes[node.child[lane]], center, radius)) return true;
-        continue;
-      }
-      const LeafRange leaf{obstacle.voxel, node.begin[lane], node.comparedPoints(lane)};
-      alignas(64) float x[kLanes], y[kLanes], z[kLanes], r[kLanes];
-      for (std::uint32_t i = 0; i < kLanes; ++i) x[i] = center.x, y[i] = center.y, z[i] = center.z, r[i] = radius;
-      found.work.node_pairs += leaf.count;
-      if (nearTo(leaf, obstacle, x, y, z, r, 1, -1.0f).near != 0) return true;
-    }
-    return false;
-  }
-
-  /// Of spheres in an obstacle's frame, eight lanes.
-  LanesNear nearTo(const LeafRange& leaf, const ObstacleVoxel& obstacle, const float* x, const float* y, const float* z,
-                   const float* r, std::uint32_t lanes, float sure_reach)
-  {
-    return trianglesNear(x, y, z, r, lanes, obstacle.frame, obstacle.reach, sure_reach, leaf.count,
-                         [&](std::uint32_t j) -> const FlatRecord& { return flat_.of(b_.storage.view, leaf, j); });
-  }
-
-  /// Takes a node of a, all its children at once, through its candidates; then its inner children through theirs.
-  /// @param may_collide all points below the node, where they are uncertain
-  void descend(const Node& node, const BoundingSphere& around, const std::vector<ObstacleSphere>& candidates,
-               std::size_t depth, bool may_collide)
-  {
-    if (rule_.isSpent(found.work.node_pairs)) return tell(Finding::left, node.begin[0], node.begin[node.count]);
-    if (visits_.size() == depth) visits_.emplace_back();
-    FlagVisit& visit = visits_[depth];
-    visit.begin(node, around, may_collide);
+    visit.begin(part, part.may_collide);
     for (auto from = candidates.begin(); from != candidates.end() && visit.open != 0;) {
       const auto to =
           std::find_if(from, candidates.end(), [&](const ObstacleSphere& c) { return c.obstacle != from->obstacle; });
       enter(visit, from->obstacle);
       visit.has_slabs = false;
       visit.may_have_slabs = slabs_.mayHave(visit);
-      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || knowsSlabs(visit.obstacle)))
+      if (visit.may_have_slabs && (candidates.size() > kManyCandidates || slabs_.areKnown(visit.obstacle)))
         slabs_.take(visit);
       visit.has_several = candidates.size() > kSeveralCandidates && !pairs_.haveRadii();
       if (query_.certain)
@@ -209,38 +97,49 @@ private:
       compareLeaves(visit);
       from = to;
     }
-    if (rule_.mayStop()) clear(visit);
+    if (rule_.mayStop()) clearLeaves(visit);
     if (query_.certain) uncertain_.report(visit, writer_);
-    for (std::uint32_t bits = visit.open & ~visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (visit.near[lane].empty()) continue;
-      if (depth + 1 >= rule_.deepest) {
-        tell(Finding::left, node.begin[lane], node.begin[lane + 1]);
-        continue;
-      }
-      const BoundingSphere child{{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]};
-      descend(a_voxel_->nodes[node.child[lane]], child, visit.near[lane], depth + 1, (visit.known >> lane & 1) != 0);
-    }
+    return visit.open & ~visit.leaves;
   }
 
-  /// Where the walk may stop early: reports to the writer which points met nothing of b, and which stay undecided.
-  void clear(const FlagVisit& visit)
+  void alone(const FlagVisit& visit, std::uint32_t lane)
   {
-    for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
+    if (rule_.mayStop() && (visit.known >> lane & 1) == 0)
+      tell(Finding::free, visit.node->begin[lane], visit.node->begin[lane + 1]);
+  }
+
+  Part below(const Part& part, const FlagVisit& visit, std::uint32_t lane) const
+  {
+    return {part.child(*a_voxel_, lane), (visit.known >> lane & 1) != 0};
+  }
+
+  FlaggedVoxel found;
+
+private:
+  /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
+  /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
+  /// may fit them or not; the work then depends on that, the result does not.
+  bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
+
+  std::uint64_t steps() const
+  {
+    return found.work.node_pairs + kLeafPoints * found.work.leaf_pairs + found.work.exact_decisions;
+  }
+
+  /// Where the walk may stop early: tells which points of leaves met nothing of b, and which stay undecided.
+  void clearLeaves(const FlagVisit& visit)
+  {
+    for (std::uint32_t bits = visit.open & visit.leaves; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
       const Finding finding = (visit.unsure >> lane & 1) != 0 ? Finding::left : Finding::free;
-      if ((visit.leaves >> lane & 1) == 0) {
-        if (visit.near[lane].empty() && (visit.known >> lane & 1) == 0) tell(Finding::free, begin, end);
-      }
-      else if (visit.node->isCoincident(lane)) {
+      if (visit.node->isCoincident(lane)) {
         if (visit.perhaps[lane] == 0) tell(finding, begin, end);
+        continue;
       }
-      else {
-        for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
-          const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
-          tell(finding, i, i + 1);
-        }
+      for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
+        const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
+        tell(finding, i, i + 1);
       }
     }
   }
@@ -283,7 +182,7 @@ private:
     const std::uint32_t k = candidate.lane;
     const Point center{node.x[k], node.y[k], node.z[k]};
     const SphereLanes children{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    Voxel* const other_voxel = &b_.storage.voxels[reached_[visit.obstacle]];
+    Voxel* const other_voxel = &b_.storage.voxels[reached_.numbers[visit.obstacle]];
     const Facing facing{
         obstacle.frame, true,  &a_.storage.voxels[voxel_], *visit.node, children, other_voxel, node, k, center,
         radius,         reach_};
@@ -308,7 +207,8 @@ private:
     if (!(leaf.largestRadius() > kLargeBall * static_cast<double>(visit.smallest) * frame.unit)) return near;
     if (slabs_.isThin(visit, candidate)) return near; // slabs told what triangles can
     found.work.node_pairs += leaf.count;
-    const LanesNear lanes = nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
+    const LanesNear lanes =
+        reached_.nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
     for (std::uint32_t bits = lanes.inside; bits != 0; bits &= bits - 1)
       settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
     return lanes.near & visit.open;
@@ -443,7 +343,7 @@ private:
   /// Of the children in `near`, those that are not known to be beyond the reach from a sphere of b.
   HWY_NOINLINE std::uint32_t notBeyond(const FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
-    const NodeChild other{reached_[visit.obstacle], *candidate.node, candidate.lane};
+    const NodeChild other{reached_.numbers[visit.obstacle], *candidate.node, candidate.lane};
     for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (beyond_.knows({voxel_, *visit.node, lane}, other)) near &= ~(1u << lane);
@@ -481,12 +381,10 @@ private:
 
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   std::uint64_t allowed_ = 0;      ///< steps, before slabs of long triangles are fitted
-  bool knows_slabs_ = false;       ///< whether those of a's voxel may be used without fitting any
   const Voxel* a_voxel_ = nullptr;
-  std::deque<FlagVisit>& visits_;
-  std::vector<ObstacleVoxel>& obstacles_;
-  std::vector<ObstacleSphere>& spheres_; ///< of the obstacles' roots
-  std::vector<std::uint32_t>& reached_;
+  ListWalk<FlagVisit> walk_;
+  ReachedVoxels reached_;
+  const std::vector<ObstacleVoxel>& obstacles_;
   FlatRecords& flat_;
   FlagSlabs slabs_;
   UncertainWalk uncertain_; ///< where points are

@@ -361,7 +361,7 @@ private:
   bool mayImprove(const LanePair& pair)
   {
     none_nearer_ = false;
-    const bool in_vain = planes_.areWorthTheirCost() || steps_in_vain_ >= steps_to_look_round_;
+    const bool in_vain = planes_.policy.mayAsk() || steps_in_vain_ >= steps_to_look_round_;
     return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
   }
 
@@ -369,7 +369,7 @@ private:
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
-    return canImprove(pair) && !(planes_.areWorthTheirCost() && isSettledByPlanes(pair));
+    return canImprove(pair) && !(planes_.policy.mayAsk() && isSettledByPlanes(pair));
   }
 
   /// For what is nearer to one of the best pair, among all of the other cloud: half of what was done in vain before.
@@ -442,7 +442,7 @@ private:
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
     ++steps_in_vain_;
-    planes_.decidedInVain();
+    planes_.policy.decidedInVain();
     const double most = best_.pair ? best_.high : goal_.max_distance;
     if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, most)) return;
     if (planes_.areBeyond(candidate)) return;
@@ -520,9 +520,11 @@ private:
   Nearest best_;
   RecordDistance::Pair best_posed_; ///< of the best pair, or of one before it
 
-  PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage}; ///< of the best pair; by its decisions
-  double planes_of_ = kInfinity;                                            ///< Nearest::high of the pair they are of
-  std::uint64_t steps_in_vain_ = 0; ///< since a nearer pair was found: decisions and pairs of leaves
+  static constexpr std::uint64_t kDecisionsBeforePlanes = 256;
+  PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage,
+                        kDecisionsBeforePlanes}; ///< of the best pair
+  double planes_of_ = kInfinity;                 ///< Nearest::high of the pair they are of
+  std::uint64_t steps_in_vain_ = 0;              ///< since a nearer pair was found: decisions and pairs of leaves
   const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
   bool has_looked_round_ = false;
   std::uint32_t looked_round_ = BehindPlane::kNoRecord; ///< of b: the best is no later than it beside all of a

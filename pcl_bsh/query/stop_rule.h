@@ -48,7 +48,14 @@ public:
            Clock::now() + std::chrono::duration<double>(seconds_per_point * static_cast<double>(points)) < deadline_;
   }
 
-  /// The same, with only this share of the time that is left, or of the sphere tests.
+  /// Whether a walk may go below voxels, and has the time to build them. @param points() of these
+  template <class Points>
+  bool mayEnter(const Points& points) const
+  {
+    return deepest > 0 && (!isTimed() || leavesTimeToBuild(points()));
+  }
+
+  /// The same rule, with only this share of the time that is left, or of the sphere tests.
   StopRule part(double share) const
   {
     StopRule rule = *this;

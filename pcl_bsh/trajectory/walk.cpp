@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Along a trajectory: every node of the scan carries the list of what can still matter of the model, for an interval of
-// poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree
-// of boxes. How thick follows from the node's sphere and from how far the interval strays from a parabola; whichever is
-// larger is divided.
+// Along a trajectory: a node's list holds what can still matter of the model, for an interval of poses at once. Seen by
+// the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree of boxes. The arc is
+// as thick as the node's sphere, and as far as the interval strays from a parabola. The larger of both is divided.
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/trajectory/query.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -16,9 +14,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/trajectory/boxes/oriented_boxes-inl.h>
 #include <pcl_bsh/trajectory/leaf/leaf-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_probing-inl.h>
+#include <pcl_bsh/trajectory/node_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -29,25 +27,14 @@ constexpr double kNodeStray = 0.03; // of a node's radius: an interval that stra
 constexpr float kSeedSize = 0.5f;   // of the voxel's radius: larger boxes of the model are opened before its descent
 constexpr float kBoxSize = 2.0f;    // of a node's radius: a larger box of the model is opened
 
-/// A node of the scan that is tested against the model, all of its children at once.
-struct NodeVisit {
-  Segments<kLanes, 3> children;
-  Segment around;
-  float radius[kLanes];
-  std::vector<Siblings> candidates; ///< what all of them together may meet
-  std::vector<Siblings> near[kLanes];
-  // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
-  alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
-};
-
 /// Memory of one voxel's walk after another.
 struct WalkScratch {
-  std::deque<NodeVisit> visits; ///< by depth; a deque, for references to shallower visits stay in use
+  Visits<NodeVisit> visits;
   LongTriangles long_triangles;
 };
 
 /// Takes one voxel of the scan along the trajectory.
-class TrajectoryWalk {
+class TrajectoryWalk : public ListVisitor<NodeVisit> {
 public:
   TrajectoryWalk(const TrajectoryQuery& query, const StopRule& rule, std::uint32_t voxel, WalkScratch& scratch)
   : query_(query),
@@ -56,14 +43,13 @@ public:
     voxel_frame_(query, voxel),
     oriented_boxes_(voxel_frame_),
     results_(query),
-    stop_check_(rule, results_.work.node_pairs),
+    walk_(rule, results_.work.node_pairs, scratch.visits),
     model_(query.boxes, rule, results_.work),
-    leaves_(query, voxel_frame_, model_, stop_check_, pulse_, results_, scratch.long_triangles),
+    leaves_(query, voxel_frame_, model_, walk_.stop_check, pulse_, results_, scratch.long_triangles),
     probing_(query, voxel_frame_, model_, results_.work),
     settled_reach_(settledReach()),
     settling_(!query.everything() && !query.first && query.of_points && voxel_frame_.frame.unit == 1.0 &&
-              settled_reach_ > 0.0f),
-    visits_(scratch.visits)
+              settled_reach_ > 0.0f)
   {
     scratch.long_triangles.forget();
   }
@@ -76,7 +62,7 @@ public:
       results_.beginPoses(intervals[near.front().interval].first, intervals[near.back().interval].last);
     std::vector<Siblings> candidates;
     for (const auto [voxel, interval] : near) {
-      if (stop_check_.isOver() || isDone()) return leave(true);
+      if (walk_.stop_check.isOver() || isDone()) return leave(true);
       pulse_.step();
       const VoxelMotion motion = voxel_frame_.motionOf(interval);
       candidates.clear();
@@ -87,16 +73,90 @@ public:
       if (!voxel_ && !mayEnter()) return leave(true);
       if (!voxel_) enter(motion);
       if (open_lanes_[0] == 0) break;
-      descend(0, motion, candidates, 0);
+      walk_.descend(*this, Part{voxel_->nodes[0], 0, motion}, candidates);
     }
-    return leave(stop_check_.isOver());
+    return leave(walk_.stop_check.isOver());
+  }
+
+  // As ListWalk asks.
+
+  /// A node of the scan, for an interval of poses.
+  struct Part {
+    const Node& node;
+    std::uint32_t index;
+    const VoxelMotion& motion;
+  };
+
+  void left(const Part& part, const std::vector<Siblings>&)
+  {
+    for (std::uint32_t lane = 0; lane < part.node.count; ++lane)
+      results_.undecided[part.index * kLanes + lane] =
+          static_cast<std::uint16_t>(firstBits(part.node.isLeaf(lane) ? part.node.comparedPoints(lane) : 1));
+  }
+
+  /// Halves an interval that strays far for the node's size, or takes its poses one by one.
+  template <class Descend>
+  bool divides(const Part& part, const Descend& descend)
+  {
+    pulse_.step();
+    const VoxelMotion& motion = part.motion;
+    const std::uint8_t& open = open_lanes_[part.index];
+    const auto take = [&](const VoxelMotion& smaller) { descend(Part{part.node, part.index, smaller}); };
+    float largest = 0.0f;
+    for (std::uint32_t lane = 0; lane < part.node.count; ++lane) largest = std::max(largest, part.node.r[lane]);
+    if (motion.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
+      for (const std::uint32_t half : {motion.interval->left, motion.interval->right})
+        if (open != 0 && !isDone()) take(voxel_frame_.motionOf(half));
+      return true;
+    }
+    if (!isWorthEachPose(motion, largest)) return false;
+    for (std::uint32_t k = motion.interval->first; k <= motion.interval->last && open != 0 && !isDone(); ++k) {
+      PathInterval one;
+      take(voxel_frame_.motionAt(k, one));
+    }
+    return true;
+  }
+
+  std::uint32_t refine(NodeVisit& visit, const Part& part, const std::vector<Siblings>& candidates)
+  {
+    const auto& [node, index, motion] = part;
+    const std::uint32_t beside = leaves_.besideOf(node, open_lanes_[index], motion);
+    if ((open_lanes_[index] & ~beside) == 0) return 0;
+    visit.begin(node, index, motion, voxel_frame_, oriented_boxes_);
+    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
+    model_.near(visit.around, candidates, motion.steps, visit.candidates);
+    if (motion.at_rest) boundDistances(visit, index, motion);
+    if (settling_) settleByPoints(visit, index, motion);
+    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index] & ~beside);
+    return open_lanes_[index] & ~beside;
+  }
+
+  bool wants(const NodeVisit&, std::uint32_t) const { return !isDone(); }
+
+  void compare(const Part& part, const NodeVisit& visit, std::uint32_t lane, std::size_t)
+  {
+    const LeafRange points{voxel_, part.node.begin[lane], part.node.comparedPoints(lane)};
+    const bool is_open =
+        leaves_.compare(part.index * kLanes + lane, points, part.node, lane, part.motion, visit.near[lane],
+                        part.motion.at_rest ? visit.bound[lane] : std::numeric_limits<float>::infinity());
+    if (!is_open) close(part.index, lane);
+  }
+
+  Part below(const Part& part, const NodeVisit&, std::uint32_t lane) const
+  {
+    const std::uint32_t index = part.node.child[lane];
+    return {voxel_->nodes[index], index, part.motion};
+  }
+
+  void settled(const Part& part, std::uint32_t lane)
+  {
+    if (open_lanes_[part.node.child[lane]] == 0) close(part.index, lane);
   }
 
 private:
   bool mayEnter() const
   {
-    return !rule_.mayStop() ||
-           (rule_.deepest > 0 && rule_.leavesTimeToBuild(query_.scan.hierarchy().storage().pointsToBuild(index_)));
+    return rule_.mayEnter([this] { return query_.scan.hierarchy().storage().pointsToBuild(index_); });
   }
 
   /// @param unsure not all was looked at.
@@ -150,56 +210,9 @@ private:
 
   bool isDone() const { return results_.witness.has_value(); }
 
-  /// Takes a node, all its children at once, through its candidates; then each child through its own.
-  void descend(std::uint32_t index, const VoxelMotion& motion, const std::vector<Siblings>& candidates,
-               std::size_t depth)
+  void close(std::uint32_t index, std::uint32_t lane)
   {
-    if (stop_check_.isOver() || isDone()) return;
-    pulse_.step();
-    const Node& node = voxel_->nodes[index];
-    float largest = 0.0f;
-    for (std::uint32_t lane = 0; lane < node.count; ++lane) largest = std::max(largest, node.r[lane]);
-    if (motion.divides(kNodeStray * largest * voxel_frame_.frame.unit)) {
-      for (const std::uint32_t half : {motion.interval->left, motion.interval->right}) {
-        if (open_lanes_[index] == 0) return;
-        descend(index, voxel_frame_.motionOf(half), candidates, depth);
-      }
-      return;
-    }
-    if (isWorthEachPose(motion, largest)) {
-      for (std::uint32_t k = motion.interval->first; k <= motion.interval->last && open_lanes_[index] != 0; ++k) {
-        PathInterval one;
-        descend(index, voxel_frame_.motionAt(k, one), candidates, depth);
-      }
-      return;
-    }
-    const std::uint32_t beside = leaves_.besideOf(node, open_lanes_[index], motion);
-    if ((open_lanes_[index] & ~beside) == 0) return;
-    if (visits_.size() <= depth) visits_.resize(depth + 1);
-    NodeVisit& visit = visits_[depth];
-    begin(visit, index, motion);
-    model_.near(visit.around, candidates, motion.steps, visit.candidates);
-    if (motion.at_rest) boundDistances(visit, index, motion);
-    if (settling_) settleByPoints(visit, index, motion);
-    for (const Siblings& candidate : visit.candidates) take(visit, candidate, motion, open_lanes_[index] & ~beside);
-    for (std::uint32_t bits = open_lanes_[index] & ~beside; bits != 0 && !isDone(); bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (visit.near[lane].empty()) continue;
-      bool open = true;
-      if (node.isLeaf(lane)) {
-        const LeafRange points{voxel_, node.begin[lane], node.comparedPoints(lane)};
-        open = leaves_.compare(index * kLanes + lane, points, node, lane, motion, visit.near[lane],
-                               motion.at_rest ? visit.bound[lane] : std::numeric_limits<float>::infinity());
-      }
-      else if (depth + 1 >= rule_.deepest) {
-        results_.undecided[index * kLanes + lane] = 0xffff;
-      }
-      else {
-        descend(node.child[lane], motion, visit.near[lane], depth + 1);
-        open = open_lanes_[node.child[lane]] != 0;
-      }
-      if (!open) open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
-    }
+    open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
   }
 
   /// Whether poses are taken one by one: few of them, and a reach in which a node's points differ by little. A pose by
@@ -208,37 +221,6 @@ private:
   {
     return leaves_.isWorthEachPose(motion) &&
            (leaves_.hasPlane() || query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest)));
-  }
-
-  void begin(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
-  {
-    const Node& node = voxel_->nodes[index];
-    alignas(64) float from[3][kLanes], to[3][kLanes], bow[3][kLanes];
-    carry(motion.from.m, motion.from.g, node.x, node.y, node.z, kLanes, from[0], from[1], from[2]);
-    carry(motion.to.m, motion.to.g, node.x, node.y, node.z, kLanes, to[0], to[1], to[2]);
-    carry(motion.bow.m, motion.bow.g, node.x, node.y, node.z, kLanes, bow[0], bow[1], bow[2]);
-    visit.children.set(from, to, bow, motion.smallest);
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      visit.near[lane].clear();
-      visit.radius[lane] = voxel_frame_.seenRadius(node.r[lane]);
-    }
-    alignas(64) float extent[3][kLanes];
-    oriented_boxes_.see(index, motion, visit.radius, extent);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane)
-        visit.children.reach[axis][lane] = (motion.reach + extent[axis][lane]) * (1.0f + kReachMargin);
-    visit.children.ball = motion.reach * (1.0f + kReachMargin);
-    visit.around = voxel_frame_.aroundSegments(motion, from, to, bow, extent, node.count);
-    results_.work.volumes_carried += node.count + std::uint64_t{1}; // the children and what is around them
-    if (!motion.at_rest) return;
-    constexpr float unbounded = std::numeric_limits<float>::infinity();
-    std::fill(visit.bound, visit.bound + kLanes, unbounded);
-    std::fill(visit.near_squared, visit.near_squared + kLanes, voxel_frame_.nearSquared(motion, unbounded));
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        visit.low[axis][lane] = from[axis][lane] - extent[axis][lane] * (1.0f + kReachMargin);
-        visit.high[axis][lane] = from[axis][lane] + extent[axis][lane] * (1.0f + kReachMargin);
-      }
   }
 
   /// At one pose: every box holds a point of the model, or of a part of it, so that no point of a child is farther from
@@ -296,7 +278,7 @@ private:
       ++results_.work.volumes_carried;
       if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center, motion)) continue;
       settle(index, lane);
-      open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
+      close(index, lane);
     }
   }
 
@@ -353,7 +335,7 @@ private:
   const VoxelInModelFrame voxel_frame_;
   OrientedBoxes oriented_boxes_;
   VoxelResults results_;
-  StopCheck stop_check_;
+  ListWalk<NodeVisit> walk_;
   WorkPulse pulse_{results_.work};
   ModelBoxes model_;
   LeafWalk leaves_;
@@ -363,7 +345,6 @@ private:
   const Voxel* voxel_ = nullptr;          // once it was entered
   const OwnUncertainties* own_ = nullptr; // of its points, likewise
   std::vector<std::uint8_t> open_lanes_;  // per node: children that are not settled
-  std::deque<NodeVisit>& visits_;         // by depth
 };
 
 } // namespace

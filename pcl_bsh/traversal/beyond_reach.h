@@ -18,7 +18,7 @@ class BeyondReach {
 public:
   BeyondReach(const PointPairs& pairs, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b)
   : pairs_(pairs),
-    planes_(pairs.distance, a, b),
+    planes_(pairs.distance, a, b, kDecisionsBeforeAsked),
     may_know_(pairs.ofTriangles() && !pairs.mayOverlap() && pairs.ofPairs().isOne())
   {
   }
@@ -28,31 +28,25 @@ public:
   void found(PointPair beyond)
   {
     if (!may_know_) return;
-    if (planes_.decisionsInVain() % kDecisionsBetweenCompared == 0) {
+    if (planes_.policy.decisionsInVain() % kDecisionsBetweenCompared == 0) {
       const RecordDistance::Enclosure gap = pairs_.distance.enclose(pairs_.posed(beyond));
       if (!nearest_ || gap.high < least_) {
         nearest_ = beyond, least_ = gap.low;
         is_laid_ = false;
-        asked_in_vain_ = 0, next_asked_ = kDecisionsBeforeAsked;
+        planes_.policy.wait(kDecisionsBeforeAsked);
       }
     }
-    planes_.decidedInVain();
+    planes_.policy.decidedInVain();
   }
 
   /// Whether it is worth asking about nodes.
-  bool mayKnow() const { return planes_.decisionsInVain() >= next_asked_; }
+  bool mayKnow() const { return planes_.policy.mayAsk(); }
 
   /// Whether all below two children is known to be beyond the reach.
   bool knows(const NodeChild& a, const NodeChild& b)
   {
     if (!is_laid_) lay();
-    const bool known = planes_.touching(a, b).has_value();
-    asked_in_vain_ = known ? 0 : asked_in_vain_ + 1;
-    if (asked_in_vain_ == kAskedInVain) {
-      asked_in_vain_ = 0;
-      next_asked_ = 2 * planes_.decisionsInVain();
-    }
-    return known;
+    return planes_.policy.answered(planes_.touching(a, b).has_value());
   }
 
 private:
@@ -66,7 +60,6 @@ private:
 
   static constexpr std::uint64_t kDecisionsBetweenCompared = 64;
   static constexpr std::uint64_t kDecisionsBeforeAsked = 1024; ///< what planes cost is little beside these
-  static constexpr std::uint32_t kAskedInVain = 32; ///< one after the other, before as many decisions go without
 
   const PointPairs& pairs_;
   PlanesBetween planes_;
@@ -74,8 +67,6 @@ private:
   std::optional<PointPair> nearest_; ///< of those that were compared
   double least_ = 0.0;               ///< its gap, at least
   bool is_laid_ = false;             ///< whether the planes are of it
-  std::uint32_t asked_in_vain_ = 0;
-  std::uint64_t next_asked_ = kDecisionsBeforeAsked; ///< after so many decisions
 };
 
 } // namespace pcl_bsh

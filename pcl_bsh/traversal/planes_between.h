@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/traversal/behind_plane.h>
+#include <pcl_bsh/traversal/plane_policy.h>
 
 #include <array>
 #include <cmath>
@@ -17,25 +18,22 @@ namespace pcl_bsh {
 /// side, is no nearer than the pair. Planes are for searches that decide one pair after the other in vain.
 class PlanesBetween {
 public:
-  PlanesBetween(const RecordDistance& distance, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b)
-  : distance_(distance),
+  /// @param before decisions in vain before planes are worth their cost
+  PlanesBetween(const RecordDistance& distance, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b,
+                std::uint64_t before)
+  : policy(before),
+    distance_(distance),
     storage_a_(a),
     storage_b_(b)
   {
   }
 
-  /// Counts decisions of pairs that brought nothing: they pay for what planes cost.
-  void decidedInVain() { ++decisions_; }
-  std::uint64_t decisionsInVain() const { return decisions_; }
-
-  /// Whether there were enough of them.
-  bool areWorthTheirCost() const { return decisions_ >= kDecisionsBeforePlanes; }
-
   /// Forgets planes and decisions.
   void clear()
   {
     behind_a_.reset(), behind_b_.reset();
-    decisions_ = looked_ = 0;
+    policy.forget();
+    looked_ = 0;
   }
 
   /// Between the nearest places of another pair. There may be none. @param less than the pair's distance: nothing
@@ -62,7 +60,7 @@ public:
   /// Nothing, too, where not enough decisions have paid for looking.
   std::optional<Touching> touching(const NodeChild& a, const NodeChild& b)
   {
-    const std::uint64_t allowed = kLooksForDecision * decisions_;
+    const std::uint64_t allowed = kLooksForDecision * policy.decisionsInVain();
     if (!behind_a_ || looked_ >= allowed) return std::nullopt;
     std::uint64_t looks = allowed - looked_;
     const std::optional<Touching> found = touching(a, b, looks);
@@ -100,6 +98,8 @@ public:
                          (less_ == 0.0 && isBeyond(behind_a_->height(pair.a), behind_b_->height(pair.b))));
   }
 
+  PlanePolicy policy;
+
 private:
   bool isBeyond(double height_a, double height_b) const
   {
@@ -113,9 +113,7 @@ private:
     return height_a && height_b && (*height_a + LongNumber(unit_of_b_) * *height_b).sign(sure) < 0;
   }
 
-  /// Before planes are tried, and how many records each of them allows to be looked at then: a look costs a hundredth
-  /// of a decision.
-  static constexpr std::uint64_t kDecisionsBeforePlanes = 256;
+  /// How many records each decision allows to be looked at: a look costs a hundredth of a decision.
   static constexpr std::uint64_t kLooksForDecision = 16;
 
   const RecordDistance& distance_;
@@ -124,7 +122,7 @@ private:
   std::optional<BehindPlane> behind_a_, behind_b_;
   double unit_of_b_ = 1.0; ///< of heights over b's plane, in that of a's
   double less_ = 0.0;      ///< in the unit of a's plane
-  std::uint64_t decisions_ = 0, looked_ = 0;
+  std::uint64_t looked_ = 0;
 };
 
 } // namespace pcl_bsh

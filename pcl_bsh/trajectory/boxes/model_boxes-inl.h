@@ -117,7 +117,7 @@ public:
     if (!rule_.mayStop()) return true;
     if (c.voxel != kAboveVoxels) return c.level < rule_.deepest;
     if (!c.box().isLeaf(c.lane)) return true;
-    return rule_.deepest > 0 && rule_.leavesTimeToBuild(tree_.storage.pointsToBuild(c.box().leaf(c.lane)));
+    return rule_.mayEnter([&] { return tree_.storage.pointsToBuild(c.box().leaf(c.lane)); });
   }
 
   /// Whether a box is so small that floats do not tell the boxes below it apart during the motion, and holds so many

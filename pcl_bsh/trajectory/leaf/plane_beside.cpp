@@ -13,7 +13,6 @@ namespace {
 constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kDecisionsBeforePlane = 64;
 constexpr std::uint64_t kRecordsForDecision = 16; // that a plane looks at cost no more
-constexpr std::uint32_t kAskedInVain = 32;        // one after the other, before as many decisions go without
 
 } // namespace
 
@@ -23,18 +22,15 @@ PlaneBeside::PlaneBeside(const TrajectoryQuery& query)
             query.of_pairs.isOne()),
   error_(kSeparationError * query.boxes.radius),
   least_(kInfinitelyFar),
-  next_(std::max<std::uint64_t>(kDecisionsBeforePlane, query.model.storage().size / kRecordsForDecision))
+  policy_(std::max<std::uint64_t>(kDecisionsBeforePlane, query.model.storage().size / kRecordsForDecision))
 {
 }
 
 bool PlaneBeside::isBeside(const MovingCorners& arcs, double distance)
 {
   const bool is_beside = MovingPair(arcs, touching_).leastApart(normal_, 0.0, 1.0) - error_ > distance;
-  asked_in_vain_ = is_beside ? 0 : asked_in_vain_ + 1;
-  if (asked_in_vain_ == kAskedInVain) {
-    is_laid_ = false;
-    next_ = 2 * decisions_;
-  }
+  policy_.answered(is_beside);
+  is_laid_ = policy_.mayAsk();
   return is_beside;
 }
 
@@ -56,7 +52,6 @@ void PlaneBeside::lay()
     });
   is_laid_ = true;
   ++number_;
-  asked_in_vain_ = 0;
   least_ = kInfinitelyFar;
 }
 

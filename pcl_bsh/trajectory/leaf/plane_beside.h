@@ -5,6 +5,7 @@
 
 #include <pcl_bsh/geometry/triangle/separation.h>
 #include <pcl_bsh/trajectory/query.h>
+#include <pcl_bsh/traversal/plane_policy.h>
 
 #include <cstdint>
 
@@ -24,7 +25,8 @@ public:
       least_ = apart.low;
       direction_ = apart.direction;
     }
-    if (++decisions_ == next_) lay();
+    policy_.decidedInVain();
+    if (policy_.begins()) lay();
   }
 
   /// Counts the planes laid so far; 0 while no plane is laid.
@@ -43,8 +45,8 @@ private:
   Point3 direction_ = {0, 0, 0}; ///< along which it is apart
   Point3 normal_ = {0, 0, 0};    ///< from the model to the scan
   MovingCorners touching_ = {};  ///< the record of the model that reaches farthest along the normal
-  std::uint64_t decisions_ = 0, next_;
-  std::uint32_t number_ = 0, asked_in_vain_ = 0;
+  PlanePolicy policy_;
+  std::uint32_t number_ = 0;
   bool is_laid_ = false;
 };
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The descent that queries for all points share: a node of a goes down with the list of what may matter of b to it. A
+// visitor makes the lists of its children, and compares leaves.
+
+#if defined(PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_
+#undef PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_
+#else
+#define PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_
+#endif
+
+#include <pcl_bsh/query/stop_rule.h>
+#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+
+/// The state of a walk at one node of a. Visitors add what they need.
+template <class Item>
+struct ListVisit {
+  const Node* node = nullptr;
+  std::uint32_t leaves = 0;       ///< bits of the children that are leaves
+  std::vector<Item> near[kLanes]; ///< what may matter of b to each child
+
+  void begin(const Node& entered)
+  {
+    node = &entered;
+    leaves = 0;
+    for (std::uint32_t lane = 0; lane < entered.count; ++lane) {
+      near[lane].clear();
+      if (entered.isLeaf(lane)) leaves |= 1u << lane;
+    }
+  }
+
+  std::size_t bytes() const noexcept
+  {
+    std::size_t sum = 0;
+    for (const auto& list : near) sum += list.capacity() * sizeof(Item);
+    return sum;
+  }
+};
+
+/// The visits of one walk after another, by depth. References to shallower visits stay in use while deeper ones are
+/// added.
+template <class Visit>
+class Visits {
+public:
+  /// @pre depth is at most the greatest one before, and one more
+  Visit& at(std::size_t depth)
+  {
+    if (by_depth_.size() == depth) by_depth_.emplace_back();
+    return by_depth_[depth];
+  }
+
+  std::size_t bytes() const noexcept
+  {
+    std::size_t sum = by_depth_.size() * sizeof(Visit);
+    for (const Visit& visit : by_depth_) sum += visit.bytes();
+    return sum;
+  }
+
+private:
+  std::deque<Visit> by_depth_;
+};
+
+/// A node of a, and a sphere around all that it holds.
+struct NodeInSphere {
+  const Node& node;
+  BoundingSphere around;
+
+  static NodeInSphere rootOf(const Voxel& voxel) { return {voxel.nodes[0], {{0.0f, 0.0f, 0.0f}, voxel.radius}}; }
+
+  NodeInSphere child(const Voxel& voxel, std::uint32_t lane) const
+  {
+    return {voxel.nodes[node.child[lane]], {{node.x[lane], node.y[lane], node.z[lane]}, node.r[lane]}};
+  }
+};
+
+/// Defaults of visitors.
+template <class Visit>
+struct ListVisitor {
+  /// Whether a node is to be taken in parts, each by descend(part).
+  template <class Part, class Descend>
+  static bool divides(const Part&, const Descend&)
+  {
+    return false;
+  }
+
+  /// The i-th child of a visit to go on with.
+  static std::uint32_t childAt(const Visit&, std::uint32_t i) { return i; }
+
+  /// Whether a child is still of interest when its turn comes.
+  static bool wants(const Visit&, std::uint32_t) { return true; }
+
+  /// Nothing of b matters to a child.
+  static void alone(const Visit&, std::uint32_t) {}
+
+  /// A child that is a leaf, at a depth. Others have compared it in refine().
+  template <class Part>
+  static void compare(const Part&, const Visit&, std::uint32_t, std::size_t)
+  {
+  }
+
+  /// All below an inner child is done.
+  template <class Part>
+  static void settled(const Part&, std::uint32_t)
+  {
+  }
+};
+
+/// The descent: depth first, until all is settled, too deep, or the rule ends it.
+/// @tparam Visit a ListVisit
+template <class Visit>
+class ListWalk {
+public:
+  /// @param tested counts the walk's sphere tests
+  ListWalk(const StopRule& rule, const std::uint64_t& tested, Visits<Visit>& visits)
+  : stop_check(rule, tested),
+    rule_(rule),
+    visits_(visits)
+  {
+  }
+
+  /// Takes a node of a, all its children at once, through its list; then each child through its own.
+  /// @tparam Visitor a ListVisitor that has
+  ///   `void left(part, list)`: a node stays undecided
+  ///   `std::uint32_t refine(visit, part, list)`: begins the visit, and sets the lists of the children that it returns
+  ///   `Part below(part, visit, lane)`: an inner child on its way down
+  /// @tparam Part has the `node`, and what the visitor hands down with it @tparam List of items of the visit
+  template <class Visitor, class Part, class List>
+  void descend(Visitor& visitor, const Part& part, const List& list, std::size_t depth = 0)
+  {
+    if (stop_check.isOver() || depth >= rule_.deepest) return visitor.left(part, list);
+    if (visitor.divides(part, [&](const Part& smaller) { descend(visitor, smaller, list, depth); })) return;
+    Visit& visit = visits_.at(depth);
+    const std::uint32_t children = visitor.refine(visit, part, list);
+    for (std::uint32_t i = 0; children != 0 && i < part.node.count; ++i) {
+      const std::uint32_t lane = visitor.childAt(visit, i);
+      if ((children >> lane & 1) == 0 || !visitor.wants(visit, lane)) continue;
+      if (visit.near[lane].empty()) {
+        visitor.alone(visit, lane);
+      }
+      else if (part.node.isLeaf(lane)) {
+        visitor.compare(part, visit, lane, depth);
+      }
+      else {
+        descend(visitor, visitor.below(part, visit, lane), visit.near[lane], depth + 1);
+        visitor.settled(part, lane);
+      }
+    }
+  }
+
+  StopCheck stop_check;
+
+private:
+  const StopRule& rule_;
+  Visits<Visit>& visits_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace pcl_bsh {
+
+/// When planes are worth asking: decisions of pairs in vain pay for them, and answers in vain let them wait.
+class PlanePolicy {
+public:
+  /// @param decisions in vain before planes are asked
+  explicit PlanePolicy(std::uint64_t decisions) : next_(decisions) {}
+
+  void decidedInVain() { ++decisions_; }
+  void forget() { decisions_ = 0; }
+  std::uint64_t decisionsInVain() const { return decisions_; }
+
+  bool mayAsk() const { return decisions_ >= next_; }
+  bool begins() const { return decisions_ == next_; } ///< with the last decision
+
+  /// Planes are others now, or they wait until so many decisions.
+  void wait(std::uint64_t decisions)
+  {
+    next_ = decisions;
+    asked_in_vain_ = 0;
+  }
+
+  /// Takes note of an answer. After some in vain, one after the other, as many decisions go without.
+  /// @param known whether it told anything @return it
+  bool answered(bool known)
+  {
+    constexpr std::uint32_t most = 32;
+    asked_in_vain_ = known ? 0 : asked_in_vain_ + 1;
+    if (asked_in_vain_ == most) wait(2 * decisions_);
+    return known;
+  }
+
+private:
+  std::uint64_t decisions_ = 0, next_;
+  std::uint32_t asked_in_vain_ = 0;
+};
+
+} // namespace pcl_bsh
