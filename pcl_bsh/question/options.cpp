@@ -17,6 +17,7 @@ namespace {
 
 using Kind = QuestionKind;
 using Range = OptionRange;
+using OfSites = OptionOfSites;
 using Q = Question;
 
 std::vector<QuestionOption> table()
@@ -51,35 +52,38 @@ std::vector<QuestionOption> table()
        "the same for the input's own pose, all of whose points move together, about a place in its frame"},
       {"density", &Q::density, Kind::collisions, "", "", Input::density,
        "a point that is free, but no farther from a point of the obstacle than the clearance and half the spacing of "
-       "the obstacle's points there, is undecided: not scanned densely enough; at one pose"},
+       "the obstacle's points there, is undecided: not scanned densely enough; at one pose",
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
        "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
        "median distance between its neighbouring points, too little where lines of a scan are farther apart",
-       Range::above_zero, false, nullptr, "density"},
+       Range::above_zero, false, nullptr, "density", OptionEffect::clashes, OfSites::none},
       {"seen", &Q::seen, Kind::collisions, "", "", std::nullopt,
        "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
        "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
        "edges; not with swept motion",
-       Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers},
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers, OfSites::in_memory},
       {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
        "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
        "the field that numbers them; without it, what the input's file says",
-       Range::from_zero, false, nullptr, "seen", OptionEffect::other_answers},
+       Range::from_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::in_memory},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
        "with `seen`: a direction counts only if beams within this angle lie on all sides of it: none beyond the "
        "outermost beam, none in a gap; from 0.0001 to 0.25; without it, one and a half times the angle between the "
        "scan's beams as measured",
-       Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers},
+       Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::in_memory},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity, false, nullptr, nullptr, OptionEffect::other_answers},
       {"solid", &Q::solid, Kind::any, "", "", std::nullopt,
        "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
        "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
-       "alone, hollow as a tunnel that a wagon passes"},
+       "alone, hollow as a tunnel that a wagon passes",
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::in_memory},
       {"input_solid", &Q::input_solid, Kind::not_one_way, "", "", std::nullopt,
        "the same of an input with faces: what of the obstacle is inside collides, and so do the triangles of each body "
-       "that holds it"},
+       "that holds it",
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
        "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
        "input "

@@ -43,6 +43,9 @@ enum class OptionRange : std::uint8_t { from_zero, above_zero, from_zero_to_infi
 /// answers alone; or none.
 enum class OptionEffect : std::uint8_t { clashes, other_answers, none };
 
+/// Which questions about a site (pcl_bsh/site) have an option: all, those whose obstacle is in memory, or none.
+enum class OptionOfSites : std::uint8_t { all, in_memory, none };
+
 /// A row of the table.
 struct QuestionOption {
   const char* name; ///< in pipelines and Python; with hyphens after -- on command lines
@@ -57,6 +60,7 @@ struct QuestionOption {
   const char* name_of_stages = nullptr; ///< where pipelines call it as PCL does
   const char* with = nullptr;           ///< the switch without which it means nothing, and is refused
   OptionEffect effect = OptionEffect::clashes;
+  OptionOfSites of_sites = OptionOfSites::all;
 
   bool accepts(double number) const; ///< whether it is in range
   double most() const;               ///< that is accepted

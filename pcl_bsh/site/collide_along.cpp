@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The part of a question about a site that is along a path.
 #include <pcl_bsh/geometry/exact_distance.h>
 #include <pcl_bsh/site/answers/held.h>
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/obstacle_tiles.h>
 #include <pcl_bsh/site/tiles/records.h>
@@ -97,87 +97,95 @@ private:
   std::map<std::uint32_t, MetPoint> nearest_; ///< of the points that meet something
 };
 
-/// For each tile of a site the tiles of the model that may come near to it on their way.
-std::vector<std::vector<std::uint32_t>> tilesOfModelNear(const Site& site, const Uncertainty& uncertainty,
-                                                         const Site& model, const Uncertainty& of_model,
-                                                         const Poses& poses, const PathReach& reach)
+/// Asks about tiles of the site, whose answers are added up, and tells what it reads of them.
+template <typename Find>
+TilesRead visitTiles(const Asked& asked, Inquiry& inquiry, const std::vector<std::uint32_t>& tiles, PassageSum& sum,
+                     const Find& find)
 {
-  std::vector<std::vector<std::uint32_t>> near(site.tiles.size());
+  const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+    Answer of_tile;
+    std::vector<MetPoint> met;
+    of_tile.collisions = find(tile, hierarchy, met);
+    if (asked.means.sink) asked.means.sink(tile, cloud, of_tile);
+    return sum.numbersOf(tile, cloud, of_tile.collisions, asked.other ? &met : nullptr);
+  };
+  return inquiry.visitAndAdd(
+      tiles, ask, [&](const auto& numbers) { sum.add(numbers); }, asked.other != nullptr);
+}
+
+void followPathOfCloud(const Asked& asked, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
+{
+  const PlacedSite site = asked.input();
+  const SphereHierarchy& model = asked.model();
+  const TrajectoryRequest wanted = alongPath(asked);
+  refusePassage(site.site, model, poses, wanted);
+  Inquiry inquiry(asked, site);
+  const auto find = [&](const Tile&, const SphereHierarchy& hierarchy, std::vector<MetPoint>&) {
+    TrajectoryResult found = collideAlong({hierarchy}, model, poses, wanted);
+    addHeldOf(asked, hierarchy, found);
+    return found;
+  };
+  const std::vector<std::uint32_t> tiles =
+      tilesAlong(site.site, boxesOf(model.view(), asked.question.solid), poses, pathReach(wanted), site.uncertainty);
+  answer.tiles += visitTiles(asked, inquiry, tiles, sum, find);
+}
+
+/// Of its tiles those are read that come near a tile of the input on their way.
+void followPathOfSite(const Asked& asked, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
+{
+  const PlacedSite site = asked.input();
+  const Site& model = *asked.other;
+  const TrajectoryRequest wanted = alongPath(asked);
+  const std::vector<Point3> corners = cornersOf(model);
+  refusePassage(site.site, SphereHierarchy(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size())),
+                poses, wanted);
+  Inquiry inquiry(asked, site);
+  const Uncertainty of_model = asked.question.uncertaintyOfObstacle();
+  ObstacleTiles models({model, Eigen::Isometry3d::Identity(), of_model}, inquiry.bytesLeft());
+  std::vector<std::vector<std::uint32_t>> near(site.site.tiles.size()); // those that may come near to each tile
   for (std::uint32_t j = 0; j < model.tiles.size(); ++j) {
     if (!model.tiles[j].bounds) continue;
     const CloudBoxes box(trueBounds(model.tiles[j], of_model));
-    for (const std::uint32_t i : tilesAlong(site, box, poses, reach, uncertainty)) near[i].push_back(j);
+    for (const std::uint32_t i : tilesAlong(site.site, box, poses, pathReach(wanted), site.uncertainty))
+      near[i].push_back(j);
   }
-  return near;
-}
-
-} // namespace
-
-SitePassage collideAlong(const Site& site, const SphereHierarchy& model, const Poses& poses, const SiteRequest& request,
-                         const PassageSink& sink)
-{
-  const TrajectoryRequest wanted = alongPath(request);
-  refusePassage(site, model, poses, wanted);
-  requireUncertainty(site, request.uncertainty);
-  PassageSum sum(request, poses.size());
-  Inquiry inquiry(site, request);
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-    TrajectoryResult found = pcl_bsh::collideAlong({hierarchy}, model, poses, wanted);
-    addHeldOf(request, {hierarchy}, {model}, found, &poses);
-    if (sink) sink(tile, cloud, found);
-    return sum.numbersOf(tile, cloud, found);
-  };
-  const std::vector<std::uint32_t> tiles =
-      tilesAlong(site, boxesOf(model.view(), request.solid != nullptr), poses, pathReach(request), request.uncertainty);
-  const TilesRead read = inquiry.visitAndAdd(tiles, find, [&](const auto& numbers) { sum.add(numbers); });
-  SitePassage result = sum.ofAllRanks();
-  result.tiles = read;
-  return result;
-}
-
-SitePassage collideAlong(const Site& site, const Site& model, const Uncertainty& model_uncertainty, const Poses& poses,
-                         const SiteRequest& request, const PassageSink& sink)
-{
-  const TrajectoryRequest wanted = alongPath(request);
-  const std::vector<Point3> corners = cornersOf(model);
-  refusePassage(site, SphereHierarchy(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size())),
-                poses, wanted);
-  requireUncertainty(site, request.uncertainty);
-  Inquiry inquiry(site, request);
-  ObstacleTiles models({model, Eigen::Isometry3d::Identity(), model_uncertainty},
-                       request.memory - std::min(request.memory, inquiry.bytesForLargest()));
-  const auto near = tilesOfModelNear(site, request.uncertainty, model, model_uncertainty, poses, pathReach(request));
   std::vector<std::uint32_t> tiles;
   for (std::uint32_t i = 0; i < near.size(); ++i)
     if (!near[i].empty()) tiles.push_back(i);
 
-  PassageSum sum(request, poses.size());
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
+  const auto find = [&](const Tile& tile, const SphereHierarchy& hierarchy, std::vector<MetPoint>& met) {
     JoinedResults joined(hierarchy.view(), poses, wanted);
     JoinedPoses joined_poses(hierarchy, poses, wanted);
-    const std::vector<std::uint32_t>& numbers = near[static_cast<std::size_t>(&tile - site.tiles.data())];
+    const std::vector<std::uint32_t>& numbers = near[static_cast<std::size_t>(&tile - site.site.tiles.data())];
     for (const std::uint32_t j : numbers) {
       const PointsView points = models.points(j);
-      const TrajectoryResult of_model =
-          pcl_bsh::collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted);
-      joined.add(of_model, points, models.last());
-      if (request.pose_summaries) joined_poses.add(of_model.poses);
+      const TrajectoryResult of_model_tile =
+          collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted);
+      joined.add(of_model_tile, points, models.last());
+      if (wanted.pose_summaries) joined_poses.add(of_model_tile.poses);
     }
-    std::vector<MetPoint> met;
     TrajectoryResult& found = joined.result(met);
-    if (request.pose_summaries) {
+    if (wanted.pose_summaries) {
       found.poses = joined_poses.joined(
           [&](std::size_t m) { return SphereHierarchy(models.points(numbers[m]), inquiry.building()); });
     }
-    if (sink) sink(tile, cloud, found);
-    return sum.numbersOf(tile, cloud, found, &met);
+    return std::move(found);
   };
-  const TilesRead read = inquiry.visitAndAdd(
-      tiles, find, [&](const auto& numbers) { sum.add(numbers); }, true);
-  SitePassage result = sum.ofAllRanks();
-  result.tiles = read;
-  result.tiles_b = models.read();
-  return result;
+  answer.tiles += visitTiles(asked, inquiry, tiles, sum, find);
+  answer.obstacle_tiles += models.read();
+}
+
+} // namespace
+
+void followPath(const Asked& asked, SiteAnswer& answer)
+{
+  const Poses poses = asked.question.poses();
+  PassageSum sum(asked, poses.size());
+  if (asked.other)
+    followPathOfSite(asked, poses, sum, answer);
+  else
+    followPathOfCloud(asked, poses, sum, answer);
+  sum.tell(answer);
 }
 
 } // namespace pcl_bsh::site

@@ -1,43 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The parts of a question about a site at one pose.
+#include <pcl_bsh/distances/point_distances.h>
+#include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/site/answers/comparison.h>
 #include <pcl_bsh/site/answers/held.h>
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace pcl_bsh::site {
 
 namespace {
-
-/// Calls query(a, b) with nothing in place of sites: what it refuses is refused although no tile may be asked about.
-template <typename Query>
-void refuse(const Eigen::Isometry3d& pose, const Placed& b, const Query& query)
-{
-  query(Placed(SphereHierarchy(PointsView{}), pose), b);
-}
-
-template <typename Query>
-void refuse(const Eigen::Isometry3d& pose, const PlacedSite& b, const Query& query)
-{
-  const SphereHierarchy nothing(PointsView{});
-  query(Placed(nothing, pose), Placed(nothing, b.pose));
-}
-
-PlacedSite asFirst(const Site& site, const Uncertainty& uncertainty = {})
-{
-  return {site, Eigen::Isometry3d::Identity(), uncertainty};
-}
-
-SiteRequest with(SiteRequest request, const Uncertainty& uncertainty)
-{
-  request.uncertainty = uncertainty;
-  return request;
-}
 
 /// A point of a site that may be nearest to something: the nearest of a tile.
 struct Candidate {
@@ -68,109 +44,146 @@ struct Candidates {
   std::vector<SitePoint> points;
 };
 
-template <typename Other>
-SiteAny anyOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
+void appendVerdicts(const std::vector<Verdict>& flags, std::vector<double>& numbers)
 {
-  const auto wanted = wantedOf<AnyRequest>(request);
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i] != Verdict::free)
+      numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags[i])});
+}
+
+void addVerdicts(const std::vector<double>& numbers, std::size_t begin, std::vector<Verdict>& flags)
+{
+  for (std::size_t k = begin; k < numbers.size(); k += 2) {
+    Verdict& flag = flags[static_cast<std::size_t>(numbers[k])];
+    flag = graver(flag, static_cast<Verdict>(numbers[k + 1]));
+  }
+}
+
+/// How many points of a site collide, or are undecided, over all ranks.
+struct Counts {
+  std::uint64_t colliding = 0, undecided = 0;
+};
+
+/// Flags of the points of a comparison's tiles. @param told gets those of a tile, and their counts
+/// @param flags_of_cloud gets those of the cloud in memory; null: they are not asked for
+template <typename Told>
+Counts flags(const Asked& asked, Comparison& comparison, std::vector<Verdict>* flags_of_cloud, const Told& told,
+             TilesRead& read)
+{
+  auto wanted = wantedOf<FlagsRequest>(asked.question);
+  wanted.flagged = flags_of_cloud || asked.question.solid ? Side::both : Side::a;
+  comparison.refuse([&](const Placed& x, const Placed& y) { collisionFlags(x, y, wanted); });
+  if (flags_of_cloud) flags_of_cloud->assign(asked.model().view().count, Verdict::free);
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
+    FlagsResult all, found;
+    all.a.assign(a.hierarchy().view().count, Verdict::free);
+    comparison.compareWithOther(
+        tile, [&] { return asked.clearance(); },
+        [&](const pcl::PCLPointCloud2&, const Placed& other) {
+          collisionFlags(a, other, wanted, found);
+          addHeldOf(asked, a, found);
+          join(all.a, found.a);
+          all.work += found.work;
+        });
+    all.colliding_a = countOf(all.a, Verdict::colliding);
+    all.undecided_a = countOf(all.a, Verdict::undecided);
+    std::vector<double> numbers = {static_cast<double>(all.colliding_a), static_cast<double>(all.undecided_a)};
+    told(tile, cloud, all);
+    if (flags_of_cloud) appendVerdicts(found.b, numbers);
+    return numbers;
+  };
+  Counts counts;
+  const auto add = [&](const std::vector<double>& numbers) {
+    counts.colliding += static_cast<std::uint64_t>(numbers[0]);
+    counts.undecided += static_cast<std::uint64_t>(numbers[1]);
+    if (flags_of_cloud) addVerdicts(numbers, 2, *flags_of_cloud);
+  };
+  read += comparison.visitAndAdd(asked.clearance(), find, add);
+  counts = {sumOfAllRanks(counts.colliding), sumOfAllRanks(counts.undecided)};
+  if (ranks() > 1 && flags_of_cloud) {
+    std::vector<double> own;
+    appendVerdicts(*flags_of_cloud, own);
+    addVerdicts(gatheredFromAllRanks(own), 0, *flags_of_cloud);
+  }
+  return counts;
+}
+
+} // namespace
+
+void findAny(const Asked& asked, SiteAnswer& answer)
+{
+  const auto wanted = wantedOf<AnyRequest>(asked.question);
   const auto query = [&](const Placed& x, const Placed& y) {
-    AnyResult found = pcl_bsh::anyCollision(x, y, wanted);
-    addHeldOf(request, x, y, found);
+    AnyResult found = anyCollision(x, y, wanted);
+    addHeldOf(asked, x, found);
     return found.verdict;
   };
-  refuse(asked.pose, b, query);
-  Comparison<Other> comparison(asked, b, request);
+  Comparison comparison(asked, asked.input(), asked.obstacle());
+  comparison.refuse(query);
   bool collides = false, is_undecided = false;
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2&, const Placed& a) {
     comparison.compareWithOther(
-        tile, [&] { return collides ? -infinity : request.clearance; },
+        tile, [&] { return collides ? -infinity : asked.clearance(); },
         [&](const pcl::PCLPointCloud2&, const Placed& other) {
           const Verdict verdict = query(a, other);
           collides = verdict == Verdict::colliding;
           is_undecided = is_undecided || verdict == Verdict::undecided;
         });
   };
-  SiteAny result;
-  result.tiles = comparison.visit(request.clearance, ask, [&] {
+  answer.tiles += comparison.visit(asked.clearance(), ask, [&] {
     collides = sumOfAllRanks(collides ? 1 : 0) > 0;
     return collides ? -infinity : infinity;
   });
-  result.tiles_b = comparison.readOfOther();
-  result.verdict = verdictOfAllRanks(collides, is_undecided);
-  return result;
+  answer.obstacle_tiles += comparison.readOfOther();
+  answer.any.verdict = verdictOfAllRanks(collides, is_undecided);
 }
 
-template <typename Other>
-SiteFlags flagsOf(const PlacedSite& asked, const Other& b, Side flagged, const SiteRequest& request,
-                  const FlagsSink& sink)
+void flag(const Asked& asked, SiteAnswer& answer)
 {
-  SiteFlags result;
-  const bool of_b = flagged != Side::a;
-  auto wanted = wantedOf<FlagsRequest>(request);
-  wanted.flagged = of_b || request.solid ? Side::both : Side::a;
-  refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::collisionFlags(x, y, wanted); });
-  if constexpr (std::is_same_v<Other, Placed>)
-    if (of_b) result.b.assign(b.hierarchy().view().count, Verdict::free);
-  Comparison<Other> comparison(asked, b, request);
-  const auto append_b = [](const std::vector<Verdict>& flags, std::vector<double>& numbers) {
-    for (std::size_t i = 0; i < flags.size(); ++i)
-      if (flags[i] != Verdict::free)
-        numbers.insert(numbers.end(), {static_cast<double>(i), static_cast<double>(flags[i])});
+  const Wanted& wanted = asked.question.wanted;
+  Comparison comparison(asked, asked.input(), asked.obstacle());
+  const bool of_cloud = wanted.obstacle_flags && !asked.question.seen && !comparison.isOfSites(); // which tells them
+  const auto told = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, FlagsResult& found) {
+    if (!asked.means.sink) return;
+    Answer of_tile;
+    of_tile.collisions.flags = std::move(found.a);
+    of_tile.collisions.colliding = found.colliding_a;
+    of_tile.collisions.undecided = found.undecided_a;
+    of_tile.work = found.work;
+    asked.means.sink(tile, cloud, of_tile);
   };
-  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
-    FlagsResult all, found;
-    all.a.assign(a.hierarchy().view().count, Verdict::free);
-    comparison.compareWithOther(
-        tile, [&] { return request.clearance; },
-        [&](const pcl::PCLPointCloud2&, const Placed& other) {
-          pcl_bsh::collisionFlags(a, other, wanted, found);
-          addHeldOf(request, a, other, found);
-          join(all.a, found.a);
-          all.work += found.work;
-        });
-    all.b = std::move(found.b); // of a cloud, of which there is one
-    all.colliding_a = countOf(all.a, Verdict::colliding);
-    all.undecided_a = countOf(all.a, Verdict::undecided);
-    if (sink) sink(tile, cloud, all);
-    std::vector<double> numbers = {static_cast<double>(all.colliding_a), static_cast<double>(all.undecided_a)};
-    if (of_b) append_b(all.b, numbers);
-    return numbers;
-  };
-  const auto add_flags = [&](const std::vector<double>& numbers, std::size_t begin) {
-    for (std::size_t k = begin; k < numbers.size(); k += 2) {
-      Verdict& flag = result.b[static_cast<std::size_t>(numbers[k])];
-      flag = graver(flag, static_cast<Verdict>(numbers[k + 1]));
-    }
-  };
-  const auto add = [&](const std::vector<double>& numbers) {
-    result.colliding += static_cast<std::uint64_t>(numbers[0]);
-    result.undecided += static_cast<std::uint64_t>(numbers[1]);
-    add_flags(numbers, 2);
-  };
-  result.tiles = comparison.visitAndAdd(request.clearance, find, add);
-  result.tiles_b = comparison.readOfOther();
-  result.colliding = sumOfAllRanks(result.colliding);
-  result.undecided = sumOfAllRanks(result.undecided);
-  if (ranks() > 1 && of_b) {
-    std::vector<double> own;
-    append_b(result.b, own);
-    add_flags(gatheredFromAllRanks(own), 0);
-  }
-  result.colliding_b = countOf(result.b, Verdict::colliding);
-  result.undecided_b = countOf(result.b, Verdict::undecided);
-  return result;
+  const Counts counts = flags(asked, comparison, of_cloud ? &answer.obstacle_flags : nullptr, told, answer.tiles);
+  answer.obstacle_tiles += comparison.readOfOther();
+  answer.collisions.colliding = counts.colliding;
+  answer.collisions.undecided = counts.undecided;
 }
 
-template <typename Other>
-SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest& request)
+void flagObstacle(const Asked& asked, SiteAnswer& answer)
 {
-  auto wanted = wantedOf<DistanceRequest>(request);
+  Comparison comparison(asked, *asked.obstacle(), asked.input());
+  const auto told = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, FlagsResult& found) {
+    if (!asked.means.obstacle_sink) return;
+    Answer of_tile;
+    of_tile.obstacle_flags = std::move(found.a);
+    of_tile.work = found.work;
+    asked.means.obstacle_sink(tile, cloud, of_tile);
+  };
+  const Counts counts = flags(asked, comparison, nullptr, told, answer.obstacle_tiles);
+  answer.tiles += comparison.readOfOther();
+  answer.obstacle_colliding = counts.colliding;
+  answer.obstacle_undecided = counts.undecided;
+}
+
+void findClosest(const Asked& asked, SiteAnswer& answer)
+{
+  auto wanted = wantedOf<DistanceRequest>(asked.question);
   const auto query = [&](const Placed& x, const Placed& y) {
-    DistanceResult found = pcl_bsh::closestPair(x, y, wanted);
-    addHeldOf(request, x, y, found);
+    DistanceResult found = closestPair(x, y, wanted);
+    addHeldOf(asked, x, found);
     return found;
   };
-  refuse(asked.pose, b, query);
-  Comparison<Other> comparison(asked, b, request);
+  Comparison comparison(asked, asked.measuredInput(), asked.measuredObstacle());
+  comparison.refuse(query);
   double least = infinity, lower = infinity;
   std::vector<Candidate> candidates_a, candidates_b;
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
@@ -185,57 +198,47 @@ SiteClosest closestOf(const PlacedSite& asked, const Other& b, const SiteRequest
             return Candidate{in.hierarchy().view().point(i), nameOf(of, i), least};
           };
           candidates_a.push_back(candidate(cloud, points, found.pair->a));
-          if (std::is_same_v<Other, PlacedSite>) candidates_b.push_back(candidate(other, others, found.pair->b));
+          if (comparison.isOfSites()) candidates_b.push_back(candidate(other, others, found.pair->b));
         });
   };
-  SiteClosest result;
-  result.tiles = comparison.visit(infinity, ask, [&] {
+  answer.tiles += comparison.visit(infinity, ask, [&] {
     least = leastOfAllRanks(least);
-    return request.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
+    return asked.question.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
   });
-  result.tiles_b = comparison.readOfOther();
+  answer.obstacle_tiles += comparison.readOfOther();
 
   // Distances that round to the same double may differ: the nearest of each tile are compared once more, exactly.
   const Candidates last_a(candidates_a, least), last_b(candidates_b, least);
   lower = leastOfAllRanks(lower);
-  if (last_a.points.empty()) return result;
+  if (last_a.points.empty()) return;
   wanted.accuracy = {};
   const SphereHierarchy nearest_a = last_a.hierarchy(), nearest_b = last_b.hierarchy();
-  DistanceResult nearest;
-  if constexpr (std::is_same_v<Other, Placed>)
-    nearest = query({nearest_a, asked.pose}, b);
-  else
-    nearest = query({nearest_a, asked.pose}, {nearest_b, b.pose});
-  nearest.interval.lower = std::min(lower, nearest.interval.lower);
-  result.interval = nearest.interval;
-  result.distance = nearest.distance;
-  result.point = last_a.points[nearest.pair->a];
-  result.b = nearest.pair->b;
-  if (!last_b.points.empty()) result.point_b = last_b.points[nearest.pair->b];
-  return result;
+  const DistanceResult nearest = query(nearest_a, comparison.standing(nearest_b));
+  answer.closest.interval = {std::min(lower, nearest.interval.lower), nearest.interval.upper};
+  answer.closest.distance = nearest.distance;
+  answer.pair = SitePair{last_a.points[nearest.pair->a], {0, nearest.pair->b}};
+  if (comparison.isOfSites()) answer.pair->b = last_b.points[nearest.pair->b];
 }
 
-template <typename Other>
-SiteDistances distancesOf(const PlacedSite& asked, const Other& b, double max_distance, const SiteRequest& request,
-                          const DistancesSink& sink)
+void measure(const Asked& asked, SiteAnswer& answer)
 {
-  auto wanted = wantedOf<PointDistancesRequest>(request);
-  wanted.max_distance = max_distance;
-  refuse(asked.pose, b, [&](const Placed& x, const Placed& y) { pcl_bsh::pointDistances(x, y, wanted); });
-  SiteDistances result;
+  auto wanted = wantedOf<PointDistancesRequest>(asked.question);
+  wanted.max_distance = asked.question.max_distance.value_or(infinity);
+  Comparison comparison(asked, asked.measuredInput(), asked.measuredObstacle());
+  comparison.refuse([&](const Placed& x, const Placed& y) { pointDistances(x, y, wanted); });
   double greatest = -infinity;
-  Comparison<Other> comparison(asked, b, request);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
     const PointsView& view = points.hierarchy().view();
-    PointDistances all;
+    Answer of_tile;
+    PointDistances& all = of_tile.distances.a;
     all.distance.assign(view.count, std::numeric_limits<double>::quiet_NaN());
     PointDistancesRequest nearer = wanted; // what is farther than all points' distances changes none
     comparison.compareWithOther(
         tile, [&] { return nearer.max_distance; },
         [&](const pcl::PCLPointCloud2&, const Placed& others) {
-          PointDistances found = pcl_bsh::pointDistances(points, others, nearer);
-          addHeldOf(request, points, others, found);
-          if constexpr (std::is_same_v<Other, Placed>) {
+          PointDistances found = pointDistances(points, others, nearer);
+          addHeldOf(asked, points, found);
+          if (!comparison.isOfSites()) {
             all = std::move(found);
             return;
           }
@@ -248,81 +251,28 @@ SiteDistances distancesOf(const PlacedSite& asked, const Other& b, double max_di
           }
           nearer.max_distance = std::min(nearer.max_distance, farthest);
         });
-    if (std::is_same_v<Other, PlacedSite>) {
+    if (comparison.isOfSites()) {
       for (const double distance : all.distance) {
         if (std::isnan(distance)) continue;
         ++all.measured;
         all.greatest = std::fmax(all.greatest, distance);
       }
     }
-    if (sink) sink(tile, cloud, all);
+    if (asked.means.sink) asked.means.sink(tile, cloud, of_tile);
     return std::vector<double>{static_cast<double>(all.measured), static_cast<double>(all.undecided), all.greatest};
   };
+  PointDistances& sum = answer.distances.a;
   const auto add = [&](const std::vector<double>& numbers) {
-    result.measured += static_cast<std::uint64_t>(numbers[0]);
-    result.undecided += static_cast<std::uint64_t>(numbers[1]);
+    sum.measured += static_cast<std::size_t>(numbers[0]);
+    sum.undecided += static_cast<std::size_t>(numbers[1]);
     if (numbers[0] > 0) greatest = std::max(greatest, numbers[2]);
   };
-  result.tiles = comparison.visitAndAdd(max_distance, find, add);
-  result.tiles_b = comparison.readOfOther();
-  result.measured = sumOfAllRanks(result.measured);
-  result.undecided = sumOfAllRanks(result.undecided);
+  answer.tiles += comparison.visitAndAdd(wanted.max_distance, find, add);
+  answer.obstacle_tiles += comparison.readOfOther();
+  sum.measured = sumOfAllRanks(sum.measured);
+  sum.undecided = sumOfAllRanks(sum.undecided);
   greatest = -leastOfAllRanks(-greatest);
-  if (result.measured > 0) result.greatest = greatest;
-  return result;
-}
-
-} // namespace
-
-SiteAny anyCollision(const Site& site, const Placed& b, const SiteRequest& request)
-{
-  return anyOf(asFirst(site, request.uncertainty), b, request);
-}
-
-SiteAny anyCollision(const Site& site, const PlacedSite& b, const SiteRequest& request)
-{
-  return anyOf(asFirst(site, request.uncertainty), b, request);
-}
-
-SiteFlags collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteRequest& request,
-                         const FlagsSink& sink)
-{
-  return flagsOf(asFirst(site, request.uncertainty), b, flagged, request, sink);
-}
-
-SiteFlags collisionFlags(const Site& site, const PlacedSite& b, const SiteRequest& request, const FlagsSink& sink)
-{
-  return flagsOf(asFirst(site, request.uncertainty), b, Side::a, request, sink);
-}
-
-SiteFlags collisionFlagsOfB(const Site& site, const PlacedSite& b, const SiteRequest& request, const FlagsSink& sink)
-{
-  return flagsOf(b, asFirst(site, request.uncertainty), Side::a, with(request, b.uncertainty), sink);
-}
-
-SiteClosest closestPair(const Site& site, const Placed& b, const SiteRequest& request)
-{
-  return closestOf(asFirst(site), b, with(request, {}));
-}
-
-SiteClosest closestPair(const Site& site, const PlacedSite& b, const SiteRequest& request)
-{
-  return closestOf(asFirst(site), PlacedSite{b.site, b.pose, {}}, with(request, {}));
-}
-
-SiteDistances pointDistances(const Site& site, const Placed& b, double max_distance, const SiteRequest& request,
-                             const DistancesSink& sink)
-{
-  return distancesOf(asFirst(site), b, max_distance, with(request, {}), sink);
-}
-
-SiteDistances pointDistances(const Site& site, const PlacedSite& b, double max_distance, const SiteRequest& request,
-                             const DistancesSink& sink)
-{
-  if (request.accuracy.stopsEarly())
-    throw std::invalid_argument("accuracy " + request.accuracy.text() +
-                                ": distances of two sites cannot stop early: give exact or a tolerance");
-  return distancesOf(asFirst(site), PlacedSite{b.site, b.pose, {}}, max_distance, with(request, {}), sink);
+  if (sum.measured > 0) sum.greatest = greatest;
 }
 
 } // namespace pcl_bsh::site

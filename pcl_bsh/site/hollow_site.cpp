@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/site/hollow_site.h>
-
 #include <pcl_bsh/question/warnings/hollow.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/answers/asked.h>
 
 #include <algorithm>
 #include <vector>
@@ -43,16 +41,20 @@ std::optional<Point3> placeWithin(Shape& surface, const Site& site,
 
 } // namespace
 
-std::optional<Warning> warningOfHollow(const Site& site, const std::string& name, const Question& question,
-                                       std::optional<double> nearest, Shape& obstacle)
+std::optional<Warning> warningOfHollow(const Asked& asked, const std::string& name, std::optional<double> nearest)
 {
-  if (!obstacle.isSurface() || question.solid || (nearest && *nearest <= nearTo(obstacle))) return std::nullopt;
-  const std::optional<Point3> place = placeWithin(obstacle, site, question.poses());
+  if (!asked.shape || !asked.shape->isSurface() || asked.question.solid) return std::nullopt;
+  Shape& obstacle = *asked.shape;
+  if (nearest && *nearest <= nearTo(obstacle)) return std::nullopt;
+  const std::optional<Point3> place = placeWithin(obstacle, asked.site, asked.question.poses());
   if (!place) return std::nullopt;
   if (!nearest) {
-    SiteRequest exact;
-    exact.threads = question.threads;
-    nearest = closestPair(site, Placed(obstacle.hierarchy(), question.pose), exact).distance;
+    Asked exact = asked;
+    exact.question.accuracy = {};
+    exact.question.progress = nullptr;
+    SiteAnswer answer;
+    findClosest(exact, answer);
+    nearest = answer.closest.distance;
   }
   if (*nearest <= nearTo(obstacle)) return std::nullopt;
   return pcl_bsh::warningOfHollow(obstacle.name(), "solid", name, *place);

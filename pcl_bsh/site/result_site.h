@@ -2,15 +2,14 @@
 // What a question has found of each point, as a site of the same tiles with more fields.
 //
 //   site::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
-//   site::collisionFlags(valley, machine, Side::a, request, [&](const auto& tile, const auto& cloud, const auto&
-//   found) {
-//     out.write(tile, cloud, {found.a.data()});
-//   });
+//   site::ask(question, valley, machine, {.sink = [&](const auto& tile, const auto& cloud, const Answer& found) {
+//     out.write(tile, cloud, {found.collisions.flags.data()});
+//   }});
 //   site::Site marked = out.finish();
 #pragma once
 
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>
@@ -70,7 +69,7 @@ public:
   /// @param columns for each field a value of its type per point; null: nothing was found
   void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns);
 
-  /// What the continuation's question has found, for SiteRequest::answers. Null where nothing is kept.
+  /// What the continuation's question has found, for SiteMeans::answers. Null where nothing is kept.
   TileAnswers* answers();
 
   /// Of how many tiles an earlier run had found something that this one has removed, for it was not to go on. On the

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/site/see_site.h>
-
+// The part of a question about a site that tells what of the obstacle is unseen.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/collision_flags.h>
@@ -28,28 +27,26 @@ struct Found {
   Verdict verdict;
 };
 
-TilesRead collide(const Site& site, const SphereHierarchy& model, const Poses& poses, const SiteRequest& request,
-                  VerdictsAtPoses& verdicts)
+TilesRead collide(const Asked& asked, const Poses& poses, VerdictsAtPoses& verdicts)
 {
+  const SphereHierarchy& model = asked.model();
   PathReach reach;
-  reach.distance = request.clearance;
-  FlagsRequest wanted;
-  wanted.clearance = request.clearance;
-  wanted.threads = request.threads;
-  wanted.flagged = Side::b;
+  reach.distance = asked.clearance();
+  const FlagsRequest wanted(asked.clearance(), Side::b, asked.question.threads);
   std::vector<Found> own;
-  Inquiry inquiry(site, request);
+  const PlacedSite site = asked.input();
+  Inquiry inquiry(asked, site);
   const auto find = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
     FlagsResult found;
     for (std::uint32_t k = 0; k < poses.size(); ++k) {
-      pcl_bsh::collisionFlags({hierarchy}, {model, poses[k]}, wanted, found);
+      collisionFlags({hierarchy}, {model, poses[k]}, wanted, found);
       for (std::uint32_t i = 0; i < found.b.size(); ++i)
         if (found.b[i] != Verdict::free) own.push_back({k, i, found.b[i]});
     }
     return std::vector<double>();
   };
   const TilesRead read =
-      inquiry.visitAndAdd(tilesAlong(site, CloudBoxes(model.view()), poses, reach, request.uncertainty), find,
+      inquiry.visitAndAdd(tilesAlong(site.site, CloudBoxes(model.view()), poses, reach, site.uncertainty), find,
                           [](const std::vector<double>&) {});
   for (const Found& found : gatheredFromAllRanks(own)) {
     Verdict& verdict = verdicts[found.pose][found.record];
@@ -65,24 +62,21 @@ struct KeptBeam {
 };
 
 /// Radius of the balls about a model's points: more where the site's pose is uncertain.
-double ballAt(const Eigen::Isometry3d& pose, const CornerBox& model, const SiteRequest& request)
+double ballAt(const Eigen::Isometry3d& pose, const CornerBox& model, const Asked& asked)
 {
-  return request.clearance + strayOf(request.uncertainty.pose, model, pose);
+  return asked.clearance() + strayOf(asked.question.input_pose_uncertainty, model, pose);
 }
 
 /// The beams of all tiles that count, of each scan.
 class Beams {
 public:
-  Beams(const Site& site, const SiteSight& sight, const SphereHierarchy& model, const Poses& poses,
-        const SiteRequest& request)
-  : site_(site),
-    sight_(sight),
-    request_(request)
+  Beams(const Asked& asked, const Poses& poses) : asked_(asked), site_(asked.site), origins_(asked.question.origin)
   {
+    const SphereHierarchy& model = asked.model();
     const CornerBox bounds(model.view());
-    for (const ScanOrigins::Entry& entry : sight.origins.entries) {
-      looked_.emplace_back(entry.origin, sight.angle);
-      for (const Eigen::Isometry3d& pose : poses) looked_.back().add({model, pose}, ballAt(pose, bounds, request));
+    for (const ScanOrigins::Entry& entry : origins_.entries) {
+      looked_.emplace_back(entry.origin, angle());
+      for (const Eigen::Isometry3d& pose : poses) looked_.back().add({model, pose}, ballAt(pose, bounds, asked));
     }
     collect();
   }
@@ -91,14 +85,14 @@ public:
   {
     std::vector<ScanBeams> scans(looked_.size());
     for (std::size_t s = 0; s < scans.size(); ++s) {
-      scans[s].origin = sight_.origins.entries[s].origin;
+      scans[s].origin = origins_.entries[s].origin;
       scans[s].returns = viewOf(ends_[s].empty() ? nullptr : ends_[s].front().data(), ends_[s].size());
       scans[s].returns.uncertainty = uncertainty_;
       scans[s].returns.uncertainties = uncertainties_[s].data();
     }
     SeenOptions options;
-    options.angle = sight_.angle;
-    options.threads = request_.threads;
+    options.angle = angle();
+    options.threads = asked_.question.threads;
     return SeenSpace(scans, options);
   }
 
@@ -111,6 +105,8 @@ public:
   TilesRead read;
 
 private:
+  double angle() const { return asked_.question.seen_angle.value_or(0.0); } ///< which is not measured here
+
   void collect()
   {
     std::vector<std::uint32_t> near, others;
@@ -133,14 +129,14 @@ private:
   {
     std::vector<KeptBeam> own;
     double uncertainty = 0.0;
-    Uncertainty of_ends = request_.uncertainty;
+    Uncertainty of_ends = asked_.question.uncertaintyOfInput();
     of_ends.pose = {}; // beams and their scanner move together
-    TileVisitor visitor(site_, request_.memory);
+    TileVisitor visitor(site_, asked_.means.memory);
     visitor.visitAll(tiles, [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
       const PointsView view = Inquiry::pointsOf(cloud, site_, tile, of_ends);
       uncertainty = view.uncertainty;
       const std::vector<ScanBeams> scans =
-          scansOf(view, recordFields(cloud.fields), (site_.folder / tile.file).string(), sight_.origins);
+          scansOf(view, recordFields(cloud.fields), (site_.folder / tile.file).string(), origins_);
       for (std::uint32_t s = 0; s < scans.size(); ++s) keep(scans[s], s, own);
       requireMemory(own.size());
     });
@@ -172,16 +168,16 @@ private:
   void requireMemory(std::uint64_t beams) const
   {
     constexpr std::uint64_t bytes = 2 * sizeof(KeptBeam); // with what SeenSpace holds
-    if (beams <= request_.memory / bytes) return;
-    throw InvalidInput(Input::seen, "memory",
+    if (beams <= asked_.means.memory / bytes) return;
+    throw InvalidInput(Input::points, "memory",
                        counted(beams, "beam") + " at least look at the model on its way, which " +
-                           std::to_string(request_.memory) + " bytes do not hold",
+                           std::to_string(asked_.means.memory) + " bytes do not hold",
                        "give some " + std::to_string(bytes) + " bytes for each, or ask about a part of the path");
   }
 
+  const Asked& asked_;
   const Site& site_;
-  const SiteSight& sight_;
-  const SiteRequest& request_;
+  const ScanOrigins& origins_;
   std::vector<LookedAt> looked_; ///< of each scan
   std::vector<std::vector<Point3>> ends_;
   std::vector<std::vector<float>> uncertainties_;
@@ -190,34 +186,31 @@ private:
 
 } // namespace
 
-SiteUnseen unseenAlong(const Site& site, const SiteSight& sight, const SphereHierarchy& model, const Poses& poses,
-                       const SiteRequest& request)
+void lookAround(const Asked& asked, SiteAnswer& answer)
 {
-  if (sight.origins.empty()) scansOf(PointsView{}, {}, site.folder.string(), sight.origins); // refuses that
-  requireUncertainty(site, request.uncertainty);
-  SiteRequest asked = request;
-  asked.answers = nullptr;
-  asked.progress = nullptr;
-  asked.swept.reset();
+  const Question& question = asked.question;
+  const SphereHierarchy& model = asked.model();
+  const Poses poses = question.poses();
+  if (question.origin.empty()) scansOf(PointsView{}, {}, asked.site.folder.string(), question.origin); // refuses that
+  requireUncertainty(asked.site, question.uncertaintyOfInput());
   VerdictsAtPoses verdicts(poses.size(), std::vector<Verdict>(model.view().count, Verdict::free));
-  SiteUnseen result;
-  const Beams beams(site, sight, model, poses, asked);
-  result.tiles = collide(site, model, poses, asked, verdicts);
-  result.tiles_of_beams = beams.read;
-  result.beams = beams.count();
+  const Beams beams(asked, poses);
+  answer.tiles += collide(asked, poses, verdicts);
+  answer.beam_tiles = beams.read;
+  answer.beams_kept = beams.count();
   const SeenSpace space = beams.space();
-  for (std::size_t s = 0; s < space.size(); ++s) result.unseen.angles.push_back(space.angle(s));
+  for (std::size_t s = 0; s < space.size(); ++s) answer.unseen.angles.push_back(space.angle(s));
   const CornerBox bounds(model.view());
   UnseenRequest wanted;
-  wanted.threads = request.threads;
-  wanted.kinds = wanted.parts = true;
-  result.verdicts.assign(model.view().count, Verdict::free);
+  wanted.threads = question.threads;
+  wanted.kinds = true;
+  wanted.parts = question.wanted.unseen_places;
+  answer.obstacle_flags.assign(model.view().count, Verdict::free);
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    wanted.clearance = ballAt(poses[k], bounds, request);
+    wanted.clearance = ballAt(poses[k], bounds, asked);
     UnseenResult found = markUnseen(space, {model, poses[k]}, wanted, verdicts[k]);
-    result.unseen.addPose(verdicts[k], true, result.verdicts, std::move(found.kinds));
+    answer.unseen.addPose(verdicts[k], question.wanted.unseen_places, answer.obstacle_flags, std::move(found.kinds));
   }
-  return result;
 }
 
 } // namespace pcl_bsh::site

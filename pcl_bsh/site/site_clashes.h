@@ -3,8 +3,7 @@
 // ids, although a clash may lie in many tiles.
 //
 //   site::ClashFinder finder(valley, 0.25);
-//   request.clashes = &finder;
-//   site::collideAlong(valley, wagon, poses, request);
+//   site::ask(question, valley, wagon, {.clashes = &finder});
 //   site::SiteClashes list = finder.finish();
 //
 // Of a tile's clashes that come near other tiles the points near these are kept until all tiles have been visited: a
@@ -13,13 +12,19 @@
 
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/export.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 
 #include <memory>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
+
+/// A point of a site that another one meets.
+struct MetPoint {
+  SitePoint point;
+  Point3 place = {0, 0, 0}; ///< in its own site
+};
 
 /// What ClashFinder found.
 struct SiteClashes {
@@ -46,12 +51,12 @@ public:
   ClashFinder(const ClashFinder&) = delete;
   ClashFinder& operator=(const ClashFinder&) = delete;
 
-  /// For collideAlong(): what a tile has of clashes, as numbers that may be kept for a finder of the same distance.
+  /// For ask(): what a tile has of clashes, as numbers that may be kept for a finder of the same distance.
   /// @param met where the model is a site: what closest_point are numbers of; else null
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
                                 const std::vector<MetPoint>* met) const;
 
-  /// For collideAlong(): adds those from the given one on.
+  /// For ask(): adds those from the given one on.
   void add(const std::vector<double>& numbers, std::size_t begin);
 
   /// All clashes, on all ranks of an MPI job. To be called once, by all of them.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about a site have the answers of one hierarchy over all its points, whatever the tiles and the ranks.
 #include "float64_cloud.h"
+#include "site_questions.h"
 #include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 #include "two_ranks.h"
@@ -12,7 +13,6 @@
 #include <pcl_bsh/site/make_site.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/collide_site.h>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -100,45 +100,47 @@ protected:
       MakeOptions options;
       options.tile_points = tile_points;
       const Site site = makeSite({folder / "1.pcd", folder / "2.pcd"}, folder / std::to_string(places++), options);
-      SiteRequest request;
+      SiteQuestion request;
       request.clearance = scene.clearance;
 
-      EXPECT_EQ(anyCollision(site, b, request).verdict, pcl_bsh::anyCollision({all}, b, {scene.clearance, 1}).verdict);
+      EXPECT_EQ(anyCollision(site, b, request).any.verdict,
+                pcl_bsh::anyCollision({all}, b, {scene.clearance, 1}).verdict);
 
       FlagsRequest flags_request;
       flags_request.clearance = scene.clearance;
       flags_request.flagged = Side::both;
       const FlagsResult flags = pcl_bsh::collisionFlags({all}, b, flags_request);
       Answers found;
-      const SiteFlags of_site =
-          collisionFlags(site, b, Side::both, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
-            for (std::uint32_t i = 0; i < cloud.width; ++i) found[name(cloud, i)] = {static_cast<double>(result.a[i])};
+      const SiteAnswer of_site =
+          collisionFlags(site, b, Side::both, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
+            for (std::uint32_t i = 0; i < cloud.width; ++i)
+              found[name(cloud, i)] = {static_cast<double>(result.collisions.flags[i])};
           });
-      EXPECT_EQ(of_site.colliding, flags.colliding_a);
-      EXPECT_EQ(of_site.b, flags.b);
+      EXPECT_EQ(of_site.collisions.colliding, flags.colliding_a);
+      EXPECT_EQ(of_site.obstacle_flags, flags.b);
       EXPECT_LE(of_site.tiles.read, of_site.tiles.needed);
       for (std::size_t i = 0; i < scene.a.size(); ++i)
         EXPECT_EQ(found.count(nameOf(i)) != 0 ? found[nameOf(i)][0] : 0, static_cast<double>(flags.a[i])) << i;
 
       const DistanceResult nearest = pcl_bsh::closestPair({all}, b);
-      const SiteClosest of_closest = closestPair(site, b, request);
-      EXPECT_EQ(of_closest.distance, nearest.distance);
-      ASSERT_TRUE(of_closest.point);
-      EXPECT_EQ(std::pair(of_closest.point->source, of_closest.point->record), nameOf(nearest.pair->a));
-      EXPECT_EQ(of_closest.b, nearest.pair->b);
+      const SiteAnswer of_closest = closestPair(site, b, request);
+      EXPECT_EQ(of_closest.closest.distance, nearest.distance);
+      ASSERT_TRUE(of_closest.pair);
+      EXPECT_EQ(std::pair(of_closest.pair->a.source, of_closest.pair->a.record), nameOf(nearest.pair->a));
+      EXPECT_EQ(of_closest.pair->b.record, nearest.pair->b);
 
       for (const double most : {std::numeric_limits<double>::infinity(), 2 * scene.clearance}) {
         PointDistancesRequest distances_request;
         distances_request.max_distance = most;
         const PointDistances distances = pcl_bsh::pointDistances({all}, b, distances_request);
         found.clear();
-        const SiteDistances of_distances =
-            pointDistances(site, b, most, request, [&](const Tile&, const Cloud& cloud, const PointDistances& result) {
+        const SiteAnswer of_distances =
+            pointDistances(site, b, most, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
               for (std::uint32_t i = 0; i < cloud.width; ++i)
-                found[name(cloud, i)] = {result.distance[i], double(result.closest_point[i])};
+                found[name(cloud, i)] = {result.distances.a.distance[i], double(result.distances.a.closest_point[i])};
             });
-        EXPECT_EQ(of_distances.measured, distances.measured);
-        EXPECT_EQ(of_distances.greatest, distances.greatest);
+        EXPECT_EQ(of_distances.distances.a.measured, distances.measured);
+        EXPECT_EQ(of_distances.distances.a.greatest, distances.greatest);
         for (std::size_t i = 0; i < scene.a.size(); ++i) {
           if (std::isnan(distances.distance[i])) continue;
           ASSERT_EQ(found.count(nameOf(i)), 1U) << i;
@@ -154,15 +156,15 @@ protected:
       path_request.distances = path_request.first_poses = path_request.closest_poses = true;
       const TrajectoryResult path = pcl_bsh::collideAlong({all}, other, poses, path_request);
       found.clear();
-      const SitePassage of_path = collideAlong(
-          site, other, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+      const SiteAnswer of_path =
+          collideAlong(site, other, poses, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
             for (std::uint32_t i = 0; i < cloud.width; ++i) {
-              if (result.flags[i] == Verdict::free) continue;
-              found[name(cloud, i)] = {double{result.distance[i]}, double(result.first_pose[i]),
-                                       double(result.closest_pose[i])};
+              if (result.collisions.flags[i] == Verdict::free) continue;
+              found[name(cloud, i)] = {double{result.collisions.distance[i]}, double(result.collisions.first_pose[i]),
+                                       double(result.collisions.closest_pose[i])};
             }
           });
-      EXPECT_EQ(of_path.colliding, path.colliding);
+      EXPECT_EQ(of_path.collisions.colliding, path.colliding);
       EXPECT_EQ(found.size(), path.colliding);
       for (std::size_t i = 0; i < scene.a.size(); ++i) {
         if (path.flags[i] == Verdict::free) continue;
@@ -207,7 +209,7 @@ TEST_F(CollideSite, ReadsOnlyTilesThatMatter)
   options.tile_points = 40;
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
   const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.05;
   const TilesRead flags = collisionFlags(site, {other, scene.pose}, Side::a, request).tiles;
   EXPECT_GT(flags.tiles, 150U);
@@ -242,28 +244,28 @@ void expectSamePassage(const std::vector<Point3>& points, const SphereHierarchy&
       options.tile_points = tile_points;
       const fs::path place = folder / ("site" + std::to_string(tile_points) + (swept ? "s" : ""));
       const Site site = makeSite({folder / "points.pcd"}, place, options);
-      SiteRequest request;
+      SiteQuestion request;
       request.clearance = clearance;
-      request.swept = swept;
+      request.swept = swept.value_or(0.0);
       std::size_t seen = 0;
-      const SitePassage found = collideAlong(
-          site, model, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+      const SiteAnswer found =
+          collideAlong(site, model, poses, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
             for (std::uint32_t i = 0; i < cloud.width; ++i) {
               const auto p = static_cast<std::uint32_t>(io::valueOf(cloud, i, "record"));
-              ASSERT_EQ(result.flags[i], path.flags[p]) << p;
+              ASSERT_EQ(result.collisions.flags[i], path.flags[p]) << p;
               if (path.flags[p] == Verdict::free) continue;
               ++seen;
-              EXPECT_EQ(result.distance[i], path.distance[p]) << p;
-              EXPECT_EQ(result.first_pose[i], path.first_pose[p]) << p;
-              EXPECT_EQ(result.closest_pose[i], path.closest_pose[p]) << p;
+              EXPECT_EQ(result.collisions.distance[i], path.distance[p]) << p;
+              EXPECT_EQ(result.collisions.first_pose[i], path.first_pose[p]) << p;
+              EXPECT_EQ(result.collisions.closest_pose[i], path.closest_pose[p]) << p;
             }
           });
       EXPECT_EQ(seen, path.colliding);
-      EXPECT_EQ(found.colliding, path.colliding);
-      ASSERT_EQ(found.first_contact.has_value(), path.first_contact.has_value());
+      EXPECT_EQ(found.collisions.colliding, path.colliding);
+      ASSERT_EQ(found.collisions.first_contact.has_value(), path.first_contact.has_value());
       if (!path.first_contact) continue;
-      EXPECT_EQ(found.first_contact->pose, path.first_contact->pose);
-      EXPECT_EQ(found.first_contact->fraction, path.first_contact->fraction);
+      EXPECT_EQ(found.collisions.first_contact->pose, path.first_contact->pose);
+      EXPECT_EQ(found.collisions.first_contact->fraction, path.first_contact->fraction);
     }
   }
 }
@@ -338,7 +340,7 @@ TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
   const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < 1000; ++k) poses.emplace_back(Eigen::Translation3d(-20 + 0.04 * k, 10, 0));
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.05;
   const TilesRead along = collideAlong(site, other, poses, request).tiles;
   EXPECT_GT(along.needed, 0U);
@@ -361,9 +363,9 @@ TEST_F(CollideSite, RefusesWithoutATileToAsk)
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", {});
   const Point3 point = {0, 0, 0};
   const SphereHierarchy other(viewOf(point.data(), 1));
-  EXPECT_FALSE(closestPair(site, {other}, {}).point);
-  EXPECT_EQ(pointDistances(site, {other}, 1.0, {}).measured, 0U);
-  EXPECT_EQ(collideAlong(site, other, {Eigen::Isometry3d::Identity()}, {}).colliding, 0U);
+  EXPECT_FALSE(closestPair(site, {other}, {}).pair);
+  EXPECT_EQ(pointDistances(site, {other}, 1.0, {}).distances.a.measured, 0U);
+  EXPECT_EQ(collideAlong(site, other, {Eigen::Isometry3d::Identity()}, {}).collisions.colliding, 0U);
   Placed bad(other);
   bad.pose.linear() *= 2;
   EXPECT_THROW(closestPair(site, bad, {}), std::invalid_argument);
@@ -380,15 +382,15 @@ TEST_F(CollideSite, NothingIsNearACloudWithoutPoints)
   options.tile_points = 40;
   const Site site = makeSite({folder / "a.pcd"}, folder / "site", options);
   const SphereHierarchy nothing{PointsView{}};
-  const SiteClosest closest = closestPair(site, nothing, {});
-  EXPECT_FALSE(closest.point);
-  EXPECT_EQ(closest.distance, std::numeric_limits<double>::infinity());
+  const SiteAnswer closest = closestPair(site, nothing, {});
+  EXPECT_FALSE(closest.pair);
+  EXPECT_EQ(closest.closest.distance, std::numeric_limits<double>::infinity());
   EXPECT_EQ(closest.tiles.needed, 0U);
   EXPECT_EQ(closest.tiles.read, 0U);
-  const SiteDistances distances = pointDistances(site, nothing, std::numeric_limits<double>::infinity(), {});
-  EXPECT_EQ(distances.measured, 0U);
+  const SiteAnswer distances = pointDistances(site, nothing, std::numeric_limits<double>::infinity(), {});
+  EXPECT_EQ(distances.distances.a.measured, 0U);
   EXPECT_EQ(distances.tiles.needed, 0U);
-  EXPECT_EQ(anyCollision(site, nothing, {}).verdict, Verdict::free);
+  EXPECT_EQ(anyCollision(site, nothing, {}).any.verdict, Verdict::free);
 }
 
 /// From far away, one tile is enough.
@@ -403,12 +405,12 @@ TEST_F(CollideSite, FarSmallestDistanceReadsFewTiles)
   const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
   for (const Point3& from : {Point3{1000, 20, 3}, Point3{-300, -500, 90}, Point3{0, 0, 1e7}}) {
     const Placed b(other, Eigen::Isometry3d(Eigen::Translation3d(from[0], from[1], from[2])));
-    const SiteClosest found = closestPair(site, b, {});
+    const SiteAnswer found = closestPair(site, b, {});
     const DistanceResult nearest = pcl_bsh::closestPair({all}, b);
-    EXPECT_EQ(found.distance, nearest.distance);
-    ASSERT_TRUE(found.point);
-    EXPECT_EQ(found.point->record, nearest.pair->a);
-    EXPECT_EQ(found.b, nearest.pair->b);
+    EXPECT_EQ(found.closest.distance, nearest.distance);
+    ASSERT_TRUE(found.pair);
+    EXPECT_EQ(found.pair->a.record, nearest.pair->a);
+    EXPECT_EQ(found.pair->b.record, nearest.pair->b);
     if (from[2] < 1e6) {
       EXPECT_LT(found.tiles.read, 20U);
     }

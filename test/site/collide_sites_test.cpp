@@ -2,6 +2,7 @@
 // Questions about two sites have the answers of one hierarchy over all points of each, whatever the tiles and the
 // ranks.
 #include "float64_cloud.h"
+#include "site_questions.h"
 #include "support/verdicts.h"
 #include "tools/programs/program_run.h"
 #include "two_ranks.h"
@@ -14,7 +15,6 @@
 #include <pcl_bsh/site/site_clashes.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/collide_site.h>
 
 #include <gmock/gmock.h>
 
@@ -107,53 +107,57 @@ protected:
       const Site site = siteOf("a", a, tiling[0]), other = siteOf("b", b, tiling[1]);
       Uncertainty of_b;
       of_b.length = uncertainty_b;
-      const PlacedSite placed{other, pose, of_b};
-      SiteRequest request;
+      const StandingSite placed{other, pose, of_b};
+      SiteQuestion request;
       request.clearance = clearance;
       request.uncertainty.length = uncertainty_a;
-      EXPECT_EQ(anyCollision(site, placed, request).verdict, any.verdict);
+      EXPECT_EQ(anyCollision(site, placed, request).any.verdict, any.verdict);
 
-      const auto expectFlags = [&](const auto& query, const Points& points, const std::vector<Verdict>& right,
+      const auto expectFlags = [&](bool of_b, const Points& points, const std::vector<Verdict>& right,
                                    std::size_t colliding, std::size_t undecided) {
         std::vector<Verdict> found(points.size(), Verdict::free);
-        const SiteFlags of_sites =
-            query(site, placed, request, [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
-              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, points)] = result.a[i];
-            });
+        const auto put = [&](const Tile&, const Cloud& cloud, const Answer& result) {
+          const std::vector<Verdict>& of_tile = of_b ? result.obstacle_flags : result.collisions.flags;
+          for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, points)] = of_tile[i];
+        };
+        const SiteAnswer of_sites =
+            of_b ? collisionFlagsOfB(site, placed, request, put) : collisionFlags(site, placed, request, put);
         EXPECT_EQ(found, right);
-        EXPECT_EQ(of_sites.colliding, colliding);
-        EXPECT_EQ(of_sites.undecided, undecided);
-        EXPECT_EQ(of_sites.tiles.read, of_sites.tiles.needed);
-        EXPECT_GE(of_sites.tiles_b.read, of_sites.tiles_b.needed);
+        EXPECT_EQ(of_b ? of_sites.obstacle_colliding : of_sites.collisions.colliding, colliding);
+        EXPECT_EQ(of_b ? of_sites.obstacle_undecided : of_sites.collisions.undecided, undecided);
+        const TilesRead &once = of_b ? of_sites.obstacle_tiles : of_sites.tiles,
+                        &others = of_b ? of_sites.tiles : of_sites.obstacle_tiles;
+        EXPECT_EQ(once.read, once.needed);
+        EXPECT_GE(others.read, others.needed);
       };
-      expectFlags([](const auto&... arguments) { return collisionFlags(arguments...); }, a, flags.a, flags.colliding_a,
-                  flags.undecided_a);
-      expectFlags([](const auto&... arguments) { return collisionFlagsOfB(arguments...); }, b, flags.b,
-                  flags.colliding_b, flags.undecided_b);
+      expectFlags(false, a, flags.a, flags.colliding_a, flags.undecided_a);
+      expectFlags(true, b, flags.b, flags.colliding_b, flags.undecided_b);
 
-      const SiteClosest closest = closestPair(site, placed, request);
-      EXPECT_EQ(closest.distance, nearest.distance);
-      EXPECT_EQ(closest.interval.lower, nearest.interval.lower);
-      EXPECT_EQ(closest.interval.upper, nearest.interval.upper);
-      ASSERT_TRUE(closest.point && closest.point_b);
-      EXPECT_EQ(placeOf(*closest.point, a), nearest.pair->a);
-      EXPECT_EQ(placeOf(*closest.point_b, b), nearest.pair->b);
+      const SiteAnswer closest = closestPair(site, placed, request);
+      EXPECT_EQ(closest.closest.distance, nearest.distance);
+      EXPECT_EQ(closest.closest.interval.lower, nearest.interval.lower);
+      EXPECT_EQ(closest.closest.interval.upper, nearest.interval.upper);
+      ASSERT_TRUE(closest.pair);
+      EXPECT_EQ(placeOf(closest.pair->a, a), nearest.pair->a);
+      EXPECT_EQ(placeOf(closest.pair->b, b), nearest.pair->b);
 
       for (const double most : {std::numeric_limits<double>::infinity(), 1.5 * clearance}) {
         PointDistancesRequest near;
         near.max_distance = most;
         const PointDistances right = pcl_bsh::pointDistances({measured_a}, {measured_b, pose}, near);
         std::vector<double> found(a.size(), std::numeric_limits<double>::quiet_NaN());
-        const SiteDistances distances = pointDistances(
-            site, placed, most, request, [&](const Tile&, const Cloud& cloud, const PointDistances& of_tile) {
-              for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = of_tile.distance[i];
+        const SiteAnswer distances =
+            pointDistances(site, placed, most, request, [&](const Tile&, const Cloud& cloud, const Answer& of_tile) {
+              for (std::uint32_t i = 0; i < cloud.width; ++i)
+                found[placeOf(cloud, i, a)] = of_tile.distances.a.distance[i];
             });
         for (std::size_t i = 0; i < a.size(); ++i) {
           EXPECT_TRUE(found[i] == right.distance[i] || (std::isnan(found[i]) && std::isnan(right.distance[i])))
               << i << ": " << found[i] << ", " << right.distance[i];
         }
-        EXPECT_EQ(distances.measured, right.measured);
-        EXPECT_TRUE(distances.greatest == right.greatest || (std::isnan(right.greatest) && distances.measured == 0));
+        EXPECT_EQ(distances.distances.a.measured, right.measured);
+        EXPECT_TRUE(distances.distances.a.greatest == right.greatest ||
+                    (std::isnan(right.greatest) && distances.distances.a.measured == 0));
       }
     }
   }
@@ -211,46 +215,46 @@ void CollideSites::expectSamePassage(const Points& a, const Points& b, const std
   for (const auto& tiling : tilings) {
     SCOPED_TRACE(std::to_string(tiling[0]) + " and " + std::to_string(tiling[1]));
     const Site site = siteOf("a", a, tiling[0]), other = siteOf("b", b, tiling[1]);
-    SiteRequest request;
+    SiteQuestion request;
     request.clearance = clearance;
     request.uncertainty.length = uncertainty;
-    request.pose_summaries = true;
+    request.wanted.poses = true;
     TrajectoryResult found = right;
     std::fill(found.flags.begin(), found.flags.end(), Verdict::free);
     std::fill(found.distance.begin(), found.distance.end(), std::numeric_limits<float>::quiet_NaN());
     std::fill(found.first_pose.begin(), found.first_pose.end(), -1);
     std::fill(found.closest_pose.begin(), found.closest_pose.end(), -1);
-    const SitePassage passage = collideAlong(site, other, request.uncertainty, poses, request,
-                                             [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
-                                               for (std::uint32_t i = 0; i < cloud.width; ++i) {
-                                                 const std::size_t place = placeOf(cloud, i, a);
-                                                 found.flags[place] = result.flags[i];
-                                                 found.distance[place] = result.distance[i];
-                                                 found.first_pose[place] = result.first_pose[i];
-                                                 found.closest_pose[place] = result.closest_pose[i];
-                                               }
-                                             });
+    const SiteAnswer passage = collideAlong(site, other, request.uncertainty, poses, request,
+                                            [&](const Tile&, const Cloud& cloud, const Answer& result) {
+                                              for (std::uint32_t i = 0; i < cloud.width; ++i) {
+                                                const std::size_t place = placeOf(cloud, i, a);
+                                                found.flags[place] = result.collisions.flags[i];
+                                                found.distance[place] = result.collisions.distance[i];
+                                                found.first_pose[place] = result.collisions.first_pose[i];
+                                                found.closest_pose[place] = result.collisions.closest_pose[i];
+                                              }
+                                            });
     EXPECT_EQ(found.flags, right.flags);
     EXPECT_EQ(found.first_pose, right.first_pose);
     EXPECT_EQ(found.closest_pose, right.closest_pose);
     EXPECT_THAT(found.distance, testing::Pointwise(testing::NanSensitiveFloatEq(), right.distance));
-    EXPECT_EQ(passage.colliding, right.colliding);
-    EXPECT_EQ(passage.undecided, right.undecided);
+    EXPECT_EQ(passage.collisions.colliding, right.colliding);
+    EXPECT_EQ(passage.collisions.undecided, right.undecided);
     float least = std::numeric_limits<float>::infinity();
     for (const float distance : right.distance) least = std::fmin(least, distance);
-    EXPECT_EQ(passage.distance, least);
+    EXPECT_EQ(passage.closest.distance, double{least});
     std::int32_t first = -1;
     for (const std::int32_t pose : right.first_pose)
       if (pose >= 0 && (first < 0 || pose < first)) first = pose;
-    EXPECT_EQ(passage.first_pose, first);
+    EXPECT_EQ(passage.first_pose, std::optional<std::size_t>(first));
     EXPECT_EQ(passage.tiles.read, passage.tiles.needed);
-    ASSERT_EQ(passage.poses.size(), right.poses.size());
+    ASSERT_EQ(passage.collisions.poses.size(), right.poses.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
       SCOPED_TRACE(k);
-      EXPECT_EQ(passage.poses[k].colliding, right.poses[k].colliding);
-      EXPECT_EQ(passage.poses[k].colliding_points, right.poses[k].colliding_points);
-      EXPECT_EQ(passage.poses[k].undecided_points, right.poses[k].undecided_points);
-      EXPECT_EQ(passage.poses[k].distance, right.poses[k].distance);
+      EXPECT_EQ(passage.collisions.poses[k].colliding, right.poses[k].colliding);
+      EXPECT_EQ(passage.collisions.poses[k].colliding_points, right.poses[k].colliding_points);
+      EXPECT_EQ(passage.collisions.poses[k].undecided_points, right.poses[k].undecided_points);
+      EXPECT_EQ(passage.collisions.poses[k].distance, right.poses[k].distance);
     }
   }
 }
@@ -300,12 +304,12 @@ TEST_F(CollideSites, OfTilesAsNearTheSmallerPointCounts)
       for (int i = 0; i < 40; ++i) body.push_back({(k == 0 ? side : -side) * (1.0 + 0.1 * i), 0, 0});
     const Site site = siteOf("a", row, 100), other = siteOf("b", body, 40);
     ASSERT_GT(other.tiles.size(), 1U);
-    SiteRequest request;
+    SiteQuestion request;
     request.clearance = 1.0;
     ClashFinder finder(site, 1.0);
     request.clashes = &finder;
-    const SitePassage passage = collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request);
-    EXPECT_EQ(passage.colliding, 1U);
+    const SiteAnswer passage = collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request);
+    EXPECT_EQ(passage.collisions.colliding, 1U);
     const SiteClashes found = finder.finish();
     ASSERT_EQ(found.clashes.size(), 1U);
     const MetPoint& met = found.met.at(found.clashes[0].model_point);
@@ -320,7 +324,7 @@ TEST_F(CollideSites, AlongAPathWithoutDistances)
   const Points a = floorOf(400, 20), body = floorOf(100, 21);
   const Site site = siteOf("a", a, 60), other = siteOf("b", body, 30), none = siteOf("c", {}, 30);
   const std::vector<Eigen::Isometry3d> poses = pathOver(3, 1.5, 0.3, 0.3);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.3;
   request.accuracy = Accuracy::parse("level=2");
   const SphereHierarchy all(viewOf(a.front().data(), a.size())), model(viewOf(body.front().data(), body.size()));
@@ -328,20 +332,19 @@ TEST_F(CollideSites, AlongAPathWithoutDistances)
   exact.clearance = 0.3;
   const std::vector<Verdict> truth = pcl_bsh::collideAlong({all}, model, poses, exact).flags;
   std::vector<Verdict> found(a.size(), Verdict::free);
-  const SitePassage passage = collideAlong(site, other, {}, poses, request,
-                                           [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
-                                             EXPECT_TRUE(result.distance.empty());
-                                             EXPECT_TRUE(result.closest_point.empty());
-                                             for (std::uint32_t i = 0; i < cloud.width; ++i)
-                                               found[placeOf(cloud, i, a)] = result.flags[i];
-                                           });
-  EXPECT_GT(passage.colliding + passage.undecided, 0U);
-  EXPECT_TRUE(std::isnan(passage.distance));
+  const SiteAnswer passage =
+      collideAlong(site, other, {}, poses, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
+        EXPECT_TRUE(result.collisions.distance.empty());
+        EXPECT_TRUE(result.collisions.closest_point.empty());
+        for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = result.collisions.flags[i];
+      });
+  EXPECT_GT(passage.collisions.colliding + passage.collisions.undecided, 0U);
+  EXPECT_TRUE(std::isinf(passage.closest.distance));
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(truth[i] == Verdict::free || found[i] != Verdict::free) << i;
   request.accuracy = {};
-  EXPECT_EQ(collideAlong(none, other, {}, poses, request).colliding, 0U);
-  EXPECT_EQ(collideAlong(site, none, {}, poses, request).colliding, 0U);
-  EXPECT_EQ(collideAlong(none, model, poses, request).colliding, 0U);
+  EXPECT_EQ(collideAlong(none, other, {}, poses, request).collisions.colliding, 0U);
+  EXPECT_EQ(collideAlong(site, none, {}, poses, request).collisions.colliding, 0U);
+  EXPECT_EQ(collideAlong(none, model, poses, request).collisions.colliding, 0U);
 }
 
 TEST_F(CollideSites, AlongAPathOfSweptMotion)
@@ -352,30 +355,29 @@ TEST_F(CollideSites, AlongAPathOfSweptMotion)
   const std::vector<Eigen::Isometry3d> poses = pathOver(6, 1.5, 0.3, 0.3);
   const SphereHierarchy all_a(viewOf(a.front().data(), a.size())), all_b(viewOf(body.front().data(), body.size()));
   const Site site = siteOf("a", a, 200), other = siteOf("b", body, 60);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.2;
   request.swept = 0.05;
   TrajectoryRequest wanted;
-  wanted.clearance = request.clearance;
+  wanted.clearance = *request.clearance;
   wanted.swept = 1e-4; // as good as exact here
   const std::vector<Verdict> least = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
-  wanted.clearance += *request.swept;
+  wanted.clearance += request.swept;
   const std::vector<Verdict> most = pcl_bsh::collideAlong({all_a}, all_b, poses, wanted).flags;
   std::vector<Verdict> found(a.size(), Verdict::free);
-  const SitePassage passage = collideAlong(site, other, {}, poses, request,
-                                           [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
-                                             for (std::uint32_t i = 0; i < cloud.width; ++i)
-                                               found[placeOf(cloud, i, a)] = result.flags[i];
-                                           });
-  EXPECT_GT(passage.colliding, 20u);
-  ASSERT_TRUE(passage.first_contact);
+  const SiteAnswer passage =
+      collideAlong(site, other, {}, poses, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
+        for (std::uint32_t i = 0; i < cloud.width; ++i) found[placeOf(cloud, i, a)] = result.collisions.flags[i];
+      });
+  EXPECT_GT(passage.collisions.colliding, 20u);
+  ASSERT_TRUE(passage.collisions.first_contact);
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_LE(least[i], found[i]) << i;
     EXPECT_LE(found[i], most[i]) << i;
   }
-  request.pose_summaries = true;
+  request.wanted.poses = true;
   EXPECT_THROW(collideAlong(site, other, {}, poses, request), std::invalid_argument);
-  request.pose_summaries = false;
+  request.wanted.poses = false;
   request.clearance = -1.0;
   EXPECT_THROW(collideAlong(site, other, {}, poses, request), std::invalid_argument);
 }
@@ -384,28 +386,28 @@ TEST_F(CollideSites, ASiteAgainstItself)
 {
   const Points points = floorOf(1200, 5);
   const Site site = siteOf("a", points, 100);
-  SiteRequest request;
-  const SiteFlags flags = collisionFlags(site, {site}, request);
-  EXPECT_EQ(flags.colliding, points.size() - 3) << "three are not finite";
-  EXPECT_EQ(pointDistances(site, {site}, 1.0, request).greatest, 0.0);
+  SiteQuestion request;
+  const SiteAnswer flags = collisionFlags(site, {site}, request);
+  EXPECT_EQ(flags.collisions.colliding, points.size() - 3) << "three are not finite";
+  EXPECT_EQ(pointDistances(site, {site}, 1.0, request).distances.a.greatest, 0.0);
 }
 
 TEST_F(CollideSites, ReadOnlyTilesThatMatter)
 {
   const Site site = siteOf("a", floorOf(2000, 6), 50), other = siteOf("b", floorOf(2000, 7), 50);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.1;
-  const SiteFlags aside = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(19, 0, 0))}, request);
+  const SiteAnswer aside = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(19, 0, 0))}, request);
   EXPECT_LT(aside.tiles.needed, aside.tiles.tiles / 2);
-  EXPECT_LT(aside.tiles_b.needed, aside.tiles_b.tiles / 2);
-  EXPECT_EQ(aside.tiles_b.read, aside.tiles_b.needed) << "all that was read is kept";
-  const SiteFlags far = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, request);
-  EXPECT_EQ(far.tiles.read + far.tiles_b.read, 0u);
+  EXPECT_LT(aside.obstacle_tiles.needed, aside.obstacle_tiles.tiles / 2);
+  EXPECT_EQ(aside.obstacle_tiles.read, aside.obstacle_tiles.needed) << "all that was read is kept";
+  const SiteAnswer far = collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, request);
+  EXPECT_EQ(far.tiles.read + far.obstacle_tiles.read, 0u);
   EXPECT_LT(closestPair(site, {other, Eigen::Isometry3d(Eigen::Translation3d(25, 0, 0))}, request).tiles.read, 20u);
   // Where memory holds a tile of each alone, tiles are read for each that they come near to.
   request.memory = 2 * 50 * (3 * 8 + 8 + 64);
-  const SiteFlags small = collisionFlags(site, {other}, request);
-  EXPECT_GT(small.tiles_b.read, small.tiles_b.needed);
+  const SiteAnswer small = collisionFlags(site, {other}, request);
+  EXPECT_GT(small.obstacle_tiles.read, small.obstacle_tiles.needed);
   request.memory = 2 * 50 * (3 * 8 + 8 + 64) - 1000;
   EXPECT_THROW(collisionFlags(site, {other}, request), std::invalid_argument);
   // A tile that is damaged is not "free".
@@ -416,14 +418,14 @@ TEST_F(CollideSites, ReadOnlyTilesThatMatter)
 TEST_F(CollideSites, TellTheirProgressAndStop)
 {
   const Site site = siteOf("a", floorOf(1000, 6), 50), other = siteOf("b", floorOf(1000, 7), 300);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.1;
   std::vector<double> told;
   request.progress = [&](double done) {
     told.push_back(done);
     return true;
   };
-  const SiteFlags flags = collisionFlags(site, {other}, request);
+  const SiteAnswer flags = collisionFlags(site, {other}, request);
   ASSERT_EQ(told.size(), flags.tiles.needed);
   EXPECT_EQ(told.front(), 1.0 / static_cast<double>(flags.tiles.needed));
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
@@ -442,16 +444,16 @@ TEST_F(CollideSites, APathPastEverythingHasNoDistanceAndNoContact)
   poses[1].translation().z() = 5.0;
   const Point3 origin = {0, 0, 0};
   const SphereHierarchy model(viewOf(origin.data(), 1));
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.25;
   request.swept = 1e-3;
-  for (const SitePassage& passage :
+  for (const SiteAnswer& passage :
        {collideAlong(site, model, poses, request), collideAlong(site, other, {}, poses, request)}) {
-    EXPECT_EQ(passage.colliding, 0u);
-    EXPECT_TRUE(std::isnan(passage.distance));
-    EXPECT_EQ(passage.first_pose, -1);
-    EXPECT_FALSE(passage.first_contact);
-    EXPECT_FALSE(passage.certain_contact);
+    EXPECT_EQ(passage.collisions.colliding, 0u);
+    EXPECT_TRUE(std::isinf(passage.closest.distance));
+    EXPECT_FALSE(passage.first_pose);
+    EXPECT_FALSE(passage.collisions.first_contact);
+    EXPECT_FALSE(passage.collisions.certain_contact);
   }
 }
 
@@ -460,10 +462,10 @@ TEST_F(CollideSites, AFailureEndsTheVisit)
 {
   const Points a = floorOf(900, 5), b = lattice(6, 0.0, 0.0);
   const Site site = siteOf("a", a, 30), other = siteOf("b", b, 1000);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 20.0;
   int asked = 0;
-  const auto fail_once = [&](const Tile&, const Cloud&, const TrajectoryResult&) {
+  const auto fail_once = [&](const Tile&, const Cloud&, const Answer&) {
     if (asked++ == 0) throw std::length_error("the first tile");
   };
   EXPECT_THROW(collideAlong(site, other, {}, {Eigen::Isometry3d::Identity()}, request, fail_once), std::length_error);
@@ -479,7 +481,7 @@ TEST_F(CollideSites, RefuseWhatOneHierarchyWouldRefuse)
   const Eigen::Isometry3d far(Eigen::Translation3d(0, 0, 1000));
   Eigen::Isometry3d crooked = far;
   crooked.linear() *= 1.5;
-  SiteRequest negative, sigmas, level;
+  SiteQuestion negative, sigmas, level;
   negative.clearance = -1.0;
   sigmas.uncertainty.field = "sigma";
   level.accuracy = Accuracy::level(2);

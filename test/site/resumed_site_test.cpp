@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A question to a site that was killed goes on with the tiles that it has answered, and says what it would have said.
 #include "float64_cloud.h"
+#include "site_questions.h"
 #include "support/in_a_fork.h"
 #include "support/verdicts.h"
 #include "tools/programs/process.h"
@@ -13,7 +14,6 @@
 #include <pcl_bsh/site/make_site.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/result_site.h>
 #include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/site/tiles/tile_file.h>
@@ -80,7 +80,7 @@ protected:
   }
 
   /// What a path met.
-  struct Asked : SitePassage {
+  struct Asked : SiteAnswer {
     std::vector<std::string> clashes;
   };
 
@@ -113,9 +113,9 @@ protected:
     const auto dieAt = [&](At here, std::uint64_t tile) {
       if (here == at && tile == kill) ::kill(::getpid(), SIGKILL);
     };
-    SiteRequest request;
+    SiteQuestion request;
     request.clearance = 0.3;
-    request.pose_summaries = true;
+    request.wanted.poses = true;
     ClashFinder finder(site, 0.5);
     request.clashes = &finder;
     request.answers = results.answers();
@@ -123,12 +123,12 @@ protected:
       dieAt(At::after_tile, ++done);
       return true;
     };
-    const SitePassage passage = collideAlong(site, model, poses, request,
-                                             [&](const Tile& tile, const Cloud& cloud, const TrajectoryResult& found) {
-                                               dieAt(At::before_writing, ++asked);
-                                               results.write(tile, cloud, {found.flags.data(), found.distance.data()});
-                                               dieAt(At::before_keeping, asked);
-                                             });
+    const SiteAnswer passage =
+        collideAlong(site, model, poses, request, [&](const Tile& tile, const Cloud& cloud, const Answer& found) {
+          dieAt(At::before_writing, ++asked);
+          results.write(tile, cloud, {found.collisions.flags.data(), found.collisions.distance.data()});
+          dieAt(At::before_keeping, asked);
+        });
     results.finish();
     return {passage, linesOf(finder.finish())};
   }
@@ -142,15 +142,16 @@ protected:
   static void expectSame(const Asked& a, const Asked& b)
   {
     EXPECT_EQ(a.clashes, b.clashes);
-    EXPECT_EQ(a.colliding, b.colliding);
-    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.collisions.colliding, b.collisions.colliding);
+    EXPECT_EQ(a.closest.distance, b.closest.distance);
     EXPECT_EQ(a.first_pose, b.first_pose);
     EXPECT_EQ(a.tiles.needed, b.tiles.needed);
-    ASSERT_EQ(a.poses.size(), b.poses.size());
-    for (std::size_t k = 0; k < a.poses.size(); ++k) {
-      EXPECT_EQ(a.poses[k].colliding_points, b.poses[k].colliding_points) << k;
-      EXPECT_TRUE(a.poses[k].distance == b.poses[k].distance ||
-                  (std::isnan(a.poses[k].distance) && std::isnan(b.poses[k].distance)))
+    const std::vector<PoseSummary>&of_a = a.collisions.poses, &of_b = b.collisions.poses;
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t k = 0; k < of_a.size(); ++k) {
+      EXPECT_EQ(of_a[k].colliding_points, of_b[k].colliding_points) << k;
+      EXPECT_TRUE(of_a[k].distance == of_b[k].distance ||
+                  (std::isnan(of_a[k].distance) && std::isnan(of_b[k].distance)))
           << k;
     }
   }
@@ -167,7 +168,7 @@ TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
   const auto files = contentsOf(folder / "whole");
   ASSERT_GT(whole.clashes.size(), 4u);
   ASSERT_GT(whole.tiles.read, 5u);
-  ASSERT_GT(whole.colliding, 0u);
+  ASSERT_GT(whole.collisions.colliding, 0u);
   for (const At at : {At::before_writing, At::before_keeping, At::after_tile}) {
     for (const std::uint64_t kill : {std::uint64_t{1}, std::uint64_t{3}, whole.tiles.read}) {
       SCOPED_TRACE(std::to_string(static_cast<int>(at)) + " " + std::to_string(kill));
@@ -251,7 +252,7 @@ TEST_F(ResumedSite, AboutTwoSites)
   MakeOptions options;
   options.tile_points = 70;
   const Site other = makeSite({folder / "body.pcd"}, folder / "other", options);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.3;
   /// @return what was found, and how many tiles were read
   const auto askBoth = [&](int question, const fs::path& out, bool goes_on, std::uint64_t kill) {
@@ -269,30 +270,32 @@ TEST_F(ResumedSite, AboutTwoSites)
     };
     std::pair<std::vector<std::string>, std::uint64_t> found;
     if (question == 0) {
-      const SiteFlags flags =
-          collisionFlags(site, {other}, request, [&](const auto& tile, const auto& cloud, const FlagsResult& result) {
-            write(tile, cloud, result.a);
+      const SiteAnswer flags =
+          collisionFlags(site, {other}, request, [&](const auto& tile, const auto& cloud, const Answer& result) {
+            write(tile, cloud, result.collisions.flags);
           });
-      found = {{std::to_string(flags.colliding)}, flags.tiles.read};
+      found = {{std::to_string(flags.collisions.colliding)}, flags.tiles.read};
     }
     else if (question == 1) {
-      const SiteDistances distances = pointDistances(
-          site, {other}, 4.0, request, [&](const auto& tile, const auto& cloud, const PointDistances& result) {
-            write(tile, cloud, result.distance);
+      const SiteAnswer distances =
+          pointDistances(site, {other}, 4.0, request, [&](const auto& tile, const auto& cloud, const Answer& result) {
+            write(tile, cloud, result.distances.a.distance);
           });
-      found = {{std::to_string(distances.greatest), std::to_string(distances.measured)}, distances.tiles.read};
+      found = {{std::to_string(distances.distances.a.greatest), std::to_string(distances.distances.a.measured)},
+               distances.tiles.read};
     }
     else {
       ClashFinder finder(site, 0.5);
       request.clashes = &finder;
-      const SitePassage passage = collideAlong(
-          site, other, {}, poses, request, [&](const auto& tile, const auto& cloud, const TrajectoryResult& result) {
-            write(tile, cloud, result.flags);
+      const SiteAnswer passage =
+          collideAlong(site, other, {}, poses, request, [&](const auto& tile, const auto& cloud, const Answer& result) {
+            write(tile, cloud, result.collisions.flags);
           });
       const SiteClashes list = finder.finish();
       EXPECT_FALSE(list.met.empty());
       found = {linesOf(list), passage.tiles.read};
-      for (const double number : {double(passage.colliding), double{passage.distance}, double(passage.first_pose)})
+      for (const double number :
+           {double(passage.collisions.colliding), passage.closest.distance, double(*passage.first_pose)})
         found.first.push_back(std::to_string(number));
     }
     results.finish();

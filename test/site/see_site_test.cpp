@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is unseen in a site is unseen in one SeenSpace over all of its points, whatever the tiles.
 #include "float64_cloud.h"
+#include "site_questions.h"
 #include "support/made_scans.h"
 #include "support/temporary_folder.h"
 #include "tools/programs/program_run.h"
@@ -13,7 +14,6 @@
 #include <pcl_bsh/site/make_site.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/see_site.h>
 
 #include <gmock/gmock.h>
 
@@ -50,9 +50,10 @@ protected:
       pose.translation() = Eigen::Vector3d(4.0 + 2.8 * std::cos(0.5 * k), 3.0 + 2.2 * std::sin(0.5 * k), 0.2 + 0.1 * k);
       poses.push_back(pose);
     }
-    sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
-    sight.angle = 0.05;
+    request.origin = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
+    request.seen_angle = 0.05;
     request.clearance = 0.1;
+    request.seen = request.wanted.unseen_places = true;
     request.uncertainty = 0.01;
   }
 
@@ -84,24 +85,24 @@ protected:
     std::vector<Point3> all;
     std::vector<float> all_sigmas;
     for (std::size_t s = 0; s < 2; ++s) {
-      beams.push_back({sight.origins.entries[s].origin, viewOf(scans[s].front().data(), scans[s].size())});
+      beams.push_back({request.origin.entries[s].origin, viewOf(scans[s].front().data(), scans[s].size())});
       beams.back().returns.uncertainty = request.uncertainty.length;
       if (!request.uncertainty.field.empty()) beams.back().returns.uncertainties = sigmas[s].data();
       all.insert(all.end(), scans[s].begin(), scans[s].end());
       all_sigmas.insert(all_sigmas.end(), sigmas[s].begin(), sigmas[s].end());
     }
     SeenOptions options;
-    options.angle = sight.angle;
+    options.angle = *request.seen_angle;
     const SeenSpace space(beams, options);
     PointsView view = viewOf(all.front().data(), all.size());
     view.uncertainty = request.uncertainty.length;
     if (!request.uncertainty.field.empty()) view.uncertainties = all_sigmas.data();
     Uncertainty of_pose;
-    of_pose.pose = request.uncertainty.pose;
+    of_pose.pose = request.input_pose_uncertainty;
     view = withUncertainty(view, std::vector<RecordField>(), "all", of_pose);
     const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
     FlagsRequest flags;
-    flags.clearance = request.clearance;
+    flags.clearance = *request.clearance;
     flags.flagged = Side::b;
     UnseenRequest asked;
     asked.kinds = true;
@@ -109,17 +110,19 @@ protected:
     gravest.assign(machine.size(), Verdict::free);
     for (const Eigen::Isometry3d& pose : poses) {
       FlagsResult found = pcl_bsh::collisionFlags({scan}, {model, pose}, flags);
-      asked.clearance = request.clearance + // beams and their scanner move together
-                        strayOf(request.uncertainty.pose, CornerBox(model.view()), pose);
+      asked.clearance = *request.clearance + // beams and their scanner move together
+                        strayOf(request.input_pose_uncertainty, CornerBox(model.view()), pose);
       UnseenResult left = markUnseen(space, {model, pose}, asked, found.b);
       unseen.addPose(found.b, true, gravest, std::move(left.kinds));
     }
     return unseen;
   }
 
-  SiteUnseen asked(const Site& site) const
+  SiteAnswer asked(const Site& site) const
   {
-    return unseenAlong(site, sight, SphereHierarchy(viewOf(machine.front().data(), machine.size())), poses, request);
+    SiteQuestion question = request;
+    question.path = poses;
+    return site::asked(site, SphereHierarchy(viewOf(machine.front().data(), machine.size())), question);
   }
 
   io::TemporaryFolder folder;
@@ -127,8 +130,7 @@ protected:
   std::vector<Point3> scans[2], machine;
   std::vector<float> sigmas[2];
   std::vector<Eigen::Isometry3d> poses;
-  SiteSight sight;
-  SiteRequest request;
+  SiteQuestion request;
 };
 
 TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
@@ -138,8 +140,8 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
   ASSERT_GT(right.count, 20u);
   ASSERT_LT(right.count, machine.size());
   for (const std::uint64_t tile_points : {1000000u, 3000u, 500u}) {
-    const SiteUnseen found = asked(siteOf(tile_points));
-    EXPECT_EQ(found.verdicts, gravest) << tile_points;
+    const SiteAnswer found = asked(siteOf(tile_points));
+    EXPECT_EQ(found.obstacle_flags, gravest) << tile_points;
     EXPECT_EQ(found.unseen.at_poses, right.at_poses);
     EXPECT_EQ(found.unseen.where, right.where);
     EXPECT_EQ(found.unseen.first_pose, right.first_pose);
@@ -147,7 +149,7 @@ TEST_F(SeeSite, AnswersAsOfAllPointsWhateverTheTiles)
     EXPECT_EQ(found.unseen.in_shadow, right.in_shadow);
     EXPECT_EQ(found.unseen.shadow_at_poses, right.shadow_at_poses);
     EXPECT_EQ(found.unseen.angles, (std::vector<double>{0.05, 0.05}));
-    EXPECT_LT(found.beams, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
+    EXPECT_LT(found.beams_kept, scans[0].size() + scans[1].size()) << "those that look elsewhere are left out";
   }
 }
 
@@ -157,12 +159,12 @@ TEST_F(SeeSite, TheSitesPoseMayBeUncertain)
   expected(before);
   const Site site = siteOf(3000);
   for (const PoseUncertainty& of_pose : {PoseUncertainty{0.05}, PoseUncertainty{0.0, 0.03, {1, 3, 1}}}) {
-    request.uncertainty.pose = of_pose;
+    request.input_pose_uncertainty = of_pose;
     const Answer::Unseen right = expected(at_once);
     ASSERT_NE(at_once, before);
-    const SiteUnseen found = asked(site);
+    const SiteAnswer found = asked(site);
     EXPECT_EQ(found.unseen.where, right.where);
-    EXPECT_EQ(found.verdicts, at_once);
+    EXPECT_EQ(found.obstacle_flags, at_once);
   }
 }
 
@@ -174,12 +176,12 @@ TEST_F(SeeSite, EachPointHasItsOwnUncertainty)
   request.uncertainty = Uncertainty("sigma", 1.0);
   const Site site = siteOf(500);
   for (const double of_pose : {0.0, 0.03}) {
-    request.uncertainty.pose.length = of_pose;
+    request.input_pose_uncertainty.length = of_pose;
     const Answer::Unseen right = expected(gravest);
     EXPECT_NE(gravest, of_a_length);
-    const SiteUnseen found = asked(site);
+    const SiteAnswer found = asked(site);
     EXPECT_EQ(found.unseen.where, right.where);
-    EXPECT_EQ(found.verdicts, gravest);
+    EXPECT_EQ(found.obstacle_flags, gravest);
   }
 }
 
@@ -213,14 +215,14 @@ TEST_F(SeeSite, TakesNoAnswersThatWereKept)
   } kept;
   const Site site = siteOf(3000);
   poses = {Eigen::Isometry3d(Eigen::Translation3d(0.2, 3, 1))}; // partly in a wall
-  const SiteUnseen right = asked(site);
-  ASSERT_GT(countOf(right.verdicts, Verdict::colliding), 0u);
+  const SiteAnswer right = asked(site);
+  ASSERT_GT(countOf(right.obstacle_flags, Verdict::colliding), 0u);
   request.answers = &kept;
   request.progress = [](double) {
     ADD_FAILURE() << "of a part";
     return true;
   };
-  EXPECT_EQ(asked(site).verdicts, right.verdicts);
+  EXPECT_EQ(asked(site).obstacle_flags, right.obstacle_flags);
 }
 
 TEST_F(SeeSite, CollidingWinsOverUndecidedOfAnotherTile)
@@ -234,18 +236,18 @@ TEST_F(SeeSite, CollidingWinsOverUndecidedOfAnotherTile)
     scans[1] = {{0, 0, 0}, {8, 6, 3}};
     for (std::size_t s = 0; s < 2; ++s)
       io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
-    EXPECT_EQ(asked(siteOf(side > 0 ? 1 : 2)).verdicts, std::vector<Verdict>{Verdict::colliding});
-    EXPECT_EQ(asked(siteOf(side > 0 ? 3 : 4)).verdicts, std::vector<Verdict>{Verdict::colliding});
+    EXPECT_EQ(asked(siteOf(side > 0 ? 1 : 2)).obstacle_flags, std::vector<Verdict>{Verdict::colliding});
+    EXPECT_EQ(asked(siteOf(side > 0 ? 3 : 4)).obstacle_flags, std::vector<Verdict>{Verdict::colliding});
   }
 }
 
 TEST_F(SeeSite, ReadsTilesInTheDirectionsOfTheModelAlone)
 {
   poses.resize(1);
-  const SiteUnseen found = asked(siteOf(500));
-  EXPECT_LT(found.tiles_of_beams.read, found.tiles_of_beams.tiles);
-  EXPECT_EQ(found.tiles_of_beams.read, found.tiles_of_beams.needed);
-  EXPECT_GT(found.tiles_of_beams.read, 0u);
+  const SiteAnswer found = asked(siteOf(500));
+  EXPECT_LT(found.beam_tiles.read, found.beam_tiles.tiles);
+  EXPECT_EQ(found.beam_tiles.read, found.beam_tiles.needed);
+  EXPECT_GT(found.beam_tiles.read, 0u);
   std::vector<Verdict> gravest;
   EXPECT_EQ(found.unseen.where, expected(gravest).where);
 }
@@ -254,8 +256,8 @@ TEST_F(SeeSite, NeedsAllBeamsWhereABallHoldsTheScanner)
 {
   poses = {Eigen::Isometry3d(Eigen::Translation3d(1, 1, 1))};
   request.clearance = 0.5;
-  const SiteUnseen found = asked(siteOf(3000));
-  EXPECT_GE(found.beams, scans[0].size());
+  const SiteAnswer found = asked(siteOf(3000));
+  EXPECT_GE(found.beams_kept, scans[0].size());
   std::vector<Verdict> gravest;
   EXPECT_EQ(found.unseen.where, expected(gravest).where);
 }
@@ -268,12 +270,12 @@ TEST_F(SeeSite, WhatIsNoBeamIsNotCounted)
     io::writeCloud(folder / ("scan" + std::to_string(s) + ".pcd"), float64Cloud(scans[s]));
   machine = {{0, 0, 0}};
   poses = {Eigen::Isometry3d(Eigen::Translation3d(1, 1, 1.5))}; // for which all beams of its scan count
-  EXPECT_EQ(asked(siteOf(10)).beams, 4u);
+  EXPECT_EQ(asked(siteOf(10)).beams_kept, 4u);
 }
 
 TEST_F(SeeSite, ABeamAloneSeesNothingWhateverTheTiles)
 {
-  sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=1,1,1.5");
+  request.origin = ScanOrigins::parse("source:0=1,1,1.5;1=1,1,1.5");
   scans[1] = {{7, 1, 1.5}, {1, 5, 1.5}};
   io::writeCloud(folder / "scan1.pcd", float64Cloud(scans[1]));
   scans[0] = {{0, 0, 0}, {0, 0.1, 0}};
@@ -284,7 +286,7 @@ TEST_F(SeeSite, ABeamAloneSeesNothingWhateverTheTiles)
   std::vector<Verdict> gravest;
   const Answer::Unseen right = expected(gravest);
   EXPECT_EQ(right.count, 1u) << "two beams have nothing between them";
-  for (const std::uint64_t tile_points : {1000u, 1u}) EXPECT_EQ(asked(siteOf(tile_points)).verdicts, gravest);
+  for (const std::uint64_t tile_points : {1000u, 1u}) EXPECT_EQ(asked(siteOf(tile_points)).obstacle_flags, gravest);
 }
 
 TEST_F(SeeSite, RefusesWhatItCannotTell)
@@ -299,14 +301,14 @@ TEST_F(SeeSite, RefusesWhatItCannotTell)
     return std::string();
   };
   const Site site = siteOf(3000);
-  sight.origins = {};
+  request.origin = {};
   EXPECT_THAT(refusal(site), HasSubstr("does not say where its scanner stood: give `origin`"));
-  sight.origins = ScanOrigins::parse("source:0=1,1,1.5");
+  request.origin = ScanOrigins::parse("source:0=1,1,1.5");
   EXPECT_THAT(refusal(site), HasSubstr("is of scan 1 in field 'source', which has no origin"));
-  sight.origins = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
-  sight.angle = 0.0;
+  request.origin = ScanOrigins::parse("source:0=1,1,1.5;1=7,5,1.5");
+  request.seen_angle.reset();
   EXPECT_THAT(refusal(site), HasSubstr("angle that a beam speaks for: 0 radians: give one in"));
-  sight.angle = 0.05;
+  request.seen_angle = 0.05;
   request.memory = 1 << 20;
   request.clearance = 2.0; // so that all are needed
   EXPECT_THAT(refusal(site), HasSubstr("beams at least look at the model on its way"));

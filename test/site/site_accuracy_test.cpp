@@ -6,12 +6,13 @@
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "site_questions.h"
+
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <gmock/gmock.h>
@@ -78,19 +79,20 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
     for (const char* text :
          {"exact", "tolerance=0.05", "level=0", "level=2", "pairs=3", "pairs=300", "time=0", "time=10"}) {
       SCOPED_TRACE(std::to_string(tile_points) + " " + text);
-      SiteRequest request;
+      SiteQuestion request;
       request.clearance = clearance;
       request.accuracy = Accuracy::parse(text);
       const bool exact = request.accuracy.isExact(), stops = request.accuracy.stopsEarly();
 
       std::vector<Verdict> flags(a.size(), Verdict::free), along(a.size(), Verdict::free);
-      const SiteFlags found = collisionFlags(
-          site, other, Side::both, request,
-          [&](const Tile&, const Cloud& cloud, const FlagsResult& result) { put(flags, cloud, result.a); });
-      const SitePassage passage = collideAlong(
+      const SiteAnswer found =
+          collisionFlags(site, other, Side::both, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
+            put(flags, cloud, result.collisions.flags);
+          });
+      const SiteAnswer passage = collideAlong(
           site, other, {Eigen::Isometry3d::Identity()}, request,
-          [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) { put(along, cloud, result.flags); });
-      EXPECT_EQ(std::isnan(passage.distance), stops || passage.colliding == 0);
+          [&](const Tile&, const Cloud& cloud, const Answer& result) { put(along, cloud, result.collisions.flags); });
+      EXPECT_EQ(std::isinf(passage.closest.distance), stops || passage.collisions.colliding == 0);
       const auto expectKept = [&](const std::vector<Verdict>& said, const std::vector<Verdict>& collides,
                                   const std::vector<Verdict>& nearly) {
         for (std::size_t i = 0; i < said.size(); ++i) {
@@ -106,36 +108,36 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
       };
       expectKept(flags, truth.a, wider.a);
       expectKept(along, truth.a, wider.a);
-      expectKept(found.b, truth.b, wider.b);
-      EXPECT_EQ(found.undecided,
+      expectKept(found.obstacle_flags, truth.b, wider.b);
+      EXPECT_EQ(found.collisions.undecided,
                 static_cast<std::uint64_t>(std::count(flags.begin(), flags.end(), Verdict::undecided)));
-      EXPECT_EQ(found.undecided_b,
-                static_cast<std::uint64_t>(std::count(found.b.begin(), found.b.end(), Verdict::undecided)));
+      EXPECT_EQ(found.obstacle_undecided,
+                static_cast<std::uint64_t>(
+                    std::count(found.obstacle_flags.begin(), found.obstacle_flags.end(), Verdict::undecided)));
 
-      const Verdict verdict = anyCollision(site, other, request).verdict;
+      const Verdict verdict = anyCollision(site, other, request).any.verdict;
       EXPECT_TRUE(verdict == Verdict::colliding || (stops && verdict == Verdict::undecided));
 
-      const SiteClosest closest = closestPair(site, other, request);
-      EXPECT_LE(closest.interval.lower, least);
-      EXPECT_GE(closest.distance, least);
-      if (closest.point) {
-        EXPECT_GE(closest.interval.upper, least);
+      const SiteAnswer closest = closestPair(site, other, request);
+      EXPECT_LE(closest.closest.interval.lower, least);
+      EXPECT_GE(closest.closest.distance, least);
+      if (closest.pair) {
+        EXPECT_GE(closest.closest.interval.upper, least);
       }
       if (exact) {
-        EXPECT_EQ(closest.distance, least);
-        EXPECT_GE(closest.interval.lower, std::nextafter(least, 0.0));
+        EXPECT_EQ(closest.closest.distance, least);
+        EXPECT_GE(closest.closest.interval.lower, std::nextafter(least, 0.0));
       }
       if (!stops) {
-        EXPECT_LE(closest.distance, least + tolerance);
+        EXPECT_LE(closest.closest.distance, least + tolerance);
       }
 
       std::vector<double> measured(a.size(), std::nan(""));
-      const SiteDistances of_points =
-          pointDistances(site, other, std::numeric_limits<double>::infinity(), request,
-                         [&](const Tile&, const Cloud& cloud, const PointDistances& result) {
-                           put(measured, cloud, result.distance);
-                         });
-      EXPECT_EQ(of_points.measured + of_points.undecided, a.size());
+      const SiteAnswer of_points = pointDistances(site, other, std::numeric_limits<double>::infinity(), request,
+                                                  [&](const Tile&, const Cloud& cloud, const Answer& result) {
+                                                    put(measured, cloud, result.distances.a.distance);
+                                                  });
+      EXPECT_EQ(of_points.distances.a.measured + of_points.distances.a.undecided, a.size());
       for (std::size_t i = 0; i < a.size(); ++i) {
         if (std::isnan(measured[i])) continue;
         EXPECT_GE(measured[i], distances.distance[i]);

@@ -5,12 +5,12 @@
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "site_questions.h"
 #include "two_ranks.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/site_clashes.h>
 
@@ -138,18 +138,18 @@ protected:
       MakeOptions options;
       options.tile_points = tile_points;
       const Site site = makeSite({folder / "1.pcd", folder / "2.pcd"}, folder / std::to_string(places++), options);
-      SiteRequest request;
+      SiteQuestion request;
       request.clearance = scene.clearance;
-      request.swept = scene.swept;
-      request.pose_summaries = !scene.swept;
+      request.swept = scene.swept.value_or(0.0);
+      request.wanted.poses = !scene.swept;
       for (std::size_t i = 0; i < expected.size(); ++i) {
         ClashFinder finder(site, scene.cluster_distances[i]);
         request.clashes = &finder;
-        const SitePassage passage = collideAlong(site, model, scene.poses, request);
-        ASSERT_EQ(passage.poses.size(), in_memory.poses.size());
-        for (std::size_t k = 0; k < passage.poses.size(); ++k) {
-          EXPECT_EQ(passage.poses[k].colliding_points, in_memory.poses[k].colliding_points);
-          EXPECT_EQ(passage.poses[k].distance, in_memory.poses[k].distance);
+        const SiteAnswer passage = collideAlong(site, model, scene.poses, request);
+        ASSERT_EQ(passage.collisions.poses.size(), in_memory.poses.size());
+        for (std::size_t k = 0; k < passage.collisions.poses.size(); ++k) {
+          EXPECT_EQ(passage.collisions.poses[k].colliding_points, in_memory.poses[k].colliding_points);
+          EXPECT_EQ(passage.collisions.poses[k].distance, in_memory.poses[k].distance);
         }
         const SiteClashes list = finder.finish();
         expectList(list, expected[i], all.view(), in_memory, nameOf);
@@ -275,7 +275,7 @@ TEST_F(SiteClashList, RefusesADistance)
     EXPECT_THROW(ClashFinder(site, distance), std::invalid_argument);
   // Where nothing is measured there are no closest pairs.
   ClashFinder finder(site, 1.0);
-  SiteRequest request;
+  SiteQuestion request;
   request.clashes = &finder;
   request.accuracy = Accuracy::level(2);
   const SphereHierarchy model(viewOf(point.front().data(), 1));

@@ -15,8 +15,7 @@
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/hollow_site.h>
+#include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/result_site.h>
 
@@ -240,13 +239,11 @@ TEST_F(SurfaceSite, TheClosestPairOfASolidIsThatOfMemory)
     question.wanted.closest = true;
     question.pose = pose;
     const Answer wanted = pcl_bsh::ask(question, cloud, crate);
-    SiteRequest request;
-    request.solid = &crate;
-    const SiteClosest found = closestPair(site, Placed(crate.hierarchy(), pose), request);
-    EXPECT_EQ(found.distance, wanted.closest.distance);
-    EXPECT_EQ(found.distance < 0.0, up < 10.0);
-    ASSERT_TRUE(found.point && wanted.closest.pair);
-    EXPECT_EQ(found.point->record, wanted.closest.pair->a);
+    const SiteAnswer found = site::ask(question, site, crate);
+    EXPECT_EQ(found.closest.distance, wanted.closest.distance);
+    EXPECT_EQ(found.closest.distance < 0.0, up < 10.0);
+    ASSERT_TRUE(found.pair && wanted.closest.pair);
+    EXPECT_EQ(found.pair->a.record, wanted.closest.pair->a);
   }
 }
 
@@ -260,28 +257,20 @@ TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
   question.clearance = 0.2;
   question.uncertainty = 0.1;
   question.solid = true;
-  const SphereHierarchy& surface = crate.hierarchy({}, 1);
-  SiteRequest request;
-  request.clearance = 0.2;
-  request.uncertainty = 0.1;
-  request.solid = &crate;
   std::vector<Verdict> flags(scan.width);
-  const auto put = [&](const pcl::PCLPointCloud2& cloud, const std::vector<Verdict>& found) {
+  SiteMeans means;
+  means.sink = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const Answer& found) {
     for (std::uint32_t i = 0; i < cloud.width; ++i)
-      flags[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = found[i];
+      flags[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = found.collisions.flags[i];
   };
 
   question.wanted.flags = true;
   std::fill(flags.begin(), flags.end(), Verdict::free);
-  collisionFlags(site, {surface}, Side::a, request,
-                 [&](const Tile&, const pcl::PCLPointCloud2& cloud, const FlagsResult& found) { put(cloud, found.a); });
+  site::ask(question, site, crate, means);
   EXPECT_EQ(flags, pcl_bsh::ask(question, points, crate).collisions.flags);
   question.path = io::readPoses(folder / "poses.txt");
   std::fill(flags.begin(), flags.end(), Verdict::free);
-  const auto putPath = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
-    put(cloud, found.flags);
-  };
-  collideAlong(site, surface, *question.path, request, putPath);
+  site::ask(question, site, crate, means);
   EXPECT_EQ(flags, pcl_bsh::ask(question, points, crate).collisions.flags);
 
   question.path.reset();
@@ -292,7 +281,7 @@ TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
     io::writeCloud(folder / "one.pcd", float64Cloud(one));
     const Site of_one = makeSite({folder / "one.pcd"}, folder / ("one" + std::to_string(depth)), {});
     Shape point("point", viewOf(one[0].data(), 1));
-    EXPECT_EQ(anyCollision(of_one, {surface}, request).verdict, pcl_bsh::ask(question, point, crate).any.verdict)
+    EXPECT_EQ(site::ask(question, of_one, crate).any.verdict, pcl_bsh::ask(question, point, crate).any.verdict)
         << depth;
   }
 }
@@ -357,30 +346,41 @@ TEST_F(SurfaceSite, WarnsOfWhatIsHollowWhereNothingIsNear)
   const auto triangles = std::make_shared<const std::vector<Triangle>>(mesh.triangles);
   pcl_bsh::Shape crate("the crate", viewOf(trianglesOf(viewOf(corners), triangles)));
   pcl_bsh::Shape points("the corners", viewOf(corners));
-  crate.hierarchy({}, 1);
-  points.hierarchy({}, 1);
-  const auto warned = [&](const Question& question, std::optional<double> nearest, pcl_bsh::Shape& obstacle) {
-    const std::optional<Warning> warning = warningOfHollow(site, "the hall", question, nearest, obstacle);
-    if (warning) {
-      EXPECT_THAT(warning->text, HasSubstr("the crate: its faces close round places of the hall"));
+  const auto warned = [&](const Question& question, pcl_bsh::Shape& obstacle) {
+    for (const Warning& warning : site::ask(question, site, obstacle).warnings) {
+      if (warning.kind != WarningKind::hollow) continue;
+      EXPECT_THAT(warning.text, HasSubstr("the crate: its faces close round places of " + site.folder.string()));
+      return true;
     }
-    return warning.has_value();
+    return false;
   };
   const Eigen::Isometry3d about(Eigen::Translation3d(-30, -30, -30)), beside(Eigen::Translation3d(-200, 0, 0));
   Question question;
   question.pose = about;
-  EXPECT_TRUE(warned(question, std::nullopt, crate));
-  EXPECT_TRUE(warned(question, 20.0, crate));
-  EXPECT_FALSE(warned(question, 0.0, crate)) << "something is on its faces";
-  EXPECT_FALSE(warned(question, std::nullopt, points));
+  question.wanted.distances = true; // which do not tell how near it is
+  EXPECT_TRUE(warned(question, crate));
+  EXPECT_FALSE(warned(question, points));
+  question.wanted = {};
+  question.wanted.closest = true;
+  EXPECT_TRUE(warned(question, crate));
+  question.wanted = {};
+  question.wanted.any = true;
+  question.clearance = 40.0;
+  EXPECT_FALSE(warned(question, crate)) << "something is near its faces";
+  question.clearance = 0.1;
+  EXPECT_TRUE(warned(question, crate));
+  question.wanted = {};
+  question.wanted.distances = true;
   question.pose = beside;
-  EXPECT_FALSE(warned(question, std::nullopt, crate));
+  EXPECT_FALSE(warned(question, crate));
+  question.wanted = {};
+  question.wanted.flags = true;
   question.path = std::vector<Eigen::Isometry3d>(3, beside);
-  EXPECT_FALSE(warned(question, 20.0, crate));
+  EXPECT_FALSE(warned(question, crate));
   question.path->back() = about;
-  EXPECT_TRUE(warned(question, 20.0, crate));
+  EXPECT_TRUE(warned(question, crate));
   question.solid = true;
-  EXPECT_FALSE(warned(question, 20.0, crate));
+  EXPECT_FALSE(warned(question, crate));
 }
 
 TEST_F(SurfaceSite, RefusesSolidsThatDoNotClose)

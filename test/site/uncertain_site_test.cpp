@@ -4,14 +4,15 @@
 #include "tools/programs/program_run.h"
 
 #ifdef PCL_BSH_SITE_QUERIES
+#include "site_questions.h"
 #include "two_ranks.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/uncertainty.h>
 #include <pcl_bsh/site/check_site.h>
-#include <pcl_bsh/site/collide_site.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <gmock/gmock.h>
@@ -96,12 +97,12 @@ TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
         SCOPED_TRACE(std::to_string(tile_points) + " " + of_site.field + " " + of_machine.field);
         const SphereHierarchy a(withUncertainty(viewOf(scan), scan.fields, "scan", of_site));
         const SphereHierarchy b(withUncertainty(viewOf(machine), machine.fields, "machine", of_machine));
-        SiteRequest request;
+        SiteQuestion request;
         request.uncertainty = of_site;
         for (const Eigen::Isometry3d& pose : {poses[0], Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.75)),
                                               Eigen::Isometry3d(Eigen::Translation3d(0, 0, 40))}) {
           request.clearance = 0.3;
-          const Verdict verdict = anyCollision(site, {b, pose}, request).verdict;
+          const Verdict verdict = anyCollision(site, {b, pose}, request).any.verdict;
           EXPECT_EQ(verdict, pcl_bsh::anyCollision({a}, {b, pose}, {0.3, 1}).verdict);
           saw_any[static_cast<std::size_t>(verdict)] = true;
           FlagsRequest wanted;
@@ -109,17 +110,17 @@ TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
           wanted.flagged = Side::both;
           const FlagsResult expected = pcl_bsh::collisionFlags({a}, {b, pose}, wanted);
           std::vector<Verdict> flags(scan.width, Verdict::free);
-          const SiteFlags found = collisionFlags(site, {b, pose}, Side::both, request,
-                                                 [&](const Tile&, const Cloud& cloud, const FlagsResult& result) {
-                                                   for (std::uint32_t i = 0; i < cloud.width; ++i)
-                                                     flags[recordOf(cloud, i)] = result.a[i];
-                                                 });
+          const SiteAnswer found = collisionFlags(site, {b, pose}, Side::both, request,
+                                                  [&](const Tile&, const Cloud& cloud, const Answer& result) {
+                                                    for (std::uint32_t i = 0; i < cloud.width; ++i)
+                                                      flags[recordOf(cloud, i)] = result.collisions.flags[i];
+                                                  });
           EXPECT_EQ(flags, expected.a);
-          EXPECT_EQ(found.b, expected.b);
-          EXPECT_EQ(found.colliding, expected.colliding_a);
-          EXPECT_EQ(found.undecided, expected.undecided_a);
-          EXPECT_EQ(found.colliding_b, expected.colliding_b);
-          EXPECT_EQ(found.undecided_b, expected.undecided_b);
+          EXPECT_EQ(found.obstacle_flags, expected.b);
+          EXPECT_EQ(found.collisions.colliding, expected.colliding_a);
+          EXPECT_EQ(found.collisions.undecided, expected.undecided_a);
+          EXPECT_EQ(found.obstacle_colliding, expected.colliding_b);
+          EXPECT_EQ(found.obstacle_undecided, expected.undecided_b);
         }
       }
     }
@@ -132,7 +133,7 @@ TEST_F(UncertainSite, CollidingWinsOverUndecided)
 {
   const Point3 origin = {0, 0, 0};
   const SphereHierarchy b(viewOf(origin.data(), 1));
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.3;
   request.uncertainty = Uncertainty(0.05);
   MakeOptions options;
@@ -144,12 +145,12 @@ TEST_F(UncertainSite, CollidingWinsOverUndecided)
     io::writeCloud(folder / "scan.pcd", scan);
     const Site site = makeSite({folder / "scan.pcd"}, folder / (side < 0 ? "left" : "right"), options);
     ASSERT_EQ(site.tiles.size(), 3U);
-    const SiteFlags found = collisionFlags(site, {b}, Side::both, request);
-    EXPECT_EQ(found.b, test::verdictsOf({1}));
-    EXPECT_EQ(found.colliding_b, 1U);
-    EXPECT_EQ(found.undecided_b, 0U);
-    EXPECT_EQ(found.undecided, 2U);
-    EXPECT_EQ(anyCollision(site, {b}, request).verdict, Verdict::colliding);
+    const SiteAnswer found = collisionFlags(site, {b}, Side::both, request);
+    EXPECT_EQ(found.obstacle_flags, test::verdictsOf({1}));
+    EXPECT_EQ(found.obstacle_colliding, 1U);
+    EXPECT_EQ(found.obstacle_undecided, 0U);
+    EXPECT_EQ(found.collisions.undecided, 2U);
+    EXPECT_EQ(anyCollision(site, {b}, request).any.verdict, Verdict::colliding);
   }
 }
 
@@ -166,34 +167,34 @@ TEST_F(UncertainSite, PathsAreThoseOfMemory)
         wanted.swept = swept;
         wanted.distances = wanted.first_poses = wanted.closest_poses = true;
         const TrajectoryResult expected = pcl_bsh::collideAlong({a}, b, poses, wanted);
-        SiteRequest request;
+        SiteQuestion request;
         request.clearance = 0.3;
-        request.swept = swept;
+        request.swept = swept.value_or(0.0);
         request.uncertainty = of_site;
         std::vector<Verdict> flags(scan.width, Verdict::free);
         std::vector<std::int32_t> first(scan.width, -1), certain(scan.width, -1);
-        const SitePassage found =
-            collideAlong(site, b, poses, request, [&](const Tile&, const Cloud& cloud, const TrajectoryResult& result) {
+        const SiteAnswer found =
+            collideAlong(site, b, poses, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
               for (std::uint32_t i = 0; i < cloud.width; ++i) {
                 const std::uint32_t record = recordOf(cloud, i);
-                flags[record] = result.flags[i];
-                first[record] = result.first_pose[i];
-                certain[record] = result.certain_pose[i];
+                flags[record] = result.collisions.flags[i];
+                first[record] = result.collisions.first_pose[i];
+                certain[record] = result.collisions.certain_pose[i];
               }
             });
         EXPECT_EQ(flags, expected.flags);
         EXPECT_EQ(first, expected.first_pose);
         EXPECT_EQ(certain, expected.certain_pose);
-        EXPECT_EQ(found.colliding, expected.colliding);
-        EXPECT_EQ(found.undecided, expected.undecided);
-        EXPECT_GT(found.undecided, 0U);
+        EXPECT_EQ(found.collisions.colliding, expected.colliding);
+        EXPECT_EQ(found.collisions.undecided, expected.undecided);
+        EXPECT_GT(found.collisions.undecided, 0U);
         const auto expectSame = [](const std::optional<FirstContact>& one, const std::optional<FirstContact>& other) {
           ASSERT_EQ(one.has_value(), other.has_value());
           if (!one) return;
           EXPECT_EQ(std::pair(one->pose, one->fraction), std::pair(other->pose, other->fraction));
         };
-        expectSame(found.first_contact, expected.first_contact);
-        expectSame(found.certain_contact, expected.certain_contact);
+        expectSame(found.collisions.first_contact, expected.first_contact);
+        expectSame(found.collisions.certain_contact, expected.certain_contact);
       }
     }
   }
@@ -212,18 +213,19 @@ TEST_F(UncertainSite, AsObstacleIsCutToWhereItsPointsMayBe)
   // The candidate, and what keeps the tile's box wide.
   const Site other = write("other.pcd", {{1.04, 0, 0, 0.05}, {50, 0, 0, 0.05}, {-60, 30, 9, 0.05}});
   ASSERT_EQ(other.tiles.size(), 1U);
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 1.0;
   for (const Uncertainty& uncertainty : {Uncertainty(0.05), Uncertainty("sigma", 1.0)}) {
-    EXPECT_EQ(anyCollision(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).verdict,
+    EXPECT_EQ(anyCollision(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).any.verdict,
               Verdict::undecided);
-    EXPECT_EQ(collisionFlags(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).undecided, 1U);
-    EXPECT_EQ(collideAlong(one, other, uncertainty, {Eigen::Isometry3d::Identity()}, request).undecided, 1U);
+    EXPECT_EQ(collisionFlags(one, {other, Eigen::Isometry3d::Identity(), uncertainty}, request).collisions.undecided,
+              1U);
+    EXPECT_EQ(collideAlong(one, other, uncertainty, {Eigen::Isometry3d::Identity()}, request).collisions.undecided, 1U);
     request.uncertainty = uncertainty; // with the roles exchanged
-    EXPECT_EQ(collisionFlagsOfB(one, {other}, request).undecided, uncertainty.field.empty() ? 1U : 0U);
+    EXPECT_EQ(collisionFlagsOfB(one, {other}, request).obstacle_undecided, uncertainty.field.empty() ? 1U : 0U);
     request.uncertainty = {};
   }
-  EXPECT_EQ(anyCollision(one, {other}, request).verdict, Verdict::free);
+  EXPECT_EQ(anyCollision(one, {other}, request).any.verdict, Verdict::free);
 }
 
 /// On its way the machine meets nothing for certain, but it may: the report says how near and from when on.
@@ -281,7 +283,7 @@ TEST_F(UncertainSite, ReadsTheTilesThatMayMatter)
 {
   const Site site = siteOf(50);
   const SphereHierarchy b(viewOf(machine));
-  SiteRequest request;
+  SiteQuestion request;
   request.clearance = 0.3;
   const Placed placed(b, poses[0]);
   const std::uint64_t measured = collisionFlags(site, placed, Side::a, request).tiles.needed;
@@ -296,7 +298,7 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
   const Site site = siteOf(500);
   const SphereHierarchy b(viewOf(machine));
   const auto refusal = [&](const Site& of, const Uncertainty& uncertainty) -> std::string {
-    SiteRequest request;
+    SiteQuestion request;
     request.clearance = 0.3;
     request.uncertainty = uncertainty;
     const Eigen::Isometry3d far_away(Eigen::Translation3d(0, 0, 1000)); // no tile is read
@@ -316,7 +318,7 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
   EXPECT_EQ(refusal(site, {"sigma", 1.0}), "none");
   EXPECT_THAT(refusal(site, {"sigmas", 1.0}), HasSubstr("field 'sigmas' of its points' sigmas is missing"));
   EXPECT_THAT(refusal(site, {"class", 1.0}), HasSubstr("does not say how large 'class' is in tiles/tile_000000.pcd"));
-  EXPECT_THAT(refusal(site, Uncertainty(-1.0)), HasSubstr("uncertainty -1"));
+  EXPECT_THAT(refusal(site, Uncertainty(-1.0)), HasSubstr("uncertainty: -1"));
 
   // A site of the first version answers all that needs no greatest values.
   Json json = Json::parse(files::contentOf(site.folder / site_file_name));
@@ -341,7 +343,7 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
   std::memcpy(&scan.data[5 * scan.point_step + 24], &sigma, sizeof sigma);
   io::writeCloud(folder / "scan.pcd", scan);
   const Site wrong = makeSite({folder / "scan.pcd"}, folder / "wrong", {});
-  SiteRequest request;
+  SiteQuestion request;
   request.uncertainty = Uncertainty("sigma", 1.0);
   EXPECT_THROW(collisionFlags(wrong, {b}, Side::a, request), std::invalid_argument);
 }

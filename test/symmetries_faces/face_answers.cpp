@@ -7,7 +7,7 @@
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/records.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/make_site.h>
 
 #include <cstdlib>
@@ -191,41 +191,46 @@ Answers askSite(const Instance& instance, const std::filesystem::path& folder, s
   options.threads = 1;
   const site::Site whole = site::makeSite({place / "a.pcd"}, place / "site", options);
   const test::Cloud cloud_b = instance.b.cloud();
-  const SphereHierarchy hierarchy(cloud_b.view());
-  const Placed b(hierarchy, instance.relative.front());
-  site::SiteRequest request;
-  request.clearance = instance.clearance;
+  Shape obstacle("b", cloud_b.view());
+  Question question;
+  question.pose = instance.relative.front();
+  question.clearance = instance.clearance;
+  Wanted& wanted = question.wanted;
+  wanted.flags = wanted.obstacle_flags = wanted.any = wanted.distances = wanted.closest = true;
 
   Answers told;
-  const auto records = [](const Cloud& cloud) { return fieldOf<std::uint32_t>(cloud, site::record_field_name); };
   const std::size_t count = instance.a.points.size();
   told.asked_flags.assign(count, 0);
-  const site::SiteFlags flags = site::collisionFlags(
-      whole, b, Side::both, request, [&](const site::Tile&, const Cloud& cloud, const FlagsResult& found) {
-        const std::vector<std::uint32_t> of = records(cloud);
-        for (std::size_t i = 0; i < of.size(); ++i) told.asked_flags[of[i]] = static_cast<std::uint8_t>(found.a[i]);
-      });
-  told.asked_obstacle_flags = pcl_bsh::numbersOf(flags.b);
-  const bool any = site::anyCollision(whole, b, request).verdict == Verdict::colliding;
-  if (any != (flags.colliding > 0)) throw std::runtime_error("any collision of the site is not that of its flags");
   told.asked_distances.assign(count, std::numeric_limits<float>::quiet_NaN());
-  site::pointDistances(whole, b, std::numeric_limits<double>::infinity(), request,
-                       [&](const site::Tile&, const Cloud& cloud, const PointDistances& found) {
-                         const std::vector<std::uint32_t> of = records(cloud);
-                         for (std::size_t i = 0; i < of.size(); ++i)
-                           told.asked_distances[of[i]] = static_cast<float>(found.distance[i]);
-                       });
-  told.asked_closest = site::closestPair(whole, b, request).distance;
   told.asked_path_flags.assign(count, 0);
   told.first_poses.assign(count, -1);
-  site::collideAlong(whole, hierarchy, instance.relative, request,
-                     [&](const site::Tile&, const Cloud& cloud, const TrajectoryResult& found) {
-                       const std::vector<std::uint32_t> of = records(cloud);
-                       for (std::size_t i = 0; i < of.size(); ++i) {
-                         told.asked_path_flags[of[i]] = static_cast<std::uint8_t>(found.flags[i]);
-                         told.first_poses[of[i]] = found.first_pose[i];
-                       }
-                     });
+  site::SiteMeans means;
+  means.sink = [&](const site::Tile&, const Cloud& cloud, const Answer& found) {
+    const auto of = fieldOf<std::uint32_t>(cloud, site::record_field_name);
+    const std::vector<Verdict>& flags = found.collisions.flags;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      if (question.path) {
+        told.asked_path_flags[of[i]] = static_cast<std::uint8_t>(flags[i]);
+        told.first_poses[of[i]] = found.collisions.first_pose[i];
+      }
+      else if (!flags.empty()) {
+        told.asked_flags[of[i]] = static_cast<std::uint8_t>(flags[i]);
+      }
+      else {
+        told.asked_distances[of[i]] = static_cast<float>(found.distances.a.distance[i]);
+      }
+    }
+  };
+  const site::SiteAnswer answer = site::ask(question, whole, obstacle, means);
+  told.asked_obstacle_flags = pcl_bsh::numbersOf(answer.obstacle_flags);
+  const bool any = answer.any.verdict == Verdict::colliding;
+  if (any != (answer.collisions.colliding > 0))
+    throw std::runtime_error("any collision of the site is not that of its flags");
+  told.asked_closest = answer.closest.distance;
+  question.path = instance.relative;
+  wanted = {};
+  wanted.contacts = true;
+  site::ask(question, whole, obstacle, means);
   std::filesystem::remove_all(place);
   return told;
 }

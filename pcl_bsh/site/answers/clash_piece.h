@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/site_clashes.h>
 
 #include <vector>
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,8 +17,8 @@ namespace pcl_bsh::site {
 class ObstacleCloud {
 public:
   /// @param solid it counts with what it encloses, far from all of its parts, perhaps
-  ObstacleCloud(const Placed& cloud, bool solid)
-  : cloud_(cloud),
+  ObstacleCloud(const Placed& standing, bool solid)
+  : cloud(standing),
     boxes_(boxesOf(cloud.hierarchy().view(), solid)),
     parts_(placedParts(boxes_, cloud.pose))
   {
@@ -34,31 +33,39 @@ public:
     return least > 0.0 ? least : -boxes_.largestRadius(); // where boxes overlap, a point may be inside a ball
   }
 
-  template <typename Reach, typename Compare>
-  void compare(const Bounds&, const Reach&, const HierarchyOptions&, const Compare& compare)
-  {
-    compare(pcl::PCLPointCloud2(), cloud_);
-  }
-
-  TilesRead read() const { return {}; }
+  const Placed cloud;
 
 private:
-  const Placed& cloud_;
   CloudBoxes boxes_;
   std::vector<Bounds> parts_;
 };
 
 /// Each tile of a site, and what of the other cloud or site comes near it.
-template <typename Other>
 class Comparison {
 public:
-  /// @param asked whose tiles are visited. @param request with its uncertainty
-  Comparison(const PlacedSite& asked, const Other& other, const SiteRequest& request)
-  : asked_(asked),
-    inquiry_(asked.site, request),
-    other_(othersOf(other, request))
+  /// @param visited whose tiles are visited, with its uncertainty. @param other none: the obstacle in memory
+  Comparison(const Asked& asked, const PlacedSite& visited, const std::optional<PlacedSite>& other)
+  : visited_(visited),
+    inquiry_(asked, visited)
   {
-    requireUncertainty(asked.site, asked.uncertainty);
+    if (other)
+      tiles_.emplace(*other, inquiry_.bytesLeft());
+    else
+      cloud_.emplace(Placed(asked.model(), asked.question.pose), asked.question.solid);
+    if (other) pose_of_other_ = other->pose;
+  }
+
+  bool isOfSites() const { return tiles_.has_value(); }
+
+  /// Some points of the other site where they stand, or the cloud, of which there is one.
+  Placed standing(const SphereHierarchy& some) const { return cloud_ ? cloud_->cloud : Placed(some, pose_of_other_); }
+
+  /// Calls query(a, b) with nothing in place of sites: what it refuses is refused although no tile may be asked about.
+  template <typename Query>
+  void refuse(const Query& query) const
+  {
+    const SphereHierarchy nothing(PointsView{});
+    query(Placed(nothing, visited_.pose), standing(nothing));
   }
 
   /// Calls ask(tile, cloud, its points where they stand), those first that may be nearest, while their lower bounds are
@@ -79,7 +86,7 @@ public:
   {
     std::vector<std::uint32_t> numbers = numbersOf(tilesNear(distance));
     std::sort(numbers.begin(), numbers.end());
-    return inquiry_.visitAndAdd(numbers, placed(find), add, !std::is_same_v<Other, Placed>);
+    return inquiry_.visitAndAdd(numbers, placed(find), add, isOfSites());
   }
 
   /// Calls compare(a tile of the other site, those of its points that are near where they stand), nearest tiles first,
@@ -87,36 +94,33 @@ public:
   template <typename Reach, typename Compare>
   void compareWithOther(const Tile& tile, const Reach& reach, const Compare& compare)
   {
-    other_.compare(boxOf(tile), reach, inquiry_.building(), compare);
+    if (tiles_)
+      tiles_->compare(boxOf(tile), reach, inquiry_.building(), compare);
+    else
+      compare(pcl::PCLPointCloud2(), cloud_->cloud);
   }
 
-  TilesRead readOfOther() const { return other_.read(); }
+  TilesRead readOfOther() const { return tiles_ ? tiles_->read() : TilesRead(); }
 
 private:
-  auto othersOf(const Other& other, const SiteRequest& request) const
-  {
-    if constexpr (std::is_same_v<Other, Placed>)
-      return ObstacleCloud(other, request.solid != nullptr);
-    else
-      return ObstacleTiles(other, request.memory - std::min(request.memory, inquiry_.bytesForLargest()));
-  }
-
   using Tiles = std::vector<std::pair<double, std::uint32_t>>;
 
   /// Where the points of a tile may truly be, in the common frame.
   Bounds boxOf(const Tile& tile) const
   {
-    const Bounds box = trueBounds(tile, asked_.uncertainty);
-    return asked_.pose.matrix().isIdentity(0.0) ? box : moved(box, asked_.pose, 0.0);
+    const Bounds box = trueBounds(tile, visited_.uncertainty);
+    return visited_.pose.matrix().isIdentity(0.0) ? box : moved(box, visited_.pose, 0.0);
   }
 
   /// Tiles that something of the other may come so near to: those first that may be nearest, each with a lower bound.
   Tiles tilesNear(double distance) const
   {
     Tiles tiles;
-    for (std::uint32_t i = 0; i < asked_.site.tiles.size(); ++i) {
-      if (!asked_.site.tiles[i].bounds) continue;
-      if (const auto lower = other_.lowerBound(boxOf(asked_.site.tiles[i]), distance)) tiles.emplace_back(*lower, i);
+    for (std::uint32_t i = 0; i < visited_.site.tiles.size(); ++i) {
+      if (!visited_.site.tiles[i].bounds) continue;
+      const Bounds box = boxOf(visited_.site.tiles[i]);
+      const auto lower = tiles_ ? tiles_->lowerBound(box, distance) : cloud_->lowerBound(box, distance);
+      if (lower) tiles.emplace_back(*lower, i);
     }
     std::sort(tiles.begin(), tiles.end());
     return tiles;
@@ -133,13 +137,15 @@ private:
   auto placed(const Ask& ask) const
   {
     return [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
-      return ask(tile, cloud, Placed(hierarchy, asked_.pose));
+      return ask(tile, cloud, Placed(hierarchy, visited_.pose));
     };
   }
 
-  const PlacedSite& asked_;
+  const PlacedSite visited_;
   Inquiry inquiry_;
-  std::conditional_t<std::is_same_v<Other, Placed>, ObstacleCloud, ObstacleTiles> other_;
+  std::optional<ObstacleCloud> cloud_; ///< in memory, or:
+  std::optional<ObstacleTiles> tiles_;
+  Eigen::Isometry3d pose_of_other_ = Eigen::Isometry3d::Identity();
 };
 
 } // namespace pcl_bsh::site

@@ -4,7 +4,8 @@
 
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/tile_visitor.h>
 
 #include <algorithm>
@@ -25,13 +26,13 @@ inline void join(std::vector<Verdict>& flags, const std::vector<Verdict>& of_oth
 }
 
 /// What a query is asked of each tile.
-template <typename Wanted, typename Request>
-Wanted wantedOf(const Request& request)
+template <typename Wanted>
+Wanted wantedOf(const Question& question)
 {
   Wanted wanted;
-  if constexpr (requires { wanted.clearance; }) wanted.clearance = request.clearance;
-  wanted.accuracy = request.accuracy;
-  wanted.threads = request.threads;
+  if constexpr (requires { wanted.clearance; }) wanted.clearance = question.clearance.value_or(0.0);
+  wanted.accuracy = question.accuracy;
+  wanted.threads = question.threads;
   return wanted;
 }
 
@@ -45,8 +46,13 @@ inline Verdict verdictOfAllRanks(bool collides, bool is_undecided)
 
 class Inquiry {
 public:
-  Inquiry(const Site& site, const SiteRequest& request) : site_(site), request_(request), visitor_(site, request.memory)
+  /// @param visited whose tiles are asked about. @throws as requireUncertainty() and TileVisitor do
+  Inquiry(const Asked& asked, const PlacedSite& visited)
+  : asked_(asked),
+    visited_(visited),
+    visitor_(visited.site, asked.means.memory)
   {
+    requireUncertainty(visited.site, visited.uncertainty);
   }
 
   /// Calls ask(tile, cloud, its hierarchy) for the first of these tiles, on one of the ranks each.
@@ -66,9 +72,10 @@ public:
   template <typename Find, typename Add>
   TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add, bool runs = false)
   {
+    TileAnswers* const answers = asked_.means.answers;
     std::vector<std::uint32_t> left;
     for (const std::uint32_t tile : tiles) {
-      const std::vector<double>* const known = request_.answers ? request_.answers->known(tile) : nullptr;
+      const std::vector<double>* const known = answers ? answers->known(tile) : nullptr;
       if (known == nullptr)
         left.push_back(tile);
       else if (rankHere() == 0)
@@ -77,7 +84,7 @@ public:
     const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
       const std::vector<double> numbers = find(tile, cloud, hierarchy);
       add(numbers);
-      if (request_.answers) request_.answers->keep(static_cast<std::size_t>(&tile - site_.tiles.data()), numbers);
+      if (answers) answers->keep(static_cast<std::size_t>(&tile - visited_.site.tiles.data()), numbers);
     };
     constexpr std::size_t runs_of_rank = 4; // so many that the last ones make up for those that took long
     const std::size_t run = left.size() / (runs_of_rank * static_cast<std::size_t>(ranks()));
@@ -85,13 +92,14 @@ public:
     return readOf(tiles.size());
   }
 
-  std::uint64_t bytesForLargest() const noexcept { return visitor_.bytesForLargest(); }
+  /// What is left of the memory beside the largest tile.
+  std::uint64_t bytesLeft() const noexcept { return asked_.means.memory - visitor_.bytesForLargest(); }
 
   /// How hierarchies of tiles are built.
   HierarchyOptions building() const
   {
     HierarchyOptions options;
-    options.threads = request_.threads;
+    options.threads = asked_.question.threads;
     return options;
   }
 
@@ -107,7 +115,7 @@ private:
   TileVisitor::Use use(const Ask& ask, std::size_t tiles)
   {
     return [this, &ask, tiles](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, site_, tile, request_.uncertainty), building()));
+      ask(tile, cloud, SphereHierarchy(pointsOf(cloud, visited_.site, tile, visited_.uncertainty), building()));
       const double done = static_cast<double>(visitor_.place() + 1) / static_cast<double>(tiles);
       progress_.tellWhole(done);
     };
@@ -116,14 +124,15 @@ private:
   /// To be called by all ranks, after the visit.
   TilesRead readOf(std::size_t needed) const
   {
-    TilesRead found{site_.tiles.size(), needed, sumOfAllRanks(visitor_.read()), gatheredFromAllRanks(visitor_.costs())};
+    TilesRead found{visited_.site.tiles.size(), needed, sumOfAllRanks(visitor_.read()),
+                    gatheredFromAllRanks(visitor_.costs())};
     std::sort(found.costs.begin(), found.costs.end(), [](const auto& c, const auto& d) { return c.place < d.place; });
     return found;
   }
 
-  const Site& site_;
-  const SiteRequest& request_;
-  Progress progress_{request_.progress};
+  const Asked& asked_;
+  const PlacedSite visited_;
+  Progress progress_{asked_.question.progress};
   TileVisitor visitor_;
 };
 

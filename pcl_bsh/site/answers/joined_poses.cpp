@@ -54,7 +54,7 @@ std::vector<PoseSummary> JoinedPoses::joined(const std::function<SphereHierarchy
 void JoinedPoses::count(const std::vector<std::size_t>& poses,
                         const std::function<SphereHierarchy(std::size_t)>& model_of)
 {
-  const auto wanted = wantedOf<FlagsRequest>(request_);
+  const FlagsRequest wanted(request_.clearance, Side::a, {request_.accuracy, request_.threads});
   std::vector<std::vector<Verdict>> flags(poses.size());
   for (auto& of_pose : flags) of_pose.assign(scan_.view().count, Verdict::free);
   FlagsResult found;
@@ -63,7 +63,7 @@ void JoinedPoses::count(const std::vector<std::size_t>& poses,
     const SphereHierarchy model = model_of(m);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (!meets_[m][poses[i]]) continue;
-      pcl_bsh::collisionFlags({scan_}, {model, poses_[poses[i]]}, wanted, found);
+      collisionFlags({scan_}, {model, poses_[poses[i]]}, wanted, found);
       join(flags[i], found.a);
     }
   }

@@ -2,7 +2,7 @@
 // What a question has found of tiles, in a file beside each tile of a site of results that is not complete.
 #pragma once
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 
 #include <cstdint>
 #include <filesystem>

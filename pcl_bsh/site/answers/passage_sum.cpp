@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
-#include <pcl_bsh/site/site_clashes.h>
 
 #include <algorithm>
 #include <utility>
@@ -13,12 +12,13 @@ namespace {
 /// Its number, as those of poses, is exact as a double.
 constexpr FirstContact no_contact = {std::size_t{1} << 53, 1.0};
 
-/// @pre one of them is a contact
-FirstContact earliestOfAllRanks(const FirstContact& own)
+/// None where no rank has a contact.
+std::optional<FirstContact> earliestOfAllRanks(const FirstContact& own)
 {
   const double pose = leastOfAllRanks(static_cast<double>(own.pose));
   const bool mine = static_cast<double>(own.pose) == pose;
-  return {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
+  const FirstContact earliest = {static_cast<std::size_t>(pose), leastOfAllRanks(mine ? own.fraction : 1.0)};
+  return earliest.pose == no_contact.pose ? std::nullopt : std::optional(earliest);
 }
 
 /// What `more` says of other points of the site, too.
@@ -62,22 +62,24 @@ std::vector<Point3> cornersOf(const Site& site)
   return {site.bounds->low, site.bounds->high};
 }
 
-TrajectoryRequest alongPath(const SiteRequest& request)
+TrajectoryRequest alongPath(const Asked& asked)
 {
-  auto wanted = wantedOf<TrajectoryRequest>(request);
-  wanted.distances = wanted.first_poses = wanted.closest_poses = !request.accuracy.stopsEarly();
-  wanted.swept = request.swept;
-  wanted.pivot = request.pivot;
-  wanted.pose_summaries = request.pose_summaries;
+  const Question& question = asked.question;
+  const Wanted& of_all = question.wanted;
+  auto wanted = wantedOf<TrajectoryRequest>(question);
+  const bool closest = of_all.closest && !question.accuracy.stopsEarly(); // which knows no distances
+  wanted.distances = of_all.contacts || of_all.first_poses || closest;
+  wanted.first_poses = wanted.closest_poses = wanted.distances;
+  wanted.swept = question.sweptTolerance();
+  wanted.pose_summaries = of_all.poses;
   return wanted;
 }
 
-PathReach pathReach(const SiteRequest& request)
+PathReach pathReach(const TrajectoryRequest& request)
 {
   PathReach reach;
   reach.distance = request.clearance + request.swept.value_or(0.0); // colliding is what comes within both
   reach.moves = request.swept.has_value();
-  reach.pivot = request.pivot;
   return reach;
 }
 
@@ -86,7 +88,7 @@ void refusePassage(const Site& site, const SphereHierarchy& model, const std::ve
 {
   const std::vector<Point3> corners = cornersOf(site);
   const SphereHierarchy scan(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size()));
-  pcl_bsh::collideAlong({scan}, model, poses, request);
+  collideAlong({scan}, model, poses, request);
 }
 
 FirstContact earlier(const FirstContact& a, const FirstContact& b)
@@ -94,19 +96,14 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b)
   return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
 }
 
-PassageSum::PassageSum(const SiteRequest& request, std::size_t poses)
-: measures_(!request.accuracy.stopsEarly()),
-  moves_(request.swept.has_value()),
-  clashes_(request.clashes),
+PassageSum::PassageSum(const Asked& asked, std::size_t poses)
+: clashes_(asked.means.clashes),
   least_(infinity),
   first_(infinity),
   contact_(no_contact),
   certain_(no_contact)
 {
-  if (clashes_ != nullptr && !measures_)
-    throw std::invalid_argument("accuracy " + request.accuracy.text() +
-                                ": clashes need distances: give exact or a tolerance");
-  if (request.pose_summaries) sum_.poses.resize(poses);
+  if (asked.question.wanted.poses) poses_.resize(poses);
 }
 
 std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
@@ -132,31 +129,28 @@ std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointC
 
 void PassageSum::add(const std::vector<double>& numbers)
 {
-  sum_.colliding += static_cast<std::uint64_t>(numbers[0]);
-  sum_.undecided += static_cast<std::uint64_t>(numbers[1]);
+  colliding_ += static_cast<std::uint64_t>(numbers[0]);
+  undecided_ += static_cast<std::uint64_t>(numbers[1]);
   least_ = std::min(least_, numbers[2]);
   first_ = std::min(first_, numbers[3]);
   contact_ = earlier(contact_, {static_cast<std::size_t>(numbers[4]), numbers[5]});
   certain_ = earlier(certain_, {static_cast<std::size_t>(numbers[6]), numbers[7]});
-  const std::size_t end = 8 + 4 * sum_.poses.size();
-  addPoses(sum_.poses, posesOf(numbers, 8, end));
+  const std::size_t end = 8 + 4 * poses_.size();
+  addPoses(poses_, posesOf(numbers, 8, end));
   if (clashes_ != nullptr) clashes_->add(numbers, end);
 }
 
-SitePassage PassageSum::ofAllRanks()
+void PassageSum::tell(SiteAnswer& answer)
 {
-  sum_.colliding = sumOfAllRanks(sum_.colliding);
-  sum_.undecided = sumOfAllRanks(sum_.undecided);
-  if (!sum_.poses.empty()) sum_.poses = summedOverAllRanks(sum_.poses);
-  least_ = leastOfAllRanks(least_);
-  first_ = leastOfAllRanks(first_);
-  if (measures_ && sum_.colliding + sum_.undecided > 0) {
-    sum_.distance = static_cast<float>(least_);
-    sum_.first_pose = static_cast<std::int32_t>(first_);
-    if (moves_) sum_.first_contact = earliestOfAllRanks(contact_);
-  }
-  if (sumOfAllRanks(certain_.pose == no_contact.pose ? 0 : 1) > 0) sum_.certain_contact = earliestOfAllRanks(certain_);
-  return sum_;
+  TrajectoryResult& found = answer.collisions;
+  found.colliding = sumOfAllRanks(colliding_);
+  found.undecided = sumOfAllRanks(undecided_);
+  if (!poses_.empty()) found.poses = summedOverAllRanks(poses_);
+  answer.closest.distance = leastOfAllRanks(least_);
+  if (const double first = leastOfAllRanks(first_); first < infinity)
+    answer.first_pose = static_cast<std::size_t>(first);
+  found.first_contact = earliestOfAllRanks(contact_);
+  found.certain_contact = earliestOfAllRanks(certain_);
 }
 
 } // namespace pcl_bsh::site

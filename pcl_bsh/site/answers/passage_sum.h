@@ -2,7 +2,8 @@
 // What tiles of a site meet along a path: what each is asked, and how the answers are added up.
 #pragma once
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/site/tiles/path_boxes.h>
 
 #include <cstddef>
@@ -10,11 +11,11 @@
 
 namespace pcl_bsh::site {
 
-/// What is asked of each tile: flags, and of points that collide distances and poses, unless that stops early.
-TrajectoryRequest alongPath(const SiteRequest& request);
+/// What each tile is asked: flags, and where any is wanted, of points that collide distances and poses.
+TrajectoryRequest alongPath(const Asked& asked);
 
 /// What comes so near may collide.
-PathReach pathReach(const SiteRequest& request);
+PathReach pathReach(const TrajectoryRequest& request);
 
 /// Of the box about its points; none of a site without.
 std::vector<Point3> cornersOf(const Site& site);
@@ -29,8 +30,8 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b);
 
 class PassageSum {
 public:
-  /// @param poses how many there are. @throws std::invalid_argument for clashes without distances
-  PassageSum(const SiteRequest& request, std::size_t poses);
+  /// @param poses how many there are
+  PassageSum(const Asked& asked, std::size_t poses);
 
   /// What is known of a tile, as numbers. @param met what closest_point are numbers of, where the model is a site
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
@@ -38,13 +39,13 @@ public:
 
   void add(const std::vector<double>& numbers);
 
-  /// Of all tiles of all ranks, on each of them. To be called once.
-  SitePassage ofAllRanks();
+  /// What all tiles of all ranks have, on each of them. To be called once.
+  void tell(SiteAnswer& answer);
 
 private:
-  bool measures_, moves_;
   ClashFinder* clashes_; ///< null: none are wanted
-  SitePassage sum_;
+  std::uint64_t colliding_ = 0, undecided_ = 0;
+  std::vector<PoseSummary> poses_;
   double least_, first_;
   FirstContact contact_, certain_;
 };

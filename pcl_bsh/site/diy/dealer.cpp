@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dealer.h"
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 
 namespace pcl_bsh::site {
 

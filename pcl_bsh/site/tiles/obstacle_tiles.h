@@ -2,7 +2,7 @@
 // The tiles of a site that another is compared with: read when they are needed, and cut to what is near.
 #pragma once
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/answers/asked.h>
 
 #include <cstdint>
 #include <list>

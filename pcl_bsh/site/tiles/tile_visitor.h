@@ -3,7 +3,7 @@
 // is a tile.
 #pragma once
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/site.h>
 
 #include <cstdint>

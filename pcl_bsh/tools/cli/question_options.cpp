@@ -115,10 +115,11 @@ std::string advice(const InvalidInput& error, const Question& question, const st
   return (questionOption(option) ? asOption(option) : of_pose) + ": " + withOptions(error.advice());
 }
 
-void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses)
+void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses,
+                     const std::function<void()>& refuse)
 {
   try {
-    check(question);
+    refuse ? refuse() : check(question);
   }
   catch (const InvalidInput& error) {
     const std::string text = advice(error, question, names_of_poses);

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ decltype(auto) named(const Build& build, const Question& question = {},
 }
 
 /// Refuses what ask() would refuse whatever the clouds. @throws UsageError; std::invalid_argument for poses
-void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses = {"--pose"});
+/// @param refuse that does it; none: that of ask()
+void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses = {"--pose"},
+                     const std::function<void()>& refuse = nullptr);
 
 } // namespace pcl_bsh::cli

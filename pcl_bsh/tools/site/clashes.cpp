@@ -39,32 +39,24 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options)
   warnings_ = io::requireComparable(*options.previous, earlier_, questionOf(options));
 }
 
-void SiteClashList::addTo(site::SiteRequest& request)
+void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const site::SiteAnswer& found,
+                           Json& report)
 {
-  if (!isWanted()) return;
-  request.clashes = &*finder_;
-  request.pose_summaries = !request.swept;
-}
-
-void SiteClashList::finish(const SphereHierarchy& obstacle, const io::Obstacle* surface,
-                           const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
-                           const Answer::Unseen* unseen, Json& report)
-{
+  const std::vector<Eigen::Isometry3d> poses = options_.question.poses();
   write(
-      finder_->finish(), obstacle.view(), surface, poses, found, unseen, nullptr,
+      finder_->finish(), obstacle.view(), surface, found, nullptr,
       [&](FormerPlaces& former, const TrajectoryRequest& motion) { former.visit(obstacle, poses, motion); }, report);
 }
 
-void SiteClashList::finish(const site::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-                           const site::SitePassage& found, Json& report)
+void SiteClashList::finish(const site::Site& obstacle, const site::SiteAnswer& found, Json& report)
 {
+  const std::vector<Eigen::Isometry3d> poses = options_.question.poses();
   site::SiteClashes clashes = finder_->finish();
   const std::vector<site::MetPoint> met = clashes.met;
   std::vector<Point3> places;
   for (const site::MetPoint& point : met) places.push_back(point.place);
   write(
-      std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr, poses,
-      found, nullptr,
+      std::move(clashes), viewOf(places.empty() ? nullptr : places.front().data(), places.size()), nullptr, found,
       [&](std::uint32_t i) {
         return io::SourcePoint{obstacle.sources.at(met[i].point.source).file, met[i].point.record};
       },
@@ -79,16 +71,13 @@ void SiteClashList::finish(const site::Site& obstacle, const std::vector<Eigen::
 }
 
 void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-                          const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
-                          const Answer::Unseen* unseen, std::function<io::SourcePoint(std::uint32_t)> model_source_of,
+                          const site::SiteAnswer& found, std::function<io::SourcePoint(std::uint32_t)> model_source_of,
                           const Visit& visit, Json& report)
 {
+  const std::vector<Eigen::Isometry3d> poses = options_.question.poses();
   const PointsView places =
       viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
-  TrajectoryResult of_places;
-  of_places.colliding = found.colliding;
-  of_places.undecided = found.undecided;
-  of_places.poses = found.poses;
+  TrajectoryResult of_places = found.collisions;
   of_places.distance = std::move(clashes.distance);
   of_places.closest_pose = std::move(clashes.closest_pose);
   io::ClashReport list{.question = questionOf(options_),
@@ -102,7 +91,7 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
                        .unit = options_.unit,
                        .coordinate_system = site::coordinateSystemOf(site_),
                        .surface = surface,
-                       .unseen = unseen,
+                       .unseen = options_.question.seen ? &found.unseen : nullptr,
                        .source_of =
                            [&](std::uint32_t i) {
                              const site::SitePoint& point = clashes.points[i];

@@ -27,21 +27,20 @@ public:
   /// Of the earlier list, a line each; see finish().
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Adds to a question along a path what the lists need; nothing where none is wanted.
-  void addTo(site::SiteRequest& request);
+  /// What the question needs for the lists; null where none is wanted.
+  site::ClashFinder* finder() { return finder_ ? &*finder_ : nullptr; }
 
   /// Points of a clash are so near to each other; 0 where no list is wanted.
   double clusterDistance() const noexcept { return distance_; }
 
   /// After the question. To be called by all ranks; the first writes the lists, and warnings() are then of what they
   /// were compared with. @param surface the obstacle, where it is one; else null. @param report gets the numbers of
-  /// clashes that there are now: certain ones, and those perhaps. @param unseen null where that was not asked
-  void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const std::vector<Eigen::Isometry3d>& poses,
-              const site::SitePassage& found, const Answer::Unseen* unseen, Json& report);
+  /// clashes that there are now: certain ones, and those perhaps
+  void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const site::SiteAnswer& found,
+              Json& report);
 
   /// The same of an obstacle that is a site.
-  void finish(const site::Site& obstacle, const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found,
-              Json& report);
+  void finish(const site::Site& obstacle, const site::SiteAnswer& found, Json& report);
 
   /// After finish(): as io::clashCounts() tells it.
   const std::string& counts() const noexcept { return counts_; }
@@ -50,8 +49,8 @@ private:
   using Visit = std::function<void(FormerPlaces&, const TrajectoryRequest& motion)>;
 
   void write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-             const std::vector<Eigen::Isometry3d>& poses, const site::SitePassage& found, const Answer::Unseen* unseen,
-             std::function<io::SourcePoint(std::uint32_t)> model_source_of, const Visit& visit, Json& report);
+             const site::SiteAnswer& found, std::function<io::SourcePoint(std::uint32_t)> model_source_of,
+             const Visit& visit, Json& report);
   void compare(io::ClashReport& list, const Visit& visit);
 
   const site::Site& site_;

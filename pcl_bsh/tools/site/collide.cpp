@@ -16,9 +16,7 @@
 #include <pcl_bsh/io/files/free_space.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
-#include <pcl_bsh/site/collide_site.h>
-#include <pcl_bsh/site/hollow_site.h>
-#include <pcl_bsh/site/see_site.h>
+#include <pcl_bsh/site/ask_site.h>
 
 #include "clashes.h"
 #include "output.h"
@@ -26,9 +24,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <iostream>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,244 +35,34 @@ namespace pcl_bsh::cli {
 #ifdef PCL_BSH_SITE_QUERIES
 namespace {
 
-/// A question about a site, and the answer, which is the same on all ranks.
-struct Asking {
-  const site::Site& site;
-  const std::vector<Eigen::Isometry3d>& poses;
-  const SiteOptions& options;
-  SiteOutput& out;
-  SiteClashList& clashes;
-  std::function<void(const std::vector<std::string>&)> warn;
-  site::SiteRequest request;
-  Json report;
-  site::TilesRead tiles = {};
-};
-
-/// The number of points that collide, or are undecided, of the one or of the other.
-void putCounts(Json& report, const std::string& of, const Json& colliding, const Json& undecided)
-{
-  report["colliding" + of] = colliding;
-  report["undecided" + of] = undecided;
-}
-
-/// A cloud or a mesh in memory.
-class FileObstacle {
+/// Flags of an obstacle that is a site, as a site.
+class ObstacleOutput {
 public:
-  FileObstacle(const ObstacleFile& file, Asking& asking)
-  : file_(file),
-    surface_(file.surface()),
-    shape_(file.obstacle.shape(asking.options.obstacle.string())),
-    hierarchy_(cli::named([&]() -> const SphereHierarchy& {
-      const Question& question = asking.options.question;
-      return shape_.hierarchy(question.uncertaintyOfObstacle(), question.threads);
-    })),
-    placed_(hierarchy_, asking.options.question.pose)
+  ObstacleOutput(const site::Site& site, const site::Site& obstacle, const SiteOptions& options)
   {
-    asking.report["surface"] = io::surfaceJson(surface_, asking.options.question.solid);
-    if (!asking.options.question.solid) return;
-    solid_ = Shape(file.obstacle.shape(asking.options.obstacle.string()).name(),
-                   std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &hierarchy_));
-    cli::named([&] {
-      if (!solid_.isSurface())
-        throw InvalidOption("solid", solid_.name() + " has no faces", "give a mesh that closes, or leave it out");
-      solid_.solid(); // refused before a tile is read
-    });
-    asking.request.solid = &solid_;
-  }
-  FileObstacle(const FileObstacle&) = delete;
-
-  const Placed& placed() const { return placed_; }
-
-  NamedCloud facts() const { return shape_.facts(true); }
-
-  std::optional<Warning> hollow(const Asking& asking, std::optional<double> nearest) const
-  {
-    Shape shape = shape_;
-    return site::warningOfHollow(asking.site, namedSite(asking.site).name, asking.options.question, nearest, shape);
+    const std::vector fields = {collisionField()};
+    if (!options.out.empty()) { // which has checked alone that there is room for it
+      files::requireSpace({{options.out, site::spaceWanted(site, options.out, fields)},
+                           {options.obstacle_out, site::spaceWanted(obstacle, options.obstacle_out, fields)}});
+    }
+    out_.emplace(obstacle, options.obstacle_out, fields);
+    warnings = droppedBy(*out_, "--obstacle-out", options.obstacle_out, obstacle, fields);
   }
 
-  site::SiteFlags flags(Asking& asking) const
+  site::TileSink sink()
   {
-    const site::SiteFlags found =
-        site::collisionFlags(asking.site, placed_, Side::both, asking.request, asking.out.flags());
-    putCounts(asking.report, "", found.colliding, found.undecided);
-    const std::optional<site::SiteUnseen> unseen = lookAround(asking);
-    const std::vector<Verdict>& verdicts = unseen ? unseen->verdicts : found.b;
-    file_.write(verdicts, asking.options);
-    putCounts(asking.report, "_of_obstacle", countOf(verdicts, Verdict::colliding),
-              countOf(verdicts, Verdict::undecided));
-    return found;
+    return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const Answer& found) {
+      out_->write(tile, cloud, {found.obstacle_flags.data()});
+    };
   }
 
-  void putNearest(Json& report, const site::SiteClosest& found) const
-  {
-    report[std::string(file_.obstacle.partName()) + "_of_obstacle"] = found.b;
-  }
+  void finish() { out_->finish(); }
 
-  site::SitePassage along(const Asking& asking) const
-  {
-    return site::collideAlong(asking.site, hierarchy_, asking.poses, asking.request, asking.out.passage());
-  }
-
-  void finish(Asking& asking, const site::SitePassage& found) const
-  {
-    const std::optional<site::SiteUnseen> unseen = lookAround(asking);
-    if (unseen) file_.write(unseen->verdicts, asking.options);
-    if (!asking.clashes.isWanted()) return;
-    asking.clashes.finish(hierarchy_, surface_, asking.poses, found, unseen ? &unseen->unseen : nullptr, asking.report);
-  }
-
-  void putTilesOf(Json& /*report*/, const site::TilesRead& /*tiles*/) const {}
+  std::vector<std::string> warnings;
 
 private:
-  std::optional<site::SiteUnseen> lookAround(Asking& asking) const
-  {
-    const Question& question = asking.options.question;
-    if (!question.seen) return std::nullopt;
-    site::SiteUnseen found = site::unseenAlong(asking.site, {question.origin, question.seen_angle.value_or(0.0)},
-                                               hierarchy_, asking.poses, asking.request);
-    asking.report["unseen"] = io::unseenJson(found.unseen);
-    asking.report["unseen"]["beams"] = found.beams;
-    putTiles(asking.report, "tiles_of_beams", found.tiles_of_beams);
-    return found;
-  }
-
-  const ObstacleFile& file_;
-  const io::Obstacle* surface_;
-  Shape shape_;
-  const SphereHierarchy& hierarchy_;
-  Placed placed_;
-  Shape solid_;
+  std::optional<site::ResultSite> out_;
 };
-
-/// Another site.
-class SiteObstacle {
-public:
-  explicit SiteObstacle(Asking& asking)
-  : site_(site::readSite(asking.options.obstacle)),
-    placed_{site_, asking.options.question.pose, asking.options.question.uncertaintyOfObstacle()}
-  {
-    asking.report["points_of_obstacle"] = site_.points;
-  }
-
-  const site::PlacedSite& placed() const { return placed_; }
-  NamedCloud facts() const { return namedSite(site_); }
-  std::optional<Warning> hollow(const Asking& /*asking*/, std::optional<double> /*nearest*/) const { return {}; }
-
-  /// Flags of both sides: each in tiles of its own.
-  site::SiteFlags flags(Asking& asking) const
-  {
-    const SiteOptions& options = asking.options;
-    std::optional<site::ResultSite> obstacle_out;
-    if (!options.obstacle_out.empty()) {
-      const std::vector fields = {collisionField()};
-      if (!options.out.empty()) { // which has checked alone that there is room for it
-        files::requireSpace({{options.out, site::spaceWanted(asking.site, options.out, fields)},
-                             {options.obstacle_out, site::spaceWanted(site_, options.obstacle_out, fields)}});
-      }
-      obstacle_out.emplace(site_, options.obstacle_out, fields);
-      asking.warn(droppedBy(*obstacle_out, "--obstacle-out", options.obstacle_out, site_, fields));
-    }
-    const site::SiteFlags found = site::collisionFlags(asking.site, placed_, asking.request, asking.out.flags());
-    putCounts(asking.report, "", found.colliding, found.undecided);
-    if (!obstacle_out) return found;
-    asking.request.answers = nullptr; // those are of the tiles of the site
-    const site::SiteFlags of_obstacle =
-        site::collisionFlagsOfB(asking.site, placed_, asking.request,
-                                [&](const site::Tile& tile, const pcl::PCLPointCloud2& cloud,
-                                    const FlagsResult& flags) { obstacle_out->write(tile, cloud, {flags.a.data()}); });
-    obstacle_out->finish();
-    putCounts(asking.report, "_of_obstacle", of_obstacle.colliding, of_obstacle.undecided);
-    return found;
-  }
-
-  void putNearest(Json& report, const site::SiteClosest& found) const
-  {
-    report["point_of_obstacle"] = cli::named(site_, *found.point_b);
-  }
-
-  site::SitePassage along(const Asking& asking) const
-  {
-    return site::collideAlong(asking.site, site_, placed_.uncertainty, asking.poses, asking.request,
-                              asking.out.passage());
-  }
-
-  void finish(Asking& asking, const site::SitePassage& found) const
-  {
-    if (asking.clashes.isWanted()) asking.clashes.finish(site_, asking.poses, found, asking.report);
-  }
-
-  void putTilesOf(Json& report, const site::TilesRead& tiles) const { putTiles(report, "tiles_of_obstacle", tiles); }
-
-private:
-  site::Site site_;
-  site::PlacedSite placed_;
-};
-
-/// @return what users should know of the question
-template <typename Obstacle>
-std::vector<std::string> ask(Asking& asking, const Obstacle& obstacle)
-{
-  auto& [site, poses, options, out, clashes, warn, request, report, tiles] = asking;
-  const Question& question = options.question;
-  std::optional<double> nearest; // where the answer tells
-  const auto nearest_of = [](bool collides) { return collides ? 0.0 : std::numeric_limits<double>::infinity(); };
-  const auto put_tiles = [&](const auto& found) {
-    asking.tiles = found.tiles;
-    putTiles(report, "tiles", found.tiles);
-    obstacle.putTilesOf(report, found.tiles_b);
-  };
-  switch (options.kind) {
-  case SiteQuestion::any: {
-    const site::SiteAny found = site::anyCollision(site, obstacle.placed(), request);
-    report["collides"] = found.verdict == Verdict::colliding;
-    report["undecided"] = found.verdict == Verdict::undecided;
-    nearest = nearest_of(found.verdict != Verdict::free);
-    put_tiles(found);
-    break;
-  }
-  case SiteQuestion::flags: {
-    const site::SiteFlags found = obstacle.flags(asking);
-    nearest = nearest_of(found.colliding + found.undecided > 0);
-    put_tiles(found);
-    break;
-  }
-  case SiteQuestion::closest: {
-    const site::SiteClosest found = site::closestPair(site, obstacle.placed(), request);
-    nearest = found.distance;
-    report["distance"] = io::orNull(found.distance);
-    report["distance_interval"] = {io::orNull(found.interval.lower), io::orNull(found.interval.upper)};
-    if (found.point) {
-      report["point"] = named(site, *found.point);
-      obstacle.putNearest(report, found);
-    }
-    put_tiles(found);
-    break;
-  }
-  case SiteQuestion::distances: {
-    const double most = question.max_distance.value_or(std::numeric_limits<double>::infinity());
-    const site::SiteDistances found = site::pointDistances(site, obstacle.placed(), most, request, out.distances());
-    report["max_distance"] = io::orNull(most);
-    report["measured"] = found.measured;
-    report["greatest"] = io::orNull(found.greatest);
-    put_tiles(found);
-    break;
-  }
-  case SiteQuestion::path: {
-    clashes.addTo(request);
-    const site::SitePassage found = obstacle.along(asking);
-    putPassage(report, found, question);
-    nearest = nearest_of(found.colliding + found.undecided > 0);
-    obstacle.finish(asking, found);
-    put_tiles(found);
-    break;
-  }
-  }
-  std::vector<std::string> told;
-  addTexts(warningsOf(question, namedSite(site), obstacle.facts()), told);
-  if (const auto hollow = obstacle.hollow(asking, nearest)) addOnce(hollow->text, told);
-  return told;
-}
 
 /// @param keeps set where what is found stays in --out although the run fails
 int answer(SiteOptions options, bool& keeps)
@@ -301,26 +87,60 @@ int answer(SiteOptions options, bool& keeps)
     file.emplace(options);
     warn_of(warningsOf(file->obstacle, options.obstacle));
   }
+  std::optional<site::Site> other;
+  if (!file) other = site::readSite(options.obstacle);
   std::vector<std::string> of_poses;
-  if (!options.trajectory.empty()) options.question.path = io::readPoses(options.trajectory, &of_poses);
-  const std::vector<Eigen::Isometry3d> poses = options.question.poses();
+  Question& question = options.question;
+  if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &of_poses);
   warn_of(of_poses);
   SiteOutput output(site, file ? &*file : nullptr, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
+  std::optional<ObstacleOutput> obstacle_out;
+  if (other && !options.obstacle_out.empty()) {
+    obstacle_out.emplace(site, *other, options);
+    warn_of(obstacle_out->warnings);
+  }
   std::optional<Step> shown;
-  if (tells) shown.emplace("Asking about tiles");
-  Step* const step = tells ? &*shown : nullptr;
-  Asking asking{site, poses, options, output, clashes, warn_of, requestOf(options, step), beginReport(site, options)};
-  asking.request.answers = output.answers();
-  const std::vector<std::string> told =
-      file ? ask(asking, FileObstacle(*file, asking)) : ask(asking, SiteObstacle(asking));
-  Json& report = asking.report;
-  if (tells) shown->done(counted(report["tiles"]["read"].get<std::uint64_t>(), "tile") + " read");
+  if (tells) {
+    shown.emplace("Asking about tiles");
+    question.progress = [&shown](double done) {
+      shown->share(done);
+      return true;
+    };
+  }
+  Json report = beginReport(site, options);
+  Shape shape;
+  if (file) {
+    shape = file->obstacle.shape(options.obstacle.string());
+    report["surface"] = io::surfaceJson(file->surface(), question.solid);
+  }
+  else {
+    report["points_of_obstacle"] = other->points;
+  }
+  const site::SiteMeans means = {options.memory, output.answers(), clashes.finder(), output.sink(),
+                                 obstacle_out ? obstacle_out->sink() : nullptr};
+  site::SiteAnswer found = cli::named(
+      [&] { return file ? site::ask(question, site, shape, means) : site::ask(question, site, *other, means); },
+      question, {options.trajectory.empty() ? "--pose" : "--trajectory"});
+  if (obstacle_out) obstacle_out->finish();
+  if (file) file->write(found.obstacle_flags, options);
+  putAnswer(report, site, other ? &*other : nullptr, file ? file->obstacle.partName() : "point", options, found);
+  if (clashes.isWanted()) {
+    if (file)
+      clashes.finish(shape.hierarchy(), file->surface(), found, report);
+    else
+      clashes.finish(*other, found, report);
+  }
+  putTiles(report, "tiles", found.tiles);
+  if (other) putTiles(report, "tiles_of_obstacle", found.obstacle_tiles);
+  if (tells) shown->done(counted(found.tiles.read, "tile") + " read");
+  std::vector<std::string> told;
+  addTexts(found.warnings, told);
   warn_of(told);
   if (clashes.isWanted()) warn_of(clashes.warnings());
   MeasuredRun run;
-  run.tiles = std::move(asking.tiles.costs);
+  run.tiles = std::move(found.tiles.costs);
   run.seconds = seconds();
   output.finish();
   run.copying = seconds() - run.seconds;

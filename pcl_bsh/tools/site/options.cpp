@@ -7,6 +7,9 @@
 
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/site.h>
+#ifdef PCL_BSH_SITE_QUERIES
+#include <pcl_bsh/site/ask_site.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -112,10 +115,10 @@ struct CollideTexts {
            "with --seen")
         ->type_name("FILE");
     app.add_flag("--resume", options.resume, "goes on with what the same command has left in --out when it was killed");
-    addQuestionOptions(app, options.question,
-                       {"clearance", "swept", "accuracy", "uncertainty", "obstacle_uncertainty", "sigmas",
-                        "pose_uncertainty", "input_pose_uncertainty", "seen", "origin", "seen_angle", "max_distance",
-                        "solid", "vertices_only", "threads"});
+    std::vector<std::string> names;
+    for (const QuestionOption& row : questionOptions())
+      if (row.of_sites != OptionOfSites::none) names.emplace_back(row.name);
+    addQuestionOptions(app, options.question, names);
     app.add_option("--plan", options.plan,
                    "numbers of ranks, as 64,1024: by what the tiles have cost, the report says how long the same "
                    "question takes on so many, and what limits it")
@@ -129,7 +132,6 @@ struct CollideTexts {
   {
     if (any || closest || distances)
       throw UsageError("--seen: is about points at poses: leave out --any, --closest and --distances");
-    if (options.obstacleIsSite()) throw UsageError("--seen: OBSTACLE is a site: give a cloud or a mesh");
     if (options.question.origin.empty())
       throw UsageError("--origin: is missing: give X,Y,Z of the scanner, or of several scans FIELD:N=X,Y,Z;N=X,Y,Z by "
                        "the field that numbers them, as source, which numbers the clouds of SITE from 0");
@@ -145,19 +147,22 @@ struct CollideTexts {
     if (any + closest + distances + moves > 1)
       throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
     const bool lists = !options.clashes.empty();
-    options.kind = any              ? SiteQuestion::any
-                   : closest        ? SiteQuestion::closest
-                   : distances      ? SiteQuestion::distances
-                   : moves || lists ? SiteQuestion::path
-                                    : SiteQuestion::flags;
+    const bool two_sites = options.obstacleIsSite();
     Question& question = options.question;
     const bool needs_clearance = !closest && !distances;
     if (!needs_clearance) question.clearance.reset();
     if (moves) question.path = {Eigen::Isometry3d::Identity()}; // whatever they are
-    question.wanted.flags = needs_clearance;
-    question.wanted.contacts = lists;
-    question.wanted.distances = distances;
-    requireAccepted(question);
+    Wanted& wanted = question.wanted;
+    wanted.any = any;
+    wanted.closest = closest;
+    wanted.distances = distances;
+    wanted.flags = needs_clearance && !any;
+    wanted.obstacle_flags = wanted.flags && !moves && !lists && (!two_sites || !options.obstacle_out.empty());
+    wanted.contacts = lists || (moves && !question.accuracy.stopsEarly());
+    wanted.poses = lists && question.swept == 0.0;
+    wanted.unseen_places = lists;
+    wanted.spacings = true;
+    requireAccepted(question, {"--pose"}, [&] { site::check(question, two_sites); });
     if (question.seen) requireSight(options);
     if (!options.obstacle_out.empty() && (any || closest || distances || ((moves || lists) && !question.seen)))
       throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked, or give --seen");
@@ -181,9 +186,6 @@ struct CollideTexts {
     if (question.max_distance && !distances) throw UsageError("--max-distance: goes with --distances: add it");
     if (moves && !pose.empty()) throw UsageError("--pose: --trajectory is given too: give one of them");
     if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
-    const bool two_sites = options.obstacleIsSite();
-    if (two_sites && question.solid)
-      throw UsageError("--solid: OBSTACLE is a site, which has no faces: give a mesh that closes, or leave it out");
     const auto require_outside_sites = [&](const char* option, const std::filesystem::path& file) {
       requireOutside(options.site, "SITE", option, file);
       if (two_sites) requireOutside(options.obstacle, "OBSTACLE", option, file);

@@ -19,9 +19,6 @@ inline constexpr auto site_program = "pcl_bsh_site";
 
 enum class SiteCommand : std::uint8_t { make, info, validate, write, collide };
 
-/// What `collide` asks.
-enum class SiteQuestion : std::uint8_t { any, flags, closest, distances, path };
-
 struct SiteOptions {
   SiteCommand command = SiteCommand::info;
   std::vector<std::filesystem::path> clouds; ///< to make a site of
@@ -35,10 +32,10 @@ struct SiteOptions {
   // of `collide`
   /// Whether the obstacle is a site, too: a folder.
   bool obstacleIsSite() const { return std::filesystem::is_directory(obstacle); }
-  SiteQuestion kind = SiteQuestion::flags;
   /// What is asked; its path is that of `trajectory`, once it is read, its threads are those of each process. Of
   /// `make`, whether meshes are their vertices.
   Question question;
+  bool alongPath() const { return question.path || question.wanted.contacts; } ///< if only of one pose
   std::filesystem::path obstacle, trajectory, report;
   std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html

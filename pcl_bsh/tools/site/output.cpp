@@ -24,7 +24,7 @@ using Type = pcl::PCLPointField;
 /// As pcl_bsh_collide: distances and poses are of paths, where nothing stops early.
 bool tellsPoses(const SiteOptions& options)
 {
-  return !options.trajectory.empty() && !options.question.accuracy.stopsEarly();
+  return !options.trajectory.empty() && options.question.wanted.contacts;
 }
 
 /// The fields that each question answers with, as those of pcl_bsh_collide.
@@ -34,17 +34,9 @@ std::vector<site::ResultField> resultFields(const SiteOptions& options)
                           distance = {distance_field_name, Type::FLOAT32, std::numeric_limits<double>::quiet_NaN()},
                           first = {first_pose_field_name, Type::INT32, -1.0},
                           closest = {closest_pose_field_name, Type::INT32, -1.0};
-  switch (options.kind) {
-  case SiteQuestion::flags:
-    return {collision};
-  case SiteQuestion::distances:
-    return {distance};
-  case SiteQuestion::path:
-    if (!tellsPoses(options)) return {collision};
-    return {collision, distance, first, closest};
-  default:
-    return {};
-  }
+  if (options.question.wanted.distances) return {distance};
+  if (!tellsPoses(options)) return {collision};
+  return {collision, distance, first, closest};
 }
 
 template <typename Value>
@@ -84,7 +76,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
 {
   const Question& asked = options.question;
   nlohmann::json question = {{"site", site::siteText(site)},
-                             {"question", options.kind},
+                             {"question", {asked.wanted.distances, options.alongPath(), asked.wanted.contacts}},
                              {"options", givenOptions(asked)},
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
@@ -161,29 +153,19 @@ SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, dou
   warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
 }
 
-site::FlagsSink SiteOutput::flags()
+site::TileSink SiteOutput::sink()
 {
   if (!out_) return nullptr;
-  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const FlagsResult& found) {
-    out_->write(tile, cloud, {found.a.data()});
-  };
-}
-
-site::DistancesSink SiteOutput::distances()
-{
-  if (!out_) return nullptr;
-  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const PointDistances& found) {
-    out_->write(tile, cloud, {inFloats(found.distance).data()});
-  };
-}
-
-site::PassageSink SiteOutput::passage()
-{
-  if (!out_) return nullptr;
-  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found) {
-    std::vector<const void*> columns = {found.flags.data()};
+  return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const Answer& found) {
+    if (options_.question.wanted.distances) {
+      out_->write(tile, cloud, {inFloats(found.distances.a.distance).data()});
+      return;
+    }
+    const TrajectoryResult& collisions = found.collisions;
+    std::vector<const void*> columns = {collisions.flags.data()};
     if (tellsPoses(options_))
-      columns.insert(columns.end(), {found.distance.data(), found.first_pose.data(), found.closest_pose.data()});
+      columns.insert(columns.end(),
+                     {collisions.distance.data(), collisions.first_pose.data(), collisions.closest_pose.data()});
     out_->write(tile, cloud, columns);
   };
 }

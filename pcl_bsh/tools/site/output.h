@@ -5,7 +5,7 @@
 #include "options.h"
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/result_site.h>
 
 #include <cstdint>
@@ -45,7 +45,7 @@ std::vector<std::string> droppedBy(const site::ResultSite& out, const std::strin
                                    const std::filesystem::path& folder, const site::Site& site,
                                    const std::vector<site::ResultField>& fields);
 
-/// The site of results, where it is asked for; else its sinks are null.
+/// The site of results, where it is asked for; else its sink is null.
 class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
@@ -59,9 +59,7 @@ public:
   /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
   site::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
 
-  site::FlagsSink flags();
-  site::DistancesSink distances();
-  site::PassageSink passage();
+  site::TileSink sink();
 
   /// After the question. To be called by all ranks.
   void finish();

@@ -2,7 +2,7 @@
 // How long a question would take on other numbers of ranks, by what its tiles have cost.
 #pragma once
 
-#include <pcl_bsh/site/collide_site.h>
+#include <pcl_bsh/site/ask_site.h>
 
 #include <string>
 #include <vector>

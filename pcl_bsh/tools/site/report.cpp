@@ -2,30 +2,40 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "report.h"
 
-#include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/io/reports/clash_report.h>
-#include <pcl_bsh/site/site_clashes.h>
 
 namespace pcl_bsh::cli {
 
-site::SiteRequest requestOf(const SiteOptions& options, Step* step)
+namespace {
+
+/// The number of points that collide, or are undecided, of the one or of the other.
+void putCounts(Json& report, const std::string& of, std::uint64_t colliding, std::uint64_t undecided)
 {
-  site::SiteRequest request;
-  const Question& question = options.question;
-  request.clearance = question.clearance.value_or(0.0);
-  request.threads = question.threads;
-  request.memory = options.memory;
-  request.accuracy = question.accuracy;
-  request.uncertainty = question.uncertaintyOfInput();
-  request.swept = question.sweptTolerance();
-  if (step != nullptr) {
-    request.progress = [step](double done) {
-      step->share(done);
-      return true;
-    };
-  }
-  return request;
+  report["colliding" + of] = colliding;
+  report["undecided" + of] = undecided;
 }
+
+/// A point of a site, by its name.
+Json named(const site::Site& site, const site::SitePoint& point)
+{
+  return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
+}
+
+void putPath(Json& report, const site::SiteAnswer& found, const Question& question)
+{
+  report["poses"] = question.poses().size();
+  putCounts(report, "", found.collisions.colliding, found.collisions.undecided);
+  report["distance"] = io::orNull(found.closest.distance);
+  report["first_pose"] = found.first_pose ? Json(*found.first_pose) : Json(nullptr);
+  if (question.swept > 0.0) report["swept"] = question.swept;
+  const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {
+    if (contact) report[key] = {{"pose", contact->pose}, {"fraction", contact->fraction}};
+  };
+  put_contact("first_contact", found.collisions.first_contact);
+  put_contact("certain_contact", found.collisions.certain_contact);
+}
+
+} // namespace
 
 Json beginReport(const site::Site& site, const SiteOptions& options)
 {
@@ -41,24 +51,40 @@ void putTiles(Json& report, const char* key, const site::TilesRead& tiles)
   report[key] = {{"all", tiles.tiles}, {"needed", tiles.needed}, {"read", tiles.read}};
 }
 
-void putPassage(Json& report, const site::SitePassage& found, const Question& question)
+void putAnswer(Json& report, const site::Site& site, const site::Site* other, const std::string& part,
+               const SiteOptions& options, const site::SiteAnswer& found)
 {
-  report["poses"] = question.poses().size();
-  report["colliding"] = found.colliding;
-  report["undecided"] = found.undecided;
-  report["distance"] = io::orNull(double{found.distance});
-  report["first_pose"] = found.first_pose < 0 ? Json(nullptr) : Json(found.first_pose);
-  if (question.swept > 0.0) report["swept"] = question.swept;
-  const auto put_contact = [&](const char* key, const std::optional<FirstContact>& contact) {
-    if (contact) report[key] = {{"pose", contact->pose}, {"fraction", contact->fraction}};
-  };
-  put_contact("first_contact", found.first_contact);
-  put_contact("certain_contact", found.certain_contact);
-}
-
-Json named(const site::Site& site, const site::SitePoint& point)
-{
-  return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
+  const Question& question = options.question;
+  const Wanted& wanted = question.wanted;
+  if (wanted.any) {
+    report["collides"] = found.any.verdict == Verdict::colliding;
+    report["undecided"] = found.any.verdict == Verdict::undecided;
+  }
+  else if (wanted.closest) {
+    report["distance"] = io::orNull(found.closest.distance);
+    report["distance_interval"] = {io::orNull(found.closest.interval.lower), io::orNull(found.closest.interval.upper)};
+    if (found.pair) {
+      report["point"] = named(site, found.pair->a);
+      report[part + "_of_obstacle"] = other ? named(*other, found.pair->b) : Json(found.pair->b.record);
+    }
+  }
+  else if (wanted.distances) {
+    report["max_distance"] = question.max_distance ? io::orNull(*question.max_distance) : Json(nullptr);
+    report["measured"] = found.distances.a.measured;
+    report["greatest"] = io::orNull(found.distances.a.greatest);
+  }
+  else if (options.alongPath()) {
+    putPath(report, found, question);
+  }
+  else {
+    putCounts(report, "", found.collisions.colliding, found.collisions.undecided);
+  }
+  if (question.seen) {
+    report["unseen"] = io::unseenJson(found.unseen);
+    report["unseen"]["beams"] = found.beams_kept;
+    putTiles(report, "tiles_of_beams", found.beam_tiles);
+  }
+  if (wanted.obstacle_flags) putCounts(report, "_of_obstacle", found.obstacle_colliding, found.obstacle_undecided);
 }
 
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)
@@ -78,27 +104,6 @@ void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun
                               {"even", plan.even},
                               {"reading", plan.reading}});
   }
-}
-
-NamedCloud namedSite(const site::Site& site)
-{
-  NamedCloud cloud;
-  cloud.name = site.folder.string();
-  cloud.points = site.points;
-  for (const site::Tile& tile : site.tiles)
-    if (tile.bounds) cloud.finite += tile.points; // points that are not finite have tiles of their own
-  cloud.spacing.emplace();
-  cloud.spacing->samples = cloud.finite;
-  cloud.spacing->median = site::spacingOf(site);
-  if (!site.bounds) return cloud;
-  cloud.box = Eigen::AlignedBox3d(Eigen::Vector3d::Map(site.bounds->low.data()),
-                                  Eigen::Vector3d::Map(site.bounds->high.data()));
-  for (const pcl::PCLPointField& field : site.fields) {
-    if (field.name != "x" || field.datatype != pcl::PCLPointField::FLOAT32) continue;
-    cloud.coordinate_spacing =
-        float32Spacing(cloud.box.min().cwiseAbs().cwiseMax(cloud.box.max().cwiseAbs()).maxCoeff());
-  }
-  return cloud;
 }
 
 } // namespace pcl_bsh::cli

@@ -4,20 +4,17 @@
 
 #include "options.h"
 #include "plan.h"
-#include <pcl_bsh/tools/cli/step.h>
 
-#include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/site/ask_site.h>
 
 #include <nlohmann/json.hpp>
 
+#include <string>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
 using Json = nlohmann::ordered_json;
-
-/// @param step that shows the progress; null on all ranks but the first
-site::SiteRequest requestOf(const SiteOptions& options, Step* step);
 
 /// What was asked.
 Json beginReport(const site::Site& site, const SiteOptions& options);
@@ -25,16 +22,12 @@ Json beginReport(const site::Site& site, const SiteOptions& options);
 /// @param key of the report
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 
-/// What a site meets along a path.
-void putPassage(Json& report, const site::SitePassage& found, const Question& question);
-
-/// A point of a site, by its name.
-Json named(const site::Site& site, const site::SitePoint& point);
+/// What was found, except the tiles. @param other the obstacle, where it is a site; else null
+/// @param part of an obstacle in memory: "point" or "triangle"
+void putAnswer(Json& report, const site::Site& site, const site::Site* other, const std::string& part,
+               const SiteOptions& options, const site::SiteAnswer& found);
 
 /// What the tiles have cost, and how long the run would take on other numbers of ranks.
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run);
-
-/// What site.json says of it; no tile is read.
-NamedCloud namedSite(const site::Site& site);
 
 } // namespace pcl_bsh::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of a question about a site: each visits tiles once, and adds what it finds to the answer.
+#pragma once
+
+#include <pcl_bsh/site/ask_site.h>
+
+#include <optional>
+
+namespace pcl_bsh::site {
+
+/// A site where it stands, with how uncertain its points are.
+struct PlacedSite {
+  const Site& site;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Uncertainty uncertainty = {};
+};
+
+/// A part of a question. The obstacle is a thing in memory whose hierarchy is built, or another site.
+struct Asked {
+  Question question; ///< its progress is that of the part
+  SiteMeans means;
+  const Site& site;
+  Shape* shape = nullptr;
+  const Site* other = nullptr;
+
+  double clearance() const { return question.clearance.value_or(0.0); }
+  const SphereHierarchy& model() const { return shape->hierarchy(); } ///< @pre it is in memory
+
+  /// The input, and the obstacle where it is a site, as they stand: with their uncertainties, or as they were measured.
+  PlacedSite input() const { return {site, Eigen::Isometry3d::Identity(), question.uncertaintyOfInput()}; }
+  PlacedSite measuredInput() const { return {site}; }
+  std::optional<PlacedSite> obstacle() const
+  {
+    return other ? std::optional(PlacedSite{*other, question.pose, question.uncertaintyOfObstacle()}) : std::nullopt;
+  }
+  std::optional<PlacedSite> measuredObstacle() const
+  {
+    return other ? std::optional(PlacedSite{*other, question.pose}) : std::nullopt;
+  }
+};
+
+void findAny(const Asked& asked, SiteAnswer& answer);
+void flag(const Asked& asked, SiteAnswer& answer);         ///< the input's points, and the obstacle's in memory
+void flagObstacle(const Asked& asked, SiteAnswer& answer); ///< of another site
+void findClosest(const Asked& asked, SiteAnswer& answer);
+void measure(const Asked& asked, SiteAnswer& answer);
+void followPath(const Asked& asked, SiteAnswer& answer);
+void lookAround(const Asked& asked, SiteAnswer& answer); ///< what is unseen
+
+/// The warning of question/warnings/hollow.h, where faces of the obstacle in memory close, and it is no solid: a place
+/// of the site inside of it, unless something of the site is near its surface. Of tiles that meet its box at some pose,
+/// up to four are read.
+/// @param name of the site. @param nearest how near the answer says that anything is; none: it does not tell, and if
+///   there is such a place, the smallest distance is asked for
+std::optional<Warning> warningOfHollow(const Asked& asked, const std::string& name, std::optional<double> nearest);
+
+} // namespace pcl_bsh::site

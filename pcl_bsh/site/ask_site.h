@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A question about a site and a thing in memory, or another site, with the answer of one hierarchy over all points of
+// each.
+//
+//   site::Site valley = site::readSite("valley");
+//   Question question;
+//   question.pose = T_valley_robot;
+//   question.clearance = 0.05;
+//   question.wanted.closest = question.wanted.flags = true;
+//   site::SiteAnswer answer = site::ask(question, valley, robot, {.sink = sink}); // robot: a Shape
+//   site::SiteAnswer changes = site::ask(question, valley, site::readSite("before"));
+//
+// Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
+// obstacle, along its path if it moves. Of two sites a tile of the input is read once. The tiles of the obstacle that
+// come near it are read after one another and cut to what is near, so that memory holds a tile of each; a tile that
+// several of the input come near to is read for each of them.
+//
+// In an MPI job (mpirun -n 4 ...), all ranks ask the same: the tiles are dealt to them, and each gets the whole answer.
+// Sinks are called on the rank that has the tile. What an accuracy promises of one cloud holds of the site: a level, a
+// number of pairs or a time is that of each tile. Threads are those of each process.
+//
+// Unseen points of an obstacle (`seen`) are those of one SeenSpace over all points of the site. All tiles that have
+// beams near the directions of the obstacle are read once, and these beams are kept in memory: as many as look at the
+// obstacle on its way, but all of a scan where a ball of the obstacle holds the place of its scanner.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/question/ask.h>
+#include <pcl_bsh/site/site.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::site {
+
+/// What a question has found of tiles, by their numbers, so that it can be asked again after it was ended: numbers that
+/// only the query understands.
+class TileAnswers {
+public:
+  virtual ~TileAnswers() = default;
+
+  /// Null where the tile has to be asked about. The same on all ranks.
+  virtual const std::vector<double>* known(std::size_t tile) const = 0;
+
+  /// Called by the rank that has the tile, after the sink.
+  virtual void keep(std::size_t tile, const std::vector<double>& numbers) = 0;
+};
+
+class ClashFinder;
+
+/// Called for each tile that was read, with its points and what was found of them: vectors of the answer have an entry
+/// per point. A question that needs several visits calls it in each, with what that has found. Of distances to another
+/// site, the distances alone.
+using TileSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const Answer&)>;
+
+/// With which means a question about a site is answered.
+struct SiteMeans {
+  std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
+  /// Of collisions or of distances: tiles that are known are not read, and their sinks not called. ResultSite has some.
+  TileAnswers* answers = nullptr;
+  ClashFinder* clashes = nullptr; ///< gets what collides along the path, or at the one pose
+  TileSink sink = nullptr;
+  TileSink obstacle_sink = nullptr; ///< with Wanted::obstacle_flags, of the tiles of an obstacle that is a site
+};
+
+/// What a tile has cost, in seconds of the clock on the wall.
+struct TileCost {
+  std::uint32_t tile = 0;  ///< its number among the site's
+  std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks
+  double reading = 0.0;
+  double asking = 0.0; ///< its hierarchy, the question and the sink
+};
+
+/// What a question has read of a site, in one visit or in several.
+struct TilesRead {
+  std::uint64_t tiles = 0;     ///< of the site
+  std::uint64_t needed = 0;    ///< those that could matter before any was read: of the visit that needed most
+  std::uint64_t read = 0;      ///< by all ranks
+  std::vector<TileCost> costs; ///< of all ranks, by their places, visit by visit
+
+  /// Adds another visit.
+  TilesRead& operator+=(const TilesRead& visit);
+};
+
+/// Two points: of the site, and of the obstacle, whose source is 0 where it is in memory.
+struct SitePair {
+  SitePoint a, b;
+};
+
+/// What was wanted. Vectors about points of a site stay empty: sinks get them. Distances are counted in `distances.a`;
+/// `work`, the pair of `any`, `pose_pairs` and `unseen.inside` are not told.
+struct SiteAnswer : Answer {
+  /// Of `closest`: of several the smallest (source, record), and for it the smallest point of the obstacle. Along a
+  /// path `closest` is of what collides or is undecided, and has no pair.
+  std::optional<SitePair> pair;
+  std::optional<std::size_t> first_pose; ///< along a path, at which anything may collide
+  std::uint64_t obstacle_colliding = 0;  ///< points, or triangles, of the obstacle
+  std::uint64_t obstacle_undecided = 0;
+  TilesRead tiles;
+  TilesRead obstacle_tiles;     ///< where the obstacle is a site
+  TilesRead beam_tiles;         ///< with `seen`, without costs
+  std::uint64_t beams_kept = 0; ///< with `seen`, in memory
+};
+
+/// The number of this process among those of an MPI job, from 0, and how many there are; 0 and 1 without mpirun. MPI is
+/// begun where the process has not done so, and ends with it.
+int rankHere();
+int ranks();
+
+/// Ends all processes of the MPI job with exit code 1: where one has failed, the others would wait for it.
+[[noreturn]] void endAllRanks();
+
+/// The answer of one hierarchy over the site. Progress is reported after each tile by the rank that had it: the share
+/// of the tiles that may have to be asked about, in the order in which they are dealt to all ranks. Any collision ends
+/// with the first tile that has one; the smallest distance with the tiles that are farther.
+/// @throws InvalidInput as ask() and check() do; files::FileError for a tile that is not what the site says, and for an
+///   uncertainty that site.json does not tell of; Cancelled
+SiteAnswer ask(const Question& question, const Site& site, Shape& obstacle, const SiteMeans& means = {});
+
+/// The same of another site, in a frame that the question poses in the first one's.
+SiteAnswer ask(const Question& question, const Site& site, const Site& obstacle, const SiteMeans& means = {});
+
+/// Refuses what ask() would refuse of any two things. @throws InvalidInput naming the option: also one that sites do
+///   not obey (QuestionOption::of_sites), or an answer that they do not have
+void check(const Question& question, bool obstacle_is_site);
+
+} // namespace pcl_bsh::site
+PCL_BSH_EXPORT_END

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Questions about sites, each for one kind of answer.
+#pragma once
+
+#include <pcl_bsh/site/ask_site.h>
+
+#include <memory>
+#include <utility>
+
+namespace pcl_bsh::site {
+
+/// What is asked, and with which means.
+struct SiteQuestion : Question, SiteMeans {};
+
+/// Another site as the obstacle.
+struct StandingSite {
+  const Site& site;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Uncertainty uncertainty = {};
+};
+
+inline SiteAnswer asked(const Site& site, const Placed& b, SiteQuestion question)
+{
+  question.pose = b.pose;
+  Shape shape("b", std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &b.hierarchy()));
+  return ask(question, site, shape, question);
+}
+
+inline SiteAnswer asked(const Site& site, const StandingSite& b, SiteQuestion question)
+{
+  question.pose = b.pose;
+  question.obstacle_uncertainty = b.uncertainty;
+  return ask(question, site, b.site, question);
+}
+
+inline SiteQuestion forAny(SiteQuestion question)
+{
+  question.wanted.any = true;
+  return question;
+}
+
+inline SiteQuestion forFlags(SiteQuestion question, Side flagged, TileSink sink)
+{
+  question.wanted.flags = flagged != Side::b;
+  question.wanted.obstacle_flags = flagged != Side::a;
+  (flagged == Side::b ? question.obstacle_sink : question.sink) = std::move(sink);
+  return question;
+}
+
+inline SiteQuestion forClosest(SiteQuestion question)
+{
+  question.wanted.closest = true;
+  return question;
+}
+
+inline SiteQuestion forDistances(SiteQuestion question, double most, TileSink sink)
+{
+  question.wanted.distances = question.wanted.intervals = true;
+  question.max_distance = most;
+  question.sink = std::move(sink);
+  return question;
+}
+
+inline SiteQuestion forPath(SiteQuestion question, const std::vector<Eigen::Isometry3d>& poses, TileSink sink)
+{
+  question.wanted.flags = true;
+  question.wanted.contacts = !question.accuracy.stopsEarly();
+  question.path = poses;
+  question.sink = std::move(sink);
+  return question;
+}
+
+inline SiteAnswer anyCollision(const Site& site, const Placed& b, const SiteQuestion& question)
+{
+  return asked(site, b, forAny(question));
+}
+
+inline SiteAnswer anyCollision(const Site& site, const StandingSite& b, const SiteQuestion& question)
+{
+  return asked(site, b, forAny(question));
+}
+
+inline SiteAnswer collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteQuestion& question,
+                                 const TileSink& sink = nullptr)
+{
+  return asked(site, b, forFlags(question, flagged, sink));
+}
+
+inline SiteAnswer collisionFlags(const Site& site, const StandingSite& b, const SiteQuestion& question,
+                                 const TileSink& sink = nullptr)
+{
+  return asked(site, b, forFlags(question, Side::a, sink));
+}
+
+inline SiteAnswer collisionFlagsOfB(const Site& site, const StandingSite& b, const SiteQuestion& question,
+                                    const TileSink& sink = nullptr)
+{
+  return asked(site, b, forFlags(question, Side::b, sink));
+}
+
+inline SiteAnswer closestPair(const Site& site, const Placed& b, const SiteQuestion& question)
+{
+  return asked(site, b, forClosest(question));
+}
+
+inline SiteAnswer closestPair(const Site& site, const StandingSite& b, const SiteQuestion& question)
+{
+  return asked(site, b, forClosest(question));
+}
+
+inline SiteAnswer pointDistances(const Site& site, const Placed& b, double most, const SiteQuestion& question,
+                                 const TileSink& sink = nullptr)
+{
+  return asked(site, b, forDistances(question, most, sink));
+}
+
+inline SiteAnswer pointDistances(const Site& site, const StandingSite& b, double most, const SiteQuestion& question,
+                                 const TileSink& sink = nullptr)
+{
+  return asked(site, b, forDistances(question, most, sink));
+}
+
+inline SiteAnswer collideAlong(const Site& site, const SphereHierarchy& model,
+                               const std::vector<Eigen::Isometry3d>& poses, const SiteQuestion& question,
+                               const TileSink& sink = nullptr)
+{
+  return asked(site, Placed(model), forPath(question, poses, sink));
+}
+
+inline SiteAnswer collideAlong(const Site& site, const Site& model, const Uncertainty& of_model,
+                               const std::vector<Eigen::Isometry3d>& poses, const SiteQuestion& question,
+                               const TileSink& sink = nullptr)
+{
+  return asked(site, {model, Eigen::Isometry3d::Identity(), of_model}, forPath(question, poses, sink));
+}
+
+} // namespace pcl_bsh::site
