@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
+#include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/las/las.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
-#include <pcl_bsh/io/clouds/meshes/off_header.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
@@ -17,7 +17,6 @@
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
 
-#include <algorithm>
 #include <sstream>
 
 namespace pcl_bsh::io {
@@ -33,10 +32,6 @@ std::string unknown(const std::string& extension)
 {
   return extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
 }
-
-constexpr auto readable_list = ".pcd, .ply, .las, .laz, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt";
-constexpr std::array readable = {".pcd", ".ply", ".las", ".laz", ".obj", ".off",
-                                 ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
 
 /// What a file holds.
 struct Contents {
@@ -143,11 +138,8 @@ void print(const std::string& extension, std::ostream& out, const pcl::PCLPointC
 /// The format of the bytes of a pipe, by their beginning: the name of a pipe says nothing.
 std::string extensionByContent(std::string_view file)
 {
-  const auto begins = [&](std::string_view text) { return file.substr(0, text.size()) == text; };
-  if (begins("ply")) return ".ply";
-  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return ".pcd";
-  if (beginsAsOff(file)) return ".off";
-  if (begins("LASF")) return ".las";
+  for (const CloudFormat& format : cloud_formats)
+    if (format.begins && format.begins(file)) return std::string(format.extension);
   return ".txt";
 }
 
@@ -167,8 +159,9 @@ auto naming(const std::filesystem::path& path, Read&& read)
 std::string readableExtension(const std::filesystem::path& path, std::string_view beginning)
 {
   std::string extension = extensionOf(path);
-  if (std::find(readable.begin(), readable.end(), extension) != readable.end()) return extension;
-  if (!isPipe(path)) throw files::FileError(path, unknown(extension), std::string("give a ") + readable_list + " file");
+  if (cloudFormat(extension)) return extension;
+  if (!isPipe(path))
+    throw files::FileError(path, unknown(extension), "give a " + extensionsOf(isRead, ", ", " or ") + " file");
   return extensionByContent(beginning);
 }
 
@@ -291,14 +284,12 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
 void requireWritableCloud(const std::filesystem::path& path)
 {
   const std::string extension = writtenExtension(path);
-  constexpr std::array writable = {".pcd", ".ply", ".las", ".obj", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
   if (extension == ".laz") {
     throw files::FileError(path, "is the name of a compressed file, which is not written", "write a .las file");
   }
-  if (std::find(writable.begin(), writable.end(), extension) == writable.end()) {
-    throw files::FileError(path, unknown(extension),
-                           "write a .pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt file");
-  }
+  const CloudFormat* const format = cloudFormat(extension);
+  if (!format || !format->is_written)
+    throw files::FileError(path, unknown(extension), "write a " + extensionsOf(isWritten, ", ", " or ") + " file");
   files::requireWritable(path);
 }
 

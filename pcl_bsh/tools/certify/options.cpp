@@ -3,6 +3,8 @@
 
 #include <pcl_bsh/tools/cli/command_line.h>
 
+#include <pcl_bsh/io/clouds/formats.h>
+
 #include <cstdint>
 
 namespace pcl_bsh::cli {
@@ -10,8 +12,8 @@ namespace {
 
 constexpr auto certify_footer =
     R"(Every sphere is checked against every point below it in exact arithmetic. Its radius is compared with that of the
-smallest sphere around the same points, also exact, as CGAL finds it. Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv
-.xyz .txt, pipes, and standard input as -; --report - is standard output.
+smallest sphere around the same points, also exact, as CGAL finds it.
+Reads {read}, pipes, and standard input as -; --report - is standard output.
 Exit code: 0 all points are in their spheres; 1 some are not, or failed; 2 command line not understood; 130 stopped by Ctrl-C.
 This program is under the GPL-3.0-or-later, because it contains CGAL's Bounding_volumes.
 
@@ -26,7 +28,7 @@ std::optional<CertifyProgramOptions> parseCertifyOptions(int argc, char** argv)
   std::optional<SphereFit> fit;
   options.certify.threads = 0;
   CLI::App app("Proves that no point of a cloud lies outside the bounding spheres above it.", certify_program);
-  app.footer(certify_footer);
+  app.footer(io::withFormats(certify_footer));
   app.add_option("CLOUD", options.cloud, "cloud whose hierarchy is built and certified")->type_name("")->required();
   app.add_option("--fit", fit, "box, ritter or minimal: how centres are chosen (default: each in turn)")
       ->type_name("FIT")

@@ -6,6 +6,8 @@
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 
+#include <pcl_bsh/io/clouds/formats.h>
+
 #include <cmath>
 #include <utility>
 
@@ -19,7 +21,7 @@ An OBSTACLE with faces (.obj .off .ply .stl) is a surface: q is any point of its
 them. What a closed surface encloses counts with --solid alone. Reports name its triangles, from 0; polygons are cut
 into triangles.
 An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
-Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .laz .off .stl. Files may be
+Reads {read}, writes all of these but {unwritten}. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -105,7 +107,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   bool in_place = false;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
-  app.footer(collide_footer);
+  app.footer(io::withFormats(collide_footer));
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("");

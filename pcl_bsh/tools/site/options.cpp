@@ -5,6 +5,7 @@
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 
+#include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/site.h>
 #ifdef PCL_BSH_SITE_QUERIES
@@ -20,7 +21,7 @@ namespace {
 
 constexpr auto site_footer =
     R"(A site is a folder of tiles, each a binary PCD file with all fields of the points and two more, source and record:
-which record of which cloud a point was. Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt; .las, .laz and
+which record of which cloud a point was. Reads {read}; .las, .laz and
 binary .pcd of any size, the others where they fit into half of the memory given.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -67,10 +68,9 @@ void requireExport(const SiteOptions& options)
 {
   requireOutside(options.site, "SITE", "OUT", options.out);
   const std::string extension = io::inSmallLetters(options.out.extension().string());
-  for (const char* other : {".ply", ".las", ".laz", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
-    if (extension == other)
-      throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + other +
-                       ": name a .pcd file, a .pvtp, or a folder");
+  if (extension != ".pcd" && io::cloudFormat(extension))
+    throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + extension +
+                     ": name a .pcd file, a .pvtp, or a folder");
 }
 
 #ifdef PCL_BSH_SITE_QUERIES
@@ -214,7 +214,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
 {
   SiteOptions options;
   CLI::App app("Clouds of any size on disk, cut into tiles.", site_program);
-  app.footer(site_footer);
+  app.footer(io::withFormats(site_footer));
   app.require_subcommand(1);
   const auto command = [&](const char* name, const char* what, SiteCommand number) {
     CLI::App* const sub = app.add_subcommand(name, what);

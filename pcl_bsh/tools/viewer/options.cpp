@@ -5,6 +5,7 @@
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 
+#include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/parse_number.h>
 #include <pcl_bsh/site/site.h>
@@ -27,7 +28,7 @@ camera sees nearest one by one, as many as the budget holds; with its fields col
 coloured as clouds are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
-Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
+Reads {read}, pipes, and standard input as -.
 Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -216,7 +217,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
   Options options;
   std::string pose, cut, size = "1280x960", camera = "slanted";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
-  app.footer(footer);
+  app.footer(io::withFormats(footer));
   app.add_option("CLOUD", options.clouds,
                  "the cloud or surface that is tested, then obstacles in the same\nframe; or a site, alone")
       ->type_name("");

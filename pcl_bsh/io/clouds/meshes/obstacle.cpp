@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/ply/ply.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
@@ -58,8 +59,8 @@ Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& 
 
 bool mayHaveFaces(const std::filesystem::path& path)
 {
-  const std::string extension = extensionOf(path);
-  return extension == ".obj" || extension == ".off" || extension == ".ply" || extension == ".stl";
+  const CloudFormat* const format = cloudFormat(extensionOf(path));
+  return format && format->has_faces;
 }
 
 bool hasFaces(const std::filesystem::path& path)
