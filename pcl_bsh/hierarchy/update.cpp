@@ -134,8 +134,8 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float la
   return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32, largest_radius);
 }
 
-/// Whether a voxel was made for other lengths of its points than they have now, though none of them moved: other
-/// radii, or uncertainties that part points of one place, of which one stands for all.
+/// Whether a voxel's tree is outdated by its points' lengths, though none of them moved. Radii may differ. So may
+/// uncertainties of points of one place, of which one stands for all.
 bool isOutdated(const Voxel& voxel, const PointsView& now)
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;

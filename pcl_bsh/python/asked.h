@@ -46,13 +46,13 @@ struct Asked {
   Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
 
   /// Options by their names in the table, of a kind of question: faces have them without a word of their own.
-  /// @throws py::type_error for a name or a value that is none
+  /// @throws py::type_error for an unknown name or a wrong value
   void set(const py::kwargs& options, QuestionKind kind);
 
-  /// What ask() answers, computed without the interpreter's lock; its warnings are told.
+  /// The answer of ask(), computed without the interpreter's lock; its warnings are told.
   Answer answer();
 
-  /// The same of a query that no question has. @param nearest of what it answers, as nearestOf() has it
+  /// The answer of a query that no question has. @param nearest its nearest pair, as nearestOf() has it
   template <class Query, class Nearest>
   auto answer(Query&& query, const Nearest& nearest)
   {

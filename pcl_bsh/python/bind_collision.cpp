@@ -154,7 +154,7 @@ Side sideOf(const std::string& text)
   throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
 }
 
-/// Of one side, or of both.
+/// Arrays of one side, or of both.
 template <class Sides, class Value>
 auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
 {
@@ -164,7 +164,7 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
     return arrayFrom(std::move(side == Side::a ? a : b));
 }
 
-/// Of collisions at one pose each.
+/// The question about collisions at one pose each.
 Asked collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
                       const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
 {

@@ -215,7 +215,7 @@ void bindClashes(py::module_& module)
           "status", [](const Clash& clash) { return Status(py::str(nameOf(clash.status))); },
           "'new', 'persisting' or 'resolved'.")
       .def_readonly("certain_points", &Clash::certain_points,
-                    "Of its points, how many collide wherever the points truly are; the others are undecided.")
+                    "Number of its points that collide wherever the points truly are; the others are undecided.")
       .def_property_readonly("records", column(&Clash::records), "int32: its rows, ascending; empty when resolved.")
       .def_readonly("points", &Clash::points)
       .def_readonly("low", &Clash::low, "The lower corner of its box.")
@@ -297,7 +297,7 @@ void bindTrajectory(py::module_& module)
       .def_property_readonly("first_contact", contact(&Result::first_contact),
                              "Swept: (pose, fraction of the motion to the next); None when free.")
       .def_property_readonly("certain_contact", contact(&Result::certain_contact),
-                             "The same of what collides for certain, where points are uncertain.")
+                             "The first contact of points that collide for certain, where points are uncertain.")
       .def_property_readonly("work", [](const TrajectoryRun& run) { return run.result.work; })
       .def("__repr__", [](const TrajectoryRun& run) {
         return "Trajectory(" + counted(run.result.colliding, "point") + " collide" +

@@ -53,7 +53,7 @@ std::string plainDocstring(std::string_view doc)
   return withoutTypes(doc.substr(0, line)) + "\n--\n\n" + std::string(doc.substr(text));
 }
 
-/// What a question's option says, as the paragraph below a parameter's name.
+/// The description of a question's option, as the paragraph below a parameter's name.
 std::string sentenceOf(const QuestionOption& option)
 {
   std::string text = std::string(option.doc) + (option.unit[0] == 'm' ? "; in the clouds' unit." : ".");
@@ -97,7 +97,7 @@ std::string described(const std::string& doc)
   return text;
 }
 
-/// Of the functions of a module, or of a class.
+/// Hides the types of a module's functions, or of a class.
 void hideTypes(const py::object& scope)
 {
   for (const auto& [name, member] : py::dict(scope.attr("__dict__"))) {

@@ -39,7 +39,7 @@ struct ModelBall {
   double radius;
 };
 
-/// What both forms of markUnseen() refuse. @throws InvalidInput
+/// Checks of both forms of markUnseen(). @throws InvalidInput
 void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts);
 
 } // namespace pcl_bsh

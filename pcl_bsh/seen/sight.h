@@ -11,8 +11,8 @@
 
 namespace pcl_bsh {
 
-/// A beam counts for directions up to this many angles from its own: the angle, from the middle of a cell of directions
-/// (direction_cells.h), and half the diagonal of a cell, which is less than 0.18 of the angle.
+/// A beam counts for directions up to this many angles from its own. It is the angle, from the middle of a cell of
+/// directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
 inline constexpr double kReachOfAngle = 1.2;
 
 /// The directions that a beam counts for, and the share of its range that it is sure of.
@@ -31,7 +31,7 @@ struct BeamAngle {
 /// roundings of a pose, of Sight and of leavesOpen() err by together.
 inline constexpr double kSightSlack = 0x1p-46;
 
-/// Of a ball, from the origin of a scan. Where a length is rounded, the ball grows.
+/// A ball, seen from the origin of a scan. Where a length is rounded, the ball grows.
 struct Sight {
   /// @param center rounded from terms of at most `magnitude`. @param guard slacks on top of the radius: with 8, what is
   ///   not left open of this ball is not of those in it
@@ -65,8 +65,8 @@ inline double chordOf(double angle)
   return 2.0 * std::sin(0.5 * angle) * (1.0 + 0x1p-40);
 }
 
-/// Whether a beam counts for a direction in which something may be in the ball: the nearest such direction to the
-/// ball's centre is the beam's own, turned towards it by at most the reach, and it leaves the ball last.
+/// Whether a beam counts for a direction in which something may be in the ball. The nearest such direction to the
+/// ball's centre is the beam's own, turned towards the centre by at most the reach. It leaves the ball last.
 /// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
 inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {
@@ -86,8 +86,8 @@ inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double em
          empty * speaks.sure * (1.0 - kSightSlack);
 }
 
-/// Whether a beam counts for the direction of a place and went beyond it. @pre not around: the place is a ball of
-/// radius 0. @param beam not 0; its length does not matter. @param empty how far it went
+/// Whether a beam counts for the direction of a place and went beyond it. The place is a ball of radius 0, and not
+/// around the origin. The beam is not 0, and its length does not matter. It is empty for the length `empty`.
 inline bool passes(const Sight& place, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {
   if (!(empty > place.distance + place.slack)) return false;

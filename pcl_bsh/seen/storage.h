@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a SeenSpace holds of each scan.
+// The data of each scan in a SeenSpace.
 #pragma once
 
 #include <pcl_bsh/seen/beam_tree.h>
@@ -42,7 +42,7 @@ public:
   std::vector<SeenScan> scans;
 };
 
-/// What SeenSpace refuses. @throws InvalidInput
+/// Checks of a SeenSpace's input. @throws InvalidInput
 void checkScan(const ScanBeams& scan, std::size_t index);
 void checkBeamAngle(double angle);
 

@@ -64,7 +64,7 @@ TEST(Bounds, OfNothingAreNothing)
   EXPECT_TRUE(flat.empty());
 }
 
-/// What cannot be computed with may be anywhere, on either side.
+/// A box beyond all numbers may be anywhere, on either side.
 TEST(Bounds, BeyondAllNumbersAreEverywhere)
 {
   for (const double x : {greatest, -greatest}) {

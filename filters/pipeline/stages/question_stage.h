@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stages have in common that ask a question about an obstacle.
+// Base of the stages that ask a question about an obstacle.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_type.h>
@@ -27,7 +27,7 @@ protected:
   /// @throws OptionError
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
-  /// What was asked, and found.
+  /// A question, and its answer.
   struct Asked {
     io::Obstacle compared; ///< as what the obstacle is compared
     Shape input, obstacle;

@@ -38,7 +38,7 @@ constexpr auto readable_list = ".pcd, .ply, .las, .laz, .obj, .off, .stl, .pts, 
 constexpr std::array readable = {".pcd", ".ply", ".las", ".laz", ".obj", ".off",
                                  ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"};
 
-/// What a file holds.
+/// The contents of a file.
 struct Contents {
   pcl::PCLPointCloud2 cloud;
   CloudFacts facts = {};
@@ -151,7 +151,7 @@ std::string extensionByContent(std::string_view file)
   return ".txt";
 }
 
-/// What `read` gives; names the file when that throws.
+/// Returns the result of `read`; names the file when `read` throws.
 template <typename Read>
 auto naming(const std::filesystem::path& path, Read&& read)
 {

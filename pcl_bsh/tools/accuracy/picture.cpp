@@ -60,7 +60,7 @@ double errorOf(const Measurement& m, const View& view)
   return view.scale * (m.peer ? m.actual_error : m.certified_error);
 }
 
-/// Of which question a series has the times.
+/// The question whose times a series has.
 enum class Asked { again, once };
 
 vtk::ChartPoint pointOf(const Measurement& m, const View& view, Asked asked)

@@ -36,7 +36,7 @@ struct Cut {
 struct Options {
   std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
   std::optional<std::filesystem::path> scene; ///< in place of clouds
-  std::optional<std::filesystem::path> site;  ///< likewise
+  std::optional<std::filesystem::path> site;  ///< in place of clouds
   std::uint64_t budget = 10'000'000;          ///< points of a site that are drawn at once
   std::optional<std::filesystem::path> model;
   std::optional<std::filesystem::path> trajectory;
@@ -54,7 +54,7 @@ struct Options {
   Camera camera;
   std::optional<std::filesystem::path> export_to;
   cli::ReadChoice reading;
-  cli::CommandFiles files; ///< but for a scene's clouds
+  cli::CommandFiles files; ///< except a scene's clouds
 };
 
 /// The options, checked one by one; none when only help was asked for. @throws cli::UsageError

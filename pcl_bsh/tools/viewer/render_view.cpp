@@ -163,7 +163,7 @@ std::vector<LegendEntry> RenderView::legend() const
   return entries;
 }
 
-/// Of a rotated cloud the bounds of its rotated box, which may be larger.
+/// Bounds of a rotated cloud: those of its rotated box, which may be larger.
 vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
 {
   vtkBoundingBox bounds;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users copy from runs as it stands: the README's commands, in their order, and each sample scene and pipeline.
+// Texts that users copy run as they stand: the README's commands, in their order, and each sample scene and pipeline.
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Documents,
                                          "pcl_bsh/site/SITES.md", "pcl_bsh/tools/viewer/VIEWER.md",
                                          "pcl_bsh/trajectory/PATHS.md"));
 
-/// What one document points at is there.
+/// Links of documents lead to files.
 TEST_F(Samples, LinksOfDocumentsLead)
 {
   const auto skipped = [](const fs::path& path) {

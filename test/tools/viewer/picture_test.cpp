@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pictures show, pixel by pixel; without a display.
+// Pictures of the viewer, pixel by pixel; without a display.
 #include "pixels.h"
 #include "support/verdicts.h"
 
@@ -29,7 +29,7 @@ class Picture : public ViewTest {
 protected:
   Picture() { unsetenv("DISPLAY"); }
 
-  /// What a program run draws.
+  /// The picture of a program's run.
   Pixels drawn(const std::string& arguments) const
   {
     const Outcome done = run("pcl_bsh_view", arguments + " --size 400x300 --screenshot " + (folder / "p.png").string());
