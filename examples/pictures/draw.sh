@@ -21,6 +21,10 @@ view "$work/tunnel/tunnel.ply" --model "$work/tunnel/wagon.ply" --pose "$work/tu
   --color distance --range 1 --cut=193.034,8.775,2.622,0.963,0.270,0.008 \
   --camera=208.704,26.682,10.991,190.042,7.935,3.496 --size 1200x600 --screenshot examples/pictures/tunnel.png
 
+# The demonstration: the man in the doorway, and along his walk.
+bash examples/demo/draw.sh "$programs" "$scans"
+cp "$scans/meeting.png" "$scans/walk.png" examples/pictures/
+
 # The query at work: most spheres are out of reach, two leaves are compared.
 man=("$scans/building.ply" --model "$scans/man.off")
 view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2.6,-1.2,-7,0,-2.2 \

@@ -48,6 +48,7 @@ struct Options {
   unsigned step = 0; ///< of the trajectory or the scene
   bool voxels = false, cells = false, trace = false, closest = false, open_edges = false;
   unsigned beams = 0; ///< of the first cloud's scanner that are drawn
+  std::string title;  ///< first line of the caption
   std::string unit;   ///< of lengths, for titles
   std::optional<std::filesystem::path> screenshot;
   int width = 1280, height = 960;

@@ -78,6 +78,23 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
 }
 
+TEST_F(Picture, ATitleStandsAboveTheCounts)
+{
+  const auto rows_of_text = [this](const std::string& title) {
+    Options titled = options();
+    titled.title = title;
+    const Pixels pixels = OffscreenView(titled).draw();
+    int lowest = pixels.height;
+    for (int y = 0; y < pixels.height; ++y)
+      for (int x = 0; x < pixels.width / 8; ++x)
+        if (y < lowest && pixels.at(x, y) == text_color) lowest = y;
+    return pixels.height - lowest;
+  };
+  const int counts = rows_of_text("");
+  EXPECT_GT(counts, 5);
+  EXPECT_GT(rows_of_text("A ball on a floor"), counts + 10);
+}
+
 TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)
 {
   Options near = options();
