@@ -99,7 +99,7 @@ def sentences(paragraph):
     paragraph = re.sub(r"`[^`]*`", "CODE", paragraph)
     paragraph = re.sub(r"\b(e\.g|i\.e|etc|cf|al|no)\.", r"\1", paragraph)
     paragraph = re.sub(r"^@(param \w+|returns?|throws \w+)\s*", "", paragraph)
-    return [s for s in re.split(r"(?<=[.!?;])\s+(?=[A-Z`\"(])", paragraph.strip()) if s]
+    return [s for s in re.split(r"(?<=[.!?;])\s+(?=[A-Z`\"(*[])", paragraph.strip()) if s]
 
 
 def texts():
