@@ -153,7 +153,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
     for (std::size_t v = 0; v < s.voxel_count; ++v)
       follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data(), report);
     s.frame = frame;
-    s.setAbove(Storage::raise(voxels, frame, s.takeAbove()));
+    s.setTopTree(Storage::makeTopTree(voxels, frame, s.takeTopTree()));
   }();
   report.voxels_refitted = s.voxel_count;
   report.volumes_refitted += countChildren(s.top);

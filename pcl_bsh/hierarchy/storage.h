@@ -219,7 +219,7 @@ public:
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
   /// Data of all voxels together: the tree above them, and where to find each.
-  struct Above {
+  struct TopTree {
     std::vector<Node> top;
     std::vector<std::uint32_t> slots;
     double largest_radius = 0.0;
@@ -227,10 +227,10 @@ public:
 
   /// Makes the tree above measured voxels, in the order of their keys. @param reuse an earlier result: with as many
   /// voxels of equal keys, nothing is allocated
-  static Above raise(const std::vector<Voxel*>& all, const LocalFrame& frame, Above reuse);
+  static TopTree makeTopTree(const std::vector<Voxel*>& all, const LocalFrame& frame, TopTree reuse);
 
-  Above takeAbove() noexcept { return {std::move(top), std::move(slots_), largest_radius}; }
-  void setAbove(Above&& above) noexcept
+  TopTree takeTopTree() noexcept { return {std::move(top), std::move(slots_), largest_radius}; }
+  void setTopTree(TopTree&& above) noexcept
   {
     top = std::move(above.top);
     slots_ = std::move(above.slots);

@@ -327,7 +327,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   }
   takeUntil(storage.voxels.get() + storage.voxel_count);
   const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar, largest_radius) : LocalFrame();
-  SphereHierarchy::Storage::Above above = SphereHierarchy::Storage::raise(after, frame, {});
+  SphereHierarchy::Storage::TopTree above = SphereHierarchy::Storage::makeTopTree(after, frame, {});
   report.volumes_built += countChildren(above.top);
   storage.buffers.reserve(storage.buffers.size() + 1);
   storage.radii_buffers.reserve(storage.radii_buffers.size() + 1);
@@ -350,7 +350,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     storage.floats_unused = unused;
     storage.frame = frame;
     storage.extent = storage.sumOfRadii();
-    storage.setAbove(std::move(above));
+    storage.setTopTree(std::move(above));
   }();
   try {
     compact(storage);

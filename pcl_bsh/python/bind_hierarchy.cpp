@@ -3,7 +3,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
 
 #include <pybind11/stl.h>

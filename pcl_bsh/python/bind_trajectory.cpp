@@ -2,7 +2,7 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/question/held.h>
 
@@ -100,7 +100,7 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
                              const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads, bool solid,
                              bool input_solid, const ProgressLike& progress)
 {
-  Asked asked("scan", scan, pose_scan, "model", model);
+  PythonQuestion asked("scan", scan, pose_scan, "model", model);
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   asked.question.clearance = clearance;
   asked.question.solid = solid;
@@ -152,8 +152,8 @@ auto contact(std::optional<FirstContact> TrajectoryResult::*of)
 }
 
 /// A property for one of the result's vectors; None where nothing was asked for.
-template <class T, class Asked>
-auto columnWhere(std::vector<T> TrajectoryResult::*values, Asked asked)
+template <class T, class PythonQuestion>
+auto columnWhere(std::vector<T> TrajectoryResult::*values, PythonQuestion asked)
 {
   using Array = decltype(arrayIn(py::object(), std::vector<T>()));
   return [values, asked](const py::object& self) -> std::optional<Array> {

@@ -5,7 +5,7 @@
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
-#include <pcl_bsh/scene/solids.h>
+#include <pcl_bsh/scene/scene_solids.h>
 #include <pcl_bsh/scene/swept/object_motion.h>
 
 #include <chrono>

@@ -21,14 +21,14 @@ public:
   std::size_t size() const { return beams_.beams().size(); }
 
   /// Whether nothing is open in the ball: it is seen.
-  bool sees(const Sight& ball, std::uint64_t& tested) const;
+  bool sees(const BallView& ball, std::uint64_t& tested) const;
 
   /// Whether it sees no ball about a place in this one. @param ball of places. @param least radius of balls about them
-  bool seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const;
+  bool seesNoneIn(const BallView& ball, double least, std::uint64_t& tested) const;
 
   /// Whether no beam passed a place: it is in a hole, or all beams that count for its direction ended before it.
   /// @param place a ball of radius 0
-  bool isDark(const Sight& place, std::uint64_t& tested) const;
+  bool isDark(const BallView& place, std::uint64_t& tested) const;
 
 private:
   BeamTree beams_;

@@ -27,9 +27,9 @@ inline constexpr int kPieceHalvings = 6;
 
 /// @param sees (ball: PosedPlace, radius) whether one scanner sees all of it
 template <class Sees>
-class RecordSight {
+class RecordSeen {
 public:
-  RecordSight(const Placed& model, double clearance, const Sees& sees)
+  RecordSeen(const Placed& model, double clearance, const Sees& sees)
   : model_(model),
     view_(model.hierarchy().view()),
     clearance_(clearance),

@@ -3,7 +3,7 @@
 // voxels it leaves and enters.
 #pragma once
 
-#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 #include <pcl_bsh/scene/pairs/pair_rules.h>
 
 #include <cstdint>

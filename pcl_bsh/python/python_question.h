@@ -38,12 +38,12 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
 
 /// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
 /// clouds thousands of times: how far their points are apart is measured once.
-struct Asked {
+struct PythonQuestion {
   /// The second cloud is where the question says.
-  Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b);
+  PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b);
 
   /// The arguments a, pose_a, b and pose_b.
-  Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
+  PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
 
   /// Options by their names in the table, of a kind of question: faces have them without a word of their own.
   /// @throws py::type_error for an unknown name or a wrong value
