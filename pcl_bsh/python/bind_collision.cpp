@@ -3,8 +3,8 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/question/held.h>
 
@@ -165,8 +165,9 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
 }
 
 /// The question about collisions at one pose each.
-PythonQuestion collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
-                      const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
+PythonQuestion collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
+                               const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
+                               const py::kwargs& options)
 {
   PythonQuestion asked(a, pose_a, b, pose_b);
   asked.question.clearance = clearance;

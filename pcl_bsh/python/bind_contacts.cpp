@@ -2,8 +2,8 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 

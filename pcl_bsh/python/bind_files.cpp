@@ -2,8 +2,8 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
-#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 

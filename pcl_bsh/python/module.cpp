@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
-#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/threads/computing.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/version.h>

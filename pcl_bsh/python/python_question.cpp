@@ -3,7 +3,8 @@
 
 namespace pcl_bsh::python {
 
-PythonQuestion::PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b)
+PythonQuestion::PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b,
+                               const Cloud& cloud_b)
 : a(cloud_a, poseOf(std::string("pose_") + name_a, pose_a)),
   b(cloud_b),
   input(cloud_a.named(name_a)),
@@ -12,7 +13,8 @@ PythonQuestion::PythonQuestion(const char* name_a, const Cloud& cloud_a, const P
   question.pose_of_input = a.pose;
 }
 
-PythonQuestion::PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b)
+PythonQuestion::PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b,
+                               const PoseLike& pose_b)
 : PythonQuestion("a", cloud_a, pose_a, "b", cloud_b)
 {
   question.pose = b.pose = poseOf("pose_b", pose_b);

@@ -40,7 +40,8 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
 /// clouds thousands of times: how far their points are apart is measured once.
 struct PythonQuestion {
   /// The second cloud is where the question says.
-  PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b);
+  PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b,
+                 const Cloud& cloud_b);
 
   /// The arguments a, pose_a, b and pose_b.
   PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);

@@ -101,10 +101,9 @@ StageType bshFlag()
   auto description = describe<BshFlag>(
       "filters.bsh_flag",
       "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle, 2 for those "
-      "that `accuracy` or the points' uncertainties leave undecided, 3 for those that `density` does; along a "
-      "trajectory also `distance` (float32, the "
-      "smallest; NaN where free), "
-      "`first_pose` and `closest_pose` (int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
+      "that `accuracy` or the points' uncertainties leave undecided, 3 for those that `density` does. Along a "
+      "trajectory it also adds `distance` (float32, the smallest; NaN where free), `first_pose` and `closest_pose` "
+      "(int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
       "otherwise, for float64 coordinates too. An input with faces has its triangles flagged: writers.ply writes the "
       "flags as properties of its faces, and a vertex has the gravest flag of its triangles.");
   return withQuestionOptions(description, QuestionKind::collisions);

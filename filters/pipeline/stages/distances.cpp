@@ -29,7 +29,7 @@ struct DistanceWriter : Stage, QuestionStage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    Asked asked = ask(inputs[0], *this);
+    AnsweredQuestion asked = ask(inputs[0], *this);
     const Placed input(asked.inputHierarchy(question)), other(asked.obstacleHierarchy(question), question.pose);
     PointDistancesRequest request;
     request.max_distance = question.max_distance.value_or(request.max_distance);

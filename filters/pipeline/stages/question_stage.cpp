@@ -174,7 +174,7 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
-QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
+QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
 {
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
@@ -185,7 +185,7 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
     facts.scanners = input->scanners;
     asked.origin = io::originsOf(input->cloud, facts);
   }
-  Asked found;
+  AnsweredQuestion found;
   found.compared = shapeOf(obstacle.cloud, question, "obstacle");
   found.obstacle = found.compared.shape("the obstacle");
   found.input = shapeOf(input, question, "input").shape("the input");

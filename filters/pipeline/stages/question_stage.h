@@ -28,7 +28,7 @@ protected:
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
   /// A question, and its answer.
-  struct Asked {
+  struct AnsweredQuestion {
     io::Obstacle compared; ///< as what the obstacle is compared
     Shape input, obstacle;
     Answer answer;
@@ -44,7 +44,7 @@ protected:
   };
 
   /// For run(): asks, until the stage is cancelled, and warns of what the user should know.
-  Asked ask(const StageCloudPtr& input, Stage& stage) const;
+  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage) const;
 
   /// Whether the triangles of the input are asked about, not its points.
   bool asksAboutFaces(const StageCloud& input) const

@@ -6,10 +6,10 @@
 #include <pcl_bsh/tools/viewer/actors/caption.h>
 #include <pcl_bsh/tools/viewer/actors/cloud_actor.h>
 #include <pcl_bsh/tools/viewer/actors/extras.h>
-#include <pcl_bsh/tools/viewer/actors/visibility.h>
 #include <pcl_bsh/tools/viewer/actors/tile_actors.h>
 #include <pcl_bsh/tools/viewer/actors/value_bar.h>
 #include <pcl_bsh/tools/viewer/actors/value_histogram.h>
+#include <pcl_bsh/tools/viewer/actors/visibility.h>
 #include <pcl_bsh/tools/viewer/content/view_content.h>
 
 #include <vtkBoundingBox.h>
