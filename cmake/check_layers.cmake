@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Holds the plan of the house, the table of rooms in ARCHITECTURE.md, against what the files include. Fails when a room
-# includes one that stands below it in the table, when the table's last column is not what the room includes, or when a
-# file includes a library that its room must not know.
+# Holds the plan of the house, the table of rooms in ARCHITECTURE.md, against what the files include. Fails in three
+# cases: a room includes one that stands below it in the table; the table's last column differs from the room's
+# includes; a file includes a library that its room must not know.
 #   cmake -P cmake/check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)

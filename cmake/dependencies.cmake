@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Everything comes from the packages listed in packages.txt: what core, search and filters need, then what is shared by
-# components. What one component alone needs, its own CMakeLists.txt looks for.
+# components. A package that only one component needs is looked for in the component's CMakeLists.txt.
 
 if(NOT PROJECT_IS_TOP_LEVEL)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON) # whoever links our libraries sees what these link

@@ -54,7 +54,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libpcl-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${PCL_BSH_PYTHON_DEPENDS}")
 set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_DEPENDS "python3-vtk9")
 
-# What Python compiles beside the package's modules is no file of the package: dpkg alone would leave it.
+# Python's compiled files beside the package's modules belong to no package: dpkg alone would leave them.
 foreach(component IN ITEMS PYTHON PYTHON_VTK)
   if(NOT DEFINED CPACK_DEBIAN_${component}_PACKAGE_NAME)
     continue()
@@ -69,7 +69,7 @@ foreach(component IN ITEMS PYTHON PYTHON_VTK)
 endforeach()
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-# What the binaries link to becomes what the packages depend on; our own libraries are found where they were built.
+# Libraries that the binaries link to become dependencies of the packages; our own are found where they were built.
 if(NOT PCL_BSH_BUILD_PARAVIEW) # nothing links to a plugin
   set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 endif()

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are missing, configures and builds. Does no more than is left to do.
 #   bash cmake/setup.sh [PRESET [TARGET...]]     default: release, all targets; into build/PRESET
-# Installs the sections of packages.txt which the preset and the target need: for `library` what core, search and filters
-# need, for the targets `demonstration`, `programs`, `python`, `docs` and `self_filter` what these need, otherwise all but
-# [paraview]. The preset `paraview` needs packages that exclude those of the others: apt-get removes nothing, and fails.
-# A package that this system's lists do not have is told, and kept in build/not_installed.txt for test/run.sh to tell again.
+# Installs the sections of packages.txt which the preset and the target need. For `library` these
+# are the needs of core, search and filters. The targets `demonstration`, `programs`, `python`,
+# `docs` and `self_filter` have sections of their own. All others get everything except [paraview].
+# The preset `paraview` needs packages that exclude those of the others: apt-get removes nothing,
+# and fails. A package that this system's lists do not have is told, and kept in
+# build/not_installed.txt for test/run.sh to tell again.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

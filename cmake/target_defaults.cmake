@@ -56,8 +56,8 @@ function(pcl_bsh_compile_fast target)
   endif()
 endfunction()
 
-# Other people's headers, which take longer to read than our files: once for all targets that name the same set. What
-# else these targets are compiled with must be alike.
+# Other people's headers, which take longer to read than our files: once for all targets that name the same set. All
+# other flags of these targets must be alike.
 function(pcl_bsh_precompile target set)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
@@ -74,8 +74,8 @@ function(pcl_bsh_precompile target set)
   endif()
 endfunction()
 
-# Highway's code for AArch64 is compiled for its vectors as all processors have them: with a choice at run time g++ takes
-# none of it into functions outside of that choice, and vectors of unknown length are no members of classes.
+# Highway's code for AArch64 is compiled for the vectors that all processors have. With a choice at run time g++ takes
+# none of it into functions outside of that choice. Vectors of unknown length cannot be members of classes.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   add_compile_definitions(TOOLCHAIN_MISS_SYS_AUXV_H)
 endif()

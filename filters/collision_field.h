@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query says of each point, as fields of the cloud beside all it had.
+// Results of a query for each point, as fields added to the cloud.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -40,7 +40,7 @@ struct NewField {
 ///   the number of points, a field of that name but of another type
 pcl::PCLPointCloud2 withFields(const pcl::PCLPointCloud2& cloud, const std::vector<NewField>& fields);
 
-/// The same with one field of verdicts.
+/// Adds one field of verdicts.
 inline pcl::PCLPointCloud2 withField(const pcl::PCLPointCloud2& cloud, const std::string& name,
                                      const std::vector<Verdict>& values)
 {

@@ -25,7 +25,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
+/// The part that the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
 ///
 /// filter() keeps the points of the input that do not collide; after setNegative(true), those that do, with those that
 /// are undecided (setAccuracy()). Called through a pointer to pcl::Filter, setKeepFlagged() needs an output that is not
@@ -36,13 +36,14 @@ public:
   /// @param extract_removed_indices keep what getRemovedIndices() returns
   explicit CollisionFilterBase(bool extract_removed_indices = false);
 
-  /// One verdict per point of the whole input cloud, colliding also after setNegative(true); undecided only where
-  /// setAccuracy() lets a query stop early, or where points are uncertain; sparse only with setDensityGuard(); free for
-  /// points outside setIndices() and for points that are not finite. Throws as filter() does.
+  /// Gives one verdict per point of the whole input cloud, also after setNegative(true). Undecided needs setAccuracy()
+  /// or uncertain points, sparse needs setDensityGuard(). Points outside setIndices() and points that are not finite
+  /// are free. Throws as filter() does.
   void computeFlags(std::vector<Verdict>& flags);
 
-  /// More along the trajectory (or at the one pose) than flags: for each colliding point of the whole input cloud its
-  /// smallest distance, the first pose and the closest; a summary of each pose, unless swept. Throws as filter() does.
+  /// Gives more than flags along the trajectory (or at the one pose). Each colliding point of the whole input cloud has
+  /// its smallest distance, the first pose and the closest. Each pose has a summary, unless swept. Throws as filter()
+  /// does.
   void computeTrajectory(TrajectoryResult& result);
 
   PCL_MAKE_ALIGNED_OPERATOR_NEW
@@ -69,7 +70,7 @@ extern template class PCL_BSH_EXPORT
     QueryFilter<pcl::PCLPointCloud2, CollisionSettings>;                       // PCL's hidden type would hide
 extern template class PCL_BSH_EXPORT CollisionFilterBase<pcl::PCLPointCloud2>; // both
 
-/// The same for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
+/// The filter for clouds whose fields are known at run time only. Keeps every field; reads float64 coordinates at full
 /// precision; can flag the points instead of removing any.
 template <>
 class PCL_BSH_EXPORT CollisionFilter<pcl::PCLPointCloud2> : public CollisionFilterBase<pcl::PCLPointCloud2> {

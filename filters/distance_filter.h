@@ -55,7 +55,7 @@ public:
 extern template class PCL_BSH_EXPORT QueryFilter<pcl::PCLPointCloud2, DistanceSettings>; // PCL's hidden type would hide
 extern template class PCL_BSH_EXPORT DistanceFilterBase<pcl::PCLPointCloud2>;            // both
 
-/// The same for clouds whose fields are known at run time only. Keeps every field, and adds one: `distance` (FLOAT32,
+/// The filter for clouds whose fields are known at run time only. Keeps every field, and adds one: `distance` (FLOAT32,
 /// NaN beyond setMaxDistance() and for points that are not finite or outside setIndices()); a FLOAT32 field of that
 /// name takes the new values. Reads float64 coordinates at full precision. In a cloud that keeps rows and columns,
 /// removed points have their distance, too.

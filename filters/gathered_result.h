@@ -14,9 +14,9 @@
 
 namespace pcl_bsh {
 
-/// Of each group the gravest of what its triangles have: colliding before undecided before free, the smallest distance
-/// with its pose and nearest point, the first pose. A group of no triangle is free. What the result does not have stays
-/// empty; summaries of poses, which count triangles, are left out.
+/// Gives each group the gravest result of its triangles: colliding before undecided before free, the smallest distance
+/// with its pose and nearest point, the first pose. A group of no triangle is free. Parts that the result does not have
+/// stay empty; summaries of poses, which count triangles, are left out.
 /// @param groupsOf from the number of a triangle to a range of those of its groups, each below `groups`
 template <typename GroupsOf>
 TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t groups, const GroupsOf& groupsOf)

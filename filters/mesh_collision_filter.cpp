@@ -13,7 +13,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of the vertices' coordinates, and of the polygons.
+/// Checksum of the vertices' coordinates, and of the polygons.
 std::uint64_t checksumOf(const pcl::PolygonMesh& mesh)
 {
   std::uint64_t sum = pcl_bsh::checksumOf(viewOf(mesh.cloud));
@@ -28,7 +28,7 @@ std::uint64_t checksumOf(const pcl::PolygonMesh& mesh)
 
 void MeshCollisionFilter::setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh)
 {
-  if (!mesh) throw std::invalid_argument("input mesh is null: give a mesh without polygons if there is none");
+  if (!mesh) throw std::invalid_argument("input mesh is null: give a mesh without polygons where you have no mesh");
   std::vector<std::uint32_t> polygons = trianglesOf(*mesh).polygons;
   triangles_ = viewOf(mesh);
   polygons_ = std::move(polygons);

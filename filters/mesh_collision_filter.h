@@ -24,7 +24,7 @@ namespace pcl_bsh {
 
 /// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). The counts of
 /// undecided points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input
-/// that is a field: both are about points. What a closed mesh encloses is no part of it without setInputSolid().
+/// that is a field: both are about points. The inside of a closed mesh belongs to it only with setInputSolid().
 class MeshCollisionFilter : public CollisionSettings {
 public:
   /// The mesh that is asked about. Its vertices and polygons must not change: every use throws when they have, after a

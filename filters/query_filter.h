@@ -39,7 +39,7 @@ public:
   /// @throws std::bad_alloc when memory runs out
   void filter(Cloud& output);
 
-  /// The same as indices into the input, in its order.
+  /// Filters to indices into the input, in its order.
   void filter(pcl::Indices& indices);
 
 protected:

@@ -27,7 +27,7 @@ MeshTriangles trianglesOf(const pcl::PolygonMesh& mesh)
 
 PointsView viewOf(const pcl::PolygonMesh::ConstPtr& mesh)
 {
-  if (!mesh) throw std::invalid_argument("surface is null: give a mesh without polygons if there is none");
+  if (!mesh) throw std::invalid_argument("surface is null: give a mesh without polygons where you have no surface");
   PointsView vertices = viewOf(mesh->cloud);
   vertices.owner = mesh;
   return viewOf(trianglesOf(vertices, std::make_shared<const std::vector<Triangle>>(trianglesOf(*mesh).triangles)));

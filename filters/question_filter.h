@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all filters of this project have in common that know no point type: a question about an obstacle, and its
+// Base of all filters of this project, without a point type: a question about an obstacle, and its
 // answer.
 #pragma once
 
@@ -32,7 +32,7 @@ std::vector<RecordField> fieldsOfRecords(const pcl::PointCloud<PointT>&)
 {
   return recordFields(pcl::getFields<PointT>());
 }
-/// The same of a cloud whose fields are known at run time only.
+/// Fields of a cloud that are known at run time only.
 inline std::vector<RecordField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud)
 {
   return recordFields(cloud.fields);
@@ -44,7 +44,7 @@ struct MeshTriangles {
   std::vector<std::uint32_t> polygons; ///< which polygon each is a part of
 };
 
-/// Of polygons of any number of corners. @throws std::invalid_argument as addTriangles() does
+/// Triangles of polygons with any number of corners. @throws std::invalid_argument as addTriangles() does
 MeshTriangles trianglesOf(const pcl::PolygonMesh& mesh);
 
 /// A mesh of PCL as a cloud of its triangles, which keeps it alive.
@@ -59,8 +59,8 @@ public:
   const Question& getQuestion() const { return question_; }
 
   /// The cloud that the input is compared with: pcl::PointCloud of any point type, or pcl::PCLPointCloud2 (float64 at
-  /// full precision). Its hierarchy is built on the first use and kept until the next call of this method; all other
-  /// settings and the input may change meanwhile, the cloud's points must not: every use throws when they have (Shape).
+  /// full precision). Its hierarchy is built on the first use and kept until the next call of this method. All other
+  /// settings and the input may change meanwhile. The cloud's points must not: every use throws when they have (Shape).
   /// An empty cloud collides with nothing, and everything is farther from it than any length.
   /// @throws std::invalid_argument when the pointer is null, or as viewOf() does.
   template <typename Cloud>
@@ -72,12 +72,12 @@ public:
   }
 
   /// A surface instead of a cloud: the mesh's polygons, and all that lies on them. Results name their triangles:
-  /// trianglesOf() says which polygon has each. What a closed surface encloses is no part of it without
+  /// trianglesOf() says which polygon has each. The inside of a closed surface belongs to it only with
   /// setObstacleSolid(). The mesh must not change, as a cloud must not.
   /// @throws std::invalid_argument as viewOf() does
   void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh) { setSurface(viewOf(mesh)); }
 
-  /// The same of triangles wherever they are. @throws std::invalid_argument as viewOf() does
+  /// Sets triangles wherever they are. @throws std::invalid_argument as viewOf() does
   void setObstacleSurface(const TrianglesView& triangles) { setSurface(viewOf(triangles)); }
 
   /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity). Takes any of
@@ -95,7 +95,7 @@ public:
   }
 
   /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
-  /// and names the first open edge. What is inside collides at any clearance, its distance is negative, and limits of
+  /// and names the first open edge. Its inside collides at any clearance; distances there are negative, and limits of
   /// distances may be. Default: false, a surface alone.
   void setObstacleSolid(bool solid) { question_.solid = solid; }
 
@@ -106,7 +106,7 @@ public:
   void setNumberOfThreads(unsigned threads) { question_.threads = threads; }
 
   /// For distances, and along a trajectory: called now and then, by the thread that filters, with the fraction done in
-  /// [0, 1], ascending. False: stop, filtering throws Cancelled (pcl_bsh/base/cancelled.h). What it throws itself
+  /// [0, 1], ascending. False: stop, filtering throws Cancelled (pcl_bsh/base/cancelled.h). An exception that it throws
   /// comes out of the filter, too. Either way outputs stay as they were.
   void setProgress(std::function<bool(double)> progress) { question_.progress = std::move(progress); }
 
@@ -115,7 +115,7 @@ public:
   /// query alone. Default: PCL_WARN.
   void setWarn(std::function<void(const std::string&)> warn) { warn_ = std::move(warn); }
 
-  /// What the last query cost.
+  /// Cost of the last query.
   const Work& getWork() const { return work_; }
 
   /// How many points of the input the last query left undecided. 0 unless its accuracy let it stop early, points are
@@ -125,7 +125,7 @@ public:
   /// How many of them because the obstacle is not scanned densely enough.
   std::size_t getSparseCount() const { return sparse_; }
 
-  /// What of the obstacle the last query found unseen (setSeenOnly()).
+  /// The part of the obstacle that the last query found unseen (setSeenOnly()).
   const Answer::Unseen& getUnseen() const { return unseen_; }
 
   /// Verdicts of the obstacle's points then, as numbers: 0 free, 1 collides, 2 undecided, 4 unseen; along a trajectory
@@ -196,9 +196,9 @@ public:
   /// collides if it does at any of them. At least one pose. Replaces setPose(), and the other way round.
   void setTrajectory(const std::vector<Eigen::Isometry3d>& poses) { question_.path = poses; }
 
-  /// > 0: points collide with the motion between consecutive poses of the trajectory too (straight for the obstacle's
-  /// origin, the rotation spherically interpolated), to this tolerance: those within clearance do, those beyond
-  /// clearance + tolerance do not. 0 (default): at the poses alone. Finite and >= 0; not at one pose.
+  /// > 0: points collide with the motion between consecutive poses of the trajectory too, to this tolerance. Points
+  /// within clearance collide, points beyond clearance + tolerance do not. The obstacle's origin moves straight, the
+  /// rotation is spherically interpolated. 0 (default): at the poses alone. Finite and >= 0; not at one pose.
   void setSwept(double tolerance) { question_.swept = tolerance; }
 
   /// How far the points of the input, or of the obstacle, may truly be from where they were measured. Then a point
@@ -220,7 +220,7 @@ public:
   /// nothing to guard. Default: false.
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
 
-  /// What gapes wider in the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
+  /// A wider gap of the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its
   /// points from their nearest neighbours. Where lines of a scan are farther apart than that, give more than what is
   /// between the lines. Finite and >= 0. Counts with the density guard alone.
   void setWidestGap(double widest_gap)
@@ -228,9 +228,9 @@ public:
     question_.widest_gap = widest_gap == 0.0 ? std::nullopt : std::optional(widest_gap);
   }
 
-  /// Points of the obstacle that are free count as unseen where no scanner of the input saw that the space within the
-  /// clearance about them is empty (pcl_bsh/seen/seen_space.h says when it did, and to what that is blind). Needs
-  /// setScanOrigins(). Not with swept motion. Flags of the input stay as they are. Default: false.
+  /// Free points of the obstacle count as unseen where no scanner of the input saw that the space within the clearance
+  /// about them is empty. pcl_bsh/seen/seen_space.h defines seen, and its blind spots. Needs setScanOrigins(). Not with
+  /// swept motion. Flags of the input stay as they are. Default: false.
   void setSeenOnly(bool seen_only) { question_.seen = seen_only; }
 
   /// Where the input's scanners stood, in its frame; with setSeenOnly() alone.

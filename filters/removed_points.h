@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of removed points where a cloud keeps its rows and columns.
+// Handles removed points where a cloud keeps its rows and columns.
 #pragma once
 
 #include <pcl_bsh/export.h>

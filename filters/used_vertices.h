@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is left of a mesh when some of its faces are taken away: its vertices, and the values of its faces.
+// Takes faces away from a mesh: keeps the vertices and values that the other faces use.
 #pragma once
 
 #include <pcl/types.h>
@@ -34,7 +34,7 @@ pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces, const CornersO
   return used;
 }
 
-/// The same of faces that are ranges of their corners.
+/// Keeps the vertices of faces that are ranges of their corners.
 template <typename Faces>
 pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces)
 {

@@ -9,7 +9,7 @@
 //   DistanceResult nearest = closestPair({hall}, {robot, T_world_robot});
 //
 // Point p of a and q of b collide iff |T_a p - T_b q| <= clearance (+ their radii), decided as exact arithmetic on the
-// given numbers decides it. The same input gives the same answer, bit for bit, for any thread count and SIMD target.
+// given numbers decides it. Equal input gives an equal answer, bit for bit, for any thread count and SIMD target.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>

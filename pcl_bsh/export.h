@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the libraries show: everything that their public headers declare, and nothing else.
+// Symbols that the libraries export: all that their public headers declare, and nothing else.
 #pragma once
 
 /// Around the declarations of a public header, below its includes: compiled hidden by default, these are exported.

@@ -20,10 +20,10 @@ if(CMAKE_SCRIPT_MODE_FILE)
   return()
 endif()
 
-# Sets `compiled` to what stands for the files of a room, relative to the folder of these sources or of what is built of
-# them: those that are joined, of up to so many bytes, and those that stay alone, which define what others call, include
-# themselves again or read PCL's headers in another way.
-# Small files suit who changes one test; large ones instantiate templates less often, and compile all tests in fewer seconds.
+# Sets `compiled` to the files to compile for a room, relative to the folder of these sources or of their build. Most
+# are joined, up to so many bytes. Files stay alone that define functions of others, include themselves again or read
+# PCL's headers in another way. Small files suit a developer of one test; large ones instantiate templates less often,
+# and compile all tests in fewer seconds.
 set(PCL_BSH_BYTES_TOGETHER 170000 CACHE STRING "Bytes of tests that are compiled as one file; g++ takes 2 GB for the default")
 mark_as_advanced(PCL_BSH_BYTES_TOGETHER)
 function(pcl_bsh_compile_together compiled room)

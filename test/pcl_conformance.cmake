@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# PCL's test/search/test_search.cpp and test_kdtree.cpp, compiled as they are but for a header in front of them that
-# puts our class where they say KdTree. They are not copied here: PCL_SOURCE_TEST_DIR, a variable of CMake's cache or of the
+# PCL's test/search/test_search.cpp and test_kdtree.cpp, compiled as they are; a header in front of them puts our class
+# in place of their KdTree. They are not copied here: PCL_SOURCE_TEST_DIR, a variable of CMake's cache or of the
 # environment (which counts where both are set), names the folder test/ of a source tree of the PCL in use.
 set(PCL_SOURCE_TEST_DIR "" CACHE PATH "PCL's folder test/: its own tests of search classes are run on ours")
 if(NOT "$ENV{PCL_SOURCE_TEST_DIR}" STREQUAL "")

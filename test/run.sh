@@ -20,7 +20,8 @@ for preset in tsan asan release; do # release last: its summary is read most
   ctest --preset "$preset" --parallel "$(nproc)" || failed+=("$preset")
 done
 
-# What was not tested, because something was missing at configuration or at run time, and what to do.
+# Parts that were not tested, because something was missing at configuration or at run time, with a
+# remedy.
 for preset in tsan asan release; do
   skipped="$(sed -n '/: Skipped$/{n;p}' "build/$preset/Testing/Temporary/LastTest.log" 2>/dev/null | sort | uniq -c | sort -rn)" || true
   missing="$(sed 's/^/        /' "build/$preset/not_tested.txt" 2>/dev/null)" || true

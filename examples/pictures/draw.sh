@@ -21,6 +21,10 @@ view "$work/tunnel/tunnel.ply" --model "$work/tunnel/wagon.ply" --pose "$work/tu
   --color distance --range 1 --cut=193.034,8.775,2.622,0.963,0.270,0.008 \
   --camera=208.704,26.682,10.991,190.042,7.935,3.496 --size 1200x600 --screenshot examples/pictures/tunnel.png
 
+# The demonstration: the man in the doorway, and along his walk.
+bash examples/demo/draw.sh "$programs" "$scans"
+cp "$scans/meeting.png" "$scans/walk.png" examples/pictures/
+
 # The query at work: most spheres are out of reach, two leaves are compared.
 man=("$scans/building.ply" --model "$scans/man.off")
 view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2.6,-1.2,-7,0,-2.2 \
@@ -47,7 +51,8 @@ rooms="${PCL_BSH_SHARED_DIR:-}/data/indoor_room_scan"
 if [[ -r "${rooms}1.pcd" ]]; then
   view "${rooms}1.pcd" --model "${rooms}2.pcd" --pose 1.79387,0.720047,0,0,0,0.6931 --color distance \
     --camera=-9,-13,15,0.5,0,-0.5 --screenshot examples/pictures/distances.png
-  # The same scans, whose places are off by up to 2 cm: what is within 10 cm, what may be, and where are holes?
+  # These scans, with places off by up to 2 cm: which points are within 10 cm, which may be, and
+  # where are holes?
   "$programs/pcl_bsh_collide" "${rooms}1.pcd" "${rooms}2.pcd" "$work/room.pcd" --pose 1.79387,0.720047,0,0,0,0.6931 \
     --clearance 0.1 --uncertainty 0.02 --obstacle-uncertainty 0.02 --density >/dev/null
   view "$work/room.pcd" --camera=3.5,0.8,22,3.5,0.81,0 --screenshot examples/pictures/verdicts.png
@@ -95,8 +100,8 @@ awk 'BEGIN { for (x = 0.1; x < 7.95; x += 0.02) for (y = 0.1; y < 5.95; y += 0.0
 view "$work/room.pcd" "$work/pillar.off" "$work/scanner.off" --camera=3,-6.2,7.6,3.75,2.4,0.2 \
   --screenshot examples/pictures/unseen.png
 
-# What accuracy costs in time: measured, so draw it while nothing else runs. OpenMP of one thread is a call, as for the
-# rows of BENCHMARK.md: PCL's times are half as long so.
+# The cost of accuracy in time: it is measured, so draw it while nothing else runs. OpenMP of one
+# thread is a call, as for the rows of BENCHMARK.md: PCL's times are half as long so.
 alone="$(realpath "$programs/../test/benchmark/libone_thread_openmp.so")" # of the preset benchmark
 LD_PRELOAD="$alone" "${alone%/*}/bench_accuracy" "$scans/building.ply" "$scans/man.off" --vertices-only --clearance 0.5 \
   --pose=-7,0,-2.6,0,0,0 --poses 10 --unit m --out "$work/study" >/dev/null

@@ -56,7 +56,7 @@ awk 'function face(a, b, c, d) { triangle(a, b, c); triangle(a, c, d) }
   BEGIN { print "solid machine"; box(-0.6, -0.4, 0.2, 0.6, 0.4, 1.2); box(-0.1, -0.1, 1.2, 0.1, 0.1, 2.4); print "endsolid machine" }' >machine.stl
 awk 'BEGIN { for (x = 0.8; x < 5.3; x += 0.2) printf "1 0 0 %g 0 1 0 2 0 0 1 0\n", x }' >machine_way.txt
 
-# The same ground as LAS, and a road that is to be built there, as a mesh.
+# The ground as LAS, and a road that is to be built there, as a mesh.
 printf '["terrain.pcd", "terrain.las"]' | pcl_bsh_pipeline -
 awk 'BEGIN { for (k = 0; k <= 10; ++k) for (side = 0; side < 2; ++side) printf "v %.3f %.3f %.3f\n", 500000 + 5 * k, 5400010 + 6 * side, 100 + sin(k * 5 / 9) / 2
   for (k = 0; k < 10; ++k) printf "f %d %d %d %d\n", 2 * k + 1, 2 * k + 2, 2 * k + 4, 2 * k + 3 }' >road.obj

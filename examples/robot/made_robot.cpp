@@ -80,7 +80,7 @@ void writeTurned(const std::filesystem::path& path, double length, double unit,
   });
 }
 
-/// What rays from the camera meet.
+/// The first hits of rays from the camera.
 class Image {
 public:
   explicit Image(std::size_t width)

@@ -20,14 +20,14 @@ void writeMadeRobot(const std::filesystem::path& folder);
 /// The joints of the made robot at a frame of so many: it reaches over a table.
 JointValues madeJointValues(std::size_t frame, std::size_t frames);
 
-/// What a depth camera sees, in its own frame.
+/// The image of a depth camera, in its own frame.
 struct DepthImage {
   std::size_t width = 0, height = 0;
   std::vector<float> xyz;             ///< of a pixel, row by row; NaN where nothing is within 5 m
   std::vector<std::uint8_t> is_robot; ///< one per pixel
 };
 
-/// A room with a table, and the robot in it, seen from its link `camera`: exact but for 1 mm of noise, and for
+/// A room with a table, and the robot in it, seen from its link `camera`: exact within 1 mm of noise, and
 /// rounding.
 /// @param width pixels; height is three quarters of it. 640: 307,200 points
 DepthImage seenBy(const Robot& robot, const JointValues& values, std::size_t width = 640);

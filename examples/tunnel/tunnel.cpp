@@ -95,7 +95,7 @@ double lampReach(double station, double side, double z)
   return number % 5 == 0 ? bad_lamp_reach : lamp_reach;
 }
 
-/// What sprayed concrete looks like: up to 2 cm in or out.
+/// The roughness of sprayed concrete: up to 2 cm in or out.
 double roughness(double station, double along)
 {
   return 0.012 * std::sin(2 * pi * station / 7.3 + 1.3 * along) + 0.008 * std::sin(2 * pi * along / 1.1 + station);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A railway wagon on its way through a scanned tunnel, made up: does it keep 5 cm from the wall everywhere?
 //
-// The size at scale 1 is that of Schauer & Nuechter, Collision detection between point clouds using an efficient k-d
-// tree implementation (2015): 18.92 M points of a tunnel 1144 m long, a wagon of 2.5 M points, 19,392 positions. The
-// wagon stands on two bogies, so in a bend its middle leaves the track to the inside and its ends to the outside: there
-// it touches walls that its cross-section, carried along the track, would clear. Some lamps reach in too far anywhere.
+// At scale 1 the size is that of Schauer & Nuechter, Collision detection between point clouds using an efficient k-d
+// tree implementation (2015). The tunnel has 18.92 M points and is 1144 m long, the wagon has 2.5 M points, and there
+// are 19,392 positions. The wagon stands on two bogies, so in a bend its middle leaves the track to the inside and its
+// ends to the outside. There it touches walls that its cross-section, carried along the track, would clear. Some lamps
+// reach in too far anywhere.
 //
 // The tight tunnel is one long bend of 180 m radius in which the vault grazes the wagon's upper edges: their gap falls
 // to about the clearance, and stays there for 600 m. Its points come in random order, with noise of 4 mm.
@@ -66,7 +67,7 @@ struct Passage {
   std::vector<Eigen::Isometry3d> poses; ///< of the wagon in the world, evenly spaced over the whole tunnel
 };
 
-/// The same on every call.
+/// Every call makes an equal passage.
 Passage makePassage(const Size& size, Course course = Course::winding);
 
 /// The scan of makePassage() on the winding course point by point, for scans that are larger than memory.

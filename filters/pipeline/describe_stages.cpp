@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the table of stages says, for editors and for readers.
+// Describes the table of stages, for editors and for readers.
 #include <pcl_bsh/filters/pipeline/option_json.h>
 #include <pcl_bsh/filters/pipeline/pipeline.h>
 

@@ -27,7 +27,7 @@ struct Node {
   std::vector<Value> options;                              ///< one per option of the type
   std::vector<std::size_t> inputs;                         ///< nodes before this one
   std::vector<std::pair<std::size_t, std::size_t>> clouds; ///< option and node, for each OtherCloud that is given
-  Json user_data;                                          ///< null when there is none
+  Json user_data;                                          ///< null without one
   bool in_document = true;                                 ///< else it reads a file that another stage's option names
   std::vector<std::pair<std::string, std::filesystem::path>> pose_files; ///< option and file, read with the document
   std::vector<std::string> warnings;                                     ///< of its options, a line each

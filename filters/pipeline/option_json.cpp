@@ -141,7 +141,7 @@ Value poseOf(const Value& given, const Json& json)
   return OptionType<Pose>::to(pose);
 }
 
-/// What messages say of a kind, a range being put before the rest; and its forms.
+/// The words of messages for a kind, of which a range comes before `rest`; and its forms.
 struct KindRow {
   Kind kind;
   const char* phrase;

@@ -28,7 +28,7 @@ struct Form {
 /// In which ways options of a kind may be written.
 const std::vector<Form>& formsOf(Kind kind);
 
-/// What may be written: "a number above 0", "one of free, colliding".
+/// The values that are allowed: "a number above 0", "one of free, colliding".
 std::string expectation(const Option& option);
 
 /// @throws std::invalid_argument `is X: give EXPECTATION`
@@ -36,7 +36,7 @@ PCL_BSH_EXPORT_INTERNAL Value valueOf(const Json& json, const Option& option);
 
 PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value);
 
-/// What a command line gives as text, as a document would give it: texts need no quotes, lists no brackets.
+/// The JSON of a command line's text: texts need no quotes, lists no brackets.
 PCL_BSH_EXPORT_INTERNAL Json jsonOfText(const std::string& text, const Option& option);
 
 } // namespace pcl_bsh::pipeline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an option of a stage may be: the C++ type of a member says how a document writes it.
+// The type of a stage's option: the C++ type of a member says how a document writes it.
 //
 //   bool, int and other integers, double, std::string   true, 3, 0.5, "x"
 //   Limits                                               [0, null]
@@ -39,7 +39,7 @@ struct Limits {
   Limit most;
 };
 
-/// What a document can say, checked to be of the option's kind. std::monostate: null.
+/// A value of a document, checked to be of the option's kind. std::monostate: null.
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, Limits>;
 
 /// Which of these an option is.
@@ -95,7 +95,7 @@ struct LengthOrField {
   std::string field; ///< empty: the length counts
 };
 
-/// What the type itself cannot exceed.
+/// The limits of the type itself.
 template <typename T, typename = void>
 struct NumberLimits {
   static constexpr double least = -std::numeric_limits<double>::infinity();
@@ -118,7 +118,7 @@ struct OptionType;
 
 namespace detail {
 
-/// Of a type that a Value holds as it is.
+/// Conversion of a type that a Value holds as it is.
 template <typename T, Kind K>
 struct HeldType {
   static constexpr Kind kind = K;
@@ -126,7 +126,7 @@ struct HeldType {
   static Value to(const T& option) { return option; }
 };
 
-/// Of a type that a name stands for. @param name its member
+/// Conversion of a type that a name stands for. @param name its member
 template <typename T, std::string T::*name, Kind K>
 struct NamedType {
   static constexpr Kind kind = K;

@@ -27,7 +27,7 @@ std::vector<std::string> typeNames()
   return names;
 }
 
-/// The reader or writer that files of this name stand for; null when there is none.
+/// The reader or writer that files of this name stand for; null where no stage does.
 const StageType* typeOfFile(const std::string& file, bool written)
 {
   const std::string extension = io::extensionOf(file);

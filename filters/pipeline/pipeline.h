@@ -48,7 +48,7 @@ struct OptionOverride {
   std::string value; ///< as in JSON; a text needs no quotes
 };
 
-/// What has become of a stage.
+/// Progress of a stage.
 struct StageProgress {
   std::string tag;
   std::string type;
@@ -59,7 +59,7 @@ struct StageProgress {
   std::size_t stages = 0;   ///< of all
 };
 
-/// What a run leaves behind, beside the files it wrote.
+/// Results of a run, beside the files that it wrote.
 struct PipelineResult {
   std::map<std::string, pipeline::StageCloudPtr> clouds; ///< by tag: what no other stage read
   std::vector<std::string> warnings;                     ///< `TAG: text`
@@ -74,7 +74,7 @@ public:
   static Pipeline parse(std::string_view json, const std::vector<OptionOverride>& overrides = {},
                         const std::string& name = "pipeline");
 
-  /// The same, of a file, or of standard input as `-`. @throws PipelineError also when it cannot be read
+  /// Reads a file, or standard input as `-`. @throws PipelineError also when it cannot be read
   static Pipeline read(const std::filesystem::path& file, const std::vector<OptionOverride>& overrides = {});
 
   Pipeline(Pipeline&&) noexcept;
@@ -93,7 +93,8 @@ public:
   void setNumberOfThreads(unsigned threads);
 
   /// Called when a stage begins and when it is done, one call at a time, from whichever thread runs it. It may call
-  /// cancel(). What it throws ends the run and comes out of run(), once the stages that run by then are done.
+  /// cancel(). An exception that it throws ends the run and comes out of run(), once the stages that run by then are
+  /// done.
   void setProgress(std::function<void(const StageProgress&)> progress);
 
   /// Checks that no file is written over another of the pipeline, that input files are there, that their headers have
@@ -106,8 +107,8 @@ public:
   PipelineResult run();
 
   /// May be called from any thread and from the progress callback: run() begins no more stages, collision queries along
-  /// trajectories stop, and run() throws Cancelled. Each call ends one run at most: the one that goes on or, when there
-  /// is none, the next. Files are complete or as they were.
+  /// trajectories stop, and run() throws Cancelled. Each call ends at most one run: the present one or, without one,
+  /// the next. Files are complete or as they were.
   void cancel() noexcept;
 
 private:

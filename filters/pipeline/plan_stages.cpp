@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 using Headers = std::vector<CloudHeader>;
 
-/// A stage with its options set. Of the clouds that options name, their headers only.
+/// A stage with its options set. Clouds that options name are given by their headers only.
 std::unique_ptr<Stage> makeStage(const Node& node, const Headers& headers)
 {
   std::unique_ptr<Stage> stage = node.type->make();

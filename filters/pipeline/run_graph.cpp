@@ -29,7 +29,7 @@ double secondsSince(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What the whole program has in memory now; 0 where the system does not tell.
+/// Memory of the whole program now; 0 where the system does not tell.
 std::size_t residentBytes()
 {
   std::size_t total_pages = 0;
@@ -51,7 +51,7 @@ std::size_t pointsOf(const StageCloud& cloud)
   return std::size_t{cloud.cloud.width} * cloud.cloud.height;
 }
 
-/// What a stage took. Memory is the whole program's, so stages that ran at the same time share it.
+/// Cost of a stage. Memory is the whole program's, so stages that ran at the same time share it.
 struct Cost {
   std::size_t points_in = 0;
   std::size_t points_out = 0;

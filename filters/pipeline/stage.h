@@ -56,7 +56,7 @@ public:
   /// Called by the pipeline before run().
   void watch(const std::atomic<bool>* cancelled) noexcept { cancelled_ = cancelled; }
 
-  /// What the user should know of the run, a line each.
+  /// Warnings to the user about the run, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// For the stage itself, and what computes for it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What flows from stage to stage.
+// Clouds that go from stage to stage.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -21,20 +21,21 @@ struct LasHeader;
 
 namespace pcl_bsh::pipeline {
 
-/// What was found out about each triangle of a mesh.
+/// A result for each triangle of a mesh.
 struct FaceProperty {
   std::string name;
   std::variant<std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<float>> values; ///< one per triangle
 };
 
-/// A cloud with all its fields, and what its file said beside them: where the sensor stood, tx ty tz qw qx qy qz, as a
-/// PCD file has it; of a LAS file all but its points (scale, offset, coordinate system), which writers.las keeps; of a
-/// mesh its triangles. A stage that removes, adds or reorders records leaves the triangles out, and the pipeline warns.
+/// A cloud with all its fields, and the facts of its file. The viewpoint says where the sensor stood, tx ty tz qw qx
+/// qy qz, as in a PCD file. The header of a LAS file (scale, offset, coordinate system) is kept by writers.las. A
+/// mesh has its triangles. A stage that removes, adds or reorders records leaves the triangles out, and the pipeline
+/// warns.
 struct StageCloud {
   pcl::PCLPointCloud2 cloud;
   std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
-  /// Where each scan's sensor stood, likewise, of clouds whose field `scan` numbers them from 0; or the only one's.
+  /// Viewpoints of each scan's sensor, for clouds whose field `scan` numbers them from 0; or of the only one.
   std::vector<std::array<double, 7>> scanners = {};
   std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
@@ -44,7 +45,7 @@ struct StageCloud {
 
 /// Several stages may read one cloud, so it does not change.
 using StageCloudPtr = std::shared_ptr<const StageCloud>;
-/// What a stage is given: one for each input.
+/// Input of a stage: one cloud for each input.
 using StageClouds = std::vector<StageCloudPtr>;
 
 /// The fields of a cloud, without its points.

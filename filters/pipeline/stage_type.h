@@ -57,7 +57,7 @@ struct StageType {
 
   bool isReader() const { return most_inputs == 0; }               ///< takes no cloud
   bool isWriter() const { return name.rfind("writers.", 0) == 0; } ///< ends in a file
-  const Option* findOption(const std::string& option) const;       ///< by name; null when there is none
+  const Option* findOption(const std::string& option) const;       ///< by name; null where no option has it
 
   /// Its standard is what a new stage has. Not inline: GCC 12 sees a Value free what it never held.
   void addOption(Option option);
@@ -92,7 +92,7 @@ public:
     return *this;
   }
 
-  /// Of files whose mere name in a document stands for this stage; with the dot.
+  /// Extensions of files whose mere name in a document stands for this stage; with the dot.
   StageDescription& extensions(std::vector<std::string> extensions)
   {
     type_.extensions = std::move(extensions);
@@ -128,37 +128,37 @@ public:
     return *this;
   }
 
-  /// Of the last option: what its number counts.
+  /// Sets the last option's unit: its number counts these.
   StageDescription& unit(std::string unit)
   {
     last().unit = std::move(unit);
     return *this;
   }
-  /// Of the last option: a document must give it.
+  /// Makes the last option required in a document.
   StageDescription& required()
   {
     last().required = true;
     return *this;
   }
-  /// Of the last option: > least.
+  /// Sets a limit of the last option: > least.
   StageDescription& above(double least)
   {
     last().above_least = true;
     return atLeast(least);
   }
-  /// Of the last option: >= least.
+  /// Sets a limit of the last option: >= least.
   StageDescription& atLeast(double least)
   {
     last().least = least;
     return *this;
   }
-  /// Of the last option: <= most.
+  /// Sets a limit of the last option: <= most.
   StageDescription& atMost(double most)
   {
     last().most = most;
     return *this;
   }
-  /// Of the last option: one of these texts.
+  /// Sets the texts that the last option may have.
   StageDescription& choices(std::vector<std::string> choices)
   {
     last().choices = std::move(choices);
@@ -172,7 +172,7 @@ public:
     return *this;
   }
 
-  /// What registerStage() takes.
+  /// The argument of registerStage().
   operator StageType() const { return type_; } // NOLINT: a description is a stage type, once it is complete
 
 private:
@@ -197,7 +197,7 @@ bool registerStage(StageType type);
 /// The table: what the library brings, then what registerStage() added.
 const std::deque<StageType>& stageTypes();
 
-/// By name or alias; null when there is none.
+/// By name or alias; null where no stage has it.
 const StageType* findStageType(const std::string& name);
 
 } // namespace pcl_bsh::pipeline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a caller gets who has told a query to stop.
+// Thrown by a query that its caller has told to stop.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -9,7 +9,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What ends work that its caller has asked to stop. Every object is as it was before, or asked again gives the right
+/// Ends work that its caller has asked to stop. Every object is as it was before, or asked again gives the right
 /// answer.
 class Cancelled : public std::runtime_error {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with what a caller gave, in words for people and as a code for programs.
+// The error for wrong input: a sentence for people and a code for programs.
 //
 //   catch (const InvalidInput& error) {
 //     if (error.input() == Input::clearance) ask_again("clearance", error.wrong(), error.remedy());

@@ -24,9 +24,7 @@ public:
   ScratchSlot(const ScratchSlot&) = delete;
   ScratchSlot& operator=(const ScratchSlot&) = delete;
 
-  // Of the slot's own thread.
-
-  /// The scratch left here; null when there is none.
+  /// Takes the scratch that lies here, null without one; the slot's own thread calls it.
   KeptScratch* take() noexcept { return idle_.exchange(nullptr, std::memory_order_acquire); }
 
   /// Leaves the scratch here, which now holds `bytes`, or deletes it: where that is much, more than the limit, or where

@@ -12,7 +12,7 @@
 
 namespace pcl_bsh {
 
-/// Grows and does not shrink by itself. What has room does not throw.
+/// Grows and does not shrink by itself. Throws nothing while the elements fit the capacity.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -40,7 +40,7 @@ public:
     if (size_ + more > capacity_) move(std::max(2 * capacity_, size_ + more + 64));
   }
 
-  /// Likewise, with no room beyond.
+  /// Makes room for exactly `size` elements.
   void reserve(std::size_t size)
   {
     if (size > capacity_) move(size);

@@ -14,9 +14,9 @@ struct FreeBuffer {
   void operator()(void* p) const noexcept;
 };
 
-/// Uninitialised storage. Large ones ask the system for huge pages, where it has them, and are kept when they are freed
-/// (within the limit of retained_memory.h; the system may take them back): first touches of a page, and above all of a
-/// virtual machine's, would cost more than sorting the points that go there.
+/// Uninitialised storage. Large buffers ask the system for huge pages and are kept when they are freed, within the
+/// limit of retained_memory.h. A page's first touch would cost more than sorting the points that go there, most of all
+/// on a virtual machine.
 template <class T>
 using LargeBuffer = std::unique_ptr<T[], FreeBuffer>;
 
@@ -31,8 +31,8 @@ AllocatedBuffer allocateBuffer(std::size_t bytes);
 /// Gives it back to the system.
 void freeBuffer(const AllocatedBuffer& buffer) noexcept;
 
-/// Of the buffers that are kept: the smallest that holds `size` bytes and is not twice as large, the youngest of these;
-/// null when there is none.
+/// Takes the smallest kept buffer that holds `size` bytes and is not twice as large, the youngest of equal ones; null
+/// where no buffer fits.
 AllocatedBuffer takeKeptBuffer(std::size_t size) noexcept;
 
 /// Keeps a buffer within the limit of retained_memory.h: frees the oldest ones for it, or the buffer itself where it

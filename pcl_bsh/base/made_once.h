@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is made of a voxel when a query first asks for it, and kept.
+// Parts of a voxel that the first query makes and that are kept.
 #pragma once
 
 #include <atomic>
@@ -22,8 +22,8 @@ public:
   /// Null where it was not made yet.
   const Element* get() const noexcept { return made_.load(std::memory_order_acquire); }
 
-  /// What was made before, or this. Any number of threads may call it at once: one of them keeps what it gives, and
-  /// all that give something make the same. @param kept set where it is this
+  /// Keeps `made` where nothing is kept yet, and returns the element that is kept. Any number of threads may call it at
+  /// once: one of them keeps what it gives, and all that give something make the same. @param kept set where it is this
   const Element* keep(Owner made, bool& kept) noexcept
   {
     Element* known = nullptr;

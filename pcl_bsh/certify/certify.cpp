@@ -37,13 +37,13 @@ StoredSphere sphereOf(const Storage& storage, const SphereId& id)
   return {node.x[id.child], node.y[id.child], node.z[id.child], node.r[id.child]};
 }
 
-/// What one thread finds on one level.
+/// Findings of one thread on one level.
 struct LevelFindings {
   LevelCertificate sums;
   std::vector<SphereId> spheres; ///< in the voxel's own tree
 };
 
-/// What is found below one voxel, its levels from the top down.
+/// Findings below one voxel, its levels from the top down.
 struct VoxelFindings {
   std::vector<LevelFindings> above, below;
   LevelFindings own;

@@ -20,11 +20,11 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What certify() measures, and with how many threads.
+/// Options of certify(): its sample, and how many threads it uses.
 struct CertifyOptions {
   static constexpr std::size_t all = ~std::size_t{0};
 
-  /// Of each level, how many spheres are compared with the smallest ones. Containment is checked for every sphere.
+  /// How many spheres of each level are compared with the smallest ones. Containment is checked for every sphere.
   std::size_t sample = 1000;
   std::uint64_t seed = 1; ///< of the sample
   unsigned threads = 1;   ///< 0: all of the machine's; the certificate is the same for any number
@@ -65,11 +65,11 @@ struct RadiusRatios {
   double sum = 0.0;
   std::array<std::size_t, edges.size() + 1> histogram = {}; ///< one more than `edges`
 
-  /// Of those measured; 0 where none was.
+  /// Mean of the measured ratios; 0 where none was measured.
   double mean() const noexcept { return measured == 0 ? 0.0 : sum / static_cast<double>(measured); }
 };
 
-/// What certify() found on one level of the tree.
+/// Findings of certify() on one level of the tree.
 struct LevelCertificate {
   SphereLevel level;
   std::size_t spheres = 0;
@@ -79,7 +79,7 @@ struct LevelCertificate {
   RadiusRatios ratio; ///< none for SphereLevel::voxel, whose sphere is not meant to be small
 };
 
-/// What certify() found.
+/// Result of certify().
 struct Certificate {
   static constexpr std::size_t most_leaks = 100;
 
@@ -95,7 +95,7 @@ struct Certificate {
 /// Checks every sphere of the hierarchy against every point below it, on the numbers exactly as stored and given;
 /// builds the voxels that are not built yet. The smallest spheres are CGAL's, in exact arithmetic: Gaertner, Fast and
 /// Robust Smallest Enclosing Balls (ESA 1999); Fischer and Gaertner, The Smallest Enclosing Ball of Balls (SoCG 2003).
-/// The tree itself must be sound but for its spheres (SphereHierarchy::validate()).
+/// Apart from its spheres, the tree must be sound (SphereHierarchy::validate()).
 Certificate certify(const SphereHierarchy& hierarchy, const CertifyOptions& options = {});
 
 } // namespace pcl_bsh

@@ -30,9 +30,9 @@ struct Reach {
   double bound;
 };
 
-/// Derivation of the bound, v = 2^-53: local coordinates err by v |w|, a rational centre turned to doubles by 2v |c|,
-/// their difference by v |d| more, the sum of squares and its root by 3v of the distance; twice that is allowed, and
-/// 2^-500 for whatever underflows. Overflow gives infinity or NaN, and so no verdict.
+/// Derivation of the bound, v = 2^-53. Local coordinates err by v |w|, a rational centre turned to doubles by 2v |c|,
+/// their difference by v |d| more. The sum of squares and its root err by 3v of the distance. Twice that is allowed,
+/// and 2^-500 for underflow. Overflow gives infinity or NaN, and so no verdict.
 Reach reach(const Point3& center, const CertifiedPoint& point)
 {
   double squared = 0.0, sizes = 0.0;

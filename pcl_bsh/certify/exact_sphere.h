@@ -35,7 +35,7 @@ struct StoredSphere {
 /// Certainly in the sphere. False says nothing.
 bool surelyContains(const StoredSphere& sphere, const CertifiedPoint& point);
 
-/// How far the point's ball sticks out of the sphere, in the clouds' unit; 0 when it does not. Exact but for the
+/// How far the point's ball sticks out of the sphere, in the clouds' unit; 0 when it does not. Exact, apart from the
 /// rounding of the result.
 double excess(const LocalFrame& frame, const StoredSphere& sphere, const CertifiedPoint& point);
 

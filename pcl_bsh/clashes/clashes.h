@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clashes of a path: clusters of colliding points, with names that last from run to run.
+// Collisions along a path, place by place: clusters of colliding points, with names that last from run to run.
 #pragma once
 
 #include <pcl_bsh/clashes/extent.h>
@@ -16,10 +16,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Against an earlier list of clashes; without one, all are fresh. Those that were there and are not found again are
-/// resolved if the run looked there. It did not where the path does not come near the place any more (not_visited),
-/// nothing at all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces. A
-/// place that is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
+/// Against an earlier list of clashes; without one, all are fresh. An earlier clash that is not found again is resolved
+/// if the run looked there. It did not where the path does not come near the place any more (not_visited), nothing at
+/// all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces. A place that
+/// is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
 enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
 inline constexpr std::size_t clash_statuses = 6; ///< how many there are
 
@@ -66,10 +66,10 @@ bool isMoreSevere(const Clash& one, const Clash& other);
 /// first. Clusters with a point that collides for certain come before those that collide only perhaps. Then the order
 /// is by smallest distance, so that the deepest come first, then by most points, then by id.
 ///
-/// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin, whose
-/// cells are as long as the smallest power of two that is at least four cluster distances. So it is the same in every
-/// run in which the box's middle stays in its cell, whatever the order of points. A second clash of one cell is
-/// `C12_-3_0#2`; the lower corners of their boxes decide which.
+/// An id tells the place: `C12_-3_0` has the middle of its box in cell (12, -3, 0) of a grid through the origin. The
+/// cells' edge is the smallest power of two that is at least four cluster distances. So it is the same in every run in
+/// which the box's middle stays in its cell, whatever the order of points. A second clash of one cell is `C12_-3_0#2`;
+/// the lower corners of their boxes decide which.
 /// @param found of a request with flags, distances, first_poses and closest_poses
 /// @param cluster_distance finite, > 0
 /// @throws std::invalid_argument for another distance, or a result without these vectors or of another scan
@@ -80,14 +80,14 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 /// @param cluster_distance finite, > 0
 void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
 
-/// The same of what is unseen and was no clash.
+/// Names the unseen places that were no clash.
 void nameUnseenPlaces(std::vector<Clash>& places, double cluster_distance);
 
-/// Tells which clashes were there before: those whose box comes within `nearness` (per axis) of an earlier one's box
-/// are persisting, and each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to
-/// one, so that a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are
-/// appended as resolved, which FormerPlaces then judges; those that were resolved then already are forgotten. What is
-/// unseen and was no clash gets ids from its like alone, and is forgotten where it is not found again.
+/// Tells which clashes were there before: a clash is persisting if its box comes within `nearness` (per axis) of an
+/// earlier one's box. Each earlier id passes on to the clash whose middle is nearest to the earlier middle, one to one.
+/// So a clash that moves or grows across cells keeps its id. Earlier clashes that nothing comes near are appended as
+/// resolved, which FormerPlaces then judges; those that were resolved then already are forgotten. An unseen place that
+/// was no clash gets its id from earlier unseen places alone, and is forgotten where it is not found again.
 /// @return how many boxes were compared
 std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<Clash>& earlier, double nearness);
 

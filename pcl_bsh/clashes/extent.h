@@ -29,10 +29,10 @@ struct Extent {
   }
 };
 
-/// Of a point, without its radius, or of a triangle.
+/// The extent of a point, without its radius, or of a triangle.
 Extent extentOf(const PointsView& points, std::uint32_t record);
 
-/// Of all finite points, or triangles; none where there is none.
+/// The extent of all finite points, or triangles; nothing where no record is finite.
 std::optional<Extent> extentOf(const PointsView& points);
 
 } // namespace pcl_bsh

@@ -22,7 +22,8 @@ struct FarPlace {
 };
 
 /// Clusters (euclideanClusters() with that distance) of the finite points that are farther than `beyond` from the other
-/// cloud or have no distance: the worst first, by greatest distance, then by most points, then by smallest record.
+/// cloud or have no distance. The worst comes first: by greatest distance, then by most points, then by smallest
+/// record.
 /// @param found of pointDistances() of this cloud, with an accuracy that does not stop early
 /// @param beyond >= 0 and not NaN
 /// @param cluster_distance finite, > 0

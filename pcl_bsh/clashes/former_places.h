@@ -26,7 +26,7 @@ namespace pcl_bsh {
 /// Scan and model may be told in parts.
 class FormerPlaces {
 public:
-  /// Of those that are resolved. @param clashes kept by reference
+  /// Judges the resolved clashes. @param clashes kept by reference
   FormerPlaces(std::vector<Clash>& clashes, double clearance, double cluster_distance);
   ~FormerPlaces();
   FormerPlaces(const FormerPlaces&) = delete;

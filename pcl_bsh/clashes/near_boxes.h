@@ -29,7 +29,7 @@ public:
 private:
   static constexpr std::uint32_t leaf_size = 4;
 
-  /// Its boxes are order_[begin, end). Of an inner node, the first child is the next node.
+  /// Its boxes are order_[begin, end). An inner node's first child is the next node.
   struct Node {
     Extent box;
     std::uint32_t begin = 0, end = 0;

@@ -13,7 +13,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What of a model is unseen at each pose of its path. Borrowed.
+/// Unseen records of a model at each pose of its path. Borrowed.
 struct UnseenAlong {
   const PointsView& model;                      ///< points or triangles
   const std::vector<Eigen::Isometry3d>& poses;  ///< T_scan_model
@@ -23,14 +23,14 @@ struct UnseenAlong {
   const std::vector<UnseenKinds>* kinds = nullptr;
 };
 
-/// Clusters of the records, as placed, that are unseen at any pose: places in one cell, or in cells that touch, of a
-/// grid through the origin lie together, and so do the corners of a triangle that is unseen as a whole, and those parts
-/// of another triangle whose boxes touch. The cells are as long as the smallest
-/// power of two that is at least the cluster distance. Most points first, then by id.
+/// Clusters of the records, as placed, that are unseen at any pose. Places lie together if they are in one cell, or in
+/// cells that touch, of a grid through the origin. So do the corners of a triangle that is unseen as a whole, and parts
+/// of another triangle whose boxes touch. The cells are as long as the smallest power of two that is at least the
+/// cluster distance. Most points first, then by id.
 ///
-/// Of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `closest_pose`, at which most of
-/// its records are unseen, the first of several; `points`, how many these are; `points_in_shadow`, how many of these
-/// are in shadow there; `place`, the middle of its box; `first_pose`; and no distance (NaN).
+/// Sets of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `place`, the middle of its
+/// box; `first_pose`; and no distance (NaN). `closest_pose` is the first at which most of its records are unseen;
+/// `points` counts these, and `points_in_shadow` those of them in shadow.
 /// @param cluster_distance finite, > 0
 /// @throws std::invalid_argument for another distance
 std::vector<Clash> findUnseenPlaces(const UnseenAlong& along, double cluster_distance);

@@ -131,7 +131,7 @@ private:
       });
   }
 
-  /// Of a place that more points share than a leaf compares, one point answers.
+  /// A leaf compares one point of a crowded place, which answers for all of them.
   void uniteCoincident(const LeafRange& leaf, std::uint32_t points)
   {
     const std::uint32_t* records = leaf.voxel->records() + leaf.begin;

@@ -27,7 +27,7 @@ struct Clusters {
 /// @throws std::invalid_argument unless the distance is finite and >= 0, and the accuracy exact. Cancelled.
 Clusters euclideanClusters(const SphereHierarchy& cloud, double distance, const Effort& effort = {});
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Fills a result, whose memory is used again; it is empty after an exception.
 void euclideanClusters(const SphereHierarchy& cloud, double distance, Clusters& result, const Effort& effort = {});
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

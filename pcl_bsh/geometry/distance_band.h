@@ -10,7 +10,8 @@
 
 namespace pcl_bsh {
 
-/// What float tests between two local frames may conclude about a distance against the reach (a clearance, a radius).
+/// The conclusions that float tests between two local frames allow about a distance and the reach (a clearance, a
+/// radius).
 struct DistanceBand {
   float hit = -1.0f; ///< squared float distance <= hit: within the reach
   float miss = 0.0f; ///< squared float distance > miss: beyond it; anything between, NaN too, is undecided
@@ -37,9 +38,9 @@ inline DistanceBand distanceBand(double low_d, double high_d, double error) noex
   return band;
 }
 
-/// The band where z is the true vector, w its image under a map that changes lengths by a factor of 1 +- skew at most,
-/// and float arithmetic knows w within `error`; no band at all, all undecided, where that is infinite or the reach is
-/// out of range. |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew). @param d >= 0, not NaN
+/// The band for a map that changes lengths by a factor of 1 +- skew at most: z is the true vector, w its image, known
+/// in float within `error`. So |z| <= d follows from |w| <= d (1 - skew), |z| > d from |w| > d (1 + skew). All is
+/// undecided where the error is infinite or d is out of range. @param d >= 0, not NaN
 inline DistanceBand skewedBand(double d, double error, double skew) noexcept
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -110,8 +110,8 @@ std::array<float, 3> ritterCenter(const PointArrays& points)
 
 std::array<float, 3> minimalCenter(const PointArrays& points)
 {
-  // Of a large set only extreme points can matter. Grow a set of them: the smallest ball of the set, then whatever
-  // point lies farthest outside it, until none does.
+  // Only extreme points of a large set can matter. Grow a set of them: take the smallest ball of the set, add the point
+  // farthest outside it, until no point is outside.
   std::vector<Vector3d> chosen{at(points, 0)};
   Ball ball{chosen[0], 0.0};
   for (;;) {

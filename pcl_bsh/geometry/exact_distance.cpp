@@ -181,8 +181,8 @@ ExactDistance::Difference ExactDistance::approximate(const Point3& p, const Poin
 }
 
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
-/// told apart wherever they lie. Twice the errors pay for their own summation; of a distance, the norm of the sums is
-/// rounded by 2.5 v of itself, the last subtraction by one more. kUnderflow pays for underflow of the squares.
+/// told apart wherever they lie. Twice the errors pay for their own summation. The norm of the sums is rounded by 2.5 v
+/// of itself, the last subtraction by one more.
 ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, const Point3& q) const
 {
   Difference z;

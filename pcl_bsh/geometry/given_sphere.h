@@ -19,11 +19,12 @@ struct GivenSphere {
   bool isKnown() const noexcept { return radius >= 0.0; }
 };
 
-/// Around count > 0 points, with their radii. @param point called with 0 .. count - 1. @param ball likewise: the radius
+/// The sphere around count > 0 points with their radii. @param point gives point 0 .. count - 1. @param ball gives its
+/// radius
 ///
-/// Rounding bound: differences of doubles and the sum err by v each. hypot is a coordinate times the root of a sum of
-/// squared quotients, 1 one of them: 4.5 v. kFewDoubleRoundings covers these and its own product; a denormal unit
-/// covers hypot where it is denormal. Differences never underflow.
+/// Rounding bound: differences of doubles and the sum err by v each. A hypot errs by 4.5 v: it is a coordinate times
+/// the root of a sum of squared quotients, one of them 1. kFewDoubleRoundings covers these and its own product. A
+/// denormal unit covers a denormal hypot. Differences never underflow.
 template <class PointAt, class BallAt>
 GivenSphere sphereAround(std::size_t count, const PointAt& point, const BallAt& ball)
 {

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh {
 
-/// Of a coordinate when it is stored: the cast; relativeError()'s room for double arithmetic pays for the subtraction.
+/// The error of a stored coordinate: the cast; relativeError()'s room for double arithmetic pays for the subtraction.
 inline constexpr double kStoringError = relativeError(1);
 
 /// A point p of a cloud is stored as the float x nearest to (p - origin) / unit.

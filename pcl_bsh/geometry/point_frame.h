@@ -46,7 +46,8 @@ public:
   /// At least length + error: a sphere farther away than this and its radius holds no point within `length` units.
   float pruneReach(double length) const noexcept { return static_cast<float>(length + error) * (1.0f + kReachMargin); }
 
-  /// At most length - error: a sphere within this holds only points within `length` units. Negative when there is none.
+  /// At most length - error: a sphere within this holds only points within `length` units. Negative when no such radius
+  /// exists.
   float acceptReach(double length) const noexcept
   {
     const double reach = length - error;

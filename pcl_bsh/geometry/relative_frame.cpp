@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of nearly rigid rotations R, S, whose rows and columns are of length 1 within 1e-6. An entry of R'S sums three
-// products, rounded three times each, of absolute sum 1.000002 at most: it errs by less than 4 v. A row sum of |R'R -
-// I| has three such errors, and its own roundings: less than 16 v.
+// R and S are nearly rigid rotations: rows and columns have length 1 within 1e-6. An entry of R'S sums three products,
+// rounded three times each, of absolute sum 1.000002 at most: it errs by less than 4 v. A row sum of |R'R - I| has
+// three such errors, and its own roundings: less than 16 v.
 constexpr double kRotationError = 4 * kDoubleUnit;
 constexpr double kGramError = 32 * kDoubleUnit;
 
@@ -41,7 +41,7 @@ std::array<double, 9> gram(const Eigen::Matrix3d& m)
           product(1, 2), product(2, 0), product(2, 1), product(2, 2)};
 }
 
-/// What a frame's three axes are computed of, side by side; a fourth is of no use.
+/// Inputs for a frame's three axes, side by side; the fourth lane is unused.
 struct FrameAxes {
   alignas(32) double shift[4];      ///< g
   alignas(32) double error[4];      ///< of floats

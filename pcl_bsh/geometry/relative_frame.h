@@ -11,23 +11,23 @@
 
 namespace pcl_bsh {
 
-/// What all frames of two poses share.
+/// The rotation that all frames of two poses share.
 struct RelativeRotation {
   RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
   Eigen::Matrix3d matrix;                 ///< R_b' R_a
   std::array<double, 12> columns = {};    ///< the same, a column after another, each with a zero behind it
-  std::array<double, 12> back_turns = {}; ///< of R_b', likewise
+  std::array<double, 12> back_turns = {}; ///< of R_b', in the same order
   double stretch = 1.0;                   ///< at least its spectral norm
   double skew = 0.0;                      ///< at least ||R_b'R_b - I||
 };
 
 /// Carries points of frame a into frame b: y = M x + g, so that |y - x_b| times b's unit is the distance of the points.
 ///
-/// Let z = T_a p - T_b q be the true vector, w = R_b' z / unit_b. With E = R_b'R_b - I (zero for a perfect pose),
-/// w = g + M (x_a + e_a) - (I + E)(x_b + e_b), where g = R_b' (T_a origin_a - T_b origin_b) / unit_b is evaluated with
-/// compensated products and M = R_b' R_a unit_a / unit_b. `error` bounds |w - (y - x_b)| over all stored points, float
-/// evaluation of y included (kCarriedProductError, kCarriedShiftError); |z| and |w| differ by at most ||E|| |w|.
+/// Let z = T_a p - T_b q be the true vector, w = R_b' z / unit_b. Let E = R_b'R_b - I, zero for a perfect pose. Then w
+/// = g + M (x_a + e_a) - (I + E)(x_b + e_b). g = R_b' (T_a origin_a - T_b origin_b) / unit_b has compensated products;
+/// M = R_b' R_a unit_a / unit_b. `error` bounds |w - (y - x_b)| over all stored points, float evaluation of y included
+/// (kCarriedProductError, kCarriedShiftError); |z| and |w| differ by at most ||E|| |w|.
 class RelativeFrame {
 public:
   RelativeFrame() = default;
@@ -44,28 +44,29 @@ public:
   std::array<float, 9> m = {}; ///< row-major, float
   std::array<float, 3> g = {}; ///< float
   float stretch_a = 1.0f;      ///< a radius in a's unit, times this, bounds it in b's frame (spectral norm, rounded up)
-  float stretch_b = 1.0f;      ///< likewise for a radius of b: 1 + ||E||, rounded up
+  float stretch_b = 1.0f;      ///< factor for a radius of b: 1 + ||E||, rounded up
   std::array<double, 3> g_exact = {}; ///< g in double
   double error = 0.0;                 ///< in b's units
 
   /// The band for a clearance >= 0 given in the clouds' unit. @pre finite or infinite, not NaN.
   DistanceBand band(double clearance) const noexcept;
 
-  /// The same of what errs by more than stored points do: by so much, and such a share of its distance. A triangle of b
-  /// that was laid flat has flat.error and kFlatShare.
+  /// The band for records that err by more than stored points: by more_error, and by more_share of their distance. A
+  /// triangle of b that was laid flat has flat.error and kFlatShare.
   DistanceBand band(double clearance, double more_error, double more_share) const noexcept;
 
   /// At least (clearance + error) in b's units: two nodes whose centres' float distance exceeds the sum of their
   /// stretched radii and this, by more than rounding, hold no colliding pair.
   float pruneReach(double clearance) const noexcept;
 
-  /// At most (clearance - error) in b's units; the counterpart for "every pair collides". Negative when there is none.
+  /// At most (clearance - error) in b's units; the counterpart for "every pair collides". Negative when no such length
+  /// exists.
   float acceptReach(double clearance) const noexcept;
 
   /// Spheres of this radius or less are of the size of the error: float tests say little about where their points are.
   float bluntRadius() const noexcept;
 
-  /// Whether the float test of two blunt spheres near each other might have gone the other way but for the error.
+  /// Whether the error may have changed the float test of two blunt spheres near each other.
   /// @param squared distance of their centres. @param reach the sum of their stretched radii and pruneReach().
   bool isUndecided(float squared, float reach) const noexcept
   {
@@ -85,7 +86,7 @@ public:
 private:
   double span_ = 0.0;        // of both frames' points around their origins, in b's units
   double float_error_ = 0.0; // `error` before it is given up for values out of range: good in double arithmetic
-  double prune_error_ = 0.0; // likewise, infinite where carried points may overflow: good for spheres, not for points
+  double prune_error_ = 0.0; // the error for spheres, not for points: infinite where carried points may overflow
   double unit_b_ = 1.0;
   double skew_ = 0.0; ///< bounds ||E||
 };

@@ -94,7 +94,7 @@ Eigen::Vector3d turnNearestTo(const Eigen::Vector3d& asked, const Eigen::Matrix3
   const Eigen::Vector3d shorter = shorterTurn(from, to);
   const double length = asked.norm();
   if (length == 0.0) return shorter;
-  // What rounding makes of long turns is in the motion's drift.
+  // The motion's drift covers the rounding of long turns.
   constexpr double kSame = 1e-6;
   if (shorterTurn(rotationBy(asked) * from, to).norm() <= kSame) return asked;
   // Something else turned the body as well. Other turns that arrive differ by full turns about the axis of the shorter
@@ -106,8 +106,8 @@ Eigen::Vector3d turnNearestTo(const Eigen::Vector3d& asked, const Eigen::Matrix3
   return (angle + full * std::round((asked.dot(axis) - angle) / full)) * axis;
 }
 
-/// The point s is seen at U(t) = R'(t) (s - c(t)), where R turns by a and c goes straight by d while t runs from 0 to
-/// 1: |U''| <= a^2 |s - c| + 2 a d, and a curve strays from its chord by an eighth of its second derivative at most.
+/// The point s is seen at U(t) = R'(t) (s - c(t)). R turns by a and c goes straight by d while t runs from 0 to 1, so
+/// |U''| <= a^2 |s - c| + 2 a d. A curve strays from its chord by an eighth of its second derivative at most.
 Bow bowSeenByBody(double angle, double way)
 {
   return {angle * way / 4, angle * angle / 8};

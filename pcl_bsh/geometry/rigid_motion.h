@@ -23,8 +23,8 @@ struct PointMotion {
   }
 };
 
-/// While s goes from 0 to 1, one point of the body, the pivot, moves in a straight line at constant speed, and the body
-/// turns at constant speed about an axis of fixed direction, by a given angle of any size:
+/// While s goes from 0 to 1, one point of the body, the pivot, moves straight at constant speed. The body turns at
+/// constant speed about an axis of fixed direction, by an angle of any size:
 ///
 ///   pose(s) p = (1 - s) from pivot + s to pivot + R(s) (p - pivot),   R(s) = exp(s turn) (R_from + s drift),
 ///
@@ -81,19 +81,19 @@ Eigen::Matrix3d rotationBy(const Eigen::Vector3d& turn);
 /// nearest to them; exactly 0 between equal ones.
 Eigen::Vector3d shorterTurn(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to);
 
-/// The same for matrices that are rotations to rounding.
+/// shorterTurn() for matrices that are rotations to rounding.
 Eigen::Vector3d shorterTurnOfRotations(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to);
 
 /// Whether a shorter turn is half a turn as far as double arithmetic can tell, so that the other way is as short.
 bool isHalfTurn(const Eigen::Vector3d& shorter_turn);
 
-/// Of all turns from one linear part to the other, full turns more or less included, the one nearest to the one asked
-/// for; nothing asked for: the shorter one.
+/// The turn from one linear part to the other, with more or fewer full turns, that is nearest to the one asked for; the
+/// shorter one when nothing is asked for.
 Eigen::Vector3d turnNearestTo(const Eigen::Vector3d& asked, const Eigen::Matrix3d& from, const Eigen::Matrix3d& to);
 
-/// Seen by a body that turns by `angle` while its pivot goes straight by `way`, a point at rest strays from the
-/// straight line between the places where it is seen first and last, at each instant from the line's point at that
-/// instant, by at most drift + turn * (its distance from the pivot's way).
+/// A body turns by `angle` while its pivot goes straight by `way`, and sees a point at rest. Seen by the body, the
+/// point strays from the straight line between its first and last place. At each instant it does so by at most drift +
+/// turn * (its distance from the pivot's way).
 struct Bow {
   double drift, turn;
 };

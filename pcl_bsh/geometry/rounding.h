@@ -60,7 +60,8 @@ inline float roundDown(double x) noexcept
   return stepAwayFromZero(rounded, std::signbit(rounded) ? is_above : -is_above);
 }
 
-/// Of a distance enclosed in double arithmetic, relative to the absolute sum of all terms: ExactDistance::enclose().
+/// Error of a distance enclosed in double arithmetic, relative to the absolute sum of all terms:
+/// ExactDistance::enclose().
 inline constexpr double kTermsError = 32 * kDoubleUnit;
 
 /// A double with the error of the operation that made it.

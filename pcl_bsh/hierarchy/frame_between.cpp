@@ -10,8 +10,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// Whether every float of [low, high] less the origin, a float as well, is a float, when none of them is farther from
-/// the origin than `reach`: all are whole multiples of the last place of the one nearest to 0.
+/// Whether x - origin is a float for every float x of [low, high] that is at most `reach` away from the float `origin`.
+/// All are whole multiples of the last place of the one nearest to 0.
 bool keepsFloats(double low, double high, double origin, double reach)
 {
   if (origin == 0.0) return true;

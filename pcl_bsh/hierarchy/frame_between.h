@@ -13,7 +13,7 @@ namespace pcl_bsh {
 LocalFrame frameBetween(const std::array<double, 3>& low, const std::array<double, 3>& high, bool float_origin,
                         float largest_radius);
 
-/// Of all records of a view; 0 where they have none.
+/// The largest radius in a view; 0 where it has none.
 inline float largestRadiusOf(const PointsView& view)
 {
   return view.radii && view.count > 0 ? *std::max_element(view.radii, view.radii + view.count) : 0.0f;

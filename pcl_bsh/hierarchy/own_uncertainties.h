@@ -19,7 +19,7 @@ struct alignas(32) UncertaintyLanes {
   float least[kNodeChildren], most[kNodeChildren];
 };
 
-/// Of a voxel.
+/// The uncertainties of a voxel's points and nodes.
 struct OwnUncertainties {
   std::vector<UncertaintyLanes> nodes; ///< as Voxel::nodes
   std::unique_ptr<float[]> points;     ///< in the order of the block, then kMaxLeafPoints times 0, to be read

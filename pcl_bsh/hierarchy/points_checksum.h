@@ -42,8 +42,8 @@ std::uint64_t checksumOfBits(const PointsView& view)
   return sum;
 }
 
-/// Of all coordinates and their order, as they are written; of triangles, those of the vertices, and the corners. Bytes
-/// between them may change.
+/// Checksum of all coordinates and their order, as they are written; for triangles, of the vertices and the corners.
+/// Bytes between them may change.
 inline std::uint64_t checksumOf(const PointsView& view)
 {
   if (view.triangles) {

@@ -50,7 +50,7 @@ struct PointsView {
     index_count = record_count;
   }
 
-  /// Whether records are balls. Those that hold triangles only bound these.
+  /// Whether records are balls. The balls of triangles are not records: they only bound them.
   bool areBalls() const noexcept { return radii && !triangles; }
 
   /// How many points the view names (a subset counts its indices).
@@ -85,12 +85,12 @@ struct PointsView {
     return radii ? radii[record] : 0.0;
   } ///< 0 where points have none
 
-  /// How far a record reaches beyond its point or its triangle: that of a triangle's ball is none of its own.
+  /// How far a record reaches beyond its point or its triangle: 0 for triangles, whose ball only bounds them.
   double ownRadius(std::uint32_t record) const noexcept { return triangles ? 0.0 : radius(record); }
 
   bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< queries tell verdicts apart
 
-  /// What a record adds to `uncertainty`.
+  /// The uncertainty of a record beside `uncertainty`, which all share.
   double ownUncertainty(std::uint32_t record) const noexcept { return uncertainties ? uncertainties[record] : 0.0; }
 };
 

@@ -6,7 +6,7 @@
 
 namespace pcl_bsh {
 
-/// Of a triangle, or of the point of a record that is none.
+/// The corners of a triangle; a point is a triangle of three equal corners.
 inline Corners cornersOf(const PointsView& view, std::uint32_t record)
 {
   return view.triangles ? Corners::of(view.triangles->triangle(record)) : Corners::of(view.point(record));

@@ -66,9 +66,9 @@ bool readBounds(const Voxel& voxel, const PointsView& view, Bounds& bounds, floa
   return finite;
 }
 
-/// Gives the voxel its points' new coordinates and its frame. Its tree follows where it can, else it is to be built
-/// anew: where points of one place may have parted, where spheres have grown by more than `most_growth` on average, and
-/// where there is no memory. @param points room for as many as the voxel has. @param report what became of the voxel
+/// Gives the voxel its points' new coordinates and its frame. Its tree follows where it can. It is built anew where
+/// points of one place may have parted, where spheres have grown by more than `most_growth` on average, and where
+/// memory is exhausted.
 void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double most_growth, SphereFit fit,
             PointRecord* points, RefitReport& report) noexcept
 {
@@ -123,7 +123,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
   Storage& s = *storage_;
   if (s.size < now.size() && countFinite(now) != s.size) return sortAnew();
 
-  // What may throw comes first, and changes nothing.
+  // Steps that may throw come first, and change nothing.
   std::vector<LocalFrame> frames(s.voxel_count);
   std::uint32_t most_points = 0;
   const float largest_of_all = largestRadiusOf(now);
@@ -153,7 +153,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
     for (std::size_t v = 0; v < s.voxel_count; ++v)
       follow(s.voxels[v], frames[v], now, most_growth, s.options.fit, points.data(), report);
     s.frame = frame;
-    s.setAbove(Storage::raise(voxels, frame, s.takeAbove()));
+    s.setTopTree(Storage::makeTopTree(voxels, frame, s.takeTopTree()));
   }();
   report.voxels_refitted = s.voxel_count;
   report.volumes_refitted += countChildren(s.top);

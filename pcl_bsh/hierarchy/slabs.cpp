@@ -99,7 +99,7 @@ Eigen::Matrix3d covarianceOf(const Places& places, const Node& node, std::uint32
   return covariance - mean * mean.transpose();
 }
 
-/// A principal axis of points, of length 1 within 2^-22; 0 where there is none.
+/// A principal axis of points, of length 1 within 2^-22; 0 where they have no such axis.
 Eigen::Vector3f principalAxis(const Eigen::Matrix3d& covariance, SlabAxis axis)
 {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;

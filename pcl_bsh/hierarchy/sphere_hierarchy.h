@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One cloud's index: voxels, cells in each voxel, and one tree of bounding spheres over all of them. After Figueiredo,
 // Pereira, Oliveira, Araujo: Collision Detection for Point Cloud Models with Bounding Spheres Hierarchies, IJVR 11(2),
-// 2012. There each voxel has an octree and each cell of it a tree of spheres of its own (CellSplit::octants); here
-// cells are halved along their longest axis, unless the options say otherwise, and the spheres of cells and those
-// within them are levels of one tree (ARCHITECTURE.md has why).
+// 2012. There each voxel has an octree, and each cell of it a tree of spheres of its own (CellSplit::octants). Here
+// cells are halved along their longest axis, unless the options say otherwise. The spheres of cells and those within
+// them are levels of one tree; ARCHITECTURE.md gives the reason.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -38,7 +38,7 @@ struct HierarchyOptions {
   unsigned threads = 1; ///< for sorting points into voxels; 0: all of the machine's
 };
 
-/// What a hierarchy holds. Lengths in the cloud's unit; of the voxels built so far.
+/// Sizes of a hierarchy. Lengths in the cloud's unit; of the voxels built so far.
 struct HierarchyStatistics {
   std::size_t points = 0;       ///< finite points indexed
   std::size_t voxels = 0;       ///< non-empty voxels
@@ -53,14 +53,14 @@ struct HierarchyStatistics {
   double mean_leaf_radius = 0.0;
 };
 
-/// What validate() found. No line: no defect.
+/// The defects that validate() found. No line: no defect.
 struct HierarchyDefects {
   std::vector<std::string> lines; ///< the first hundred defects, one a line
   /// Whether all is as queries need it.
   bool none() const noexcept { return lines.empty(); }
 };
 
-/// What a refit did.
+/// Counts of a refit.
 struct RefitReport {
   bool sorted_anew = false; ///< the whole hierarchy was made anew: points had scattered, or some came or went
   std::size_t voxels_refitted = 0;
@@ -76,9 +76,9 @@ struct RefitReport {
 /// PointsView::owner keeps them alive, and must not change but through refit() and HierarchyUpdate.
 class SphereHierarchy {
 public:
-  /// @throws std::invalid_argument naming the offending value: a null or too large view, a stride or offsets for which
-  ///   records or coordinates lie over each other, an index outside the view, a radius that is negative or not finite,
-  ///   a negative or non-finite voxel edge.
+  /// @throws std::invalid_argument naming the offending value: a null or too large view, an index outside it, a stride
+  ///   or offsets for which records or coordinates overlap. Also a radius that is negative or not finite, and a voxel
+  ///   edge that is.
   explicit SphereHierarchy(const PointsView& points, const HierarchyOptions& options = {});
   ~SphereHierarchy();
   SphereHierarchy(SphereHierarchy&&) noexcept;
@@ -101,7 +101,7 @@ public:
   /// are fitted to the points anew; answers are those of a hierarchy built anew. Not while a query runs.
   /// @param now as many records as before, of the same scalar type and subset; becomes the view
   /// @param most_growth >= 1: a voxel's tree is dropped when the radii of its leaves have grown by more than this
-  ///   factor on average since it was built; all points are sorted anew when those of the voxels have
+  ///   factor on average since it was built. All points are sorted anew when the radii of the voxels have
   /// @throws std::invalid_argument when `now` does not fit, or the factor is not finite and >= 1; std::bad_alloc. The
   ///   hierarchy is then as it was, and refit() may be called again.
   RefitReport refit(const PointsView& now, double most_growth = 1.5);

@@ -31,7 +31,7 @@ SphereHierarchy::Storage::Storage(const PointsView& points, const HierarchyOptio
   }
   for (std::size_t v = 0; v < voxel_count; ++v) measureVoxel(voxels[v], view);
   extent = sumOfRadii();
-  setAbove(raise(list(), frame, Above()));
+  setTopTree(makeTopTree(list(), frame, TopTree()));
 }
 
 void measureVoxel(Voxel& voxel, const PointsView& view)
@@ -66,10 +66,10 @@ std::vector<Voxel*> SphereHierarchy::Storage::list() const
   return all;
 }
 
-SphereHierarchy::Storage::Above SphereHierarchy::Storage::raise(const std::vector<Voxel*>& all, const LocalFrame& frame,
-                                                                Above reuse)
+SphereHierarchy::Storage::TopTree SphereHierarchy::Storage::makeTopTree(const std::vector<Voxel*>& all,
+                                                                        const LocalFrame& frame, TopTree reuse)
 {
-  Above above = std::move(reuse);
+  TopTree above = std::move(reuse);
   above.largest_radius = 0.0;
   for (const Voxel* voxel : all)
     above.largest_radius = std::max(above.largest_radius, static_cast<double>(voxel->largest_radius));

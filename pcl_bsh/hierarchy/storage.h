@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a SphereHierarchy holds: one buffer of points in voxel order, the voxels, and the tree above them.
+// The storage of a SphereHierarchy: one buffer of points in voxel order, the voxels, and the tree above them.
 #pragma once
 
 #include <pcl_bsh/base/large_buffer.h>
@@ -28,7 +28,7 @@ struct PointRecord {
 };
 static_assert(sizeof(PointRecord) == 4 * sizeof(float));
 
-/// Of the voxel grid, or of an octree: [low, low + edge] on each axis.
+/// A cube of the voxel grid, or of an octree: [low, low + edge] on each axis.
 struct Cube {
   Point3 low;
   double edge;
@@ -68,8 +68,8 @@ struct Voxel {
   std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
   LazySlabs slabs{SlabAxis::least};    ///< of the nodes, once built and asked for
-  LazySlabs cross_slabs{SlabAxis::second}; ///< likewise
-  LazyUncertainties own_uncertainties;     ///< likewise
+  LazySlabs cross_slabs{SlabAxis::second}; ///< made when a query first asks
+  LazyUncertainties own_uncertainties;     ///< made when a query first asks
   bool was_read = false;                   ///< by Storage::readOnce()
   std::atomic<std::uint8_t> state{sorted};
 
@@ -218,19 +218,19 @@ public:
 
   double extent = 0.0; ///< sum of the voxels' radii when the points were sorted into them, in the cloud's unit
 
-  /// What depends on all voxels: the tree above them, and where to find each.
-  struct Above {
+  /// Data of all voxels together: the tree above them, and where to find each.
+  struct TopTree {
     std::vector<Node> top;
     std::vector<std::uint32_t> slots;
     double largest_radius = 0.0;
   };
 
-  /// Of measured voxels, in the order of their keys. @param reuse for the same number of voxels with the same keys as
-  /// it was made of before, nothing is allocated
-  static Above raise(const std::vector<Voxel*>& all, const LocalFrame& frame, Above reuse);
+  /// Makes the tree above measured voxels, in the order of their keys. @param reuse an earlier result: with as many
+  /// voxels of equal keys, nothing is allocated
+  static TopTree makeTopTree(const std::vector<Voxel*>& all, const LocalFrame& frame, TopTree reuse);
 
-  Above takeAbove() noexcept { return {std::move(top), std::move(slots_), largest_radius}; }
-  void setAbove(Above&& above) noexcept
+  TopTree takeTopTree() noexcept { return {std::move(top), std::move(slots_), largest_radius}; }
+  void setTopTree(TopTree&& above) noexcept
   {
     top = std::move(above.top);
     slots_ = std::move(above.slots);
@@ -250,7 +250,7 @@ public:
   /// Every voxel's block, each followed by padding that vector loads may touch. The first holds the voxels as sorted;
   /// others those that an update made anew.
   std::vector<LargeBuffer<float>> buffers;
-  std::vector<std::unique_ptr<float[]>> radii_buffers; ///< likewise of `radii`
+  std::vector<std::unique_ptr<float[]>> radii_buffers; ///< the memory of `radii`
   std::size_t floats_unused = 0;                       ///< in the buffers, left behind by updates
 
 private:
@@ -339,8 +339,8 @@ VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& opti
 /// The octree above voxels in the order of their keys, one at least, in the cloud's frame. Into the memory of `reuse`.
 std::vector<Node> buildTop(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse);
 
-/// A frame's reach is rounded outward by this share of it, far above what double arithmetic gets wrong, and is at least
-/// so much: no coordinate that is stored is 0 beside a reach of 0.
+/// A frame's reach is rounded outward by this share of it, far above the errors of double arithmetic. It has this least
+/// value, so that no coordinate other than 0 is stored beside a reach of 0.
 inline constexpr double kReachGrowth = 0x1p-20;
 inline constexpr double kSmallestReach = 0x1p-140;
 

@@ -85,8 +85,8 @@ Coordinate rounded(double x)
     return x;
 }
 
-/// How far a middle may be from its triangle, as a share of the largest coordinate: a sum of corners, whose weights add
-/// up to 1 within a few roundings, on each axis, then rounded to a coordinate.
+/// How far a middle may be from its triangle, as a share of the largest coordinate. On each axis it is a sum of
+/// corners, whose weights add up to 1 within a few roundings, rounded to a coordinate.
 template <class Coordinate>
 inline constexpr double kOffMiddle = 2 * ((std::is_same_v<Coordinate, float> ? kFloatUnit : 0.0) + 16 * kDoubleUnit);
 
@@ -121,7 +121,7 @@ void ballOf(Balls<Coordinate>& balls, std::size_t i, double& largest)
         .withIndex(i);
 }
 
-/// The same of those from i on.
+/// Makes the balls of the triangles from `first` on.
 template <class Coordinate>
 void eightBallsOf(Balls<Coordinate>& balls, std::size_t first, double& largest)
 {

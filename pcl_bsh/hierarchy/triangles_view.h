@@ -55,15 +55,15 @@ std::size_t looseVertices(const TrianglesView& triangles);
 /// is no part of it, as a point that is not finite. The balls, 16 bytes a triangle (28 of float64 vertices), are owned
 /// by the view that is returned, and so is a copy of `triangles`.
 /// @throws InvalidInput (Input::surface) naming the triangle and the value: corners that are null or not in the view,
-///   too many triangles, a stride below three numbers, vertices with radii, uncertainties of their own or a subset, a
-///   triangle too large for a float32 radius; as checkView() does of the vertices
+///   too many triangles, a stride below three numbers, a triangle too large for a float32 radius. Also vertices with
+///   radii, uncertainties of their own or a subset, and the vertices that checkView() refuses
 PointsView viewOf(const TrianglesView& triangles);
 
 /// The middles of a view's records as points: of triangles, those of their balls, which lie on the triangles up to
 /// rounding. Whatever is no triangle is seen as it is, without radii.
 PointsView middlesOf(const PointsView& view);
 
-/// What viewOf() refuses, but for a size. @throws InvalidInput as it does
+/// Refuses the triangles that viewOf() refuses, except for their size. @throws InvalidInput
 void checkTriangles(const TrianglesView& triangles);
 
 } // namespace pcl_bsh

@@ -134,8 +134,8 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float la
   return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32, largest_radius);
 }
 
-/// Whether a voxel was made for other lengths of its points than they have now, though none of them moved: other
-/// radii, or uncertainties that part points of one place, of which one stands for all.
+/// Whether a voxel's tree is outdated by its points' lengths, though none of them moved. Radii may differ. So may
+/// uncertainties of points of one place, of which one stands for all.
 bool isOutdated(const Voxel& voxel, const PointsView& now)
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
@@ -327,7 +327,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   }
   takeUntil(storage.voxels.get() + storage.voxel_count);
   const LocalFrame frame = count > 0 ? frameOfAll(after, now.scalar, largest_radius) : LocalFrame();
-  SphereHierarchy::Storage::Above above = SphereHierarchy::Storage::raise(after, frame, {});
+  SphereHierarchy::Storage::TopTree above = SphereHierarchy::Storage::makeTopTree(after, frame, {});
   report.volumes_built += countChildren(above.top);
   storage.buffers.reserve(storage.buffers.size() + 1);
   storage.radii_buffers.reserve(storage.radii_buffers.size() + 1);
@@ -350,7 +350,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
     storage.floats_unused = unused;
     storage.frame = frame;
     storage.extent = storage.sumOfRadii();
-    storage.setAbove(std::move(above));
+    storage.setTopTree(std::move(above));
   }();
   try {
     compact(storage);

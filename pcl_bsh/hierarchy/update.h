@@ -17,7 +17,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What an update did. Counts are free of noise.
+/// Counts of an update. Counts are free of noise.
 struct UpdateReport {
   std::size_t voxels_touched = 0; ///< that a point left or entered, or that were made for other radii or uncertainties
   std::size_t voxels_added = 0;   ///< of these, new ones
@@ -38,7 +38,7 @@ public:
 
   /// @param now at least as many records as before, of the same scalar type; all that are new were announced; becomes
   ///   the view of the hierarchy. Its radii and uncertainties may be others, of all records
-  /// @throws std::invalid_argument when `now` is none of that; std::bad_alloc. The hierarchy is then as it was, and
+  /// @throws std::invalid_argument when `now` is not such a view; std::bad_alloc. The hierarchy is then as it was, and
   ///   commit() may be called again.
   UpdateReport commit(const PointsView& now);
 

@@ -18,8 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Of `count` points, where coordinate(axis, i) gives those of the i-th and following in double, and point(i) a point
-/// as it was given. Writes whole vectors.
+/// Squared distances of `count` points: coordinate(axis, i) gives coordinates of the i-th and following in double,
+/// point(i) a point as it was given. Writes whole vectors.
 template <class Coordinate, class PointAt>
 HWY_INLINE void measureBy(const Coordinate& coordinate, const PointAt& point, const Point3& place, std::uint32_t count,
                           float* squared)
@@ -44,7 +44,7 @@ HWY_INLINE void measureBy(const Coordinate& coordinate, const PointAt& point, co
   }
 }
 
-/// Of points that a voxel stores as they were given, `local` their coordinates there.
+/// Squared distances of points that a voxel stores as they were given; `local` are their coordinates there.
 template <class PointAt>
 HWY_INLINE void measureStored(const float* const (&local)[3], const PointAt& point, const Point3& place,
                               const Voxel& voxel, std::uint32_t count, float* squared)
@@ -57,7 +57,7 @@ HWY_INLINE void measureStored(const float* const (&local)[3], const PointAt& poi
   measureBy(coordinate, point, place, count, squared);
 }
 
-/// Of points read from the caller's cloud.
+/// Squared distances of points read from the caller's cloud.
 template <class PointAt>
 HWY_INLINE void measureGiven(const PointAt& point, const Point3& place, std::uint32_t count, float* squared)
 {
@@ -75,7 +75,7 @@ HWY_INLINE void measureGiven(const PointAt& point, const Point3& place, std::uin
   }
 }
 
-/// Of points [begin, begin + count); writes whole vectors.
+/// Squared distances of points [begin, begin + count); writes whole vectors.
 HWY_INLINE void measure(const PointsView& view, const Point3& place, const Voxel& voxel, std::uint32_t begin,
                         std::uint32_t count, float* squared)
 {
@@ -84,7 +84,7 @@ HWY_INLINE void measure(const PointsView& view, const Point3& place, const Voxel
   measureStored({voxel.x() + begin, voxel.y() + begin, voxel.z() + begin}, point, place, voxel, count, squared);
 }
 
-/// Of those of the sixteen points from `begin` on that have their bit set, named in `records`. Writes whole vectors.
+/// Names and measures the points whose bit is set, among the sixteen from `begin` on. Writes whole vectors.
 /// @return how many.
 HWY_INLINE std::uint32_t measureSome(const PointsView& view, const Point3& place, const Voxel& voxel,
                                      std::uint32_t begin, std::uint32_t bits, std::uint32_t* records, float* squared)

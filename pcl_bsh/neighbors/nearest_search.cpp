@@ -156,7 +156,7 @@ private:
     });
   }
 
-  /// Points of one place: one comparison decides all. Of equal points the smallest record numbers count; they come
+  /// Points of one place: one comparison decides all. Equal points count in the order of their record numbers, smallest
   /// first.
   void compareOne(const NearestFrame& frame, const Voxel& voxel, std::uint32_t begin, std::uint32_t count)
   {
@@ -326,7 +326,7 @@ private:
     highs_.resize(kept);
   }
 
-  /// Of the candidates that may be within the bound, names and measures those within the radius.
+  /// Names and measures the candidates within the radius.
   void collect()
   {
     if (places_.size() > k_) tighten();

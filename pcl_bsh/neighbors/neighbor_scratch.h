@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries for neighbours share below their public face: memory kept from query to query, and the last steps.
+// Parts that all queries for neighbours share: memory kept from query to query, and the last steps.
 #pragma once
 
 #include <pcl_bsh/base/kept_scratch.h>

@@ -44,9 +44,9 @@ HWY_EXPORT(sortFewOnTarget);
 
 namespace {
 
-/// Sorts by counting in equal steps of squared distance, which leaves few numbers per step for points of a surface:
-/// scatters the keys by step and moves the few left out of order. @return false, and nothing done, where the steps are
-/// too full.
+/// Sorts by counting in equal steps of squared distance, of which each has few points of a surface. Scatters the keys
+/// by step, and moves the few that are left out of order. @return false, and nothing done, where the steps are too
+/// full.
 bool sortBySteps(NeighborScratch& scratch, std::size_t count)
 {
   constexpr std::uint32_t kFull = 12; // keys of one step, beyond which moving them one by one takes too long

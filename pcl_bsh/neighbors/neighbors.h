@@ -6,7 +6,7 @@
 //   radiusSearch(scan, {x, y, z}, 0.1, found);            // |p - q| <= 0.1, in the memory of `found`
 //   bool near = anyInRadius(scan, {x, y, z}, 0.1);
 //
-// What takes a result uses its memory again.
+// Functions that fill a result use its memory again.
 //
 // Neighbours and their order are those of exact arithmetic on the given numbers: by ascending distance,
 // equal distances by ascending record number. Radii that the cloud's points may have play no part. A query that is not
@@ -49,7 +49,7 @@ struct RadiusOptions {
 Neighbors radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius,
                        const RadiusOptions& options = {});
 
-/// The same into a result. @return how many.
+/// Fills a result. @return how many neighbours it has.
 /// @param work when given, what the query cost is added: a node or leaf pair is one node or leaf against the query.
 std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, double radius, Neighbors& found,
                          const RadiusOptions& options = {}, Work* work = nullptr);
@@ -57,7 +57,7 @@ std::size_t radiusSearch(const SphereHierarchy& cloud, const Point3& query, doub
 /// The k nearest points, or all when there are fewer.
 Neighbors nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k);
 
-/// The same into a result. @return how many. `work` as above.
+/// Fills a result. @return how many neighbours it has. `work` as above.
 std::size_t nearestKSearch(const SphereHierarchy& cloud, const Point3& query, std::size_t k, Neighbors& found,
                            Work* work = nullptr);
 
@@ -68,11 +68,11 @@ bool anyInRadius(const SphereHierarchy& cloud, const Point3& query, double radiu
 /// @throws std::invalid_argument when a bound is NaN. Infinite bounds are bounds; low above high is an empty box.
 std::vector<std::int32_t> boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high);
 
-/// The same into a result. @return how many. `work` as above.
+/// Fills a result. @return how many indices it has. `work` as above.
 std::size_t boxSearch(const SphereHierarchy& cloud, const Point3& low, const Point3& high,
                       std::vector<std::int32_t>& indices, Work* work = nullptr);
 
-/// The same for many queries at once, shared among threads and taken in an order that visits neighbouring places one
+/// Answers many queries at once, shared among threads. It takes them in an order that visits neighbouring places one
 /// after another. The i-th answer belongs to the i-th point that the view of queries names: bit for bit what the single
 /// query gives. @throws as the single query does; std::invalid_argument for an accuracy other than exact. Cancelled.
 NeighborLists radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius,
@@ -80,7 +80,7 @@ NeighborLists radiusSearch(const SphereHierarchy& cloud, const PointsView& queri
 NeighborLists nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k,
                              const Effort& effort = {});
 
-/// The same into a result.
+/// Fill a result.
 void radiusSearch(const SphereHierarchy& cloud, const PointsView& queries, double radius, NeighborLists& found,
                   const RadiusOptions& options = {}, const Effort& effort = {});
 void nearestKSearch(const SphereHierarchy& cloud, const PointsView& queries, std::size_t k, NeighborLists& found,

@@ -22,7 +22,7 @@ namespace {
 
 using Place = Eigen::Vector2d;
 
-/// What is nearer to a point than to any of its neighbours: its Voronoi cell, within a square about it.
+/// The region nearer to a point than to its neighbours: its Voronoi cell, within a square about it.
 class Cell {
 public:
   void begin(double half_edge)
@@ -52,7 +52,7 @@ public:
   /// Twice the distance of the farthest corner.
   double width() const { return 2 * std::sqrt(farthest_); }
 
-  /// The same of those corners whose circles are no wider than this; 0 for none.
+  /// Width of the widest circle at a corner that is no wider than `widest`; 0 for none.
   double widthWithin(double widest) const
   {
     double largest = 0.0;

@@ -46,7 +46,7 @@ public:
     return false;
   }
 
-  /// Those of the points from `begin` on, sixteen at most, that have their bit set.
+  /// Takes the points whose bit is set, among the sixteen from `begin` on.
   bool takeSome(const Voxel& voxel, std::uint32_t begin, std::uint32_t bits)
   {
     makeRoom(kLeafPoints);
@@ -153,7 +153,7 @@ private:
     return false;
   }
 
-  /// What a voxel's frame makes of the query.
+  /// The query in a voxel's frame.
   struct Local {
     const Voxel& voxel;
     QueryBall ball;

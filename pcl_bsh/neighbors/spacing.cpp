@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kGroups = 32, kGroupPoints = 32;
 
-/// Distances from places of a cloud to the nearest point elsewhere, as the points are given; infinity when there is
-/// none.
+/// Distances from points of a cloud to the nearest point at another place, as the points are given; infinity when all
+/// are at one place.
 class NearestElsewhere {
 public:
   explicit NearestElsewhere(const SphereHierarchy& cloud) : cloud_(cloud) {}

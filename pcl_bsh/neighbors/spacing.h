@@ -19,7 +19,7 @@ struct Spacing {
 };
 
 /// Asks at most 1,024 points, in 32 groups that are evenly spaced through the cloud's voxels, so that few voxels are
-/// built for it; all points of a cloud that has no more. The same on every call.
+/// built for it; all points of a cloud that has no more. Every call gives an equal result.
 Spacing spacingOf(const SphereHierarchy& cloud);
 
 } // namespace pcl_bsh

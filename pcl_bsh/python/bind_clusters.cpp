@@ -3,8 +3,8 @@
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 

@@ -3,8 +3,8 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/typed.h>
 #include <pcl_bsh/question/held.h>
 
@@ -154,7 +154,7 @@ Side sideOf(const std::string& text)
   throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
 }
 
-/// Of one side, or of both.
+/// Arrays of one side, or of both.
 template <class Sides, class Value>
 auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
 {
@@ -164,11 +164,12 @@ auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
     return arrayFrom(std::move(side == Side::a ? a : b));
 }
 
-/// Of collisions at one pose each.
-Asked collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a, const PoseLike& pose_b,
-                      const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
+/// The question about collisions at one pose each.
+PythonQuestion collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const PoseLike& pose_a,
+                               const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
+                               const py::kwargs& options)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  PythonQuestion asked(a, pose_a, b, pose_b);
   asked.question.clearance = clearance;
   asked.question.accuracy = accuracyOf(accuracy);
   asked.question.threads = threads;
@@ -177,7 +178,7 @@ Asked collisionsAsked(const Cloud& a, const Cloud& b, double clearance, const Po
 }
 
 /// Unseen are points of b alone: answers that do not have them must not hide them.
-void refuseSeen(const Asked& asked)
+void refuseSeen(const PythonQuestion& asked)
 {
   if (asked.question.seen)
     throw InvalidOption("seen", "is about points of b, which this does not tell",
@@ -189,7 +190,7 @@ auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const Po
                       const Sides& side, const AccuracyLike& accuracy, unsigned threads,
                       const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b, const py::kwargs& options)
 {
-  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
+  PythonQuestion asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
   const Side flagged = sideOf(side.template cast<std::string>());
   Question& question = asked.question;
   if (flagged == Side::a) refuseSeen(asked);
@@ -210,7 +211,7 @@ auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const 
                         const PoseLike& pose_b, const Sides& side, const AccuracyLike& accuracy, unsigned threads,
                         const py::kwargs& options)
 {
-  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
+  PythonQuestion asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
   const Side flagged = sideOf(side.template cast<std::string>());
   refuseSeen(asked);
   asked.question.wanted.indices = flagged != Side::b;
@@ -228,7 +229,7 @@ AnyResult anyCollisionOf(const Cloud& a, const Cloud& b, double clearance, const
                          const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads,
                          const py::kwargs& options)
 {
-  Asked asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
+  PythonQuestion asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
   refuseSeen(asked);
   asked.question.wanted.any = true;
   return asked.answer().any;
@@ -246,7 +247,7 @@ DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pos
                              std::optional<double> max_distance, const AccuracyLike& accuracy, unsigned threads,
                              bool solid, bool input_solid)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  PythonQuestion asked(a, pose_a, b, pose_b);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   DistanceRequest request;

@@ -2,8 +2,8 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 
@@ -79,7 +79,7 @@ ContactsRequest requestOf(double clearance, const std::optional<std::size_t>& mo
 Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optional<std::size_t> most,
                     const PoseLike& pose_a, const PoseLike& pose_b)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  PythonQuestion asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
   asked.question.clearance = clearance;
   const auto find = [&] {
@@ -101,7 +101,7 @@ Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optio
 py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
                                         std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  PythonQuestion asked(a, pose_a, b, pose_b);
   const ContactsRequest request = requestOf(clearance, most);
   asked.question.clearance = clearance;
   const PairsWithin found = asked.answer(

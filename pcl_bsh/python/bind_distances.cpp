@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 
@@ -101,7 +101,7 @@ Examples
 (2.0, (0, 1))
 )";
 
-SymmetricDistances distancesOf(Asked&& asked, bool both_ways, std::optional<double> max_distance,
+SymmetricDistances distancesOf(PythonQuestion&& asked, bool both_ways, std::optional<double> max_distance,
                                const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
                                const py::kwargs& options)
 {
@@ -133,7 +133,7 @@ SymmetricDistances symmetricDistancesOf(const Cloud& a, const Cloud& b, std::opt
 HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
                                       const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress)
 {
-  Asked asked(a, pose_a, b, pose_b);
+  PythonQuestion asked(a, pose_a, b, pose_b);
   const HausdorffRequest request{accuracyOf(accuracy), threads, progressOf(progress)};
   return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); },
                       [](const HausdorffDistance&) { return 0.0; }); // which has nothing to do with what is inside
@@ -160,7 +160,7 @@ void bindDistances(py::module_& module)
                              "exact, or a solid holds triangles; else None.")
       .def_readonly("measured", &PointDistances::measured, "Points that have a distance.")
       .def_readonly("undecided", &PointDistances::undecided, "Points that were left when the search stopped.")
-      .def_readonly("greatest", &PointDistances::greatest, "The greatest of all distances; NaN where there is none.")
+      .def_readonly("greatest", &PointDistances::greatest, "The greatest of all distances; NaN without distances.")
       .def_property_readonly("greatest_pair", [](const PointDistances& found) { return tupleOf(found.greatest_pair); })
       .def_readonly("work", &PointDistances::work)
       .def("__len__", [](const PointDistances&) { return 2; })

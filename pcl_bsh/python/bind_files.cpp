@@ -2,8 +2,8 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 
@@ -152,7 +152,7 @@ void bindFiles(py::module_& module)
   const py::tuple bases = py::make_tuple(py::handle(PyExc_OSError), py::handle(PyExc_ValueError));
   py::register_exception<files::FileError>(module, "FileError", bases).attr("__doc__") =
       "A file that cannot be read or written, in one line: path, what is wrong, what to do.";
-  py::class_<FileHeader>(module, "FileHeader", "What a file says beside its points.")
+  py::class_<FileHeader>(module, "FileHeader", "Facts in a file beside its points.")
       .def_property_readonly(
           "viewpoint",
           [](const FileHeader& header) { return As<"Tuple[float, ...]">(py::tuple(py::cast(header.viewpoint))); },

@@ -3,8 +3,8 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
 
@@ -289,10 +289,9 @@ void bindHierarchy(py::module_& module)
            "copy"_a = false, "most_growth"_a = 1.5)
       .def(
           "validate", [](const Cloud& hierarchy) { return unlocked([&] { return hierarchy.validate(); }).lines; },
-          "Checks in exact arithmetic that every sphere holds its points; a list of defects, empty where there is "
-          "none.")
+          "Checks in exact arithmetic that every sphere holds its points; a list of defects, empty if it has none.")
       .def("statistics", &statisticsOf,
-           "What it holds, as a dict. Lengths in the cloud's unit; of the voxels built so far.");
+           "Sizes of the hierarchy, as a dict. Lengths in the cloud's unit; of the voxels built so far.");
 }
 
 } // namespace pcl_bsh::python

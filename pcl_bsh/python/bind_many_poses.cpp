@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/question/held.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/roadmap/collide_on_motions.h>
@@ -107,7 +107,7 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
                                        const PoseLike& pose_a, const AccuracyLike& accuracy, unsigned threads,
                                        bool solid, bool input_solid, const ProgressLike& progress)
 {
-  Asked asked("a", a, pose_a, "b", b);
+  PythonQuestion asked("a", a, pose_a, "b", b);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
@@ -128,7 +128,7 @@ std::pair<py::array_t<double>, py::array_t<std::int32_t>>
 closestAtPosesOf(const Cloud& a, const Cloud& b, const ArrayLike& poses, const PoseLike& pose_a, unsigned threads,
                  bool solid, bool input_solid, const ProgressLike& progress)
 {
-  Asked asked("a", a, pose_a, "b", b);
+  PythonQuestion asked("a", a, pose_a, "b", b);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
@@ -148,7 +148,7 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
                                       const PoseLike& pose_scan, const OptionalArray& pivot, unsigned threads,
                                       bool solid, bool input_solid, const ProgressLike& progress)
 {
-  Asked asked("scan", scan, pose_scan, "model", model);
+  PythonQuestion asked("scan", scan, pose_scan, "model", model);
   asked.question.solid = solid;
   asked.question.input_solid = input_solid;
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));

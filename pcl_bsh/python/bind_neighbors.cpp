@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 
 #include <string>
 #include <type_traits>
@@ -103,7 +103,7 @@ using Points = As<"npt.NDArray[Any]">; // an array of one point is told from oth
 
 using Found = std::pair<py::array_t<std::int32_t>, py::array_t<float>>;
 
-/// What search(query, found) finds about one point.
+/// Results of search(query, found) about one point.
 template <class Search>
 Found foundOf(const Point& queries, Search&& search)
 {
@@ -113,7 +113,7 @@ Found foundOf(const Point& queries, Search&& search)
   return {arrayFrom(std::move(found.indices)), arrayFrom(std::move(found.squared_distances))};
 }
 
-/// What search(queries, found) finds about many.
+/// Results of search(queries, found) about many points.
 template <class Search>
 As<"Any"> foundOf(const Points& queries, Search&& search)
 {

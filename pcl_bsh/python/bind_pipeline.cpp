@@ -142,7 +142,7 @@ PipelineRun runPipeline(const As<"Union[str, Mapping[str, Any], Sequence[Any]]">
 void bindPipeline(py::module_& module)
 {
   py::register_exception<PipelineError>(module, "PipelineError", PyExc_ValueError).attr("__doc__") =
-      "What is wrong with a pipeline, in one line: stage, place in the document, what to do.";
+      "The fault of a pipeline, in one line: stage, place in the document, what to do.";
   py::class_<PipelineRun>(module, "PipelineRun", "The answer of `run_pipeline`.")
       .def_readonly("clouds", &PipelineRun::clouds)
       .def_readonly("warnings", &PipelineRun::warnings)

@@ -2,8 +2,8 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/question/warnings/scene_warnings.h>
 #include <pcl_bsh/scene/scene.h>
 
@@ -87,7 +87,7 @@ auto inTurn(SharedScene& shared, Use&& use)
   });
 }
 
-/// What ask(scene) answers; and warnings, where objects were added since the last time.
+/// The result of ask(scene); warns where objects were added since the last time.
 template <class Ask>
 SceneResult resultOf(SharedScene& shared, Ask&& ask)
 {
@@ -338,7 +338,7 @@ void bindScene(py::module_& module)
             inTurn(s, [&](Scene& scene) { scene.setRule(id_a, id_b, {tested, clearance}); });
           },
           "a"_a, "b"_a, py::kw_only(), "tested"_a = none, "clearance"_a = none,
-          "What holds for a pair of objects, over what holds for their groups.")
+          "Sets the rule of a pair of objects, over the rules of their groups.")
       .def(
           "set_group_rule",
           [](SharedScene& s, const std::string& a, const std::string& b, std::optional<bool> tested,
@@ -346,7 +346,7 @@ void bindScene(py::module_& module)
             inTurn(s, [&](Scene& scene) { scene.setGroupRule(a, b, {tested, clearance}); });
           },
           "a"_a, "b"_a, py::kw_only(), "tested"_a = none, "clearance"_a = none,
-          "What holds for pairs of objects of two groups.")
+          "Sets the rule of pairs of objects of two groups.")
       .def(
           "query", [](SharedScene& s) { return resultOf(s, [](Scene& scene) { return scene.query(); }); },
           "The effects at the present poses.")

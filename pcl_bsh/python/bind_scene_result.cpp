@@ -115,9 +115,9 @@ void bindSceneResult(py::module_& module)
 {
   py::class_<SceneResult>(
       module, "SceneResult",
-      "What a scene computed: a list of dicts for each effect, empty unless it was asked for. Objects "
+      "The answer of a scene: a list of dicts for each effect, empty unless it was asked for. Objects "
       "and parts are numbers, in the order in which they were added.")
-      .def_readonly("time", &SceneResult::time, "Of the scene, seconds.")
+      .def_readonly("time", &SceneResult::time, "Time of the scene, seconds.")
       .def_property_readonly("any", listed(&SceneResult::any), "a, b, part_a, part_b, pair.")
       .def_property_readonly("undecided", listed(&SceneResult::undecided), "a, b, part_a, part_b.")
       .def_property_readonly("flags", listed(&SceneResult::flags), "object, part, colliding, undecided, flags.")
@@ -140,7 +140,7 @@ void bindSceneResult(py::module_& module)
                              "detoured (it may have gone another way than its leg).")
       .def_property_readonly("self_collisions", listed(&SceneResult::self), "object, part_a, part_b, pair.")
       .def_property_readonly("outcomes", listed(&SceneResult::outcomes),
-                             "Of moved objects, with a response or gravity: object, touched, against, stuck, grounded, "
+                             "Moved objects, with a response or gravity: object, touched, against, stuck, grounded, "
                              "wanted, travelled, legs (as in swept_motions).")
       .def("__repr__", [](const SceneResult& result) {
         return "SceneResult(time=" + numberText(result.time) +

@@ -2,8 +2,8 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/python/arrays/array_output.h>
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/question/held.h>
 
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -100,7 +100,7 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
                              const OptionalArray& pivot, const AccuracyLike& accuracy, unsigned threads, bool solid,
                              bool input_solid, const ProgressLike& progress)
 {
-  Asked asked("scan", scan, pose_scan, "model", model);
+  PythonQuestion asked("scan", scan, pose_scan, "model", model);
   const auto& list = asked.question.path.emplace(posesOf("poses", poses));
   asked.question.clearance = clearance;
   asked.question.solid = solid;
@@ -152,8 +152,8 @@ auto contact(std::optional<FirstContact> TrajectoryResult::*of)
 }
 
 /// A property for one of the result's vectors; None where nothing was asked for.
-template <class T, class Asked>
-auto columnWhere(std::vector<T> TrajectoryResult::*values, Asked asked)
+template <class T, class PythonQuestion>
+auto columnWhere(std::vector<T> TrajectoryResult::*values, PythonQuestion asked)
 {
   using Array = decltype(arrayIn(py::object(), std::vector<T>()));
   return [values, asked](const py::object& self) -> std::optional<Array> {
@@ -215,7 +215,7 @@ void bindClashes(py::module_& module)
           "status", [](const Clash& clash) { return Status(py::str(nameOf(clash.status))); },
           "'new', 'persisting' or 'resolved'.")
       .def_readonly("certain_points", &Clash::certain_points,
-                    "Of its points, how many collide wherever the points truly are; the others are undecided.")
+                    "Number of its points that collide wherever the points truly are; the others are undecided.")
       .def_property_readonly("records", column(&Clash::records), "int32: its rows, ascending; empty when resolved.")
       .def_readonly("points", &Clash::points)
       .def_readonly("low", &Clash::low, "The lower corner of its box.")
@@ -297,7 +297,7 @@ void bindTrajectory(py::module_& module)
       .def_property_readonly("first_contact", contact(&Result::first_contact),
                              "Swept: (pose, fraction of the motion to the next); None when free.")
       .def_property_readonly("certain_contact", contact(&Result::certain_contact),
-                             "The same of what collides for certain, where points are uncertain.")
+                             "The first contact of points that collide for certain, where points are uncertain.")
       .def_property_readonly("work", [](const TrajectoryRun& run) { return run.result.work; })
       .def("__repr__", [](const TrajectoryRun& run) {
         return "Trajectory(" + counted(run.result.colliding, "point") + " collide" +

@@ -101,7 +101,7 @@ void bindWords(py::module_& module)
       .def("__hash__", [](const Accuracy& a) { return py::hash(py::str(a.text())); })
       .def("__repr__", [](const Accuracy& accuracy) { return "Accuracy('" + accuracy.text() + "')"; });
 
-  py::class_<Work>(module, "Work", "What a query cost, counted: free of noise.")
+  py::class_<Work>(module, "Work", "Counted cost of a query: free of noise.")
       .def_readonly("node_pairs", &Work::node_pairs, "Tests of the bounding volumes of two nodes.")
       .def_readonly("volumes_carried", &Work::volumes_carried, "Bounding volumes carried into another frame.")
       .def_readonly("volumes_built", &Work::volumes_built)

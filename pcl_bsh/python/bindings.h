@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the module, each in the file of its name. Those that others' signatures name come first.
+// The parts of the module, each in the file of its name. Parts that others' signatures name come first.
 #pragma once
 
 #include <pcl_bsh/python/typed.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module of the Python package pcl_bsh; package/pcl_bsh/__init__.py shows its names.
-#include <pcl_bsh/python/asked.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/threads/computing.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/version.h>
@@ -53,7 +53,7 @@ std::string plainDocstring(std::string_view doc)
   return withoutTypes(doc.substr(0, line)) + "\n--\n\n" + std::string(doc.substr(text));
 }
 
-/// What a question's option says, as the paragraph below a parameter's name.
+/// The description of a question's option, as the paragraph below a parameter's name.
 std::string sentenceOf(const QuestionOption& option)
 {
   std::string text = std::string(option.doc) + (option.unit[0] == 'm' ? "; in the clouds' unit." : ".");
@@ -97,7 +97,7 @@ std::string described(const std::string& doc)
   return text;
 }
 
-/// Of the functions of a module, or of a class.
+/// Hides the types of a module's functions, or of a class.
 void hideTypes(const py::object& scope)
 {
   for (const auto& [name, member] : py::dict(scope.attr("__dict__"))) {

@@ -30,24 +30,24 @@ struct Accuracy {
   static Accuracy tolerance(double length) noexcept { return {Mode::tolerance, length}; }
 
   /// The descent opens the sphere trees below the voxels down to this level: 0 compares the voxels' spheres, each level
-  /// more opens nodes of eight children. What spheres cannot tell is left undecided. At level 0 flags and distances of
-  /// points build nothing; anyCollision() and closestPair() end where a node below the level would tell most, but look
-  /// for a near pair below it.
+  /// more opens nodes of eight children. Pairs that spheres do not decide are left undecided. At level 0 flags and
+  /// distances of points build nothing. anyCollision() and closestPair() end where a node below the level would tell
+  /// most, but look for a near pair below it.
   static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
 
   /// Stops after about so many sphere tests: the same answer on every machine. Where points of both clouds are flagged,
   /// these share them.
   static Accuracy nodePairs(std::uint64_t count) noexcept { return {Mode::node_pairs, static_cast<double>(count)}; }
 
-  /// Stops when the seconds are spent, by all that one call asks for together. anyCollision() gives 15/16 of them to
-  /// the search of exact(), so that it decides whatever that decides in this time. @param seconds finite, >= 0
+  /// Stops when the seconds are spent; all parts of one call share them. In anyCollision() 15/16 of them go to the
+  /// search of exact(), so it decides all that exact() decides in this time. @param seconds finite, >= 0
   static Accuracy time(double seconds) noexcept { return {Mode::time, seconds}; }
 
   /// `exact`, `tolerance=LENGTH`, `level=N`, `pairs=N` or `time=SECONDS`.
-  /// @throws std::invalid_argument quoting the text when it is none of these
+  /// @throws std::invalid_argument quoting the text when parse() cannot read it
   static Accuracy parse(const std::string& text);
 
-  /// What parse() reads.
+  /// The text that parse() reads.
   std::string text() const;
 
   bool isExact() const noexcept { return mode == Mode::exact; } ///< the default

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every query can be told beside its question: how sure its answer has to be, with how many threads, and who
-// watches.
+// Options of every query beside its question: how sure its answer has to be, how many threads it uses, and who watches
+// its progress.
 //
 //   anyCollision({hall}, {robot, T}, {0.05, {Accuracy::tolerance(0.01), 4}}); // on four threads
 //   request.progress = [&](double done) { return !quit; };                    // of any request
@@ -34,7 +34,7 @@ struct Effort {
   unsigned threads = 1; ///< 0: all of the machine's; queries that say so take one
   /// Called now and then, by the thread that asks, with the fraction done in [0, 1], which never falls, and at least
   /// once where there is anything to do. A search for pairs counts the pairs it began with: it may tell little until it
-  /// ends. False: stop, the query throws Cancelled. What it throws itself comes out of the query.
+  /// ends. False: stop, the query throws Cancelled. An exception that it throws comes out of the query.
   std::function<bool(double)> progress;
 };
 

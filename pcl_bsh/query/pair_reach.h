@@ -28,7 +28,7 @@ public:
 
   bool areMeasured() const { return places_ == Places::measured; }
 
-  /// Whether it is the same for all pairs, but for their radii.
+  /// Whether all pairs share one reach, apart from their radii.
   bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
 
   /// Whether a pair is within it. @param distance between records of a and of b

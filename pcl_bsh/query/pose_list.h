@@ -12,9 +12,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Refers to a list that has size() and operator[], which gives an Eigen::Isometry3d or what converts to one: a
-/// std::vector or std::deque, a span, or a class that makes its poses as they are asked for. The list must outlive the
-/// call that it is given to; several threads read it at once, in any order.
+/// Refers to a list with size() and operator[], which gives an Eigen::Isometry3d or a type that converts to one. A
+/// std::vector, a std::deque and a span are such lists, and a class that makes its poses when asked. The list must
+/// outlive the call that it is given to; several threads read it at once, in any order.
 class PoseList {
 public:
   /// Not explicit: queries take any such list.

@@ -19,7 +19,7 @@ inline void prefetch(const PointsView& view, std::uint32_t record)
   if (view.radii) hwy::Prefetch(view.radii + record);
 }
 
-/// The same of an array with an entry for each record. @param first, last of the records
+/// Prefetches entries of an array that has one for each record. @param first, last of the records
 template <class Entry>
 void prefetchEach(const Entry* entries, const std::uint32_t* first, const std::uint32_t* last)
 {

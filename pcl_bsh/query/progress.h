@@ -17,7 +17,7 @@
 
 namespace pcl_bsh {
 
-/// What a part of the work that cannot be left half done throws when the time is over.
+/// Thrown when the time is over by work that cannot be left half done.
 struct OutOfTime {};
 
 /// While it lives, its thread works for it: pulses of whatever is computed ask the caller. Without a report they ask

@@ -10,7 +10,7 @@
 
 namespace pcl_bsh {
 
-/// What is asked of a pair of points whose places are uncertain.
+/// The places of uncertain points that a question means.
 enum class Places : std::uint8_t {
   measured, ///< are they within the clearance as they were measured?
   certain,  ///< are they wherever they truly are, within their uncertainties?
@@ -51,7 +51,7 @@ struct Reach {
     most = up(most + patches.most / 2);
   }
 
-  /// That of spheres, which hold points that may be within it.
+  /// The reach of spheres that hold points which may be within it.
   double length() const { return std::max(0.0, most); }
 
   double least; ///< below 0 where no pair without radii may be near enough

@@ -35,7 +35,7 @@ auto RecordDistance::withTriangles(PointPair records, const Visit& visit) const
   return visit(TriangleDistance::TrianglePair{a_->triangles->triangle(records.a), b_->triangles->triangle(records.b)});
 }
 
-/// That of withTriangles().
+/// The distance that withTriangles() measures.
 const TriangleDistance& RecordDistance::distanceOfPair() const
 {
   return to_b_ ? *to_b_ : *to_a_;

@@ -4,7 +4,8 @@
 //   RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
 //   bool collide = distance.compare({i, j}, clearance) <= 0;
 //
-// What ExactDistance is to points and TriangleDistance to triangles. Expects the DefaultFloatEnvironment.
+// RecordDistance is to records as ExactDistance is to points and TriangleDistance to triangles. Expects the
+// DefaultFloatEnvironment.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -22,14 +23,14 @@
 
 namespace pcl_bsh {
 
-/// Of records under two fixed poses. A gap is the distance less the radii of points; triangles have none, and are at 0
-/// where they meet. Const methods may run in several threads at once. The views must outlive this.
+/// Distances of records under two fixed poses. A gap is the distance less the radii of points; triangles have none, and
+/// are at 0 where they meet. Const methods may run in several threads at once. The views must outlive this.
 class PCL_BSH_EXPORT_INTERNAL RecordDistance {
 public:
   using Enclosure = ExactDistance::Enclosure;
   using Sum = ExactDistance::Sum;
 
-  /// Two records, read from their views. Of triangles, the points are those of their balls.
+  /// Two records, read from their views. For triangles, the points are the middles of their balls.
   struct Pair : ExactDistance::Pair {
     Pair() = default;
     Pair(const ExactDistance::Pair& points, PointPair of) : ExactDistance::Pair(points), records(of) {}
@@ -58,7 +59,7 @@ public:
   /// Whether one of the clouds is of triangles.
   bool ofTriangles() const { return to_a_ || to_b_; }
 
-  /// Of places: centres of nodes, say.
+  /// The distance of points, such as centres of nodes.
   const ExactDistance& ofPoints() const { return points_; }
 
   /// Sign of the pair's gap less the clearance: it collides when the answer is <= 0.
@@ -95,12 +96,13 @@ public:
     return encloseTriangles(pair.records, reach).low > reach;
   }
 
-  /// From b's nearest place to a's, in the world, within rounding; 0 where they meet. Of balls, between their centres.
+  /// From b's nearest place to a's, in the world, within rounding; 0 where they meet. For balls it is the vector
+  /// between their centres.
   Eigen::Vector3d between(PointPair records) const;
 
-  /// Planes through the nearest places of a's record and of b's, exactly as far apart as these: what is behind the
-  /// first, where its normal points away from, is no nearer to what is behind the second. In the coordinates of a's
-  /// view and of b's. Nothing where records meet, without triangles, and where points have radii.
+  /// Planes through the nearest places of a's record and of b's, exactly as far apart as these. Each normal points at
+  /// the other record: places behind the first plane are no nearer to places behind the second. In the coordinates of
+  /// a's view and of b's. Nothing where records meet, without triangles, and where points have radii.
   std::optional<std::array<ExactPlane, 2>> planesBetween(PointPair records) const;
 
   /// Sign of gap(first) - gap(second), before rounding.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every query asks of the parts of its request. Each throws InvalidInput naming the value.
+// Checks of requests that all queries share. Each throws InvalidInput naming the value.
 #pragma once
 
 #include <pcl_bsh/export.h>

@@ -47,13 +47,13 @@ inline const std::uint8_t* bytesOf(const std::vector<Verdict>& verdicts) noexcep
   return reinterpret_cast<const std::uint8_t*>(verdicts.data());
 }
 
-/// The same in memory of their own.
+/// A copy of the verdicts as numbers.
 inline std::vector<std::uint8_t> numbersOf(const std::vector<Verdict>& verdicts)
 {
   return {bytesOf(verdicts), bytesOf(verdicts) + verdicts.size()};
 }
 
-/// Among the numbers of an array: that there is none. -1 where they are signed, else the greatest there is.
+/// An entry of an array of numbers that stands for nothing: -1 for signed numbers, else the greatest number.
 struct Nothing { /// @cond
   template <class Number, class = std::enable_if_t<std::is_integral_v<Number> && !std::is_same_v<Number, bool>>>
   constexpr operator Number() const noexcept
@@ -71,7 +71,7 @@ struct Nothing { /// @cond
     return number != static_cast<Number>(-1);
   } /// @endcond
 };
-/// How results say so, of records, poses, clusters and balls. Of a single value that may be none, std::optional does.
+/// How results say "none" for records, poses, clusters and balls. A single value uses std::optional.
 inline constexpr Nothing kNothing;
 
 /// One point of each cloud, as record numbers of the clouds' views.

@@ -40,7 +40,7 @@ public:
   Clock::duration timeLeft(Clock::time_point now) const { return deadline_ - now; } ///< @pre isTimed()
   bool isSpent(std::uint64_t tested) const { return tested >= node_pairs || isOver(); }
 
-  /// Whether so many points can be built into trees before the time is over. What is not begun is not overrun.
+  /// Whether so many points can be built into trees before the time is over. Work that is not begun cannot overrun.
   bool leavesTimeToBuild(std::size_t points) const
   {
     constexpr double seconds_per_point = 60e-9; // a generous figure
@@ -55,7 +55,7 @@ public:
     return deepest > 0 && (!isTimed() || leavesTimeToBuild(points()));
   }
 
-  /// The same rule, with only this share of the time that is left, or of the sphere tests.
+  /// The rule with this share of the time that is left, or of the sphere tests.
   StopRule part(double share) const
   {
     StopRule rule = *this;

@@ -27,7 +27,7 @@ inline Places possiblePlaces(const Placed& a, const Placed& b)
   return areUncertain(a, b) ? Places::possible : Places::measured;
 }
 
-/// What each of the two searches may spend.
+/// The budget of each of the two searches.
 inline Accuracy halfOf(Accuracy accuracy)
 {
   if (accuracy.mode == Accuracy::Mode::node_pairs || accuracy.mode == Accuracy::Mode::time) accuracy.value /= 2;

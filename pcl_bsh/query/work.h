@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query cost, counted.
+// Counted cost of a query.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -10,15 +10,15 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Noise-free cost of a query: tests and updates of bounding volumes, as in the paper, and what was done to points. The
-/// same for any number of threads and any instruction set, but where a query's declaration says otherwise.
+/// Noise-free cost of a query: tests and updates of bounding volumes, as in the paper, and what was done to points.
+/// Equal for any number of threads and any instruction set, unless a query's declaration says otherwise.
 struct Work : BuildWork {
   /// Tests of the bounding volumes of two nodes, or of a node against what is asked for: a ball, a box, a way. One
   /// test, whichever volumes it compares (sphere and slab of the same two nodes: one).
   std::uint64_t node_pairs = 0;
-  /// Bounding volumes that were carried into the frame where they were tested, each time: a sphere's centre from one
-  /// cloud's frame to the other's; along a path, a sphere's way during an interval of poses; of neighbour searches, the
-  /// query's ball into the frame of a voxel.
+  /// Bounding volumes that were carried into the frame where they were tested, each time. Two clouds: a sphere's
+  /// centre, from one frame to the other. A path: a sphere's way during an interval of poses. Neighbour searches: the
+  /// query's ball, into the frame of a voxel.
   std::uint64_t volumes_carried = 0;
   std::uint64_t leaf_pairs = 0;      ///< pairs of leaves whose points were compared
   std::uint64_t exact_decisions = 0; ///< pairs of points, or of tiny nodes, that float arithmetic could not decide
@@ -27,7 +27,7 @@ struct Work : BuildWork {
   /// All updates of bounding volumes, as the paper counts them.
   std::uint64_t updates() const noexcept { return volumes_carried + volumes_built; }
 
-  /// Of several queries together.
+  /// The sum of two queries.
   Work& operator+=(const Work& other) noexcept
   {
     voxels_built += other.voxels_built;

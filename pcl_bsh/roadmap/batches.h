@@ -40,8 +40,9 @@ void checkPoses(const PoseList& poses, const char* whose, unsigned threads);
 /// As many entries of a list as one task answers: the first of them has no earlier answer to begin with.
 inline constexpr std::size_t kBatch = 64;
 
-/// Calls answer(i, work) for each entry of a list with an `Answer` for each batch, made by makeAnswer(), from several
-/// threads, all that is left of the progress, until it is told to stop. @return the sum of the work. @throws Cancelled
+/// Calls answer(i, work) for each entry of a list, in batches, from several threads. Each batch has an `Answer` of its
+/// own, made by makeAnswer(). Takes the rest of the progress, and ends when told to stop. @return the sum of the work.
+/// @throws Cancelled
 template <class MakeAnswer>
 Work forEachInBatches(std::size_t count, unsigned threads, Progress& progress, const MakeAnswer& makeAnswer)
 {

@@ -23,7 +23,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What anyCollisionAtPoses() found.
+/// The result of anyCollisionAtPoses().
 struct AnyAtPoses {
   /// One per pose; undecided only where points have uncertainties: some pair may be within the clearance, but none is
   /// wherever its points truly are.
@@ -33,11 +33,12 @@ struct AnyAtPoses {
   Work work;
 };
 
-/// What closestPairAtPoses() found.
+/// The result of closestPairAtPoses().
 struct DistancesAtPoses {
   /// One per pose: what closestPair() answers there.
   std::vector<double> distances;
-  /// Likewise, of kNothing where no pair is within max_distance; empty when a cloud has no finite point.
+  /// The closest pair at each pose; kNothing where no pair is within max_distance. Empty when a cloud has no finite
+  /// point.
   std::vector<PointPair> pairs;
   Work work;
 };
@@ -49,7 +50,7 @@ struct DistancesAtPoses {
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                const AnyRequest& request = {});
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Fills a result, whose memory is used again; it is empty after an exception.
 void anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                          const AnyRequest& request, AnyAtPoses& result);
 
@@ -58,7 +59,7 @@ void anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseLi
 DistancesAtPoses closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                                     const DistanceRequest& request = {});
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Fills a result, whose memory is used again; it is empty after an exception.
 void closestPairAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,
                         const DistanceRequest& request, DistancesAtPoses& result);
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all motions of a query share.
+// Data that all motions of a query share.
 #pragma once
 
 #include <pcl_bsh/geometry/rigid_motion.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene refuses.
+// Checks of a scene: they throw for objects, rules and options that it refuses.
 #pragma once
 
 #include <pcl_bsh/scene/scene.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene may be asked for. An effect that is not listed runs no code, allocates nothing and builds nothing.
+// Effects that a scene may be asked for. An effect that is not listed runs no code, allocates nothing and builds
+// nothing.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -19,7 +20,7 @@ namespace pcl_bsh {
 
 using ObjectId = std::uint32_t; ///< counted from 0 in the order of Scene::add()
 
-/// What a scene computes of its pairs, and does with objects that meet. Effects has what each one means.
+/// Quantities that a scene computes for its pairs, and responses of objects that meet. Effects has what each one means.
 enum class Effect : std::uint8_t {
   any,
   flags,
@@ -39,7 +40,7 @@ inline constexpr std::size_t kEffects = 11;
 /// As it is written in scene files and reports.
 const char* nameOf(Effect effect) noexcept;
 
-/// What an object does that meets another.
+/// Response of an object that meets another.
 enum class Response : std::uint8_t {
   none,
   stop, ///< a moving object halts where it first meets another
@@ -74,7 +75,7 @@ struct Effects {
   bool ofPairs() const noexcept;          ///< whether one is about pairs of objects
 };
 
-/// What an effect cost. Counts are free of noise and the same for any number of threads.
+/// Counted cost of an effect, equal for any number of threads, and its time.
 struct EffectCost {
   std::uint64_t pairs = 0;  ///< pairs of parts put to a query; of deform: parts refitted
   std::uint64_t reused = 0; ///< pairs of objects answered by what was known from an earlier step
@@ -82,7 +83,7 @@ struct EffectCost {
   double seconds = 0.0;
 };
 
-/// What finding the pairs cost.
+/// Counted cost of finding the pairs.
 struct BroadPhaseCost {
   std::uint64_t moved = 0;       ///< objects whose bounds were computed anew
   std::uint64_t voxels_left = 0; ///< of moved objects
@@ -99,25 +100,25 @@ struct PartPair {
   std::uint32_t part_a = 0, part_b = 0;
 };
 
-/// Of Effect::any.
+/// A pair that Effect::any found.
 struct CollidingPair : PartPair {
   PointPair pair; ///< some colliding pair of points
 };
 
-/// Of Effect::distance.
+/// A pair that Effect::distance measured.
 struct DistantPair : PartPair {
   double distance = 0.0;
   Interval interval; ///< holds it for certain, where the scene's accuracy is less than exact
   PointPair pair;    ///< that realises it; of several, of the smallest parts, then the smallest (a, b)
 };
 
-/// Of Effect::contacts.
+/// A pair that Effect::contacts listed.
 struct ContactPair : PartPair {
   std::vector<Contact> contacts; ///< nearest first
   bool complete = true;          ///< no contact of these two parts was left out
 };
 
-/// Of Effect::first_contact.
+/// A first contact that Effect::first_contact found.
 struct PartFirstContact : PartPair {
   double fraction = 0.0; ///< of the way from the last query (SweptMotion::leg), in [0, 1]: before it no pair of points
                          ///< collides, at it one is within tolerance
@@ -140,7 +141,7 @@ struct SelfCollision {
   PointPair pair;
 };
 
-/// What a response or gravity made of an object's wanted motion.
+/// How a response or gravity changed an object's wanted motion.
 struct Outcome {
   ObjectId object = 0;
   bool touched = false;   ///< it met something
@@ -155,8 +156,8 @@ struct Outcome {
   std::vector<Leg> legs;
 };
 
-/// Of an object that has moved, from its pose at the last query: what first_contact and swept look at. Its points and
-/// parts are as they are now, all the way.
+/// The motion of an object since its pose at the last query: first_contact and swept look at it. Its points and parts
+/// are as they are now, all the way.
 struct SweptMotion {
   ObjectId object = 0;
   Leg leg;
@@ -172,28 +173,28 @@ struct UnsweptObject {
                          ///< on by itself, or a response or gravity led it (Outcome::legs)
 };
 
-/// What Scene::query() or Scene::step() found; a list is empty where its effect is not asked for.
+/// The result of Scene::query() or Scene::step(); a list is empty where its effect is not asked for.
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
-  /// Of `any`, or where a == b of `self`: parts that may collide or not, as far as the scene's accuracy and the
-  /// uncertainty of their points go.
+  /// Pairs of `any`, or where a == b of `self`, that may collide or not: accuracy and uncertainty leave it
+  /// open.
   std::vector<PartPair> undecided;
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;
   std::vector<ContactPair> contacts;
   std::vector<PartFirstContact> first_contact;
-  /// The same of what collides for certain. Pairs of objects without uncertain points are in both lists.
+  /// First contacts of points that collide for certain. Pairs of objects without uncertain points are in both lists.
   std::vector<PartFirstContact> certain_contact;
   std::vector<FlaggedPart> swept;
   std::vector<SweptMotion> swept_motions; ///< by object, the whole before its parts; with first_contact or swept
-  std::vector<UnsweptObject> unswept;     ///< likewise; none of a scene's first query, before which nothing moves
+  std::vector<UnsweptObject> unswept;     ///< by object; none at a scene's first query, before which nothing moves
   std::vector<SelfCollision> self;
   std::vector<Outcome> outcomes; ///< of moved objects, with a response or gravity
   BroadPhaseCost broad_phase;
   std::array<EffectCost, kEffects> costs;
 
-  /// What one effect took.
+  /// The cost of one effect.
   const EffectCost& cost(Effect effect) const noexcept { return costs[static_cast<std::size_t>(effect)]; }
 };
 

@@ -45,7 +45,7 @@ using Motion = std::variant<NoMotion, VelocityMotion, CircularMotion, WaypointMo
 Eigen::Isometry3d poseAt(const Motion& motion, const Eigen::Isometry3d& start, double time);
 
 /// How `motion` turns an object from one time to a later one, about the world's axes: axis times radians, of any
-/// length, full turns included. Of waypoints: the sum of the turns from each to the next, which are at most half a turn
+/// length, full turns included. For waypoints: the sum of the turns from each to the next, at most half a turn
 /// each.
 Eigen::Vector3d turnOf(const Motion& motion, double from, double to);
 
@@ -53,7 +53,7 @@ Eigen::Vector3d turnOf(const Motion& motion, double from, double to);
 /// turns at constant speed about an axis of fixed direction, by any angle.
 struct Leg {
   Eigen::Isometry3d from = Eigen::Isometry3d::Identity(); ///< T_world_object
-  Eigen::Isometry3d to = Eigen::Isometry3d::Identity();   ///< likewise
+  Eigen::Isometry3d to = Eigen::Isometry3d::Identity();   ///< T_world_object at the end
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< the point that moves in a straight line, in the object's frame
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< from `from` to `to`, as the world sees it: axis times radians
 
@@ -62,7 +62,7 @@ struct Leg {
 };
 
 /// @throws std::invalid_argument saying what is wrong: numbers that are not finite, an axis of length 0, waypoints
-///   without poses, with times that do not ascend or are not as many, with a pose that is not rigid.
+///   without poses or with a pose that is not rigid. Also times that do not ascend, or are not as many as the poses.
 void check(const Motion& motion);
 
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Objects, poses and rules of a scene. What it computes is in scene_query.cpp and response.cpp.
+// Objects, poses and rules of a scene. Effects are computed in scene_query.cpp, responses in the folder responses.
 #include <pcl_bsh/scene/scene.h>
 
 #include <pcl_bsh/base/float_environment.h>
@@ -83,8 +83,8 @@ void Scene::State::setPose(ObjectId object, const Eigen::Isometry3d& pose)
   updateWorld(bodies[object]);
 }
 
-/// Hierarchies are shared with other scenes and with callers that update them. What was remembered of points that have
-/// changed since is dropped, also where another scene changed them.
+/// Hierarchies are shared with other scenes and with callers that update them. Memory of points that have changed since
+/// is dropped, also where another scene changed them.
 void Scene::State::followPoints()
 {
   if (options.effects.none()) return;

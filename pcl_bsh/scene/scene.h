@@ -13,19 +13,19 @@
 //
 // A voxel grid over the scene finds the pairs worth a query: only objects that share a voxel are tested, and an object
 // that moves updates only the voxels it leaves and enters. Answers are those of the queries in collide.h: exact unless
-// the options ask for less, and the same for any number of threads. What is remembered from step to step changes times,
-// never answers.
+// the options ask for less, and the same for any number of threads. Memory from step to step changes times, never
+// answers.
 //
 // Where points have uncertainties (PointsView), any, flags, self, first_contact and swept give verdicts that hold
 // wherever the points truly are: what may collide, but does not for certain, is undecided. A first contact is the first
 // that may be, SceneResult::certain_contact the first that is for certain. A response halts before what may collide.
 // Distances and contacts are those of the measured places.
 //
-// What is inside of a solid part collides, at any clearance: so do the records that it holds, and the triangles of the
-// body that holds them. Smallest distances are negative then, the depth of the deepest. A first contact of a motion
-// that begins inside is its first instant, and a response is stuck there (Outcome). Of swept motion, what is held at
-// any instant is flagged, and each body that holds something then, or comes within the tolerance of that. Contacts are
-// those of surfaces.
+// The inside of a solid part collides, at any clearance: the records that it holds collide, and so do the triangles of
+// the body that holds them. Smallest distances are negative then, the depth of the deepest. A first contact of a motion
+// that begins inside is its first instant, and a response is stuck there (Outcome). Swept motion flags the records held
+// at any instant, and each body that holds one then or comes within the tolerance of that. Contacts are those of
+// surfaces.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -52,7 +52,7 @@ struct ScenePart {
   bool solid = false; ///< of triangles: it counts with what they enclose, and they must close
 };
 
-/// What moves as one: parts, where they stand, and how they move.
+/// An object: parts that move together, where they stand, and how they move.
 struct SceneObject {
   std::string name;                                       ///< unique in the scene, not empty
   std::string group;                                      ///< for rules about pairs; may be empty
@@ -74,7 +74,7 @@ inline SceneObject object(std::string name, std::shared_ptr<SphereHierarchy> hie
   return made;
 }
 
-/// The same, of the surroundings.
+/// An object of the surroundings, which does not move.
 inline SceneObject fixedObject(std::string name, std::shared_ptr<SphereHierarchy> hierarchy,
                                const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity())
 {
@@ -83,16 +83,16 @@ inline SceneObject fixedObject(std::string name, std::shared_ptr<SphereHierarchy
   return made;
 }
 
-/// What holds for some pairs of objects. The more special rule wins: two names over two groups, a later one over an
+/// Settings for some pairs of objects. The more special rule wins: two names over two groups, a later one over an
 /// earlier one.
 struct PairRule {
   std::optional<bool> tested;
   std::optional<double> clearance; ///< finite, >= 0
 };
 
-/// What a scene is asked for, and how exactly. The accuracy is that of any, flags, distance and self: those that stop
-/// early do so in each query of two parts, and leave pairs, points and distances undecided, or known within an
-/// interval; everything else is as exact as ever. Each query and each step reports its progress by itself.
+/// The effects that a scene computes, and how exactly. The accuracy applies to any, flags, distance and self; all other
+/// effects stay exact. Each query of two parts may stop early, and leaves pairs, points and distances undecided, or
+/// known within an interval. Each query and each step reports its progress by itself.
 struct SceneOptions : Effort {
   Effects effects;
   double clearance = 0.0;  ///< of pairs without a rule; finite, >= 0; inclusive
@@ -108,12 +108,12 @@ struct SceneOptions : Effort {
 /// speed, by any angle that its motion asks for, full turns included (motion.h: Leg). A response changes that motion: a
 /// slide turns the object in place before it moves on, and goes along what it meets. With a response, objects move one
 /// after the other in the order of their ids, each among the others as they stand at that moment. A response never lets
-/// an object collide at any instant of its motion (Outcome::legs): it halts at a distance in (clearance, clearance +
-/// tolerance] of what it meets, and each pose where it halts or turns off is checked exactly.
+/// an object collide at any instant of its motion (Outcome::legs). It halts at a distance in (clearance, clearance +
+/// tolerance] of the obstacle. Each pose where it halts or turns off is checked exactly.
 ///
 /// Where the motion matters (first_contact, swept, a response or gravity), a step or query throws std::invalid_argument
-/// before anything has moved when an object turns more than 1000 times within a step, or when coordinates are so large
-/// that they round by more than 1/32 of the tolerance: with the default tolerance, beyond some 100,000 km.
+/// before anything has moved in two cases. An object turns more than 1000 times within a step. Or coordinates are so
+/// large that they round by more than 1/32 of the tolerance: with the default tolerance, beyond some 100,000 km.
 class Scene {
 public:
   /// @throws std::invalid_argument naming what is wrong with the options
@@ -123,8 +123,8 @@ public:
   Scene& operator=(Scene&&) noexcept;
 
   /// @throws std::invalid_argument for a name that is empty or taken, an object without parts, a part without a
-  ///   hierarchy, a pose that is not rigid, a motion that check() refuses, an adjacent part that there is not, a solid
-  ///   part that does not close.
+  ///   hierarchy, or a pose that is not rigid. Also for a motion that check() refuses, an adjacent part that does not
+  ///   exist, or a solid part that does not close.
   ObjectId add(SceneObject object);
 
   std::size_t size() const noexcept;                           ///< objects
@@ -142,7 +142,7 @@ public:
   void setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose);
   void setMotion(ObjectId object, const Motion& motion);
 
-  /// What holds for two objects, or for all objects of two groups, from now on.
+  /// Sets the rule of two objects, or of all objects of two groups, from now on.
   void setRule(ObjectId a, ObjectId b, const PairRule& rule);
   void setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule);
 
@@ -163,9 +163,10 @@ public:
   // A query or step that throws (std::bad_alloc, Cancelled) has changed nothing, and may be asked for again.
 
   /// The effects at the present poses. `first_contact` and `swept` look at the motion from the poses of the last query
-  /// or step, with the points and rules of now (SceneResult::swept_motions): one leg, whatever legs a response took;
-  /// after setPose() in the shorter direction; of a part after setPartPose() a leg of its own. An object that was added
-  /// since then is looked at where it stands. What is left out of this is listed in SceneResult::unswept.
+  /// or step, with the present points and rules (SceneResult::swept_motions). This is one leg, also where a response
+  /// took several. After setPose() it turns in the shorter direction; a part has a leg of its own after setPartPose().
+  /// An object that was added since then is looked at where it stands. Objects and parts that are left out are listed
+  /// in SceneResult::unswept.
   SceneResult query();
 
   /// Moves every object along its motion, as response and gravity allow, and queries. An object that no query has seen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query computes: the pairs worth asking about, then each listed effect by itself, with its own cost.
+// A scene's query: finds the pairs worth asking about, then computes each listed effect by itself, with its own cost.
 #include <pcl_bsh/scene/effects/each_pair.h>
 
 #include <algorithm>

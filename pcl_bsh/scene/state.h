@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a Scene holds between queries.
+// The state of a Scene between queries.
 #pragma once
 
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/scene/pairs/broad_phase.h>
 #include <pcl_bsh/scene/scene.h>
-#include <pcl_bsh/scene/solids.h>
+#include <pcl_bsh/scene/scene_solids.h>
 #include <pcl_bsh/scene/swept/object_motion.h>
 
 #include <chrono>
@@ -55,10 +55,10 @@ struct Body {
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
   double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
   Eigen::Isometry3d step_pose;                      ///< before the step in progress
-  bool step_follows_motion = true;                  ///< likewise
-  Eigen::Vector3d step_turned = Eigen::Vector3d::Zero(); ///< likewise
+  bool step_follows_motion = true;                  ///< follows_motion before the step in progress
+  Eigen::Vector3d step_turned = Eigen::Vector3d::Zero(); ///< turned before the step in progress
 
-  /// Of its box, in the object's frame: the point that goes straight.
+  /// Centre of its box, in the object's frame: the point that moves straight.
   Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
 
   /// Since the last query.
@@ -114,7 +114,7 @@ public:
     return bodies[parts.a].object.parts[parts.part_a].solid || bodies[parts.b].object.parts[parts.part_b].solid;
   }
 
-  /// What is held of two standing parts whose surfaces have this verdict; nothing where they collide.
+  /// A held record of two standing parts whose surfaces have this verdict; nothing where the surfaces collide.
   std::optional<PointPair> heldPair(const StandingPart& a, const StandingPart& b, Verdict surfaces, double clearance,
                                     Work& work) const;
   void followSolids(); ///< makes what queries of solids need

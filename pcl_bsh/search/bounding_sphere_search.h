@@ -25,14 +25,14 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::search {
 
-/// What setInputCloud() of a search class returns: PCL changed it.
+/// The return type of setInputCloud() of a search class: PCL changed it.
 template <typename Search>
 using SetInputCloudResultOf = decltype(std::declval<Search&>().setInputCloud(
     std::declval<const typename Search::PointCloudConstPtr&>(), pcl::IndicesConstPtr()));
 
 /// A bounding-sphere hierarchy behind PCL's interface, for point types whose x, y, z are float or double.
 ///
-/// Of every search, in all overloads:
+/// Rules of every search, in all overloads:
 ///  - a radius includes its end: a point with |p - q| == radius is found;
 ///  - max_nn gives the nearest ones; 0, or more than there are, all of them;
 ///  - results of nearestKSearch(), and of radiusSearch() unless setSortedResults(false), ascend by distance, equal
@@ -81,8 +81,8 @@ public:
   int radiusSearch(const PointT& point, double radius, pcl::Indices& k_indices, std::vector<float>& k_sqr_distances,
                    unsigned int max_nn = 0) const override;
 
-  /// The same for many queries at once, those points of `cloud` that `indices` name, or all of them when it is empty:
-  /// shared among threads, taken in an order that suits the caches. Results are those of the single queries.
+  /// Answers many queries at once: the points of `cloud` that `indices` name, or all of them when it is empty. Threads
+  /// share them, in an order that suits the caches. Results are those of the single queries.
   void nearestKSearch(const PointCloud& cloud, const pcl::Indices& indices, int k, std::vector<pcl::Indices>& k_indices,
                       std::vector<std::vector<float>>& k_sqr_distances) const override;
   void radiusSearch(const PointCloud& cloud, const pcl::Indices& indices, double radius,
@@ -92,7 +92,7 @@ public:
   /// Does any point lie within the radius? Stops at the first.
   bool anyInRadius(const PointT& point, double radius) const;
 
-  /// The same for many balls at once: 1 where a point of the input lies in the ball around centers[i].
+  /// Answers many balls at once: 1 where a point of the input lies in the ball around centers[i].
   /// @param radii one per center. @throws std::invalid_argument when their number differs, or one is negative or NaN
   std::vector<std::uint8_t> anyInBalls(const PointCloud& centers, const std::vector<float>& radii) const;
 

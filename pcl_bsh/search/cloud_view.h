@@ -70,7 +70,7 @@ PointsView viewOf(const std::shared_ptr<Cloud>& cloud)
   return view;
 }
 
-/// The same, of a subset. An empty list names no point.
+/// The view of a subset. An empty list names no point.
 template <typename Cloud>
 PointsView viewOf(const Cloud& cloud, const pcl::Indices& indices)
 {

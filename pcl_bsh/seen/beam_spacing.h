@@ -5,9 +5,9 @@
 
 namespace pcl_bsh {
 
-/// How far apart the beams of a scan are, in radians: of up to a thousand of them the farther one of the nearest beam
-/// above or below and the nearest beside, each within 60 degrees of that way; the median of those. 0: there are not two
-/// beams of different directions.
+/// The angle between the beams of a scan, in radians; 0 where all beams have one direction. It is a median over up to a
+/// thousand beams. Each gives the larger of two angles: to the nearest beam above or below, and to the nearest beside,
+/// both within 60 degrees of that way.
 double beamSpacing(const BeamTree& beams);
 
 } // namespace pcl_bsh

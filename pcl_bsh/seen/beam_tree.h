@@ -3,8 +3,8 @@
 // and the greatest range below it.
 #pragma once
 
+#include <pcl_bsh/seen/ball_view.h>
 #include <pcl_bsh/seen/seen_space.h>
-#include <pcl_bsh/seen/sight.h>
 
 #include <cstdint>
 #include <vector>

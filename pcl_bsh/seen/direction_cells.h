@@ -103,9 +103,9 @@ struct Cone {
 };
 
 /// A cell lies between beams if on each of its eight sides is a beam within the angle of its middle. A side is a sector
-/// of 135 degrees on the cell's face: side i goes from i to i + 3 eighths of a turn, from u towards w; a beam is in it
-/// if it is seen there from each place of the cell. Each half-plane about a place of the cell holds one of the sectors,
-/// so that the place is in a triangle of such beams, and great circles are straight lines there.
+/// of 135 degrees on the cell's face: side i goes from i to i + 3 eighths of a turn, from u towards w. A beam is in it
+/// if each place of the cell sees it there. Each half-plane about a place of the cell holds one of the sectors, so that
+/// the place is in a triangle of such beams, and great circles are straight lines there.
 inline constexpr std::size_t kBeamSides = 8;
 
 /// A beam is in a sector by this length at least, on the cube; twice as far on u + w and u - w. More than what

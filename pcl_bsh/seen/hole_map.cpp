@@ -76,7 +76,7 @@ public:
     return within(d.w, d.up, 1.0, 1.0 - sine * sine - d.u * d.u, w0_, true);
   }
 
-  /// Of one row.
+  /// The range of one row.
   MiddleRange row(int row, const Eigen::Vector3d& beam, double sine) const
   {
     const Place d = placeOf(beam);

@@ -24,7 +24,7 @@ public:
 private:
   static constexpr unsigned kTileLevels = 6; ///< a tile has 64 x 64 cells
 
-  /// What a cell is, instead of the number of a node or a tile.
+  /// Entries that say a cell's state instead of naming a node or a tile.
   static constexpr std::uint32_t kCovered = 0xfffffffeu, kHole = 0xffffffffu;
 
   using Tile = std::array<std::uint64_t, 64>; ///< rows along u; 1: a hole

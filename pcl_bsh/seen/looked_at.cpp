@@ -66,8 +66,8 @@ private:
                                  : voxel->given.empty() ? storedSphere(voxel->frame, node, i)
                                                         : givenSphereOf(storage_.view, *voxel, node, i);
       const PosedPlace place(model_.pose, sphere.center);
-      const Sight balls(looked_.origin_, place.at, place.magnitude,
-                        sphere.radius * (1.0 + kPoseStretch) + clearance_ + storage_.uncertainty.most, 8.0);
+      const BallView balls(looked_.origin_, place.at, place.magnitude,
+                           sphere.radius * (1.0 + kPoseStretch) + clearance_ + storage_.uncertainty.most, 8.0);
       const bool leaf = node.isLeaf(i);
       if (!balls.is_around && (balls.coneAngle() <= kNarrow || (leaf && voxel))) {
         mark(balls);
@@ -85,7 +85,7 @@ private:
     }
   }
 
-  void mark(const Sight& ball)
+  void mark(const BallView& ball)
   {
     if (ball.is_around || !ball.isMeasured()) {
       looked_.all_ = true;
@@ -134,7 +134,7 @@ bool LookedAt::holds(const Point3& end) const
 
 bool LookedAt::holdsSome(const Point3& center, double radius) const
 {
-  const Sight ball(origin_, Eigen::Vector3d(center.data()), Eigen::Vector3d(center.data()).lpNorm<1>(), radius, 8.0);
+  const BallView ball(origin_, Eigen::Vector3d(center.data()), Eigen::Vector3d(center.data()).lpNorm<1>(), radius, 8.0);
   if (all_ || ball.is_around || !ball.isMeasured()) return true;
   return anyCell(Cone(ball.direction, ball.coneAngle() + kSlack),
                  [&](const DirectionCell& cell) { return cells_[numberOf(cell)]; });

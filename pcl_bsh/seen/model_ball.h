@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/query/placed.h>
-#include <pcl_bsh/seen/sight.h>
+#include <pcl_bsh/seen/ball_view.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
 #include <Eigen/Geometry>
@@ -33,13 +33,13 @@ struct ModelBall {
     radius = clearance + view.radius(record) + view.uncertainty + view.ownUncertainty(record);
   }
 
-  Sight from(const Point3& origin) const { return {origin, place.at, place.magnitude, radius}; }
+  BallView from(const Point3& origin) const { return {origin, place.at, place.magnitude, radius}; }
 
   PosedPlace place;
   double radius;
 };
 
-/// What both forms of markUnseen() refuse. @throws InvalidInput
+/// Checks of both forms of markUnseen(). @throws InvalidInput
 void checkUnseen(const Placed& model, const UnseenRequest& request, std::size_t verdicts);
 
 } // namespace pcl_bsh

@@ -62,7 +62,7 @@ SeenScan::SeenScan(const ScanBeams& scan, double angle, unsigned threads)
 {
 }
 
-bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
+bool SeenScan::sees(const BallView& ball, std::uint64_t& tested) const
 {
   if (angle_ == 0.0 || !ball.isMeasured()) return false;
   double chord = 2.0;
@@ -74,7 +74,7 @@ bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
   else if (holes_.hasAny()) {
     return false;
   }
-  const double farthest = ball.farthest / speaks_.sure * (1.0 + kSightSlack);
+  const double farthest = ball.farthest / speaks_.sure * (1.0 + kBallViewSlack);
   return !beams_.any(
       [&](const BeamNode& node) {
         ++tested;
@@ -87,7 +87,7 @@ bool SeenScan::sees(const Sight& ball, std::uint64_t& tested) const
       });
 }
 
-bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const
+bool SeenScan::seesNoneIn(const BallView& ball, double least, std::uint64_t& tested) const
 {
   if (angle_ == 0.0) return true;
   if (ball.is_around || !ball.isMeasured()) return false;
@@ -105,7 +105,7 @@ bool SeenScan::seesNoneIn(const Sight& ball, double least, std::uint64_t& tested
       });
 }
 
-bool SeenScan::isDark(const Sight& place, std::uint64_t& tested) const
+bool SeenScan::isDark(const BallView& place, std::uint64_t& tested) const
 {
   if (angle_ == 0.0 || !place.isMeasured()) return true;
   if (place.is_around) return false;

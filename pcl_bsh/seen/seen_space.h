@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scanners saw to be empty: the space that their beams passed through. Is a ball in it, or did nobody look there?
+// The space that scanners saw to be empty: their beams passed through it. Is a ball in it, or did nobody look there?
 //
 //   SeenSpace seen({{origin_1, viewOf(scan_1, n)}, {origin_2, viewOf(scan_2, m)}});
 //   std::vector<Verdict> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Side::b}).b;
 //   UnseenResult found = markUnseen(seen, {robot, T_scans_robot}, {0.05}, verdicts); // what is free, but was not seen
 //
 // A direction lies between beams if beams lie on all sides of it: it is in a triangle of three beams within 1.2 angles.
-// Nothing is known of other directions: beyond the outermost beams, in gaps, beside a single beam or row. A beam
-// counts for the directions within 1.2 angles of its own: it says that they are empty up to its return, less the
-// return's uncertainty and radius, and less the angle's share of that (0.002 of it at 0.002 radians). A ball is seen by
-// a scanner if each direction in which it can be looked at (the directions of its cone; all, where the scanner is in
-// the ball) lies between beams, and each beam that counts for such a direction is empty up to where the direction
-// leaves the ball. One scanner that sees the whole ball suffices.
+// Nothing is known of other directions: beyond the outermost beams, in gaps, beside a single beam or row. A beam counts
+// for the directions within 1.2 angles of its own. They are empty up to its return, less the return's uncertainty and
+// radius, and less the angle's share of that (0.002 of it at 0.002 radians). A scanner looks at a ball in the
+// directions of its cone, or in all where it is in the ball. It sees the ball if each of these directions lies between
+// beams. Also, each beam that counts for one has to be empty up to where the direction leaves the ball. One scanner
+// that sees the whole ball suffices.
 //
 // For which worlds that holds. In a direction between beams a plane that they met, at any slant, is no nearer than the
-// nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer:
-// a sphere by less than the angle's share if the beams round the direction are within the angle of it, an edge of a
-// right angle or blunter if they are within 0.87 angles, a corner of three right angles if they are within two thirds:
-// those of an even grid are, at the angle that is measured. Beams have to meet things: one that is at least two angles
-// wide as a scanner sees it, even at its corners, is met by a beam of an even grid beside each of its places.
+// nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer by
+// less than the angle's share under these conditions. A sphere: the beams round the direction are within the angle of
+// it. An edge of a right angle or blunter: within 0.87 angles. A corner of three right angles: within two thirds. Beams
+// of an even grid are so near, at the measured angle. Beams have to meet things. A scanner sees a thing at least two
+// angles wide, also at its corners: then a beam of an even grid meets it beside each of its places.
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
-// grid over the sphere, with edges of a quarter of the angle at most. A cell lies between beams if, of the beams within
-// the angle of its middle, one is in each of eight sectors of 135 degrees that all of its places see; a length of 2^-40
-// times the coordinates may decide either way.
+// grid over the sphere, with edges of a quarter of the angle at most. A cell lies between beams if each of eight
+// sectors of 135 degrees, which all of its places see, has a beam within the angle of the cell's middle. A length of
+// 2^-40 times the coordinates may decide either way.
 //
-// The beams do not tell of things thinner than that, edges and corners sharper than right angles, things that throw
-// nothing back between beams that are neighbours, glass, and mixed pixels at edges, whose returns lie behind what was
-// there.
+// The beams do not tell of things thinner than that, of edges and corners sharper than right angles, of things that
+// throw nothing back between neighbouring beams, or of glass. Nor do they tell of mixed pixels at edges, whose returns
+// lie behind the surface.
 #pragma once
 
 #include <pcl_bsh/export.h>

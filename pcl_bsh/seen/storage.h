@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a SeenSpace holds of each scan.
+// The data of each scan in a SeenSpace.
 #pragma once
 
 #include <pcl_bsh/seen/beam_tree.h>
@@ -21,14 +21,14 @@ public:
   std::size_t size() const { return beams_.beams().size(); }
 
   /// Whether nothing is open in the ball: it is seen.
-  bool sees(const Sight& ball, std::uint64_t& tested) const;
+  bool sees(const BallView& ball, std::uint64_t& tested) const;
 
   /// Whether it sees no ball about a place in this one. @param ball of places. @param least radius of balls about them
-  bool seesNoneIn(const Sight& ball, double least, std::uint64_t& tested) const;
+  bool seesNoneIn(const BallView& ball, double least, std::uint64_t& tested) const;
 
   /// Whether no beam passed a place: it is in a hole, or all beams that count for its direction ended before it.
   /// @param place a ball of radius 0
-  bool isDark(const Sight& place, std::uint64_t& tested) const;
+  bool isDark(const BallView& place, std::uint64_t& tested) const;
 
 private:
   BeamTree beams_;
@@ -42,7 +42,7 @@ public:
   std::vector<SeenScan> scans;
 };
 
-/// What SeenSpace refuses. @throws InvalidInput
+/// Checks of a SeenSpace's input. @throws InvalidInput
 void checkScan(const ScanBeams& scan, std::size_t index);
 void checkBeamAngle(double angle);
 

@@ -20,16 +20,16 @@ namespace pcl_bsh {
 inline constexpr double kSmallestPart = 0.125;
 inline constexpr int kMostHalvings = 14;
 
-/// Where a triangle is unseen is told of parts with no more halvings, or as small as the ball about a place. Those of
-/// one piece share a box: of its shadow one, of its skin another.
+/// The unseen part of a triangle is told in parts with no more halvings than this, or as small as the ball about a
+/// place. Parts of one piece share two boxes: one of its shadow, one of its skin.
 inline constexpr int kPartHalvings = 10;
 inline constexpr int kPieceHalvings = 6;
 
 /// @param sees (ball: PosedPlace, radius) whether one scanner sees all of it
 template <class Sees>
-class RecordSight {
+class RecordSeen {
 public:
-  RecordSight(const Placed& model, double clearance, const Sees& sees)
+  RecordSeen(const Placed& model, double clearance, const Sees& sees)
   : model_(model),
     view_(model.hierarchy().view()),
     clearance_(clearance),

@@ -60,10 +60,10 @@ private:
     const double places = sphere.radius * (1.0 + kPoseStretch);
     const PosedPlace place(model_.pose, sphere.center);
     for (const SeenScan* scan : scans) {
-      const Sight balls(scan->origin(), place.at, place.magnitude, places + clearance_ + storage_.uncertainty.most,
-                        8.0);
+      const BallView balls(scan->origin(), place.at, place.magnitude, places + clearance_ + storage_.uncertainty.most,
+                           8.0);
       if (scan->sees(balls, result.work.node_pairs)) return State::seen;
-      const Sight inside(scan->origin(), place.at, place.magnitude, places, 8.0);
+      const BallView inside(scan->origin(), place.at, place.magnitude, places, 8.0);
       if (!scan->seesNoneIn(inside, clearance_, result.work.node_pairs)) left.push_back(scan);
     }
     if (!left.empty()) return State::open;
@@ -73,7 +73,7 @@ private:
   bool isAllInShadow(const PosedPlace& place, double radius)
   {
     return std::all_of(all_.begin(), all_.end(), [&](const SeenScan* scan) {
-      const Sight places(scan->origin(), place.at, place.magnitude, radius, 8.0);
+      const BallView places(scan->origin(), place.at, place.magnitude, radius, 8.0);
       return scan->seesNoneIn(places, 0.0, result.work.node_pairs);
     });
   }
@@ -143,13 +143,13 @@ private:
       }
       return false;
     };
-    const RecordSight sight(model_, clearance_, sees);
+    const RecordSeen sight(model_, clearance_, sees);
     if (!scans.empty() && sight(record)) return;
     mark(record, request_.kinds &&
                      sight.isInShadow(record, Shadow{*this}, request_.parts ? &result.kinds.parts : nullptr, frame_));
   }
 
-  /// As RecordSight asks for it.
+  /// As RecordSeen asks for it.
   struct Shadow {
     UnseenWalk& walk;
 

@@ -20,7 +20,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What markUnseen() reads.
+/// The request of markUnseen().
 struct UnseenRequest {
   double clearance = 0.0; ///< finite, >= 0: radius of the ball about a point, its radius and uncertainty on top
   unsigned threads = 1;   ///< 0: all of the machine's
@@ -53,7 +53,7 @@ struct UnseenKinds {
   std::vector<UnseenPart> parts;
 };
 
-/// What markUnseen() found.
+/// The result of markUnseen().
 struct UnseenResult {
   std::size_t unseen = 0;    ///< points that were free and are unseen
   std::size_t in_shadow = 0; ///< with UnseenRequest::kinds: of these, in shadow; the others are in the skin
@@ -61,9 +61,9 @@ struct UnseenResult {
   Work work;                 ///< node_pairs: spheres of the model, and of directions, that were tested
 };
 
-/// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. Of a
-/// triangle all places must be seen, each by one scanner: it is halved until balls about its parts are, down to an
-/// eighth of the clearance and its uncertainty, and to 14 times.
+/// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. All
+/// places of a triangle must be seen, each by one scanner. It is halved until balls about its parts are seen, down to
+/// an eighth of the clearance and its uncertainty, and to 14 times.
 /// @param model at T_scans_model. @param verdicts one per record of its view, such as FlagsResult::b
 /// @throws std::invalid_argument naming the value: a clearance, a pose, or a number of verdicts. Cancelled
 UnseenResult markUnseen(const SeenSpace& seen, const Placed& model, const UnseenRequest& request,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Those lanes of a vector that have their bit set, moved to the front and stored, without a branch.
+// Moves the lanes of a vector whose bit is set to the front and stores them, without a branch.
 
 #if defined(PCL_BSH_SIMD_COMPRESS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_SIMD_COMPRESS_INL_H_

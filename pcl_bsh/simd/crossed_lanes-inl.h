@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies both in a sphere and in two slabs, against the like, and against points: long triangles that lie side by
-// side are there, where their sphere is as large as one of them is long.
+// Records that lie both in a sphere and in two slabs, against others like them and against points. Long triangles side
+// by side lie so: their sphere is as large as one of them is long.
 
 #if defined(PCL_BSH_SIMD_CROSSED_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_SIMD_CROSSED_LANES_INL_H_
@@ -24,9 +24,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// At least the squares of the lengths of ways to what lies in two slabs. @param dx, dy, dz from their centre
 /// @param margin kSlabMargin of all lengths, as FacingSlabs has it
 ///
-/// A way v from there has parts of at least g and k along the normals n and c. Along these two alone
-/// |v|^2 >= (g^2 + k^2 - 2 |n . c| g k) / (1 - (n . c)^2), and that is >= (1 - |n . c|) (g^2 + k^2): also where the
-/// normals are not square to each other. Of the cosine and of the squares float arithmetic takes less than 2^-16.
+/// A vector v from there has components of at least g and k along the normals n and c. Let m = |n . c|: normals need
+/// not be square to each other. Then |v|^2 >= (g^2 + k^2 - 2 m g k) / (1 - m^2) >= (1 - m) (g^2 + k^2). The cosine and
+/// the squares lose less than 2^-16 in float arithmetic.
 HWY_INLINE LaneVector squaredToSlabs(const CrossedSlabs& held, LaneVector dx, LaneVector dy, LaneVector dz,
                                      LaneVector margin)
 {
@@ -63,13 +63,13 @@ HWY_INLINE std::uint32_t pointsNearSlabs(const float* x, const float* y, const f
   return ~far & firstBits(count);
 }
 
-/// Bit i: what is in sphere i and in two slabs is proven to be more than reach away from the other, along one of both
-/// normals of either, or across what both are longest along.
+/// Bit i: the records in sphere i and its two slabs are proven to be more than reach away from the other's. The proof
+/// is along a normal of either, or across the directions in which both are longest.
 ///
 /// Whatever led to a direction u, the gap along it is a bound; it is measured for |u|. A part of u along a normal
-/// reaches as far as its slab, the rest as far as the sphere (NodeSupport). Normals of 0 say nothing, and leave all to
-/// the sphere. kSlabMargin of all lengths pays for what normals are off, as FacingSlabs has it, and for float
-/// arithmetic: the rest of u errs by 8 roundings of it, a product with u by 4.
+/// reaches as far as its slab, the rest as far as the sphere (NodeSupport). Normals of 0 prove nothing, and leave all
+/// to the sphere. kSlabMargin of all lengths pays for the errors of normals, as in FacingSlabs, and for float
+/// arithmetic. The rest of u errs by 8 roundings of it, a product with u by 4.
 HWY_INLINE std::uint32_t crossedSlabsApart(const SphereLanes& spheres, const SlabLanes& slabs,
                                            const SlabLanes& cross_slabs, const CrossedSlabs& other, float reach)
 {

@@ -6,13 +6,13 @@
 
 namespace pcl_bsh {
 
-/// The triangle (0, 0, 0), (length, 0, 0), (apex_x, apex_y, 0) of the frame y = rows (x - origin), where length is the
-/// longest side, 0 <= apex_x <= length and apex_y >= 0; what the kernels need of it beside.
+/// The triangle (0, 0, 0), (length, 0, 0), (apex_x, apex_y, 0) in the frame y = rows (x - origin), with the numbers
+/// that the kernels need. Its length is the longest side, 0 <= apex_x <= length and apex_y >= 0.
 /// @tparam Number float or double
 template <class Number>
 struct FlatTriangle {
   Number origin[3] = {};
-  Number rows[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< orthonormal but for rounding
+  Number rows[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< orthonormal within rounding
   Number length = 0, apex_x = 0, apex_y = 0;
   Number to_start = 0, to_end = 0; ///< one over the squares of the apex's two sides; 0 where that is too large
   Number rise = 0, fall = 0;       ///< slopes of these sides above the longest, not negative; large where upright
@@ -23,12 +23,12 @@ struct FlatTriangle {
 inline constexpr int kFlatTurnRoundings = 4;  ///< of a point turned into the triangle's frame, in each coordinate
 inline constexpr int kFlatAlongRoundings = 4; ///< of a parameter along a side, relative to the terms of its products
 inline constexpr int kFlatUnderRoundings = 3; ///< of the height of a side above a place of the longest
-/// What these amount to together, in units of (distance + longest side): proved in test/proof/triangles.g.
+/// The sum of these errors, in units of (distance + longest side): proved in test/proof/triangles.g.
 inline constexpr int kFlatTriangleUnits = 15;
 
-/// Of a gap between a flat triangle and one in a lane, along a direction, for each unit of its length: as many u of the
-/// greatest distance of a corner from the flat one's origin, and of its longest side. And the share of what is
-/// compared. Derived in triangle_pair_lanes-inl.h, proved in test/proof/triangle_pairs.g.
+/// Error of a gap between a flat triangle and one in a lane, for each unit of the direction's length, in u. The unit is
+/// the greatest distance of a corner from the flat one's origin, plus its longest side. And the share of the compared
+/// value. Derived in triangle_pair_lanes-inl.h, proved in test/proof/triangle_pairs.g.
 inline constexpr int kTrianglePairUnits = 8;
 inline constexpr float kTrianglePairMargin = 0x1p-18f;
 

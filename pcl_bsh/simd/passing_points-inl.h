@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-// Of a place at an instant that is rounded: 3 u of twice the largest coordinate and of four times the bow beside the
-// above, and 3 u for a point's shift and the gap to it.
+// A rounded place at an instant: beside the above, 3 u of twice the largest coordinate and of four times the bow. A
+// point's shift and the gap to it have 3 u.
 static_assert(1.7321 * (8 + 7 + 6 + 3) * kFloatUnit < kSegmentRounding);
 
 /// Where an arc is at as many instants as there are lanes: step / steps, (step + 1) / steps, ...
@@ -68,7 +68,7 @@ struct PlacesOnArc {
   }
 };
 
-/// Of some points that a line passes.
+/// The points that a line passes.
 struct Passage {
   LaneVector at;      ///< the foot of the perpendicular, of the way
   LaneVector squared; ///< distance from the line
@@ -125,7 +125,7 @@ struct Passages {
   alignas(64) float squared[Count]; ///< distance from the line through it
   alignas(64) float enter[Count];   ///< not before this part of its way is it within the reach
 
-  /// Those of `points` that it comes near before a part of its way, or nearer than a squared distance.
+  /// The points in `points` that the line comes near before a part of its way, or nearer than a squared distance.
   HWY_INLINE std::uint32_t before(std::uint32_t points, float part, float squared_limit) const
   {
     const LaneTag d;

@@ -135,8 +135,8 @@ struct NearestTwo {
   }
 };
 
-/// Takes those points (x, y, z) that have their bit set into the nearest two of each of sixteen points, of those
-/// vectors that have a bit in `points_near`; point j is called name + j. Compares squared distances; with radii,
+/// Updates the nearest two of each of sixteen points by the points (x, y, z) whose bit is set in `others`. Only vectors
+/// that have a bit in `points_near` take part; point j is called name + j. Compares squared distances; with radii,
 /// distances less the other point's radius times `scale`. None may be NaN where the result is used.
 /// @tparam kBalls whether there are radii
 template <bool kBalls>
@@ -213,7 +213,7 @@ HWY_INLINE std::uint32_t atMost(const float* values, float limit)
   return bits;
 }
 
-/// The same of sixteen limits, and which values are above theirs.
+/// Bit i: values[i] is at most limits[i]; aboveEach(): it is above.
 HWY_INLINE std::uint32_t atMostEach(const float* values, const float* limits)
 {
   const LaneTag d;
@@ -270,7 +270,7 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
   return false;
 }
 
-/// The same where each point has a reach of its own, reach + scale * lengths[i]; below 0 it is within none.
+/// Whether any point is within a reach of its own: reach + scale * lengths[i]; a negative reach holds no point.
 /// @param reach rounded inward, and scale so that the products are. @param lengths >= 0; as many are read as of x
 HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* z, const float* lengths, float scale,
                                    std::size_t count, const Point& to, float reach)

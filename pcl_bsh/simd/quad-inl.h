@@ -48,7 +48,7 @@ public:
     return q;
   }
 
-  /// Truncated towards zero. What int32 does not hold becomes its lowest or highest number, NaN a negative one.
+  /// Truncated towards zero. Numbers outside int32 become its lowest or highest, NaN a negative one.
   HWY_INLINE void storeTruncated(std::int32_t* to) const
   {
     const hn::RebindToSigned<Tag> d;

@@ -23,9 +23,9 @@ struct Roundings {
 
 inline constexpr Roundings kNoTerm{-1000};
 
-/// What `count` roundings to float, one to eight of them, amount to relative to a term: at least (1 + u)^count - 1 and
-/// (1 - u)^-count - 1. Both are below count u (1 + count u) <= count u (1 + 2^-21); the other half of 2^-20 pays for a
-/// few roundings of double arithmetic on the way to a threshold.
+/// Relative error of `count` roundings to float, one to eight of them: at least (1 + u)^count - 1 and (1 - u)^-count -
+/// 1. Both are below count u (1 + count u) <= count u (1 + 2^-21); the other half of 2^-20 pays for a few roundings of
+/// double arithmetic on the way to a threshold.
 constexpr double relativeError(int count)
 {
   return count * kFloatUnit * (1.0 + 0x1p-20);
@@ -45,46 +45,46 @@ inline constexpr double kLargestCarried = 0x1p126;
 inline constexpr int kSquaredDistanceRoundings = 5;
 inline constexpr double kSquaredDistanceError = relativeError(kSquaredDistanceRoundings);
 
-/// Of the root of a squared distance, in double: (1 - u)^-(5/2), and the root's own rounding.
+/// Relative error of a root of a squared distance, in double: (1 - u)^-(5/2), and the root's own rounding.
 inline constexpr double kLengthError = kSquaredDistanceError / 2;
 
 /// The smallest length that floats are trusted with: what underflows in a kernel, of products below 2^-126 or of
 /// squares of lengths below 2^-63, is less than this together, as a length. Radii and reaches of spheres are never
 /// less.
 inline constexpr double kSmallestLength = 0x1p-60;
-/// The same of squared distances, as far as bands need it: squares and their sums err by less than 2^-147 in all.
+/// The smallest squared distance that bands need: squares and their sums err by less than 2^-147 in all.
 inline constexpr double kSmallestSquare = 0x1p-124;
 
 /// Relative margin of squared comparisons of spheres: squared distances against sums of radii and a reach. The distance
-/// has 5 roundings. The limit has 8 at most: three of each factor (a radius stretched, two sums; the reach was rounded
-/// outward by more than it loses, kReachMargin), and two products. 2^-20 = 16 u is above the 13 u of both.
+/// has 5 roundings. The limit has 8 at most: two products, and three of each factor (a stretched radius, two sums). The
+/// reach was rounded outward by more than it loses, kReachMargin. 2^-20 = 16 u is above the 13 u of both.
 inline constexpr int kSphereLimitRoundings = 8;
 inline constexpr float kSphereMargin = 0x1p-20f;
 
-/// Of radii that are measured in float arithmetic: above kLengthError and the roundings of a root, a product and a sum.
+/// Relative margin of radii measured in float: above kLengthError and the roundings of a root, a product and a sum.
 inline constexpr float kRadiusMargin = 0x1p-20f;
 
-/// What pays for underflow of squares of lengths of which none that matters is below kSmallestLength.
+/// Pays for underflow of squares of lengths; lengths that matter are at least kSmallestLength.
 inline constexpr float kVanishingSquare = 0x1p-120f;
 
-/// Of slabs, relative: normals may be off their length by 2^-19 each, and what carries them by as much; the float
-/// arithmetic of a dot product is below 8 u = 2^-21.
+/// Relative margin of slabs: normals may be off their length by 2^-19 each, and so may the rotation that carries them.
+/// The float arithmetic of a dot product is below 8 u = 2^-21.
 inline constexpr float kSlabMargin = 0x1p-16f;
 
 /// Relative margin of a reach that was rounded from double to float: a cast and a product round it by 2 u, and three
 /// sums follow; it is good for 6 u.
 inline constexpr float kReachMargin = 0x1p-21f;
 
-/// Segments against boxes: what rounding may amount to, relative to the largest coordinate of starts, ends and widened
-/// boxes: 5 u for starts and as much for ends carried, 2 u for their difference, 2 u for that to a box, 6 u of the
-/// motion, of up to two such coordinates, for the time; less than 40 u of the 64.
+/// Segments against boxes: rounding relative to the largest coordinate of starts, ends and widened boxes. Starts take 5
+/// u, carried ends 5 u, their difference 2 u, the gap to a box 2 u. The time takes 6 u of the motion, of up to two such
+/// coordinates, for the time. Less than 40 u of the 64.
 inline constexpr float kSegmentRounding = 0x1p-18f;
 
-/// Of an instant i / steps, in steps: two roundings of up to `steps`, and those of the stay's ends.
+/// Error of an instant i / steps, in steps: two roundings of up to `steps`, and those of the stay's ends.
 inline constexpr float kStepRounding = 0x1p-21f;
 
 /// Neighbours: the share e in (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e), which splits a squared distance s from
-/// an error rho; and the margin of lengths in float, after a cast, a root, a product and a sum.
+/// an error rho. Then the margin of float lengths after a cast, a root, a product and a sum.
 inline constexpr float kNeighborShare = 0x1p-20f;
 inline constexpr float kNeighborMargin = 0x1p-20f;
 

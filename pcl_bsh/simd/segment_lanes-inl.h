@@ -19,9 +19,9 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Arcs from start to end, each to be tested against boxes that are widened by a reach of its own: at t from 0 to 1, on
-/// the parabola start + t motion + 4 t (1 - t) bow. The caller pays for rounding in the reach, also for taking a motion
-/// for one of `smallest` that is smaller (kSegmentRounding).
+/// Arcs from start to end: at t from 0 to 1 on the parabola start + t motion + 4 t (1 - t) bow. Each is tested against
+/// boxes widened by a reach of its own. The caller pays for rounding in the reach, also for taking a motion below
+/// `smallest` for one of `smallest` (kSegmentRounding).
 /// @tparam Reaches 3: along each axis another, 1: the same along all.
 template <std::size_t Count, std::size_t Reaches = 1>
 struct Segments {
@@ -51,9 +51,9 @@ struct Segments {
 
 static_assert(2 * kCarriedProductError + (2 + 2 + 2 * 6) * kFloatUnit < kSegmentRounding);
 
-// Of a place on the parabola: 8 u of the largest coordinate for its start, middle and end carried, 7 u for the
-// parabola's products and sums, 4 u for the gap to a box, on each of three axes: less than 40 u of the 64. Of the bow
-// less than 32 u on each axis; the caller counts it eightfold.
+// A place on the parabola: 8 u of the largest coordinate for its start, middle and end carried. The parabola's products
+// and sums take 7 u, the gap to a box 4 u, on each of three axes: less than 40 u of the 64. The bow has less than 32 u
+// on each axis; the caller counts it eightfold.
 static_assert(1.7321 * (8 + 7 + 4) * kFloatUnit < kSegmentRounding && 1.7321 * 32 * kFloatUnit < 8 * kSegmentRounding);
 
 /// When a segment is in a box: a part of [0, 1].
@@ -92,8 +92,8 @@ HWY_INLINE LaneVector placeOn(const ArcLanes& arc, LaneVector t)
   return hn::Add(arc.start, hn::Mul(t, hn::Add(arc.motion, bent)));
 }
 
-/// No more than the distance of the clipped part of an arc from a box along an axis, less what the reach exceeds the
-/// ball by: the part bows by the square of its share of the whole.
+/// At most the distance of the clipped part of an arc from a box along an axis, less (reach - ball). The part bows by
+/// the square of its share of the whole.
 HWY_INLINE LaneVector gapToBox(const ArcLanes& arc, LaneVector ball, LaneVector low, LaneVector high,
                                const ClippedLanes& clip)
 {
@@ -243,7 +243,7 @@ HWY_INLINE std::uint32_t boxesNearBox(const float (*lows)[kLanes], const float (
   return bits;
 }
 
-/// Of eight points, the squared distance to the farthest corner of a box, where that is less than `least`.
+/// Lowers `least` of eight points to the squared distance to the farthest corner of a box, where that is less.
 HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float* low, const float* high, float* least)
 {
   const LaneTag d;

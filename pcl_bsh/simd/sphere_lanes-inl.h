@@ -256,7 +256,7 @@ struct SlabLanes {
   const float *x, *y, *z, *h;
 };
 
-/// Of the lengths that slabs are compared with: their squares, summed up, are in the range of float.
+/// The longest length that slabs are compared with: sums of its squares are in the range of float.
 inline constexpr float kLongestOfSlabs = 0x1p60f;
 
 /// A vector of slabs, from lane i on, and another one: what the bounds of their distance have in common. d is from the
@@ -265,11 +265,12 @@ inline constexpr float kLongestOfSlabs = 0x1p60f;
 /// Across a normal spheres are as wide as their radii, and d less its part along the normal errs by 2^-17 |d| and
 /// rounding, which kSlabMargin pays for, too. The squares err as those of spheres do.
 ///
-/// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r:
-/// u is split into its parts along n and across it. Normals may be off length 1 by 2^-19, and so may what carries them
-/// from one frame to another; kSlabMargin of all lengths pays for these and for float arithmetic, a few roundings of
-/// each term, and kSlabMargin in the sine's square for those of 1 - cosine^2. 0 as a normal proves nothing, and nothing
-/// is proven where squares may leave the range of float: triangles reach beyond the frame that their middles are in.
+/// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r.
+/// Here u is split into its components along n and across it. Normals may be off length 1 by 2^-19, and so may the
+/// rotation that carries them between frames. kSlabMargin of all lengths pays for these and for float arithmetic, a few
+/// roundings of each term. As much in the sine's square pays for those of 1 - cosine^2. A normal of 0 proves nothing.
+/// Nothing is proven where squares may leave the range of float: triangles reach beyond the frame that holds their
+/// middles.
 struct FacingSlabs {
   HWY_INLINE FacingSlabs(LaneTag d, std::size_t i, const SphereLanes& spheres, const SlabLanes& slabs,
                          const Slab& other)
@@ -312,7 +313,7 @@ struct FacingSlabs {
     return hn::Sqrt(squaredNorm(hn::Sub(dx, hn::Mul(on, x)), hn::Sub(dy, hn::Mul(on, y)), hn::Sub(dz, hn::Mul(on, z))));
   }
 
-  /// Of the distance along the better one of both normals and across it. @param rest of that normal
+  /// Squared distance from the gaps along the better of both normals and across it. @param rest across that normal
   HWY_INLINE LaneVector squared(LaneTag d, LaneVector rest) const
   {
     const LaneVector radii = hn::Add(r, other_r);
@@ -324,7 +325,7 @@ struct FacingSlabs {
     return hn::IfThenElseZero(hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)), sum);
   }
 
-  /// Between how far both reach along d. What underflows in a rest is far below the smallest length.
+  /// Between how far both reach along d. Underflow in a rest is far below the smallest length.
   HWY_INLINE LaneVector between(LaneTag d, LaneVector rest_u, LaneVector rest_n) const
   {
     const LaneVector length = hn::Sqrt(squaredNorm(dx, dy, dz));
@@ -348,7 +349,8 @@ struct FacingSlabs {
 };
 
 /// Bit i: slab i, of sphere i, is proven to be more than reach away from another one: along the normal of either and
-/// across it. Of sheets that face each other at the reach, the distance across leaves only what is opposite.
+/// across it. For sheets that face each other at the reach, the distance across leaves only the records that lie
+/// opposite.
 HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes& slabs, const Slab& other, float reach)
 {
   const LaneTag d;
@@ -363,8 +365,8 @@ HWY_INLINE std::uint32_t slabsApart(const SphereLanes& spheres, const SlabLanes&
   return apart;
 }
 
-/// How far apart each slab and another one are at least, in the frame: as slabsApart() has it or, where that is more,
-/// by how far both reach along d. 0 where that is not known.
+/// A lower bound of the gap between each slab and another one, in the frame: that of slabsApart(), or the gap along d
+/// where it is larger. 0 where no gap is known.
 HWY_INLINE void slabGaps(const SphereLanes& spheres, const SlabLanes& slabs, const Slab& other, float* gaps)
 {
   const LaneTag d;
@@ -400,7 +402,7 @@ struct CrossedSlabs {
   float thickness() const { return h > cross_h ? h : cross_h; }
 };
 
-/// The same by how far the points in two slabs each reach along d.
+/// slabGaps() by how far the points in two slabs each reach along d.
 HWY_INLINE void supportGaps(const SphereLanes& spheres, const SlabLanes& slabs, const SlabLanes& cross_slabs,
                             const CrossedSlabs& other, float* gaps)
 {

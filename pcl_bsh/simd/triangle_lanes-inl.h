@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points in lanes against one triangle: a leaf's points are in lanes already, and what is known of a triangle is read
-// from one place, so that the cost of laying it flat is shared by all points that come near it.
+// Points in lanes against one triangle. A leaf's points are in lanes already, and a triangle's numbers are read from
+// one place. All points near a triangle share the cost of laying it flat.
 
 #if defined(PCL_BSH_SIMD_TRIANGLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_SIMD_TRIANGLE_LANES_INL_H_
@@ -84,10 +84,10 @@ HWY_INLINE void turnToTriangle(const FlatTriangle<Number>& triangle, const Sprea
 /// Calls candidate(dx, dy) with what is left of (x, y) in the triangle's plane beyond three places of it.
 ///
 /// Why it holds for any shape: no angle, normal or area is divided by. In its plane the nearest place of the triangle
-/// is on one of the two sides at the apex, or it is found as follows. x is clamped to the longest side, and y to what
-/// lies above that place, under both other sides: this is the place itself inside, and the nearest place where the
-/// longest side or one of its ends is; for both its angles are acute. Each of the three candidates is a place of the
-/// triangle, within rounding, and one of them is within rounding of the nearest: so the least of the three distances is
+/// is on one of the two sides at the apex, or it is found as follows. The x is clamped to the longest side, and y to
+/// the range above that x under both other sides. A place inside is itself the nearest. Otherwise the nearest is on the
+/// longest side or at one of its ends; for both its angles are acute. Each of the three candidates is a place of the
+/// triangle, within rounding, and one of them is within rounding of the nearest. So the least of the three distances is
 /// as near to the true one as its candidates are, from above and below.
 ///
 /// Rounding bound. Let D be the distance from the triangle as it is stored, L its longest side and u the unit. A point
@@ -96,9 +96,9 @@ HWY_INLINE void turnToTriangle(const FlatTriangle<Number>& triangle, const Sprea
 /// by
 ///   4 sqrt(3) u (D + L).
 /// - Under the sides: 3 u of the height there, at most sqrt(3)/2 L: less than 2.6 u L.
-/// - The side from the origin: the share along it errs by 4 u |p| / side; clamped to the side, and multiplied, the
-/// place
-///   is off by 4 u (D + L) + u L. Lying on the side, it is no nearer than the nearest but for that last u L.
+/// - The side from the origin: the share along it errs by 4 u |p| / side. Clamped to the side, and multiplied, the
+/// place is off by 4 u (D + L) + u L. It lies on the side, so it is nearer than the nearest by at most that last u
+/// L.
 /// - The side from the far end: as much, and u (D + L) for the point less that end, u L for the apex less it.
 /// The worst of the three is 5 u (D + L) + 2 u L; with the turn less than 11.93 u D + 13.93 u L, of kFlatTriangleUnits.
 /// - The sum of three squares of rounded differences: kSquaredDistanceError.

@@ -71,7 +71,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
       z[k] = hn::Sub(hn::Load(d, corner.z + i), spread(triangle.origin[2]));
       farthest = hn::Max(farthest, hn::Add(hn::Add(hn::Abs(x[k]), hn::Abs(y[k])), hn::Abs(z[k])));
     }
-    // What a gap must exceed, for each unit of its direction.
+    // The length that a gap must exceed, for each unit of its direction.
     const LaneVector least =
         hn::Mul(hn::Add(hn::Mul(hn::Add(farthest, length), spread(kTrianglePairUnits * 0x1p-24f)), spread(reach)),
                 spread(1.0f + kTrianglePairMargin));

@@ -12,7 +12,7 @@ namespace {
 
 using Id = std::uint32_t;
 
-/// Of each vertex the first one at its place.
+/// For each vertex, the first vertex at its place.
 std::vector<Id> firstAtPlaces(const PointsView& vertices)
 {
   std::vector<Id> order(vertices.count), first(vertices.count);

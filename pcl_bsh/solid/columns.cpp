@@ -21,7 +21,7 @@ std::size_t mostEntries(std::size_t triangles)
 {
   return 6 * triangles + (1 << 14);
 }
-/// What is added where these make few columns: of long thin triangles, each of which meets many.
+/// Entries added where these make few columns: for long thin triangles, each of which meets many.
 std::size_t moreEntries(std::size_t triangles)
 {
   return std::min<std::size_t>(40 * triangles, 1 << 21);
@@ -38,8 +38,7 @@ constexpr std::uint32_t kTooCrowded = 4096;  ///< for a column without strips
 constexpr std::uint32_t kMostColumns = 4096; ///< along an axis
 constexpr std::uint32_t kSampled = 8;        ///< places along an axis that tell what a ray costs
 
-/// Of so many cells along a length, how many there are for each unit; 0, which puts all into the first, where there is
-/// no such number.
+/// Cells per unit of length; 0, which puts all into the first cell, where no such number exists.
 double perUnit(double cells, double length)
 {
   const double per = length > 0.0 ? cells / length : 0.0;
@@ -80,7 +79,7 @@ struct Columns::Shadows {
   std::size_t count = 0;
   double extent = 0.0, area = 0.0, boxes = 0.0; ///< sums
 
-  /// Of a triangle along the axes x and y: so much of its width and height counts.
+  /// Adds a triangle along the axes x and y: so much of its width and height counts.
   void add(const Triangle3& t, std::size_t x, std::size_t y, double width, double height)
   {
     const double twice = (t[1][x] - t[0][x]) * (t[2][y] - t[0][y]) - (t[1][y] - t[0][y]) * (t[2][x] - t[0][x]);
@@ -147,7 +146,7 @@ Columns::Columns(const TrianglesView& triangles) : view_(triangles), origin_(mid
   entries_.shrink(withRoom(entries_.size()));
 }
 
-/// Of triangles in a column.
+/// Shadows of the triangles in a column.
 Columns::Shadows Columns::shadowsWithin(const Point3& low, const Point3& high, const Range& triangles) const
 {
   Shadows shadows;

@@ -22,11 +22,11 @@
 
 namespace pcl_bsh {
 
-/// Places are seen from `origin()`, with the ray's axis last: seen(q)[k] = q[axes()[k]] - origin()[axes()[k]]. What
-/// rounds there is covered by error().
+/// Places are seen from `origin()`, with the ray's axis last: seen(q)[k] = q[axes()[k]] - origin()[axes()[k]]. error()
+/// covers the rounding.
 class Columns {
 public:
-  /// Of the triangles that are finite. The axis is the one along which their boxes cast the least shadow.
+  /// Makes columns of the finite triangles. The axis is the one along which their boxes cast the least shadow.
   explicit Columns(const TrianglesView& triangles);
 
   /// Whether there is no finite triangle.
@@ -94,7 +94,7 @@ private:
     std::uint32_t first; ///< cell of the first column
   };
 
-  /// Of entries_, or a finer grid, or strips.
+  /// A range of entries_, or a finer grid, or strips.
   struct Cell {
     static constexpr std::uint32_t kGrid = ~std::uint32_t{0}, kStrips = kGrid - 1;
     std::uint32_t begin, end; ///< kGrid or kStrips and its number, where there is one

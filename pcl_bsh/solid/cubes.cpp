@@ -66,8 +66,8 @@ void Cubes::mark(const Triangle3& triangle)
   if (!wasMarked(triangle)) mark(triangle, 1.0 / kParts + 2 * kCellPad);
 }
 
-/// Of each slab along the first axis and each row of it along the second, those that the part of the triangle there
-/// reaches along the last. @param share of a cube's width, by which a triangle may miss it
+/// Marks cubes of each slab along the first axis, and of each row of it along the second: the triangle's part there
+/// reaches them along the last axis. It may miss a cube by `share` of the cube's width.
 void Cubes::mark(const Triangle3& t, double share)
 {
   Point3 pad;

@@ -18,8 +18,8 @@ public:
   /// @param low, high of all triangles
   Cubes(const Point3& low, const Point3& high);
 
-  /// Marks the cubes that a triangle may meet. Of many long ones, those that begin and end at nearly the same places
-  /// are marked once, and somewhat wider. @param triangle finite, within the box
+  /// Marks the cubes that a triangle may meet. Long triangles that begin and end at nearly equal places are marked
+  /// once, and somewhat wider. @param triangle finite, within the box
   void mark(const Triangle3& triangle);
 
   /// Whether surely no triangle meets the cube of the places within `reach` of `at`, per axis. False where the cube is

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a solid holds of another thing, points or triangles, and which of its bodies hold it.
+// Records of a thing, points or triangles, that a solid holds, and the bodies that hold them.
 //
 //   const SolidBodies tank(solid);
 //   const Content robot(robot_hierarchy);
@@ -21,8 +21,8 @@
 
 namespace pcl_bsh {
 
-/// What solids are asked about: a thing by what is labelled of it, its points, or the corners of its finite triangles;
-/// of those that its view names.
+/// The thing that solids are asked about: its points, or the corners of its finite triangles; only those that its view
+/// names.
 class Content {
 public:
   /// @param thing borrowed; of triangles, their corners are sorted into voxels here
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& conte
 
 /// The triangles, ascending, of each body that holds a place of these records in its inside, not only on its surface:
 /// the place may be on the surface of another body. No body holds a place in a hollow of the solid.
-/// @param held of heldBy() @throws likewise
+/// @param held the result of heldBy() @throws as heldBy()
 std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
                                      const Content& content, const Eigen::Isometry3d& T_world_content,
                                      const std::vector<std::uint32_t>& held, Work* work = nullptr);
@@ -68,13 +68,13 @@ std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_worl
 
 /// Whether the solid holds anything, where its surface is known to touch no triangle of the content: so of each shell
 /// one corner is looked at, and of points the first that is found.
-/// @return a record of the content that is held, and a triangle of a body that holds it. @throws likewise
+/// @return a record of the content that is held, and a triangle of a body that holds it. @throws as heldBy()
 std::optional<PointPair> findHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
                                   const Content& content, const Eigen::Isometry3d& T_world_content,
                                   Work* work = nullptr);
 
-/// Of records that are held, those that are wherever places truly are: their surface verdicts say that they cannot meet
-/// the surface. @param of_content one per record of the content
+/// Selects the records that are held wherever places truly are: their surface verdicts say that they cannot meet the
+/// surface. @param of_content one per record of the content
 std::vector<std::uint32_t> certainlyHeld(const std::vector<std::uint32_t>& held,
                                          const std::vector<Verdict>& of_content);
 

@@ -15,7 +15,7 @@
 
 namespace pcl_bsh {
 
-/// What is told of the points in a sphere before they are looked at: all have one label, or some may have another.
+/// The label of a sphere's points before they are looked at: one for all, or unknown.
 enum class Whole : std::uint8_t { outside, inside, unknown };
 
 /// A cloud's spheres at one pose of cloud and solid, from the tree above the voxels down to points.
@@ -34,7 +34,7 @@ public:
   /// Takes over the gaps that another walk of the same cloud and solid, at the same poses, has found.
   void takeGaps(const LabelWalk& other) { labels_.takeGaps(other.labels_); }
 
-  /// Of a child of a node above the voxels.
+  /// The label of a child of a node above the voxels.
   Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
 
   /// Tells the sink of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
@@ -89,7 +89,8 @@ private:
     if (label != Label::outside) sink.one(record, label);
   }
 
-  /// Of a point by where it is stored, for where it was given lies anywhere in memory; by that where it must be.
+  /// Labels a point by its stored place where that decides: the given one lies anywhere in memory. By the given one
+  /// elsewhere.
   template <class Sink>
   void labelStored(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t i, Sink& sink)
   {

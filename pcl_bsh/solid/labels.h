@@ -4,9 +4,9 @@
 //   LabelsResult found = labelPoints({scan}, {tank, T_world_tank});
 //   if (found.labels[record] == labelOf(Label::inside)) ...
 //
-// Labels are those of exact arithmetic on the given numbers and poses. What surely does not meet the surface has one
-// label, which one of its points tells: whole nodes of the cloud are labelled at once. A point is labelled where it was
-// measured, and by its centre where it is a ball. Points that are not finite are outside.
+// Labels are those of exact arithmetic on the given numbers and poses. Points that surely do not meet the surface
+// together have one label, found for one of them: whole nodes of the cloud are labelled at once. A point is labelled
+// where it was measured, and by its centre where it is a ball. Points that are not finite are outside.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -27,7 +27,7 @@ constexpr std::uint8_t labelOf(Label label) noexcept
 {
   return static_cast<std::uint8_t>(label);
 }
-/// What labelPoints() found.
+/// The result of labelPoints().
 struct LabelsResult {
   std::vector<std::uint8_t> labels; ///< one per record of the cloud's view, a Label as a number
   std::size_t inside = 0;
@@ -36,14 +36,14 @@ struct LabelsResult {
              ///< built, whose points were labelled one by one; exact_decisions: crossings of a ray and a triangle
 };
 
-/// Of each point. No voxel is built: where one is not, its points are labelled one by one.
+/// Labels each point. No voxel is built: where one is not, its points are labelled one by one.
 /// @param threads 0: all of the machine's @throws std::invalid_argument when a pose is not rigid
 LabelsResult labelPoints(const Placed& cloud, const PlacedSolid& solid, unsigned threads = 1);
 
-/// The same into a result whose memory is used again: for one pose after another.
+/// Fills a result, whose memory is used again: for one pose after another.
 void labelPoints(const Placed& cloud, const PlacedSolid& solid, LabelsResult& result, unsigned threads = 1);
 
-/// The smallest record of a point that is inside, or on the surface; nothing where there is none.
+/// The smallest record of a point that is inside, or on the surface; nothing where no point is.
 /// @param work when given, what the query cost is added. @throws as labelPoints() does
 std::optional<std::uint32_t> firstInside(const Placed& cloud, const PlacedSolid& solid, Work* work = nullptr);
 
@@ -53,7 +53,7 @@ bool anyInside(const Placed& cloud, const PlacedSolid& solid, Work* work = nullp
 /// Whether any point is inside, and not only on the surface. As anyInside() otherwise.
 bool anyWithin(const Placed& cloud, const PlacedSolid& solid, Work* work = nullptr);
 
-/// Of one place of the frame in which the solid is given. Not finite: outside.
+/// The label of one place in the frame of the solid. Not finite: outside.
 Label labelPlace(const Solid& solid, const Point3& place);
 
 } // namespace pcl_bsh

@@ -66,7 +66,8 @@ private:
 /// The directed edges between numbers that are left over where opposite ones have cancelled.
 class EdgesLeft {
 public:
-  /// @param corners_of called twice with each triangle: the numbers of its corners. An edge between equal ones is none
+  /// @param corners_of called twice with each triangle: the numbers of its corners. An edge between equal corners does
+  /// not count
   template <class CornersOf>
   EdgesLeft(std::size_t triangles, std::size_t numbers, const CornersOf& corners_of) : ends_(numbers)
   {

@@ -17,15 +17,15 @@ constexpr double kFrameError = 1024 * kDoubleUnit;
 constexpr std::uint64_t kManyExact = 64; ///< decisions of a place, after which the gap about it is kept
 constexpr std::size_t kMostGaps = 8;     ///< that are kept
 
-/// What a ray from the origin makes of a triangle that is seen from there.
+/// How a ray from the origin crosses a triangle.
 enum class Crossing : std::uint8_t { none, front, back, unknown };
 
 /// By double arithmetic, of corners that are off by `error` per axis; the ray goes along the last axis.
 ///
-/// Error bound: with m the largest coordinate across the ray, M of all, and E the error, a product of two coordinates
-/// errs by less than m (2.25 E + 4 v m) where 4 E <= m (where it is larger, nothing is sure), and a side by less than
-/// m (4.5 E + 9 v m). The volume is three products of a side, at most 2 m^2, and a height: it errs by less than
-/// M m (20 E + 48 v m). Twice these are taken.
+/// Error bound. m is the largest coordinate across the ray, M of all, and E the error. A product of two coordinates
+/// errs by less than m (2.25 E + 4 v m) where 4 E <= m; where E is larger, nothing is sure. A side errs by less than m
+/// (4.5 E + 9 v m). The volume is three products of a side, at most 2 m^2, and a height: it errs by less than M m (20 E
+/// + 48 v m). Twice these are taken.
 Crossing meet(const Triangle3& t, double error, bool above)
 {
   const auto side = [&](std::size_t i, std::size_t j) { return t[i][0] * t[j][1] - t[i][1] * t[j][0]; };

@@ -18,12 +18,12 @@ namespace pcl_bsh {
 /// Double arithmetic decides crossings where its error bound lets it, Winding all others: of the same ray, so that both
 /// may decide crossings of one point.
 ///
-/// Error bound. A place is R (p - o) + g, where o is near it in the cloud and g = Rb^-1 s, s = Ra o + ta - tb - Rb ob.
-/// With |entries| <= 1 + 1e-6 and v = 2^-53: cofactors and determinant of Rb err by 4 v and 20 v, its inverse by less
-/// than 32 v an entry, R by less than 128 v. So R (p - o) errs by less than 400 v A per axis, A the largest |p - o|,
-/// and g by less than 120 v S + 4 e, where S is the largest |s| and e the error of s, which is summed in numbers that
-/// know it; the last sums add 8 v (A + S). kFrameError = 1024 v of A + S has room for twice that, and for bounds
-/// of boxes that are compared with it.
+/// Error bound. A place is R (p - o) + g, where o is near it in the cloud. Here g = Rb^-1 s and s = Ra o + ta - tb - Rb
+/// ob. Entries are at most 1 + 1e-6 and v = 2^-53. Cofactors and determinant of Rb err by 4 v and 20 v, its inverse by
+/// less than 32 v an entry, R by less than 128 v. A is the largest |p - o|, S the largest |s|, and e the error of s,
+/// which is summed in numbers that know it. R (p - o) errs by less than 400 v A per axis, g by less than 120 v S + 4 e.
+/// The last sums add 8 v (A + S). kFrameError = 1024 v of A + S has room for twice that, and for bounds of boxes that
+/// are compared with it.
 class PointLabels {
 public:
   PointLabels(const Eigen::Isometry3d& pose_a, const PlacedSolid& b);
@@ -38,7 +38,7 @@ public:
   /// @param reach at least |p - origin| per axis, of all points that are seen from this frame
   Frame frameAt(const Point3& origin, double reach) const;
 
-  /// Of a place of the cloud less the frame's origin.
+  /// Where a place of the cloud, given less the frame's origin, is seen.
   Point3 seen(const Frame& frame, const Point3& from_origin) const noexcept
   {
     Point3 at;

@@ -13,7 +13,7 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
-/// What findPosesInside() found.
+/// The result of findPosesInside().
 struct PosesInside {
   /// One per record of the cloud's view: the first pose at which the point is inside, or on the surface; or kNothing.
   std::vector<std::uint32_t> first;
@@ -28,7 +28,7 @@ struct PosesInside {
 PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& T_world_solid,
                             unsigned threads = 1);
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Fills a result, whose memory is used again; it is empty after an exception.
 void findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& T_world_solid, PosesInside& result,
                      unsigned threads = 1);
 

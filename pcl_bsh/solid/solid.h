@@ -29,8 +29,8 @@ enum class Label : std::uint8_t { outside, inside, surface };
 /// themselves, faces doubled in opposite directions and several bodies in one mesh enclose what one expects. Corners
 /// are one where their coordinates are equal. Triangles that are not finite count for nothing.
 ///
-/// The view is held, and what it refers to must stay as it is; beyond that, about 60 bytes a triangle, and up to 400
-/// kB; where triangles are long and thin, up to 10 MB.
+/// Holds the view; the memory that it refers to must stay as it is. Needs about 60 bytes a triangle, and up to 400 kB;
+/// where triangles are long and thin, up to 10 MB.
 class Solid {
 public:
   /// @throws InvalidInput (Input::surface) for a view that viewOf() refuses, and for a mesh that does not close. It

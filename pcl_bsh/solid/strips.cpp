@@ -10,7 +10,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of a product of a normal and a place, relative to its terms: three roundings of doubles, and as many at the corners.
+/// Error of a product of a normal and a place, relative to its terms: three roundings of doubles, and as many at the
+/// corners.
 constexpr double kAcrossError = 16 * kDoubleUnit;
 
 double acrossError(const float (&normal)[2], double x, double y)
@@ -48,7 +49,7 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 constexpr std::size_t kSamples = 64; ///< that tell how many lie
 
-/// What the order is found by.
+/// The keys that the order is sorted by.
 struct Needles {
   struct Needle {       // in a unit that floats have squares in
     float x, y;         ///< its middle

@@ -17,7 +17,8 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// One per triangle, a Label as a number: inside where a corner is, else surface where a corner is on it, else outside.
-/// Triangles that are not finite are outside. What is outside may still pass through the solid, across its surface.
+/// Triangles that are not finite are outside. A triangle that is outside may still pass through the solid, across its
+/// surface.
 /// @param threads 0: all of the machine's
 /// @throws InvalidInput for a view that viewOf() refuses, std::invalid_argument when a pose is not rigid
 std::vector<std::uint8_t> labelTriangles(const TrianglesView& triangles, const Eigen::Isometry3d& T_world_triangles,
@@ -27,7 +28,7 @@ std::vector<std::uint8_t> labelTriangles(const TrianglesView& triangles, const E
 /// @throws InvalidInput for a view that viewOf() refuses
 std::vector<std::uint32_t> firstOfShells(const TrianglesView& triangles);
 
-/// Whether a corner of any of these triangles is inside the solid, or on its surface. Of shells that do not touch the
+/// Whether a corner of any of these triangles is inside the solid, or on its surface. For shells that do not touch the
 /// surface, one triangle of each tells all: firstOfShells().
 /// @param shells triangles of the view @throws std::invalid_argument when a pose is not rigid
 bool holdsAny(const PlacedSolid& solid, const TrianglesView& triangles, const std::vector<std::uint32_t>& shells,

@@ -198,7 +198,7 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals, boo
   std::printf("\n");
 }
 
-/// Of --explain and --validate.
+/// Prints the answer of --explain and --validate.
 void tell(const io::SceneFile& file, const Options& options)
 {
   if (options.json) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What something costs against how far off it is, or how large, on logarithmic axes that may have a row of its own for
-// "not at all": a PNG file.
+// A chart of cost against error, or size, on logarithmic axes that may have a row of its own for "not at all": a PNG
+// file.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -56,7 +56,7 @@ struct Span {
 struct Chart {
   std::string title;
   Axis x, y;             ///< points beyond their ends are drawn at the ends
-  std::string lowest;    ///< name of the row below the y axis; empty: there is none
+  std::string lowest;    ///< name of the row below the y axis; empty: no such row
   double lowest_y = 0.0; ///< points up to here are in that row
   std::vector<Series> series;
   std::vector<Span> spans;

@@ -9,7 +9,7 @@ namespace pcl_bsh::vtk {
 
 /// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program. The
 /// connection stays open until the next call: a server that loses its only client begins anew, and meanwhile lets
-/// nobody in. What was drawn without a display by this thread lets go of it: windows may be opened.
+/// nobody in. Objects that this thread drew without a display let go of it: windows may be opened.
 bool haveDisplay();
 
 } // namespace pcl_bsh::vtk

@@ -90,7 +90,8 @@ public:
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
       names.push_back(entry.path().filename().string());
       if (!isBlockOf(stem_, names.back()))
-        refuse("is the folder for the blocks of " + vtm.string() + ", and holds " + names.back() + ", which is none");
+        refuse("is the folder for the blocks of " + vtm.string() + ", and holds " + names.back() +
+               ", which is not a block");
     }
     const auto taken = [&](const std::string& name) {
       return name.rfind(stem_ + "_" + std::to_string(generation_) + "_", 0) == 0;
@@ -132,7 +133,7 @@ public:
     file.commit();
   }
 
-  /// What NAME.vtm has to say.
+  /// The content of NAME.vtm.
   std::string list() const
   {
     std::ostringstream xml;
@@ -146,7 +147,7 @@ public:
     return xml.str();
   }
 
-  /// That is said: the blocks stay. To be called under lockUnfinished().
+  /// Keeps the blocks, which are complete. To be called under lockUnfinished().
   void keep()
   {
     for (const auto& made : made_) files::dropUnfinished(made.first);
@@ -169,7 +170,8 @@ private:
   std::vector<std::pair<fs::path, std::string>> made_; ///< file and block
 };
 
-/// What is exported is read by name, and has files of its own beside it: not a pipe or a device.
+/// Requires an ordinary file: an export is read by name, and has files of its own beside it, so it is no pipe or
+/// device.
 void requireFile(const fs::path& path)
 {
   std::error_code error;

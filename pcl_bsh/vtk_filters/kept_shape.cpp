@@ -75,7 +75,7 @@ CellTriangles trianglesOf(vtkPolyData& data, const PointsView& view)
     case 0: // a point is a triangle without extent
       for (const std::uint32_t p : records) found.triangles.push_back({p, p, p});
       break;
-    case 1: // likewise a segment
+    case 1: // a segment, too
       for (std::size_t i = 0; i + 1 < n; ++i) found.triangles.push_back({records[i], records[i + 1], records[i + 1]});
       break;
     case 2: // PCL's and VTK's polygons may have any number of corners

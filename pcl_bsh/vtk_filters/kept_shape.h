@@ -22,19 +22,21 @@ PointsView viewOf(vtkPolyData& data, bool& copied);
 /// Whether the data has lines, polygons or strips.
 bool isSurface(vtkPolyData& data);
 
-/// Made anew only when the points (and of a surface the cells) are no longer what it was made from, by a checksum of
-/// their numbers: this holds also where data was changed without a call of Modified(). What it builds is kept as long.
+/// A shape made anew only when the points (and for a surface the cells) differ from those that it was made from, by a
+/// checksum of their numbers. This holds also where data was changed without a call of Modified(). Its hierarchies are
+/// kept as long.
 class KeptShape {
 public:
   explicit KeptShape(std::string name) : name_(std::move(name)) {}
 
-  /// Of all points; cells do not count.
+  /// The shape of all points; cells do not count.
   Shape& ofPoints(vtkPolyData& data);
 
-  /// Of the triangles of all cells, vertices and lines too. @throws as viewOf() does of triangles
+  /// The shape of the triangles of all cells, vertices and lines too. @throws InvalidInput, as viewOf() does for
+  /// triangles
   Shape& ofSurface(vtkPolyData& data);
 
-  /// Of a surface, which cell each triangle is of.
+  /// For a surface, the cell of each triangle.
   const std::vector<std::uint32_t>& cells() const noexcept { return cells_; }
 
   std::size_t made() const noexcept { return made_; } ///< so far

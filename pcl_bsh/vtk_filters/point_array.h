@@ -22,7 +22,7 @@ void addPointArray(vtkPolyData& data, const char* name, const Value& value)
   data.GetPointData()->AddArray(array);
 }
 
-/// Of a vector that has a value for each point.
+/// Adds an array from a vector that has a value for each point.
 template <class Array, class T>
 void addPointArray(vtkPolyData& data, const char* name, const std::vector<T>& values)
 {

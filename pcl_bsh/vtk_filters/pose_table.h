@@ -16,8 +16,8 @@ namespace pcl_bsh::vtk {
 /// @throws std::invalid_argument naming the row or the column
 std::vector<Eigen::Isometry3d> posesOf(vtkTable& table, std::vector<std::string>& warnings);
 
-/// The matrix as a pose; of one that is rigid but for few printed digits, the nearest rigid one. Whether it is rigid is
-/// for the query to judge. @param matrix null: the identity
+/// The matrix as a pose. A matrix that is rigid within few printed digits becomes the nearest rigid one. Whether it is
+/// rigid is for the query to judge. @param matrix null: the identity
 Eigen::Isometry3d poseOf(vtkMatrix4x4* matrix, std::vector<std::string>& warnings);
 
 } // namespace pcl_bsh::vtk

@@ -7,9 +7,9 @@
 /// arrays more tell about points which collide: `distance` (float, the smallest over all poses; NaN where free),
 /// `first_pose` and `closest_pose` (int, from 0; -1 where free).
 ///
-/// With the option `seen` the output's field data has `obstacle_collision`, a verdict for each point of the obstacle or
-/// cell of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses), `unseen_at_poses`,
-/// how many are unseen at each, and `in_shadow_at_poses`, how many of these no beam passed.
+/// With the option `seen` the output's field data has three arrays. `obstacle_collision` is a verdict for each point of
+/// the obstacle or cell of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses).
+/// `unseen_at_poses` counts the unseen at each pose, and `in_shadow_at_poses` those of them that no beam passed.
 ///
 ///     vtkNew<vtkBSHCollisionFilter> collision;
 ///     collision->SetInputData(scan);
@@ -42,7 +42,7 @@ public:
   vtkGetMacro(Swept, double);
   ///@}
 
-  /// How many points collide, of the last execution; 0 where that failed. Of a cloud in blocks: in its last block.
+  /// How many points collide, of the last execution; 0 where that failed. For a cloud in blocks: of its last block.
   vtkGetMacro(NumberOfCollidingPoints, vtkIdType);
 
 protected:

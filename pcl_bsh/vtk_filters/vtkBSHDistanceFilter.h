@@ -2,10 +2,10 @@
 /// @class vtkBSHDistanceFilter
 /// @brief how far each point of a cloud is from an obstacle, at a pose or along a path
 ///
-/// Adds the point arrays `distance` (double; NaN where it is more than MaximumDistance) and, at a single pose,
-/// `closest_point` (vtkIdType: the nearest point of the obstacle, of several the smallest; of a surface, the cell; -1
-/// where there is none). With poses (port 2), `distance` is the smallest over all of them, rounded to float, and
-/// `closest_pose` (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
+/// Adds point arrays. `distance` (double) is NaN where it is more than MaximumDistance. At a single pose,
+/// `closest_point` (vtkIdType) is the nearest point of the obstacle, the smallest of several; of a surface, the cell;
+/// else -1. With poses (port 2), `distance` is the smallest over all of them, rounded to float, and `closest_pose`
+/// (int, from 0; -1 where none) the first that has it; MaximumDistance must then be finite.
 ///
 /// A distance is exact, rounded to the nearest double. With Solid it is negative inside of the obstacle, at a single
 /// pose, however deep; along a path it is 0 there.

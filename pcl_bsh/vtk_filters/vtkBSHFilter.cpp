@@ -136,7 +136,7 @@ int vtkBSHFilter::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-// Of the cloud one piece after another, of the obstacle and its poses all: else what is near would be missed.
+// Asks for the cloud one piece after another, for all of the obstacle and its poses: else a near part would be missed.
 int vtkBSHFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   for (int port = 1; port < 3; ++port) {

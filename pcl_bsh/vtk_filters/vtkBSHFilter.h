@@ -8,13 +8,13 @@
 /// tx ty tz qx qy qz qw. A cloud may come in blocks: each is answered as a cloud of its own, and only the last one's
 /// hierarchy is kept. Obstacle or poses in blocks are refused.
 ///
-/// The output is the cloud with all its arrays and those that the filter adds. What fails is told by vtkErrorMacro in
-/// one line; then, and after an abort, the output is empty and the execution failed, so that nothing looks like an
-/// answer: a port without a connection, too. vtkWarningMacro tells what else is to be known of a question: clouds
-/// without a finite point, coarse float32 coordinates, holes that a collision may hide in, frames that are not one,
-/// points of a surface that no cell has. Progress is told, and an abort heeded, along poses and of distances; the flags
-/// at a single pose are one step. VTK 9.3 keeps AbortExecute set after an abort, 9.1 does not: call SetAbortExecute(0)
-/// before the next Update(). Points that are not finite are no points: they have the values of free points.
+/// The output is the cloud with all its arrays and those that the filter adds. A failure is told by vtkErrorMacro in
+/// one line, a port without a connection too. After a failure or an abort the output is empty and the execution failed,
+/// so that nothing looks like an answer. All warnings are told by vtkWarningMacro: clouds without a finite point,
+/// coarse float32 coordinates, holes that may hide a collision, frames that differ, points of a surface that no cell
+/// has. Progress is told, and an abort heeded, along poses and of distances; the flags at a single pose are one step.
+/// VTK 9.3 keeps AbortExecute set after an abort, 9.1 does not: call SetAbortExecute(0) before the next Update().
+/// Points that are not finite are no points: they have the values of free points.
 ///
 /// The hierarchies of cloud and obstacle are kept: nothing is built again when only settings, the transform or the
 /// poses change, nor when the input has other arrays at the same points. All calls by one thread at a time, as VTK has
@@ -92,7 +92,7 @@ protected:
   vtkBSHFilter();
   ~vtkBSHFilter() override;
 
-  /// What is asked; both inputs and the poses are for this class to say.
+  /// Sets the question; this class sets both inputs and the poses.
   virtual void Ask(pcl_bsh::Question& question) const = 0;
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.

@@ -46,8 +46,8 @@ std::string per(double value, double other)
   return text(value / other);
 }
 
-/// One question at one distance. @return whether all racers found as many points, but for some in 10,000, about which
-/// float32 comparisons of distances differ
+/// Asks one question at one distance. Returns whether all racers found as many points, except some in 10,000: float32
+/// comparisons of distances differ about these.
 bool race(const Options& options, const std::string& order, const std::string& question, double spacings,
           const ScanPair& pair, const CloudsInMemory& clouds, Table& table)
 {

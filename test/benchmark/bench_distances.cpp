@@ -30,7 +30,7 @@ struct Options : ProgramOptions {
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
 
-/// Of one direction, what racers find alike but for rounding; of both, what is the same double.
+/// Answers that racers must share: in one direction within rounding, in both directions the equal double.
 struct Answer {
   std::optional<std::size_t> measured;
   double squared_distances = 0.0;

@@ -22,7 +22,7 @@ struct Options : ProgramOptions {
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
 
-/// What separates two racers' answers.
+/// The difference of two racers' answers.
 struct Disagreement {
   std::size_t points = 0;
   std::size_t wrong = 0; ///< of these, not explained by float rounding: the distance is off d by more than 1e-5 d

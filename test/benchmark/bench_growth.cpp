@@ -47,7 +47,7 @@ std::vector<Point3> shellOf(std::size_t n, double radius)
   return points;
 }
 
-/// Of a scene of 200 m nine points in ten within 1e-7 m.
+/// A scene of 200 m with nine points in ten within 1e-7 m.
 std::vector<Point3> crowd(std::size_t n, std::uint64_t seed)
 {
   Random random(seed);
@@ -169,7 +169,7 @@ void measure(const Corner& corner, const Query& query, const Options& options, T
     const auto viewOfAll = [](const std::vector<Point3>& points) {
       return viewOf(points.front().data(), points.size());
     };
-    // Just below the least distance, and about that of neighbours where there is none.
+    // Just below the least distance; about the neighbours' distance where the least is 0.
     const SphereHierarchy some_a(viewOfAll(pair.a)), some_b(viewOfAll(pair.b));
     const double least = closestPair(some_a, some_b).distance, clearance = least > 1e-3 ? least * (1.0 - 1e-6) : 1e-9;
     return [&query, pair, viewOfAll, clearance](double& seconds) {

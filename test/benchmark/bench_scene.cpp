@@ -139,7 +139,7 @@ std::size_t compareAllPairs(const std::vector<float>& x, const std::vector<float
   return near;
 }
 
-/// The same as one would write it without a thought for vectors: a pair, two poses, a test.
+/// The test in its plainest form, without vectors: a pair, two poses, a test.
 std::size_t comparePairByPair(const std::vector<Eigen::Isometry3d>& poses, double reach)
 {
   std::size_t near = 0;
@@ -186,7 +186,7 @@ void measureBroadPhase(const Options& options, Table& table)
   }
 }
 
-/// The same queries, as a scene of one effect asks them and without a scene.
+/// Equal queries, asked by a scene of one effect and without a scene.
 void measureOneEffect(const Options& options, Table& table)
 {
   progress("one effect");
@@ -209,7 +209,7 @@ void measureOneEffect(const Options& options, Table& table)
     const SphereHierarchy& hierarchy = *crowd.scene[0].parts[0].hierarchy;
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = i + 1; j < count; ++j) {
-        // What a box test amounts to for balls.
+        // A box test, for balls.
         const Eigen::Vector3d apart = crowd.poses()[i].translation() - crowd.poses()[j].translation();
         if (apart.cwiseAbs().maxCoeff() > 1.0 + request.clearance) continue;
         colliding +=

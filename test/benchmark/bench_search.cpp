@@ -24,7 +24,7 @@ struct Options : ProgramOptions {
   std::string folder = PCL_BSH_SHARED_DIR "/data";
 };
 
-/// What is asked of one cloud.
+/// The questions about one cloud.
 struct Workload {
   Points cloud;
   double spacing = 0.0;
@@ -93,7 +93,7 @@ struct Entry {
 
 using Ask = std::function<std::optional<SearchAnswer>(const SearchRacer&)>;
 
-/// Whether two racers found the same, but for what rounding may do at the end of a radius.
+/// Whether two racers found equal answers, except for rounding at the end of a radius.
 bool agree(const SearchAnswer& x, const SearchAnswer& y)
 {
   const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3 * std::max(a, b); };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scanners saw to be empty: a machine on its way through a hall with pillars, scanned from several places. How
-// long do verdicts take, how much of what is truly visible is recognised, and what is called free that is not? Beside
-// it OctoMap, whose cells answer the same question.
+// Space that scanners saw to be empty: a machine on its way through a hall with pillars, scanned from several places.
+// How long do verdicts take, how much of what is truly visible is recognised, and what is called free that is not?
+// Beside it OctoMap, whose cells answer the same question.
 #include "program.h"
 #include "support/made_scans.h"
 

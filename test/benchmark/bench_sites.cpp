@@ -36,13 +36,13 @@ struct Options : ProgramOptions {
   std::string chart;
 };
 
-/// What a program took, medians of some runs.
+/// Cost of a program, medians of some runs.
 struct Cost {
   double wall = 0.0, processor = 0.0; ///< seconds
   double megabytes = 0.0;             ///< resident, of its largest process
 };
 
-/// Of one size.
+/// Results of one size.
 struct Growth {
   double points = 0.0;
   Cost make, path;

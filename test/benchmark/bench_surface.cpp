@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Workload S: questions about meshes, ours beside the libraries that answer some of them: of a million scan points, of
-// a mesh and itself shifted, of two bodies, and of a large mesh that a scan touches at a corner.
+// Workload S: questions about meshes, ours beside the libraries that answer some of them. They are about a million scan
+// points, a mesh and itself shifted, two bodies, and a large mesh that a scan touches at a corner.
 #include "harness.h"
 #include "peer/surface_peer.h"
 #include "program.h"
@@ -64,7 +64,7 @@ public:
     progress(question + ", " + mesh.name + ", " + racer + ": " + text(m.build + m.query) + " s");
   }
 
-  /// Of ours: the least of several. @param make what is asked, made anew. @param ask takes it
+  /// Measures ours: the least of several. @param make makes the input anew. @param ask takes it
   template <class Make, class Ask>
   void ours(const std::string& question, const Mesh& mesh, const Make& make, const Ask& ask) const
   {
@@ -88,7 +88,7 @@ public:
     add(question, mesh, "pcl_bsh", best);
   }
 
-  /// Of every library that can: as many questions as the budget has room for.
+  /// Measures every library that can answer: as many questions as the budget has room for.
   /// @param ask takes a peer and a range of questions, returns how many answers are wrong, or nothing
   template <class Ask>
   void peers(const std::string& question, const Mesh& mesh, bool labels, std::size_t questions, std::size_t batch,

@@ -194,7 +194,7 @@ void showDensities(const Options& options, const std::string& scene_name, Table&
   }
 }
 
-/// What is asked beside flags, and what a clearance that runs along a wall costs, against the scene's own question.
+/// Costs of other questions than flags, and of clearances along a wall, against the scene's own question.
 void showQuestions(const Options& options, const std::string& scene_name, Table& table)
 {
   const PathScene scene = pathScene(scene_name, options.scale);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What verdicts cost that hold wherever points truly are: of a scan, plain, with one length for all points of both
+// Cost of verdicts that hold wherever points truly are: of a scan, plain, with one length for all points of both
 // clouds, and with a length for each point.
 #include "program.h"
 #include "workload/random.h"
@@ -45,8 +45,8 @@ std::vector<float> lengths(std::size_t count, double clearance, std::uint64_t se
   return drawn;
 }
 
-/// Of the pose of a cloud: on average its points move by as much as by the other two, the farthest by half as much
-/// again, those about its middle by half of it.
+/// The uncertainty of a cloud's pose. On average its points move by as much as by the other two, the farthest by half
+/// as much again, those about its middle by half of it.
 Uncertainty ofPose(const Points& points, double clearance)
 {
   Eigen::AlignedBox3d box;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the paper's table has: tests of bounding volumes (N_v), updates of them (N_u) and milliseconds, of our spheres,
-// of those in the paper's octants, and of axis-aligned boxes, on two files of points.
+// The numbers of the paper's table: tests of bounding volumes (N_v), updates of them (N_u) and milliseconds. They are
+// of our spheres, of those in the paper's octants, and of axis-aligned boxes, on two files of points.
 #include "peer/box_tree.h"
 #include "posed_files.h"
 
@@ -28,7 +28,7 @@ RigidPose plain(const Eigen::Isometry3d& pose)
   return result;
 }
 
-/// What one kind of volumes took for one question, at all poses.
+/// Cost of one kind of volumes for one question, at all poses.
 struct Cost {
   std::uint64_t tests = 0, updates = 0, leaf_pairs = 0;
   double milliseconds = 0.0; ///< of each pose the least

@@ -30,7 +30,7 @@ public:
   /// Once per distance, not timed.
   virtual void tune(double) {}
 
-  /// What tune() found, for useTuning() of such a racer in another process; empty when there is nothing to find.
+  /// The result of tune(), for useTuning() of such a racer in another process; empty without tuning.
   virtual std::vector<double> tuning() const { return {}; }
   virtual void useTuning(const std::vector<double>&) {}
 

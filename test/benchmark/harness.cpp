@@ -30,7 +30,7 @@ std::string machine()
   return cpuModel() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
 }
 
-/// Of the sources this was compiled from; "-dirty" when they have changed since.
+/// The commit of the sources this was compiled from; "-dirty" when they have changed since.
 std::string commit()
 {
   const std::string command = "git -C '" PCL_BSH_SOURCE_DIR "' describe --always --dirty --abbrev=12 2>/dev/null";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every benchmark needs: a stopwatch, medians, a memory peak, and tables that also become CSV.
+// Helpers of all benchmarks: a stopwatch, medians, a memory peak, and tables that also become CSV.
 #pragma once
 
 #include <cstddef>
@@ -88,8 +88,8 @@ private:
 /// `value` with so many significant digits, without an exponent where that is readable.
 std::string text(double value, int digits = 3);
 
-/// From now on large blocks come fresh from the kernel and go back to it at once, as in a program that runs once; else
-/// what one racer frees would spare the next one its page faults.
+/// From now on large blocks come fresh from the kernel and go back to it at once, as in a program that runs once.
+/// Otherwise memory that one racer frees would spare the next one its page faults.
 void useFreshMemory();
 
 /// The peers are compiled for AVX2 on x86-64. @throws std::runtime_error on a processor without.

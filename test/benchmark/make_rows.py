@@ -56,7 +56,8 @@ PROGRAMS = {
                                                           ("lion", LION, 0.02, NEAR_LION))],
 }
 
-# What the study of accuracy is run on: clouds, options, how many poses, and about which, near and far ones; none: along the path.
+# Subjects of the study of accuracy: clouds, options, number of poses, and the poses about which near and far ones lie;
+# none: along the path.
 STUDIES = {
     "building": (f"{MAN} --vertices-only --clearance 0.5 --repeat 5", 10, NEAR_MAN, FAR_MAN),
     "rooms": (f"{ROOMS} --clearance 0.05 --repeat 1", 3, NEAR_ROOM, FAR_ROOM),

@@ -47,7 +47,7 @@ OneShotResult runInNewProcess(const OneShot& shot, const CloudsInMemory& clouds)
 /// Whether this process was started by runInNewProcess().
 bool isOneShot(int argc, char** argv);
 
-/// What it has to do then. @return its exit code
+/// Runs one question in this process. @return its exit code
 int runOneShot(int argc, char** argv);
 
 } // namespace pcl_bsh::bench

@@ -18,7 +18,7 @@
 
 namespace pcl_bsh::bench {
 
-/// What programs of two files are told.
+/// Options of programs that read two files.
 struct PosedFilesOptions : ProgramOptions {
   std::string name, a, b, pose = "0,0,0,0,0,0";
   unsigned poses = 10;

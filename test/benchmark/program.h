@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the benchmark programs have in common: two options, the error line, the exit code.
+// Parts that the benchmark programs share: two options, the error line, the exit code.
 #pragma once
 
 #include "harness.h"

@@ -33,14 +33,14 @@ public:
   /// Smallest distance; only when measuresDistance().
   virtual double distance(const RigidPose&) const { return 0.0; }
 
-  /// Whether the motion between two poses can be asked about; then on how many of the first `count` motions of a
-  /// roadmap any pair comes within the d of build(), to a tolerance of a tenth of it: one call for each, or one for
+  /// Whether the motion between two poses can be asked about. Then on how many of the first `count` motions of a
+  /// roadmap any pair comes within the d of build(), to a tolerance of a tenth of it. One call for each, or one for
   /// all.
   virtual bool takesMotions() const { return false; }
   virtual std::size_t anyOnEachMotion(const Roadmap&, std::size_t /*count*/) const { return 0; }
   virtual std::size_t anyOnMotions(const Roadmap&, std::size_t /*count*/, unsigned /*threads*/) const { return 0; }
 
-  /// What the answers since the last call took on average, in words.
+  /// Mean cost of the answers since the last call, in words.
   virtual std::string remark() { return ""; }
 
   /// Takes milliseconds a pose.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of BENCHMARK.md: each is a function of the rows of a file of results/ that yields its lines."""
+"""The tables of BENCHMARK.md and RESULTS.md: each is a function of the rows of a file of results/ that yields its lines."""
 import csv
 import re
 

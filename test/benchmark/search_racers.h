@@ -11,7 +11,7 @@
 
 namespace pcl_bsh::bench {
 
-/// What many queries found, all together: enough to see that two racers gave the same.
+/// The sum of many answers: enough to see that two racers gave equal ones.
 struct SearchAnswer {
   std::uint64_t found = 0;
   std::optional<double> squared_distances = 0.0; ///< their sum; nothing where they need not be those of the nearest

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The figures of README.md and BENCHMARK.md are rows of results/*.csv, and these are made by the programs here.
+"""The figures of README.md, BENCHMARK.md and RESULTS.md are rows of results/*.csv, made by the programs here.
 
     tables.py check             # compares the documents with the rows
     tables.py write             # writes the tables anew from the rows
@@ -19,6 +19,7 @@ import make_rows  # noqa: E402
 from row_tables import TABLES, ratio, rows_of, short  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENTS = ("BENCHMARK.md", "test/benchmark/RESULTS.md")
 
 
 def readme():
@@ -45,7 +46,7 @@ MARK = re.compile(r"<!-- rows: (\w+), of ([\w.]+) -->")
 
 
 def written(lines):
-    """The lines of BENCHMARK.md, with the tables that their marks name."""
+    """The lines of a document, with the tables that their marks name."""
     lines, out, i = list(lines), [], 0
     while i < len(lines):
         out.append(lines[i])
@@ -80,13 +81,17 @@ def unmarked(lines):
 
 def check():
     wrong = []
-    lines = (SOURCE / "BENCHMARK.md").read_text().splitlines()
-    for number, (is_there, made) in enumerate(zip(lines, written(lines)), 1):
-        if is_there != made:
-            wrong.append(f"BENCHMARK.md:{number}: {is_there}\n  instead of what the rows say: {made}")
-            break
-    for section, count in unmarked(lines).items():
-        wrong.append(f"BENCHMARK.md: {section}: {count} tables with times name no rows: give each a line <!-- rows: ... -->")
+    named = []
+    for document in DOCUMENTS:
+        lines = (SOURCE / document).read_text().splitlines()
+        named += [mark.group(1) for line in lines if (mark := MARK.fullmatch(line))]
+        for number, (is_there, made) in enumerate(zip(lines, written(lines)), 1):
+            if is_there != made:
+                wrong.append(f"{document}:{number}: {is_there}\n  instead of what the rows say: {made}")
+                break
+        for section, count in unmarked(lines).items():
+            wrong.append(f"{document}: {section}: {count} tables with times name no rows: give each a line <!-- rows: ... -->")
+    wrong += [f"{', '.join(DOCUMENTS)}: no table {name}: give it a line <!-- rows: ... -->" for name in TABLES if name not in named]
     there = (SOURCE / "README.md").read_text().splitlines()
     wrong += [f"README.md: there is no line of what the rows say: {line}" for line in readme() if line not in there]
     if wrong:
@@ -95,8 +100,9 @@ def check():
 
 
 def write():
-    file = SOURCE / "BENCHMARK.md"
-    file.write_text("\n".join(written(file.read_text().splitlines())) + "\n")
+    for document in DOCUMENTS:
+        file = SOURCE / document
+        file.write_text("\n".join(written(file.read_text().splitlines())) + "\n")
     file = SOURCE / "README.md"
     lines = file.read_text().splitlines()
     for made in readme():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What meshes that do not cross themselves enclose, by CGAL's exact predicates: no label may differ.
+// The inside of meshes that do not cross themselves, by CGAL's exact predicates: no label may differ.
 #include <pcl_bsh/solid/labels.h>
 
 #include "solid/meshes.h"

@@ -74,7 +74,7 @@ test::TestMesh triangles(std::uint64_t seed, int count)
   return mesh;
 }
 
-/// Of each the least to any of the others.
+/// For each thing, the least squared distance to any of the others.
 template <typename Things, typename Others>
 std::vector<Number> squaredDistances(const Things& things, const Others& others)
 {
@@ -234,7 +234,7 @@ std::string textOf(const Point3& p)
   return text;
 }
 
-/// What pcl_bsh_collide writes of a mesh and points near it, in files.
+/// The output of pcl_bsh_collide for a mesh and points near it, in files.
 void expectTrueOutput(test::TestMesh mesh, double clearance, std::uint64_t seed)
 {
   dropFlat(mesh);

@@ -87,7 +87,7 @@ TEST(Clashes, HoldTrianglesWhole)
   EXPECT_EQ(clashes[1].high, (Point3{51, 1, 0}));
 }
 
-/// Of -0 and 0 a box has the latter, whichever comes first.
+/// A box has 0 where points have -0 and 0, whichever comes first.
 TEST(Clashes, BoxesAreTheSameWhateverTheOrder)
 {
   std::vector<Scan::Point> points = {{-0.0f, 0.0f, 1, 0.1f}, {0.0f, -0.0f, 1, 0.1f}};

@@ -102,7 +102,7 @@ TEST_F(FormerPlacesAlongALine, PartsThatTellNothingAreKnownBefore)
   EXPECT_TRUE(one.mayVisit({{-40.5, -20, -20}, {-0.5, 20, 20}}, poses, {})) << "at the box's side";
 }
 
-/// What collided only perhaps may have been farther away than the clearance: the same place is near it still.
+/// An uncertain clash may have been farther away than the clearance: its place is still near it.
 TEST_F(FormerPlacesAlongALine, ReachAsFarAsTheClashesThemselves)
 {
   clashes = {resolvedAt(0)};

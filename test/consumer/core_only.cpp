@@ -10,7 +10,7 @@
 
 static_assert(PCL_BSH_VERSION >= 100);
 
-/// What the library throws is caught by its type, though this program hides its own symbols.
+/// An exception of the library is caught by its type, though this program hides its own symbols.
 bool catchesWhatIsThrown(const pcl_bsh::SphereHierarchy& cloud)
 {
   try {

@@ -18,7 +18,7 @@ if(status EQUAL 0 OR NOT text MATCHES "no[ \n]+component[ \n]+tree")
   message(FATAL_ERROR "the component `tree` was not refused by its name: status ${status}, ${text}")
 endif()
 
-# What is installed to copy from is built with what is installed.
+# Installed samples are built with the installed package.
 file(GLOB samples "${WORK}/prefix/share/doc/pcl_bsh/cpp")
 run(${CMAKE_COMMAND} -S "${samples}" -B "${WORK}/samples" -G Ninja -D CMAKE_BUILD_TYPE=Debug -D
     "CMAKE_PREFIX_PATH=${WORK}/prefix" -D "CMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror")

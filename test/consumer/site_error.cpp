@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What headers of sites say that they throw is known to those who have them installed.
+// Exceptions in the declarations of sites' headers are declared in installed headers.
 #include <pcl_bsh/site/site.h>
 
 #include <cstdio>

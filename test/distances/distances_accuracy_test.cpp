@@ -165,9 +165,9 @@ TEST_F(DistancesAccuracy, BudgetsKeepWhatEarlierPassesKnow)
   EXPECT_GT(narrowed, 500u) << "else nothing is tested";
 }
 
-/// What finds out how near the voxels are may spend all that was left before the first node is opened: the points are
-/// then left with what the walk begins with. Budgets that do so are about what the coarse pass takes, and a little
-/// more.
+/// The pass that finds how near the voxels are may spend the whole budget before the first node is opened. The points
+/// then keep the bounds that the walk begins with. Budgets that do so are about what the coarse pass takes, and a
+/// little more.
 TEST_F(DistancesAccuracy, BudgetsSpentBeforeTheFirstStepLeaveIntervalsOfOverlappingBallsBelowZero)
 {
   test::Random random(9);

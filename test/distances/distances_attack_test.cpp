@@ -41,7 +41,7 @@ struct Pair {
     found = test::longLength(p, q, shift);
   }
 
-  /// Whether the rounded length is the double nearest to the exact one, or there is none.
+  /// Whether the rounded length is the double nearest to the exact one, or NaN.
   bool isRight() const
   {
     if (std::isnan(found.rounded)) return true;
@@ -50,7 +50,7 @@ struct Pair {
            off <= abs(exact - Real(std::nextafter(found.rounded, 0x1p100)));
   }
 
-  /// Of kLengthDoubt, how much the long length is off.
+  /// Error of the long length, as a part of kLengthDoubt.
   double fraction() const
   {
     if (!found.known) return 0.0;
@@ -152,7 +152,7 @@ double boundFraction(const Numbers& n)
   return static_cast<double>(1.0L - std::min(below, above)); // 0: rounding took nothing; 1: all of the margin
 }
 
-/// The same of a box and a sphere.
+/// The fraction for a box and a sphere.
 double boxFraction(const Numbers& n)
 {
   float low[3], high[3], center[3];

@@ -68,7 +68,7 @@ std::function<Points(std::size_t)> shellOf(double radius, std::size_t count = 1)
   };
 }
 
-/// What is linear but for the depth of trees: at most 25 times the steps for 16 times the points. Both directions, and
+/// Linear work, apart from the depth of trees: at most 25 times the steps for 16 times the points. Both directions, and
 /// the Hausdorff distance alone.
 TEST(PointDistances, TakeWorkThatGrowsAsTheClouds)
 {
@@ -111,10 +111,10 @@ TEST(PointDistances, AskThePointsOfLeavesThatAreLargeBesideANode)
   EXPECT_LT(stepsOf(pointDistances(a, b).work), 5e6);
 }
 
-/// Where nearly all pairs are at nearly the same distance work is quadratic: a shell and a ball in it, whose spheres
-/// are too small beside the shell's; an axis and its circle, which are ties of all pairs but for rounding, and take
-/// exact comparisons. Shells, combs and octaves are between. Strays at the end of the
-/// range of floats cost as much as any point. None may become worse.
+/// Where nearly all pairs are at nearly one distance, work is quadratic. A shell and a ball in it is one such pair: the
+/// ball's spheres are too small beside the shell's. An axis and its circle is another: all pairs are ties within
+/// rounding, and take exact comparisons. Shells, combs and octaves are between. Strays at the end of the range of
+/// floats cost as much as any point. None may become worse.
 TEST(PointDistances, TakeNoMoreWorkOfGrowingCornersThanKnown)
 {
   const Points center = {{0, 0, 0}};

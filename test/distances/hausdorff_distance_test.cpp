@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The symmetric Hausdorff distance alone against that of all distances by brute force: random clouds, and clouds where
-// leaving points out is easily wrong: ties of the greatest, balls, poses that are not quite rigid, great lengths.
+// The symmetric Hausdorff distance alone against that of all distances by brute force. The clouds are random, or make
+// leaving points out easily wrong: ties of the greatest, balls, poses that are not quite rigid, great lengths.
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/distances/reached_distance.h>
 
@@ -18,7 +18,7 @@ using test::Random;
 using test::Scene;
 using namespace test::adversarial;
 
-/// Of records: the distance and pair that brute force finds in both directions.
+/// For records: the distance and pair that brute force finds in both directions.
 HausdorffDistance truthOf(const Placed& a, const Placed& b)
 {
   const PointDistances of_a = brute_force::pointDistances(a, b), of_b = brute_force::pointDistances(b, a);
@@ -203,7 +203,7 @@ TEST(HausdorffDistance, LooksAtFewOfThePoints)
     const SymmetricDistances both = symmetricDistances(a, b);
     EXPECT_EQ(found.distance, both.hausdorff);
     EXPECT_EQ(found.pair, both.hausdorff_pair);
-    // Of 2,592 leaves some are gone through before the point that is far is known, all that are wider than the greatest
+    // Some of the 2,592 leaves are gone through before the far point is known: all that are wider than the greatest
     // distance, and few others.
     EXPECT_LT(found.work.leaf_pairs, height > 2 ? 1900u : 2900u);
     const Work all = Work(both.a.work) += both.b.work;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What long numbers say of a point and a triangle, against exact arithmetic; and bounds by slabs.
+// Long numbers about a point and a triangle, against exact arithmetic; and bounds by slabs.
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
@@ -22,8 +22,9 @@ namespace {
 
 using test::Random;
 
-/// Of many kinds: any shape; on a lattice, where places lie above edges and corners; far from the origin of the world,
-/// or so far that long numbers tell little of a triangle that is small beside its distance; tiny and huge; thin.
+/// Pairs of many kinds: any shape; tiny and huge; thin; on a lattice, where places lie above edges and corners. Also
+/// far from the origin of the world, or so far that long numbers tell little of a triangle that is small beside its
+/// distance.
 struct Case {
   Point3 p;
   Triangle3 t;
@@ -84,8 +85,8 @@ TEST(LongTriangles, SayWhatExactArithmeticSays)
   });
 }
 
-/// Of a triangle at two poses, or of two that share an edge: poses that turn alike or nearly so, ways along an axis, a
-/// face or an edge, as far apart as rounding makes them, or not at all.
+/// A triangle at two poses, or two that share an edge. Poses turn alike or nearly so. Shifts go along an axis, a face
+/// or an edge, by as much as rounding, or not at all.
 TEST(LongTriangles, KnowWhichOfTwoIsNearer)
 {
   test::onEveryTarget([](const std::string& target) {
@@ -189,8 +190,8 @@ TEST(LengthToSlabs, IsNoMoreThanTheDistanceOfAnyPlaceInOne)
   });
 }
 
-/// Of two slabs, square to each other or at any angle, and a place beyond the edge between them: the nearest place is
-/// on the edge where the way to it lies between both normals.
+/// Two slabs, square to each other or at any angle, and a place beyond the edge between them. The nearest place is on
+/// the edge where the vector to it lies between both normals.
 TEST(LengthToSlabs, IsNoMoreThanTheDistanceOfAnyPlaceInBoth)
 {
   test::onEveryTarget([](const std::string& target) {

@@ -48,8 +48,8 @@ TEST(Outdoing, AnswersAreThoseOfBruteForceAtAnyDistance)
   }
 }
 
-/// Two heaps of b's points beside each other, one of them a little farther from the middle of a's, for which points of
-/// a lie to the sides: which heap is nearer changes within one leaf of a.
+/// Two heaps of b's points beside each other, one of them a little farther from the middle of a's, and points of a to
+/// the sides. The nearer heap changes within one leaf of a.
 TEST(Outdoing, TheFartherHeapIsStillTheNearerOneToPointsAtTheSide)
 {
   Random random(12);

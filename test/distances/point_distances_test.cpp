@@ -98,7 +98,7 @@ TEST(PointDistances, OfTriangles)
   }
 }
 
-/// Of leaves with points within the limit and beyond it, where floats know of each but one triangle.
+/// Leaves with points within the limit and beyond it, where floats know of each but one triangle.
 TEST(PointDistances, OfOneTriangleWithinALimit)
 {
   Random random(8);

@@ -47,7 +47,7 @@ Cloud doubledMesh(std::size_t count, double scale, Random& random)
   return cloud;
 }
 
-/// Places on the triangles of a mesh but for a billionth, which floats cannot tell apart; or small triangles there.
+/// Places on the triangles of a mesh within a billionth, which floats cannot tell apart; or small triangles there.
 Cloud touching(const Cloud& mesh, std::size_t count, double scale, bool triangles, Random& random)
 {
   const PointsView view = mesh.view();
@@ -75,7 +75,7 @@ Cloud touching(const Cloud& mesh, std::size_t count, double scale, bool triangle
   return cloud;
 }
 
-/// What the triangles are measured to.
+/// The cloud to which the triangles are measured.
 enum class Other { points, balls, mesh, doubled_mesh, touching_points, touching_mesh };
 
 Cloud makeOther(Other kind, std::size_t count, double scale, const Cloud& mesh, Random& random)

@@ -64,7 +64,7 @@ protected:
     filter.setClearance(clearance);
   }
 
-  /// What brute force says of the same views. @param sigmas of the input's points, whose own sigmas count
+  /// Verdicts of brute force on these views. @param sigmas of the input's points, whose own sigmas count
   std::vector<Verdict> expected(double sigmas, double of_obstacle) const
   {
     std::vector<float> own;

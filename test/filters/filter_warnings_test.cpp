@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the filters tell of a question beside its answer.
+// Warnings of the filters about a question.
 #include "support/verdicts.h"
 
 #include <pcl_bsh/filters/collision_filter.h>
@@ -145,7 +145,7 @@ TEST_F(FilterWarnings, CoordinatesThatAreCoarseForLimits)
                           HasSubstr("the obstacle: its float32 coordinates")));
 }
 
-/// Of the corners of a mesh, whose balls have double coordinates, and which has no holes.
+/// Corners of a mesh, whose balls have double coordinates, and which has no holes.
 TEST_F(FilterWarnings, OfSurfaces)
 {
   Points corners;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What groups of triangles are told of what was found of these, and what is left of a mesh.
+// Results of triangles, gathered for groups of them, and the rest of a mesh.
 #include <pcl_bsh/filters/gathered_result.h>
 #include <pcl_bsh/filters/used_vertices.h>
 

@@ -87,7 +87,7 @@ TEST(CollidingIndices, SameAsFlagsForAnyAccuracy)
       expectSameAsFlags(test::anyScene(seed, seed % 2 == 0 ? 100 : 700), accuracy);
 }
 
-/// What one pass takes for possible, and a later one finds to collide, is on one list alone.
+/// A point that one pass takes for possible, and a later one finds to collide, is on one list alone.
 TEST(CollidingIndices, OfUncertainPointsAreTheirFlagsForAnyAccuracy)
 {
   for (std::uint64_t seed = 400; seed < 440; ++seed) {

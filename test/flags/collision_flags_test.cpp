@@ -200,7 +200,7 @@ TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
   EXPECT_LT(hits, all - all / 5);
 }
 
-/// Of points between two heights above a floor of small triangles, whose balls have a radius of 0.028.
+/// Flags of points between two heights above a floor of small triangles, whose balls have a radius of 0.028.
 FlagsResult flagsAboveFloor(double low, double high, double clearance)
 {
   Random random(52);
@@ -654,7 +654,7 @@ TEST(CollisionFlags, BySlabsOfWhatLiesAcrossOtherAxes)
   }
 }
 
-/// Of each voxel its own are asked about: here the next one is far from all that was asked.
+/// Each voxel is asked about its own slabs: here the next one is far from all that was asked.
 TEST(CollisionFlags, SlabsOfOneVoxelNeedNoneOfTheNext)
 {
   Random random(46);

@@ -296,7 +296,7 @@ TEST(FlagRuns, OfBothCloudsAtOnce)
   }
 }
 
-/// What one leaf settles is looked at once.
+/// A group that one leaf settles is looked at once.
 TEST(FlagRuns, GroupsThatOneLeafSettlesLookAtNothingElse)
 {
   std::vector<Point3> row, place;
@@ -333,7 +333,7 @@ TEST(FlagRuns, GiveUpWhatTakesTooMany)
                     expected = collisionFlags({built}, {hb}, within(clearance));
   EXPECT_EQ(found.a, expected.a);
   EXPECT_GT(found.work.voxels_built, 0u);
-  // What was lost: the allowance of each voxel, and a list of leaves.
+  // Lost work: the allowance of each voxel, and a list of leaves.
   EXPECT_LT(stepsOf(found.work), stepsOf(expected.work) + 20 * 4000 + first.statistics().voxels * (2048 + 64 * 17));
 }
 

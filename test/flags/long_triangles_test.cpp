@@ -184,7 +184,7 @@ TEST(LongTriangles, AFewOfManyNeedlesSettleAPoint)
   EXPECT_LT(found.work.node_pairs, 1300000u);
 }
 
-/// Of flat sheets that face each other at about the clearance, floats decide no pair.
+/// For flat sheets that face each other at about the clearance, floats decide no pair.
 TEST(LongTriangles, FacingGridsTakeFewExactDecisions)
 {
   const auto gridAt = [](double z, double aside) {

@@ -139,7 +139,7 @@ TEST(OwnUncertainties, AtTheEdgesOfPairs)
   for (const std::size_t count : flags) EXPECT_GT(count, 1000u);
 }
 
-/// What nodes know is of the points as they are now.
+/// Nodes know the points as they are now.
 TEST(OwnUncertainties, FollowWhatChanges)
 {
   std::size_t flags[3] = {};

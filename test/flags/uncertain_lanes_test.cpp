@@ -66,7 +66,7 @@ inline const char* wrongLanes(test::Random& random)
   return "";
 }
 
-/// What nearestWithLengths() errs by, too: 23 u of the terms, of which sums here take four at most.
+/// Errors of nearestWithLengths(), too: 23 u of the terms, of which sums here take four at most.
 inline const char* wrongPoints(test::Random& random)
 {
   const UncertainReach reach = anyReach(random);

@@ -150,8 +150,8 @@ void ChangingCloud::append(const Point3& point, Random& random)
   radii_.push_back(narrow(random.chance(0.3) ? 0.0 : std::min(world_.unit / 16 * random.integer(0, 2), 0x1p127)));
 }
 
-/// One of any corners, sometimes once more in either sense; or the four of a tetrahedron. Of vertices that there are,
-/// or of new ones.
+/// A triangle of any corners, sometimes once more in either sense; or the four of a tetrahedron. Vertices exist
+/// already, or are new.
 void ChangingCloud::appendTriangles(Random& random)
 {
   std::array<std::uint32_t, 4> corners;

@@ -17,7 +17,7 @@
 
 namespace pcl_bsh::fuzz {
 
-/// What the clouds of one sequence have in common, so that their points meet.
+/// Data that the clouds of one sequence share, so that their points meet.
 struct World {
   enum class Kind : std::uint8_t {
     grid,    ///< multiples of unit / 8: on faces of voxels, with ties and duplicates

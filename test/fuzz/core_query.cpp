@@ -18,7 +18,7 @@
 namespace pcl_bsh::fuzz {
 namespace {
 
-/// What the query and its twin say, which is the same: an answer, or the same refusal.
+/// The answer of the query and of its twin, which must be equal: an answer, or a refusal in equal words.
 template <class Query, class Twin>
 auto compared(Query query, Twin twin)
 {

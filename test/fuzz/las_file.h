@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds of LAS and LAZ besides what holds of every reader: written with the header that was read, a cloud is the
-// same; without it, it has as many points.
+// Rules of LAS and LAZ, besides those of every reader. A cloud written with the header that was read is equal; without
+// it, it has as many points.
 #pragma once
 
 #include "read.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text as a pipeline: it is refused with a reason, or runs on small clouds to a result or a reason. What is
-// accepted, written out again, is accepted again.
+// Any text as a pipeline: it is refused with a reason, or runs on small clouds to a result or a reason. An accepted
+// text, written out again, is accepted again.
 #include "target.h"
 
 #include <pcl_bsh/filters/pipeline/graph.h>
@@ -29,7 +29,7 @@ StageCloudPtr smallCloud()
   return cloud;
 }
 
-/// What a document asks for may be valid and yet take hours, or touch files.
+/// A valid document may still take hours, or touch files.
 bool isHarmless(const Graph& graph)
 {
   if (graph.nodes.size() > 20) return false;

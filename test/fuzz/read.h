@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds of every reader: it refuses with a reason, or gives a cloud that is sound and no larger than its file
-// justifies, with the fields that its header alone tells; written and read again, it is the same.
+// Rules of every reader: it refuses with a reason, or gives a sound cloud no larger than its file justifies. Its fields
+// are those that its header alone tells. Written and read again, the cloud is equal.
 #pragma once
 
 #include "target.h"
@@ -68,7 +68,7 @@ inline bool sameValues(const pcl::PCLPointField& field, const std::uint8_t* a, c
   });
 }
 
-/// That a cloud, written and read again, is the same.
+/// Requires that a cloud, written and read again, is equal.
 inline void requireSamePoints(const pcl::PCLPointCloud2& before, const pcl::PCLPointCloud2& after)
 {
   require(std::uint64_t{before.width} * before.height == std::uint64_t{after.width} * after.height,
@@ -87,7 +87,8 @@ inline void requireSamePoints(const pcl::PCLPointCloud2& before, const pcl::PCLP
   }
 }
 
-/// What `write` makes of the cloud; none where the format cannot hold it. Fields named "_" are padding to PCL.
+/// The text that `write` makes of the cloud; nothing where the format cannot hold it. Fields named "_" are padding to
+/// PCL.
 template <class Write>
 std::optional<std::string> written(const pcl::PCLPointCloud2& cloud, Write write)
 {

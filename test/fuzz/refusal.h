@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds of every refusal of a document.
+// Rules of every refusal of a document.
 #pragma once
 
 #include "target.h"

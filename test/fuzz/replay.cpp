@@ -2,7 +2,7 @@
 // Runs a fuzz target without libFuzzer: its stored corpus, then a fixed number of mutations of it, the same each time.
 //   TARGET CORPUS [ROUNDS]         default: 0 rounds; CORPUS is a folder, or one file to look at again
 //   TARGET --random FIRST ROUNDS   random bytes instead, of seeds from FIRST on; says every thousand how far it is
-// What fails is kept as finding.bin in the working folder.
+// A failing input is kept as finding.bin in the working folder.
 #include "random_input.h"
 #include "target.h"
 

@@ -23,7 +23,7 @@ public:
   /// None when the cloud is refused; refusing a good one or accepting a bad one is a Finding.
   std::optional<SphereHierarchy> hierarchy() const;
 
-  /// Of points that may be elsewhere; none where that is refused.
+  /// The hierarchy of points that may be elsewhere; nothing where they are refused.
   std::optional<SphereHierarchy> hierarchy(const Uncertainty& uncertainty) const;
 
 private:
@@ -58,7 +58,7 @@ private:
 /// Mostly rigid, sometimes nearly, sometimes not at all.
 Eigen::Isometry3d anyPose(Bytes& bytes);
 
-/// Of each point, and of a pose: about none, about as long as the clearance, or any.
+/// Uncertainties of each point, and of a pose: near 0, about as long as the clearance, or any.
 Uncertainty anyUncertainty(Bytes& bytes, double clearance);
 
 /// Half of them the distance of a pair of points, give or take the last bit.

@@ -101,7 +101,7 @@ std::vector<std::uint8_t> labelsOf(const TrianglesView& triangles, const Eigen::
   return labels;
 }
 
-/// Of the records that a view names: all others are outside.
+/// Labels of the records that a view names: all others are outside.
 std::vector<std::uint8_t> expectedLabels(const Placed& a, const PlacedSolid& solid)
 {
   const PointsView& view = a.hierarchy().view();
@@ -131,7 +131,7 @@ void requireDepths(const Placed& a, const Placed& b, const PlacedSolid& solid, c
   }
 }
 
-/// Of a solid obstacle: what the surface collides with, and what is inside; distances are negative there.
+/// Answers for a solid obstacle: the collisions with its surface, and the inside, where distances are negative.
 void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, const Question& question)
 {
   const std::vector<std::uint8_t> labels = expectedLabels(a, solid);

@@ -18,7 +18,7 @@
 namespace pcl_bsh::fuzz {
 namespace {
 
-/// What rational numbers tell soon enough.
+/// Numbers that rationals can decide soon enough.
 bool isModest(const Point3& p)
 {
   for (const double x : p)
@@ -101,7 +101,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   try {
     fuzz::compareAnswers(placed_a, placed_b, clearance, threads);
   }
-  catch (const std::invalid_argument&) { // of a pose that is not rigid, or a clearance that is none
+  catch (const std::invalid_argument&) { // the pose is not rigid, or the clearance is invalid
     return 0;
   }
   fuzz::comparePairs(placed_a, placed_b, clearance);

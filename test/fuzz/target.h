@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every fuzz target is: one function over any bytes. libFuzzer calls it, and so does replay.cpp without clang.
+// The interface of every fuzz target: one function over any bytes. libFuzzer calls it, and so does replay.cpp without
+// clang.
 #pragma once
 
 #include <cstddef>

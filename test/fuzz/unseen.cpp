@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any scans, and any model in them: what is unseen, against brute force. The same bytes as texts of options.
+// Any scans, and any model in them: unseen parts, against brute force. The bytes are also read as texts of options.
 #include "bytes.h"
 #include "refusal.h"
 

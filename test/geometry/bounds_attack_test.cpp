@@ -37,7 +37,8 @@ double toDouble(const Dyadic& x)
   return scaled.mantissa == 0.0 ? 0.0 : std::ldexp(scaled.mantissa, scaled.exponent);
 }
 
-/// Of shift, matrix row and point (7 numbers) by the compiled kernel: the error, as a part of its bound.
+/// The carried point of shift, matrix row and point (7 numbers), by the compiled kernel: its error, as a part of its
+/// bound.
 double carriedFraction(const Numbers& n)
 {
   const float m[9] = {floatOf(n[1]), floatOf(n[2]), floatOf(n[3])};
@@ -74,7 +75,7 @@ TEST(BoundsAttack, CarriedPoints)
   });
 }
 
-/// Of two points (6 floats): the error of the squared distance, as a part of its bound; `too_small`: of the root's.
+/// The squared distance of two points (6 floats): its error, as a part of its bound; `too_small`: of the root's.
 template <bool kLength>
 double squaredFraction(const Numbers& n)
 {
@@ -116,8 +117,8 @@ TEST(BoundsAttack, SquaredDistances)
   });
 }
 
-/// Of two points of a frame each, with a pose: 18 numbers. How far float arithmetic is from the true vector, as a part
-/// of RelativeFrame::error. Each frame has a second point, opposite in a voxel of edge 4.
+/// Two points of a frame each, with a pose: 18 numbers. How far float arithmetic is from the true vector, as a part of
+/// RelativeFrame::error. Each frame has a second point, opposite in a voxel of edge 4.
 double frameFraction(const Numbers& n)
 {
   Eigen::Isometry3d pose = identity;
@@ -186,7 +187,7 @@ TEST(BoundsAttack, RelativeFrames)
   EXPECT_GE(reached, 0.9);
 }
 
-/// Of a point, its opposite in the frame, and a place to see it from: 9 numbers.
+/// A point, its opposite in the frame, and a place to see it from: 9 numbers.
 double pointFrameFraction(const Numbers& n, bool slack)
 {
   Point3 p, low, high, q;
@@ -229,8 +230,8 @@ TEST(BoundsAttack, StoredPointsAndPlacesSeen)
 
 /// Two spheres and a reach, of 8 numbers, just so far apart as these say: what rounding takes of kSphereMargin.
 ///
-/// It cannot take all: the margin is a power of two, above the 13 u that rounding takes at most; kReachMargin gives
-/// back some of that, and for spheres inside the radii's own margins give back more than rounding takes.
+/// It cannot take all. The margin is a power of two, above the 13 u that rounding takes at most. Some of that comes
+/// back by kReachMargin. For spheres inside, the radii's own margins give back more than rounding takes.
 double sphereFraction(const Numbers& n, bool inside)
 {
   const float ra = std::abs(floatOf(n[6])), rb = std::abs(floatOf(n[7]));
@@ -349,8 +350,8 @@ TEST(BoundsAttack, CompensatedSums)
 
 /// Two points under a pose, of 18 numbers: how far the enclosure's middle is from the distance, as a part of its width.
 ///
-/// The bound adds up all terms of all axes, where errors add up as a vector does, and has 32 v for the 5 v of an axis
-/// and the norm: one of so many terms, rounded as often as possible, uses a quarter of it at best.
+/// The bound adds up all terms of all axes, where errors add up as a vector does. It has 32 v for the 5 v of an axis
+/// and the norm. One of so many terms, rounded as often as possible, uses a quarter of it at best.
 double enclosureFraction(const Numbers& n)
 {
   Eigen::Isometry3d pose = identity;

@@ -59,7 +59,7 @@ TEST(ExactPlane, HeightsAreEnclosed)
     const Point3 more = random.point([&] { return random.pick({0.0, 0x1p-70, 0x1p-200}) * random.uniform(-1, 1); });
     if (random.chance(0.2)) normal[2] = std::ldexp(normal[2], random.pick({-600, -900, 900}));
     Point3 place = random.point(number);
-    if (random.chance(0.3)) { // in the plane but for rounding
+    if (random.chance(0.3)) { // in the plane, within rounding
       const double far = number();
       place = {at[0] + far * normal[1], at[1] - far * normal[0], at[2]};
     }

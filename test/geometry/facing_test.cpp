@@ -78,7 +78,7 @@ Flat anyFlat(Random& random, double size)
   return flat;
 }
 
-/// What a number of pairs came to.
+/// The count of answers for many pairs.
 struct Told {
   int gaps = 0, none = 0;
 };
@@ -197,8 +197,8 @@ TEST(GapOfFacing, NeedsAPlaceOfOneAboveOneOfTheOther)
     }
 }
 
-/// Of coordinates that are only known to within an error: along the axis the gap itself would be, across it whether a
-/// place is above another must be sure whatever they are.
+/// Coordinates are known within an error. Along the axis they give the gap. Across it a place must be surely above
+/// another, wherever they are.
 TEST(GapOfFacing, NeedsNumbersThatAreKnown)
 {
   const Triangle3 floor = {{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}}, across = {{{-1, 1, 3}, {9, 2, 3}, {-1, 3, 3}}};
@@ -248,7 +248,7 @@ TEST(GapOfFacing, TakesTrianglesAsSmallAsLongNumbersAreCoarse)
   }
 }
 
-/// Whose squares have few digits left, or none.
+/// The squares of these have few digits left, or none.
 TEST(GapOfFacing, TakesTrianglesWhoseSquaresVanish)
 {
   Random random(45);

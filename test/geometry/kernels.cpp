@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Of eight lanes, the one that is looked at; the others hold something else.
+/// The lane of eight that is looked at; the others hold other numbers.
 constexpr std::size_t kLane = 5;
 
 void setLane(float* lanes, float value)

@@ -46,8 +46,8 @@ struct SlabSet {
   }
 };
 
-/// Two slabs, of 26 numbers, one of them carried by a matrix that is a rotation within kNormalError: what the formula
-/// claims without its margins, less the distance of two points of the slabs; as a part of what the margins take off.
+/// Two slabs, of 26 numbers, one of them carried by a matrix that is a rotation within kNormalError. The claim of the
+/// formula without its margins, less the distance of two points of the slabs, as a part of the margins.
 double slabFraction(const Numbers& n, bool carried_is_other)
 {
   const auto vector = [&](std::size_t k) { return Eigen::Vector3d(n[k], n[k + 1], n[k + 2]); };
@@ -110,8 +110,8 @@ double slabFraction(const Numbers& n, bool carried_is_other)
 }
 
 /// Two thin slabs, each with a second one across it, of 26 numbers, the first carried by a matrix that is a rotation
-/// within kNormalError: what is claimed of their distance without the margin, less their distance, as a part of the
-/// margin. @param which 0: slabGaps(), 1: supportGaps(), 2: pointsGap()
+/// within kNormalError. The claimed distance without the margin, less their distance, as a part of the margin. @param
+/// which 0: slabGaps(), 1: supportGaps(), 2: pointsGap()
 double gapFraction(const Numbers& n, int which)
 {
   const auto off = [](double x) { return 1.0 + 0.999 * kNormalError * std::clamp(x, -1.0, 1.0); };
@@ -242,11 +242,11 @@ TEST(LanesAttack, MarginOfSlabs)
   });
 }
 
-/// A way, of shift, matrix row and point at both ends, that touches a box's side along x: the least reach with which
-/// its stay in the box holds the instant of touching, less the true reach, as a part of kSegmentRounding.
+/// A segment, of shift, matrix row and point at both ends, that touches a box's side along x. The least reach with
+/// which its stay in the box holds the instant of touching, less the true reach, as a part of kSegmentRounding.
 ///
-/// The bound adds the errors of both ends, which weigh 1 - t and t, and takes a time's for twice the largest
-/// coordinate, which none but a way from side to side has: a third of it at best.
+/// The bound adds the errors of both ends, which weigh 1 - t and t. It takes a time's error for twice the largest
+/// coordinate, which only a segment from side to side has: a third of it at best.
 double boxFraction(const Numbers& n)
 {
   float ends[2][3] = {};
@@ -305,8 +305,8 @@ TEST(LanesAttack, SegmentsInBoxes)
   });
 }
 
-/// A bowed way past a box, nearest to it at some instant: the least margin with which it is near for a reach of just
-/// that distance, as a part of kSegmentRounding; and its stay has to hold the instant.
+/// A bowed segment past a box, nearest to it at some instant. The least margin with which it is near for a reach of
+/// just that distance, as a part of kSegmentRounding; and its stay has to hold the instant.
 double bowedFraction(const Numbers& n)
 {
   float start[3], end[3], bow[3], low[3], high[3];

@@ -225,7 +225,7 @@ std::string wrongNearestTwo(Random& random)
   return "";
 }
 
-/// What is in eight spheres and in two slabs each, beside one such, and a leaf's points beside that one.
+/// Eight spheres with two slabs each, beside one such, and a leaf's points beside that one.
 std::string wrongCrossedSlabs(Random& random)
 {
   using Vector = Eigen::Vector3d;

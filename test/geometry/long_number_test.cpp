@@ -56,7 +56,7 @@ TEST(LongNumber, KnowsItsError)
   }
 }
 
-/// What numbers are off by is added where they are, and multiplied: all of it, and hardly more.
+/// Errors of numbers are added where these are, and multiplied: all of them, and hardly more.
 TEST(LongNumber, HasTheErrorsOfItsParts)
 {
   const LongNumber x(1.0, 0.0, 0x1p-60), y(-3.0, 0.0, 0x1p-62);

@@ -60,7 +60,7 @@ TEST(Rounding, OutwardAndNoFarther)
   EXPECT_TRUE(std::isnan(roundUp(NAN)) && std::isnan(roundDown(NAN)));
 }
 
-/// Of a number between two, as sums of doubles are, it is that at the smaller one.
+/// For a number between two, as sums of doubles are, it is the spacing at the smaller one.
 TEST(Rounding, SpacingOfFloat32Numbers)
 {
   EXPECT_EQ(float32Spacing(1000.0), 0x1p-14);

@@ -45,8 +45,8 @@ float squaredBy(const FlatTriangle<float>& flat, const Point3& p)
   return test::squaredToTriangleEight(flat, at[0], at[1], at[2]).squared[0];
 }
 
-/// Of a triangle and a point (12 numbers): how far the kernel's distance is from the true one, as a part of its bound.
-/// Corners are floats, and sides not short beside them: where a corner is stored would hide what the kernel does.
+/// A triangle and a point (12 numbers): the error of the kernel's distance, as a part of its bound. Corners are floats,
+/// and sides not short beside them: where a corner is stored would hide what the kernel does.
 double kernelFraction(const Numbers& n)
 {
   Triangle3 t = triangleOf(n);
@@ -64,8 +64,7 @@ double kernelFraction(const Numbers& n)
   return std::abs(found - truth) / bound;
 }
 
-/// Of the double stage: the middle of the enclosure, as a part of its width. The judge is rounded, by much less than
-/// that.
+/// The double stage: the middle of the enclosure, as a part of its width. The judge is rounded, by much less than that.
 double doubleFraction(const Numbers& n)
 {
   const Triangle3 t = triangleOf(n);
@@ -111,7 +110,7 @@ TEST(TriangleAttack, DoubleStage)
   EXPECT_GE(reached, 0.1);
 }
 
-/// Of the rows of a triangle laid flat: how far they change a length, as a part of kFlatSkew.
+/// The rows of a triangle laid flat: how far they change a length, as a part of kFlatSkew.
 template <class Number>
 double skewFraction(const Numbers& n)
 {
@@ -151,7 +150,7 @@ TEST(TriangleAttack, RowsAreOrthonormal)
   }
 }
 
-/// Of scan points near triangles, by frames as queries have them: no verdict is wrong, and few are left open.
+/// Scan points near triangles, by frames as queries have them: no verdict is wrong, and few are left open.
 TEST(TriangleAttack, BandsHoldAndAreNarrow)
 {
   Random random(504);

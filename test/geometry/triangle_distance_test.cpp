@@ -255,7 +255,7 @@ std::vector<Triangle3> cellsAt(double height, double shift, const Isometry3d& pl
   return cells;
 }
 
-/// All are as far apart, but for what is not opposite: posed by one turn, or turned and rounded.
+/// All are equally far apart, except parts that are not opposite: posed by one turn, or turned and rounded.
 TEST(TriangleDistance, ComparesWhatFacesEachOtherAsTheDefinitionDoes)
 {
   const Isometry3d turn = Random(3).pose(1), none = Isometry3d::Identity();
@@ -391,7 +391,7 @@ TEST(TriangleDistance, RoundsGapsOfBallsBesideDistancesBeyondAllDoubles)
   EXPECT_EQ(gap(beside, far), -beside);
 }
 
-/// What a mesh and a scan near it ask: clearances that have nothing to do with the distances.
+/// The questions of a mesh and a scan near it: clearances that are unrelated to the distances.
 TEST(TriangleDistance, DoublesDecideOrdinaryPairs)
 {
   Random random(305);

@@ -67,7 +67,7 @@ TEST(ListedPoints, AreCopiedOnlyWhereAQueryGoes)
   const SphereHierarchy hierarchy(viewOf(xyz.data(), kPoints), coarse());
   const std::size_t voxels = hierarchy.statistics().voxels;
   EXPECT_EQ(countListed(hierarchy), voxels);
-  // What construction writes of the points: a byte each.
+  // Bytes that construction writes of the points: one each.
   EXPECT_LE(hierarchy.storage().list_words * sizeof(std::uint32_t), kPoints);
 
   const double one[3] = {100, 100, 0};

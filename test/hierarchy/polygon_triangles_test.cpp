@@ -51,8 +51,8 @@ double areaOf(const Outline& outline)
   return area;
 }
 
-/// Walked anticlockwise, a simple polygon is covered once: all of its triangles are walked likewise, and have its area
-/// together. Begun at any corner, and walked the other way.
+/// Walked anticlockwise, a simple polygon is covered once: all of its triangles are walked anticlockwise, and have its
+/// area together. Begun at any corner, and walked the other way.
 void expectCovered(const Outline& given, std::size_t starts)
 {
   const double area = areaOf(given);

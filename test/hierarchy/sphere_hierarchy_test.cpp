@@ -58,7 +58,7 @@ Cloud cloudOf(std::size_t count, Scalar scalar, Make make)
   return Cloud(points, {scalar});
 }
 
-/// What the constructor says of this; empty when it accepts.
+/// The constructor's complaint; empty when it accepts.
 std::string complaint(const PointsView& view, const HierarchyOptions& options = {})
 {
   try {

@@ -144,7 +144,7 @@ TEST(TrianglesView, BallsAreTheSmallest)
 TEST(TrianglesView, ReadsCornersInPlace)
 {
   const std::vector<float> xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const Corners corners = {9, 0, 1, 2, 9, 1, 2, 3}; // four numbers each, of which the first is none of ours
+  const Corners corners = {9, 0, 1, 2, 9, 1, 2, 3}; // four numbers each, the first of another meaning
   TrianglesView view = trianglesOf(xyz, corners);
   view.corners = corners.data() + 1;
   view.count = 2;

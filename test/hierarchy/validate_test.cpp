@@ -45,7 +45,7 @@ protected:
 
   std::vector<std::string> linesOf(const Break& breaks) const { return linesOf(test::Cloud(points_), breaks); }
 
-  /// Of the first voxel, one after the other: x, y, z, records.
+  /// The parts of the first voxel's block, one after the other: x, y, z, records.
   static float* block(SphereHierarchy::Storage& s) { return s.voxels[0].block; }
   static std::uint32_t* records(SphereHierarchy::Storage& s)
   {

@@ -14,7 +14,7 @@
 namespace pcl_bsh::test {
 namespace {
 
-/// What is asked of a hierarchy that has been through a failure.
+/// The questions to a hierarchy that has been through a failure.
 auto answerOf(const SphereHierarchy& hierarchy)
 {
   static const Cloud cloud = richCloud(8, 200);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What PCL's classes allocate fails too, save for the points of typed clouds: those are Eigen's, not operator new's.
+// Allocations of PCL's classes fail too, except for the points of typed clouds: those are Eigen's, not operator new's.
 #include <pcl_bsh/filters/collision_filter.h>
 #include <pcl_bsh/filters/distance_filter.h>
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -274,7 +274,7 @@ TEST_F(FilterAllocationFailure, OfFlagsAndTrajectories)
                        });
 }
 
-/// What is set anew is as it was, or is set.
+/// A setting is as before, or is set.
 TEST_F(FilterAllocationFailure, OfSettings)
 {
   const pcl::Indices at_first = where(truth({Eigen::Isometry3d::Identity(), somePose()}), false, scan());

@@ -127,7 +127,7 @@ TEST_F(SearchAllocationFailure, OfBatchesInThreads)
       [](const auto& search) { return search->anyInBalls(*queries(), std::vector<float>(queries()->size(), 0.05f)); });
 }
 
-/// Until the new input is ready the former one answers, or there is none.
+/// Until the new input is ready the former one answers, or no search is possible.
 TEST_F(SearchAllocationFailure, OfInputs)
 {
   const auto indices = std::make_shared<pcl::Indices>();

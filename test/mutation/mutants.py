@@ -315,7 +315,7 @@ def with_mutants(text, chosen, header):
     for site in sorted(by_site, key=lambda site: -site.begin):
         original = text[site.begin:site.end]
         if site.kind in ("condition", "value"):
-            # What two alternatives have in common may always be true: of an optional and a bool it is an optional.
+            # The common type of two alternatives may always be true: for an optional and a bool it is an optional.
             cast = "static_cast<bool>" if site.kind == "condition" else ""
             choice = "".join(f"pcl_bsh_mutant({n}) ? {cast}({m.after}) : " for n, m in by_site[site])
             changed = f" {choice}{cast}({original})"

@@ -243,7 +243,7 @@ def tests_of(work, test, slow):
                          ["--gtest_filter=" + ("" if slow else "-") + ":".join(SLOW)], MOST_SECONDS_TO_REACH)
         if ran is None or ran.returncode < 0 and ran.returncode not in (-24, -9): # the tests after that are left out
             sys.exit(f"mutate.py: {test}_test does not run without a mutant")
-        unfinished.touch() # where there is none
+        unfinished.touch() # no test wrote it
         unfinished.rename(kept)
     found = []
     for line in kept.read_text().splitlines():

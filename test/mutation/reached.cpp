@@ -15,7 +15,7 @@ class Reached : public testing::EmptyTestEventListener {
 public:
   explicit Reached(const char* file) : out_(file, std::ios::app) {}
 
-  /// What is reached before the first test counts for each: without it none is as it was.
+  /// Mutants reached before the first test count for each: all tests depend on them.
   void OnTestProgramStart(const testing::UnitTest&) override
   {
     std::memcpy(always_, pcl_bsh_reached_mutants, sizeof always_);

@@ -57,7 +57,7 @@ struct Questions {
     return q;
   }
 
-  /// Half of them are exactly, or but for the last bit, the distance of some point.
+  /// Half of them are exactly, or within the last bit, the distance of some point.
   double radius(const Point3& q)
   {
     if (view().size() == 0 || random.chance(0.5)) return random.chance(0.1) ? 0.0 : scale * random.uniform(0, 0.8);
@@ -153,8 +153,8 @@ TEST(Neighbors, LikeBruteForceOnLargerClouds)
   }
 }
 
-/// Points and queries at, and one float beside, the faces of voxels so far from the first one that counting cells in
-/// float32 rounds: points lie in the voxel beside theirs, or the nearest one is across a face.
+/// Points and queries at the faces of voxels, and one float beside. They are so far from the first voxel that counting
+/// cells in float32 rounds: points lie in the voxel beside theirs, or the nearest one is across a face.
 TEST(Neighbors, AcrossTheFacesOfVoxels)
 {
   test::Random random(5);
@@ -188,8 +188,8 @@ TEST(Neighbors, AcrossTheFacesOfVoxels)
   }
 }
 
-/// What a query costs on average, on the surface of a scan with stray points above it. A first guess that leads to a
-/// stray, or a bound that does not shrink, would cost a sweep over much of the cloud.
+/// Mean cost of a query, on the surface of a scan with stray points above it. A first guess that leads to a stray, or a
+/// bound that does not shrink, would cost a sweep over much of the cloud.
 TEST(Neighbors, LookAtFewPoints)
 {
   test::Random random(9);

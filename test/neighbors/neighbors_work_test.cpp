@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What searches for neighbours cost on clouds that are hard for them, as the clouds grow.
+// Costs of searches for neighbours on clouds that are hard for them, as the clouds grow.
 #include <pcl_bsh/neighbors/neighbors.h>
 
 #include "support/adversarial_clouds.h"

@@ -90,7 +90,7 @@ TEST(Spacing, DoubledPointsAreOnePlace)
   EXPECT_EQ(spacingOf(SphereHierarchy(viewOf(points.data(), 4))).median, 3.0);
 }
 
-/// What a voxel stores, floats relative to its middle, may be one place where the given ones are many.
+/// A voxel stores floats relative to its middle: these may be one place where the given ones are many.
 TEST(Spacing, OfPlacesThatFloatsDoNotTellApart)
 {
   std::vector<Point3> points;

@@ -136,7 +136,7 @@ TEST(BeyondReach, AnyTakesWorkInProportion)
         }
 }
 
-// What it knows of nodes.
+// The nodes of a cloud.
 
 std::vector<NodeChild> childrenOf(const SphereHierarchy& cloud)
 {

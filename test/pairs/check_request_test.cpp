@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What the check says of this; empty when it accepts.
+/// The check's complaint; empty when it accepts.
 std::string verdict(double clearance, const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b)
 {
   const SphereHierarchy empty{PointsView{}};

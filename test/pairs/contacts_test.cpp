@@ -118,7 +118,7 @@ TEST(Contacts, CrowdedPlacesOfBallsOfSeveralSizes)
   }
 }
 
-/// Of pairs at one distance those of larger records are not asked for, once there are enough.
+/// Larger records of pairs at one distance are not asked for, once enough pairs are known.
 TEST(Contacts, CrowdedPlacesAreComparedAsFarAsTheyAreAskedFor)
 {
   const Cloud crowd(std::vector<Point3>(400, Point3{1, 2, 3})), other(std::vector<Point3>(300, Point3{1, 2, 3.5}));

@@ -96,7 +96,7 @@ TEST(FarNodes, AreNeverApartWithinTheDistanceOfTheirPoints)
                 const NodeSupport sa = nodeSupport(a.voxels[v], a.view, na, i, work),
                                   sb = nodeSupport(b.voxels[w], b.view, nb, k, work);
                 const auto least = nearest(a, b, a.voxels[v], b.voxels[w], na, nb, i, k, distance);
-                // What is said to be apart by this is so: its points are no nearer.
+                // A claimed gap is true: its points are no nearer.
                 double claimed = 0.0, above = least.high * (1.0 + 1e-6) + 1e-300;
                 EXPECT_FALSE(areFarNodesApart(distance, pose_a, sa, pose_b, sb, least.high, compared)) << round;
                 for (int step = 0; step < 30; ++step) {
@@ -145,8 +145,8 @@ double betweenFraction(const Numbers& n)
 
 constexpr double kUnit = 4.0; ///< of the frame: lengths of nodes are in it, those of supports in the cloud's
 
-/// A direction, a rotation, two normals and three lengths, of 16 numbers: what the support lacks of that of the two
-/// slabs and the sphere, but for its margin, as a part of the margin.
+/// A direction, a rotation, two normals and three lengths, of 16 numbers. The shortfall of the support against that of
+/// the two slabs and the sphere, without its margin, as a part of the margin.
 double supportFraction(const Numbers& n)
 {
   const auto isPlain = [](double x) { return std::abs(x) < 8.0; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries about two clouds cost where many pairs are at nearly the same distance, as the clouds grow.
+// Costs of queries about two clouds where many pairs are at nearly one distance, as the clouds grow.
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/pairs/contacts.h>
@@ -171,7 +171,7 @@ TEST(PairWork, TinyBallWithinAShell)
   expectLinear("flags", ball, 500, kFlags);
 }
 
-/// The same clouds at a clearance just below their distance, which only the search for it knows.
+/// The clouds at a clearance just below their distance, which only the search for it knows.
 std::function<HardPair(std::size_t)> justApart(const std::function<HardPair(std::size_t)>& make)
 {
   return [make](std::size_t n) {

@@ -40,7 +40,8 @@ double unitOf(const SphereHierarchy& hierarchy)
 /// Two sheets that face each other, each turned in its own frame.
 class Sheets {
 public:
-  /// @param of_b the second sheet's size, the first one's is `scale` alone @param gap between them, likewise
+  /// @param of_b the second sheet's size times `scale`, the first one's is `scale` @param gap between them, times
+  /// `scale`
   Sheets(std::size_t count, std::uint64_t seed, double scale, double of_b, double gap)
   : random_(seed),
     place_(random_.pose(scale)),

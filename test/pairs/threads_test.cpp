@@ -129,8 +129,8 @@ TEST(ThreadsOfAQuery, AreNotNeededBySmallOrEmptyClouds)
 
 using Stack = SharedStack<std::uint32_t>;
 
-/// Walks the complete tree of which node n has the children 4n + 1 ... 4n + 4, first to last, and looks for any of the
-/// `wanted` nodes; some steps of a piece at a time.
+/// Walks the complete tree in which node n has the children 4n + 1 to 4n + 4, first to last. Looks for any of the
+/// `wanted` nodes, some steps of a piece at a time.
 class TreeWalk {
 public:
   TreeWalk(std::vector<std::uint32_t> wanted, std::uint32_t nodes) : wanted_(std::move(wanted)), nodes_(nodes) {}

@@ -107,7 +107,7 @@ TEST(TiedTriangles, TakeWorkInProportionBesideOneTip)
     }
 }
 
-/// What one tip tells of a disc's triangles says nothing of another tip, which is as near to those with smaller
+/// One tip's answer for a disc's triangles tells nothing about another tip, which is as near to those with smaller
 /// numbers.
 TEST(TiedTriangles, AnswerAsBruteForceBesideTwoTips)
 {

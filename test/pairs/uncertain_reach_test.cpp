@@ -52,7 +52,8 @@ TEST(UncertainReach, BoundsOnTheSafeSideAndTightly)
   }
 }
 
-/// What a sum in double drops is on the safe side as well: lengths that are floats, and an error below their last bits.
+/// Digits that a sum in double drops are on the safe side, too: lengths that are floats, and an error below their last
+/// bits.
 TEST(UncertainReach, HasRoomForWhatSumsDrop)
 {
   constexpr double error = 0x1p-60;

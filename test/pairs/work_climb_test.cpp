@@ -28,7 +28,7 @@ using namespace test::adversarial;
 enum class Form : std::uint8_t { sheet, shell, line, circle, helix, cube, octaves };
 constexpr const char* kForms[] = {"sheet", "shell", "line", "circle", "helix", "cube", "octaves"};
 
-/// What the search changes. Lengths: 10 to the power of the number, where it says so.
+/// The numbers that the search changes. Lengths: 10 to the power of the number, where it says so.
 struct Recipe {
   Form a, b;
   double size;    ///< of b, of which a has 1; power

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The .deb package of the plugin holds the plugin alone, asks for the ParaView that it was built for, and what is unpacked
-# from it works: the test of the plugin runs on that, and ParaView loads it from where PV_PLUGIN_PATH names its folder.
+# The .deb package of the plugin holds the plugin alone and asks for the ParaView that it was built for. Its unpacked
+# content works: the test of the plugin runs on that, and ParaView loads it from the folder that PV_PLUGIN_PATH names.
 #   bash package_test.sh CPACK BUILD FOLDER PLUGIN_TEST PVBATCH...
 set -euo pipefail
 cpack="$1" build="$2" folder="$3" plugin_test="$4" pvbatch=("${@:5}")

@@ -179,7 +179,7 @@ TEST_P(Cancel, QueriesAlongATrajectoryStop)
   EXPECT_THROW(made.run(), Cancelled);
   EXPECT_EQ(folder.files(), 1U) << "nothing is written";
 
-  // The same by itself, told before it begins: the query's first report ends it.
+  // The query alone, told before it begins: its first report ends it.
   const StageType& type = *findStageType("filters.bsh_flag");
   const std::unique_ptr<Stage> stage = type.make();
   type.findOption("clearance")->set(*stage, 0.1);

@@ -182,7 +182,7 @@ TEST(OptionJson, SaysRangesAsPeopleWriteThem)
   EXPECT_EQ(refusal("high", "2e9"), "is 2000000000.0: give a number") << "as good as none";
 }
 
-/// Of programs: documents have none.
+/// Numbers of programs: documents have none.
 TEST(OptionJson, RefusesNumbersThatAreNotFinite)
 {
   const double infinite = std::numeric_limits<double>::infinity();

@@ -65,7 +65,7 @@ void expectSamePoints(const Cloud& actual, const Cloud& expected)
   }
 }
 
-/// Equal but for the last digits, which depend on the order of a sum.
+/// Equal within the last digits, which depend on the order of a sum.
 void expectNearPoints(const Cloud& actual, const Cloud& expected, bool unit_normals)
 {
   ASSERT_EQ(actual.size(), expected.size());

@@ -24,7 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-/// What the stages below do to each other; reset by each test.
+/// The actions of the stages below; reset by each test.
 struct Stage2Stage {
   std::mutex mutex;
   std::condition_variable changed;

@@ -31,7 +31,7 @@ pcl::PointCloud<PointT> typedOf(const StageCloudPtr& cloud)
   return points;
 }
 
-/// What a stage gives that reads `in`. @param stage its JSON object
+/// The result of a stage that reads `in`. @param stage its JSON object
 /// @param obstacle given for the tag `other`, unless null
 inline PipelineResult runStage(const StageCloudPtr& in, const std::string& stage, const StageCloudPtr& other = nullptr)
 {
@@ -51,7 +51,7 @@ inline StageCloudPtr outputOf(const StageCloudPtr& in, const std::string& stage,
   return result.clouds.begin()->second;
 }
 
-/// What the error says, without the document and the stage.
+/// The error's text, without the document and the stage.
 template <typename Run>
 std::string errorOf(Run&& run)
 {

@@ -78,7 +78,7 @@ TEST(StageType, RefusesNamesThatAreTaken)
   EXPECT_EQ(findStageType("filters.own"), nullptr);
 }
 
-/// What the repository holds must be what the table says; the tests' own stages are in the table, too, but come last.
+/// Files of the repository must match the table; the tests' own stages are in the table, too, but come last.
 std::string committed(const std::string& file)
 {
   return io::contentOf(std::string(PCL_BSH_SOURCE_DIR) + "/" + file);

@@ -566,7 +566,7 @@ StageCloudPtr asInput(const pcl::PCLPointCloud2& cloud)
   return input;
 }
 
-/// Of three fields of one floating-point type, with one value each; what has no direction keeps none.
+/// Normals of three fields of one floating-point type, with one value each; a field without a direction keeps none.
 TEST(Stages, TransformTurnsNormalsOfAnyRealType)
 {
   using Field = pcl::PCLPointField;

@@ -41,7 +41,7 @@ class SurfaceStages : public testing::Test {
 protected:
   SurfaceStages() { folder_.write("crate.off", crate); }
 
-  /// Of stages in a document, whose clouds are `scan` and a crate.
+  /// Runs stages in a document, whose clouds are `scan` and a crate.
   PipelineResult runAll(const std::string& stages) const
   {
     Pipeline pipeline = Pipeline::parse(
@@ -261,7 +261,7 @@ TEST_F(SurfaceInput, KeepsTrianglesAndTheirVertices)
   EXPECT_EQ(kept(""), std::pair(std::size_t{3}, 6u));
   EXPECT_EQ(kept(R"(, "keep": "colliding")"), std::pair(std::size_t{1}, 3u));
   EXPECT_EQ(kept(R"(, "negative": true)"), std::pair(std::size_t{1}, 3u));
-  // What was known of triangles goes with them, and they are asked again.
+  // Results of triangles go with them, and they are asked again.
   const PipelineResult twice = runStrip(R"({"type": "filters.bsh_flag", "obstacle": "scan", "clearance": 0.1},
       {"type": "filters.bsh_collision", "obstacle": "scan", "clearance": 0.01},
       {"type": "filters.bsh_collision", "tag": "k", "keep": "colliding", "obstacle": "scan", "clearance": 0.1})");

@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 cmake_path(GET root PARENT_PATH root)
 
-# What a component brings, itself last, and the packages that are none of its business.
+# The targets that a component brings, itself last, and the packages that it must not ask for.
 set(all VTK CGAL MPI Python Python3 pybind11 CLI11 nlohmann_json FastFloat urdfdom assimp GTest nanoflann)
 set(brings_NONE "")
 set(brings_PIPELINES pipeline)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Each public header is compiled alone, for it shall include what it needs. CMake does so for libraries which have the
-# property VERIFY_INTERFACE_HEADER_SETS. Here that is quicker for a library many of whose headers include the same large
-# header of others: it is precompiled, and comes first only for those which include it anyway, so that it hides nothing.
-# Which these are is seen when CMake configures.
+# property VERIFY_INTERFACE_HEADER_SETS. Here that is quicker for a library many of whose headers include one large
+# header of others. Such a header is precompiled, and comes first only for those which include it anyway, so that it
+# hides nothing. Which these are is seen when CMake configures.
 add_custom_target(headers_alone)
 
 # Names the headers of others that a header includes, itself or by headers of ours.

@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RULES = Path(__file__).with_name("words.csv")
 PRODUCT = ("pcl_bsh", "filters", "examples")
 CODE = {".h": "//", ".hpp": "//", ".cpp": "//", ".cmake": "#", ".sh": "#", ".py": "#", ".txt": "#"}
+SAMPLE = {"//": r"//[/!]* {3,}(\S.*;( *//.*)?$| {3,}\S)|//.*\S {3,}\S", "#": r"# {3,}\S"}  # code, tables, command lines
 LONGEST_TITLE = 60
 
 
@@ -42,12 +43,13 @@ def files():
 
 
 def comments(lines, mark):
-    """Paragraphs (line number, text) of comments that begin with the mark."""
+    """Paragraphs (line number, text) of comments that begin with the mark; samples are left out."""
     paragraph, first, column = [], 0, -1
     for number, line in enumerate(lines, 1):
         found = re.match(r"^(.*?)(?:(?<=\s)|^)" + mark + r"[/!]*<? ?(.*)$", line)
         text = found.group(2).strip() if found else ""
-        plain = found and text and not re.match(r"^(SPDX|clang-format|NOLINT|!/|-+$)", text)
+        sample = found and re.search(SAMPLE[mark], line)
+        plain = found and text and not sample and not re.match(r"^(SPDX|clang-format|NOLINT|!/|-+$)", text)
         alone = plain and not found.group(1).strip()
         at = len(found.group(1)) if found else -1
         if plain and paragraph and at == column and not re.match(r"[@\\-]", text) and alone:
@@ -68,7 +70,7 @@ def prose(lines):
         fence = text.startswith("```")
         fenced ^= fence
         cell = text.startswith("|")
-        if fenced or fence or not text or text.startswith(("#", "|", "    ", "<", "![")) or re.match(r"^(- |\* |\d+\. )", text):
+        if fenced or fence or not text or text.startswith(("#", "|", "<", "![")) or (line.startswith("    ") and not paragraph) or re.match(r"^(- |\* |\d+\. )", text):
             if paragraph:
                 yield first, " ".join(paragraph)
             paragraph = []
@@ -97,7 +99,7 @@ def sentences(paragraph):
     paragraph = re.sub(r"`[^`]*`", "CODE", paragraph)
     paragraph = re.sub(r"\b(e\.g|i\.e|etc|cf|al|no)\.", r"\1", paragraph)
     paragraph = re.sub(r"^@(param \w+|returns?|throws \w+)\s*", "", paragraph)
-    return [s for s in re.split(r"(?<=[.!?;])\s+(?=[A-Z`\"(])", paragraph.strip()) if s]
+    return [s for s in re.split(r"(?<=[.!?;])\s+(?=[A-Z`\"(*[])", paragraph.strip()) if s]
 
 
 def texts():

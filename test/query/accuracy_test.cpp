@@ -83,7 +83,7 @@ void expectNoneWrong(const std::vector<Verdict>& flags, const std::vector<Verdic
   EXPECT_EQ(undecided, marked);
 }
 
-/// What holds of any certified answer.
+/// Rules of any certified answer.
 void expectCertified(const Truth& truth, const Accuracy& accuracy)
 {
   SCOPED_TRACE(truth.scene.name + " at " + accuracy.text());

@@ -78,7 +78,7 @@ TEST(Budget, TimeEnoughBuildsWhatAnySearchNeeds)
   }
 }
 
-/// What is built already takes time as well.
+/// Built parts take time as well.
 TEST(Budget, NoTimeEndsASearchAtOnce)
 {
   const test::FacingSheets sheets(6, 5000);
@@ -138,7 +138,7 @@ TEST(Budget, BothSidesShareIt)
     EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::both).work.node_pairs, budget + 4000) << budget;
     EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::a).work.node_pairs, budget + 4000) << budget;
   }
-  // What one side does not need is the other's.
+  // The budget that one side does not need is the other's.
   const FlagsResult enough = flagsAt(Accuracy::nodePairs(4 * all), Side::both);
   EXPECT_EQ(enough.a, exact.a);
   EXPECT_EQ(enough.b, exact.b);

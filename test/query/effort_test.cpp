@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every query does with an effort: it tells its progress, and ends when it is told to.
+// Every query obeys an effort: it tells its progress, and ends when it is told to.
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every query about two clouds costs on pairs of clouds that are hard for bounding volumes, as they grow: all is
-// at nearly the same distance, a few points spoil the bounds of all, or floats hardly tell points apart.
+// Costs of every query about two clouds on pairs that are hard for bounding volumes, as they grow. All pairs are at
+// nearly one distance, a few points spoil the bounds of all, or floats hardly tell points apart.
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/roadmap/collide_at_poses.h>
@@ -233,7 +233,7 @@ const std::vector<Corner>& corners()
        [](std::size_t n) {
          return HardPair{onShell(n, 1, 1), onShell(n, 1.5, 2)};
        },
-       6.5, 6.5, 6, 6.5}, // likewise
+       6.5, 6.5, 6, 6.5},
       {"ten shells in ten",
        [](std::size_t n) {
          return HardPair{shells(n, 10, 0.01), moved(shells(n, 10, 0.01), {0, 0, 0.5})};

@@ -40,7 +40,7 @@ test::Question within(double clearance, unsigned threads)
   return request;
 }
 
-/// What brute force says; it in turn agrees with the catalogue.
+/// The answers of brute force, which agree with the catalogue.
 struct Truth {
   AnyResult any;
   FlagsResult flags;
@@ -120,7 +120,7 @@ TEST_P(HardCases, EqualExactArithmetic)
   RecordProperty("checks", checks);
 }
 
-/// The same clouds with uncertain places, at a pose and along a path of that pose alone.
+/// The clouds with uncertain places, at a pose and along a path of that pose alone.
 TEST_P(HardCases, UncertainPlacesEqualExactArithmetic)
 {
   const HardCase& c = GetParam();

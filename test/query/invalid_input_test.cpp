@@ -29,7 +29,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What is thrown, the base class included.
+/// The exception that is thrown, the base class included.
 InvalidInput thrownBy(const std::function<void()>& ask)
 {
   try {

@@ -15,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// What a caller is told.
+/// The reports that a caller gets.
 struct Told {
   std::vector<double> shares;
   std::size_t most = 1000; ///< then it says that it has enough

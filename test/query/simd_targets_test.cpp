@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same answers and the same work on every instruction set that this machine has.
+// Equal answers and equal work on every instruction set that this machine has.
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

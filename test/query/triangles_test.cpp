@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds of triangles in every query: uncertain places, every accuracy, refits, one centre for many, what is refused.
-// What is exact is compared with brute force beside the tests of each query.
+// Exact answers are compared with brute force beside the tests of each query.
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/brute_force/brute_force.h>
 #include <pcl_bsh/clusters/clusters.h>

@@ -156,7 +156,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
         ++decided;
       }
     }
-    // What is within the tolerance beyond each edge may go either way.
+    // Pairs within the tolerance beyond each edge may go either way.
     const double tolerance = 0.1 * scene.clearance;
     const FlagsResult wider =
         brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance + tolerance, Side::a));

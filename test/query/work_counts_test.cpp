@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each query costs, counted, on inputs that never change: the table work_counts.txt, to the last count.
+// Counted costs of each query, on inputs that never change: the table work_counts.txt, to the last count.
 //
 // A changed count is no mistake by itself. Judge it by three questions: was a change of the search meant, do the tests
 // of answers pass, and do the counts fall, or is what rises paid for by what falls (test/benchmark/count_instructions)?
@@ -55,7 +55,7 @@ public:
 
   void add(const std::string& name, const Work& work) { add(name, test::countsOf(work)); }
 
-  /// Of a scene, by effect.
+  /// Adds a scene's costs, by effect.
   void add(const std::string& name, const SceneResult& result)
   {
     for (std::size_t i = 0; i < kEffects; ++i) {
@@ -566,7 +566,7 @@ TEST(WorkCounts, OfScenes)
   table.check("scenes");
 }
 
-/// What a hierarchy is made of, however points lie.
+/// Counts of a hierarchy's parts, however points lie.
 TEST(WorkCounts, OfHierarchies)
 {
   Table table;

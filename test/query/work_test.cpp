@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries report of their work: by hand where the trees are small, and consistent elsewhere.
+// Work that queries report: by hand where the trees are small, and consistent elsewhere.
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>

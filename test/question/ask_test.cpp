@@ -351,7 +351,7 @@ TEST_F(Ask, OfAPathThatStopsEarlyNothingIsClosest)
   EXPECT_TRUE(answer().closest.pair);
 }
 
-/// Of all queries together, whichever are asked.
+/// Progress of all queries together, whichever are asked.
 TEST_F(Ask, ProgressGoesFromNothingToAll)
 {
   using Members = std::vector<bool Wanted::*>;
@@ -456,7 +456,7 @@ protected:
 
   Shape square(const std::string& name) const { return {name, viewOf(view)}; }
 
-  /// Of a point from the square.
+  /// Distance of a point from the square.
   static double distanceOf(const Point3& p)
   {
     return std::hypot(std::max(std::abs(p[0]) - 1.0, 0.0), std::max(std::abs(p[1]) - 1.0, 0.0), p[2]);

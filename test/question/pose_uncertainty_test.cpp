@@ -190,7 +190,7 @@ TEST(PoseUncertainty, AddsToWhatPointsHave)
   EXPECT_GE(moved(), 0.975 + 4 * std::sin(0.5));
 }
 
-/// Of double coordinates: a length that no float holds.
+/// Double coordinates: a length that no float holds.
 TEST(PoseUncertainty, RefusesToMovePointsByMoreThanAFloatHolds)
 {
   const double places[] = {1, 2, 5, NAN, 0, 0, 1e39, 0, 0};

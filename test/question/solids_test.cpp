@@ -520,7 +520,7 @@ protected:
     return records;
   }
 
-  /// Of one body each.
+  /// Verdicts for solids of one body each.
   Verdicts bruteForce(const Eigen::Isometry3d& pose) const
   {
     const SphereHierarchy a(viewOf(first.view())), b(viewOf(second.view()));
@@ -599,7 +599,7 @@ TEST_F(SolidsTest, OfSeveralAtOneDepthTheFirstIsTold)
   EXPECT_EQ(found.distances.a.greatest_pair->a, 1u);
 }
 
-/// Of the greatest distance: of several, the first record's.
+/// Expects the greatest distance, of the first record that has it.
 void expectGreatest(const PointDistances& found)
 {
   std::optional<std::uint32_t> greatest;

@@ -235,7 +235,7 @@ TEST_F(Unseen, IsToldOfEachPoseOfAPath)
   EXPECT_EQ(found.unseen.count, 2u);
 }
 
-/// What is kept of the input between two questions is that of no other origin, angle or uncertainty.
+/// Data kept of the input between two questions belongs to no other origin, angle or uncertainty.
 TEST_F(Unseen, EachQuestionIsAnsweredAsIfItWereTheFirst)
 {
   model_.clear();
@@ -338,8 +338,8 @@ TEST_F(Unseen, IsTheInsideOfASolidToo)
   EXPECT_LT(hidden, 2.0);
 }
 
-/// Of two boxes, most of whose bounds is neither: cubes that either holds a part of, each in a ball, as they are
-/// placed.
+/// Two boxes, and bounds that are mostly in neither. The inside is cubes that either box holds a part of, each in a
+/// ball, as they are placed.
 TEST_F(Unseen, TheInsideOfASolidIsThatOfItsCubes)
 {
   const std::vector<Eigen::AlignedBox3d> boxes = {{Eigen::Vector3d(-0.5, -0.4, -0.2), Eigen::Vector3d(0.1, 0.1, 0.0)},

@@ -303,7 +303,7 @@ NamedObject named(const std::string& name, const std::string& cloud, double x, b
   return made;
 }
 
-/// Of a scene: a wall, and a cart that moves.
+/// A scene: a wall, and a cart that moves.
 struct WallAndCart {
   Cloud wall{plane(31)}, cart{plane(4)};
   std::map<std::string, NamedCloud> clouds = {{"wall", wall.named("wall")}, {"cart", cart.named("cart")}};
@@ -336,7 +336,7 @@ TEST(SceneWarnings, OfObjectsThatNeverMeet)
   EXPECT_THAT(scene.told(std::nullopt), testing::SizeIs(1));
 }
 
-/// Of several objects each that is far from all others, before it and behind it.
+/// Several objects each that are far from all others, before it and behind it.
 TEST(SceneWarnings, OfObjectsFarFromTheOthers)
 {
   WallAndCart scene;

@@ -213,7 +213,7 @@ TEST(AtPoses, TenThousandInAnyOrderByAnyNumberOfThreads)
   }
 }
 
-/// What collides at one pose is tried first at the next.
+/// The pair that collides at one pose is tried first at the next.
 TEST(AtPoses, NeighboursShareTheirWitness)
 {
   const Bodies bodies(20000, 640, 1e-6);

@@ -43,7 +43,7 @@ Verdict verdictAlone(const Placed& scan, const SphereHierarchy& model, const Eig
   return found.colliding > 0 ? Verdict::colliding : found.undecided > 0 ? Verdict::undecided : Verdict::free;
 }
 
-/// What the definition says at many instants of a motion, in exact arithmetic at each.
+/// The definition at many instants of a motion, in exact arithmetic at each.
 struct Instants {
   bool collides = false; ///< within the clearance, less what poses are rounded by
   bool nears = false;    ///< within clearance + tolerance, as far as instants between these can tell
@@ -246,7 +246,7 @@ TEST(OnMotions, OfUncertainPointsBothEdgesHold)
   EXPECT_EQ(pass(0.125 + 1.1e-6), Verdict::undecided);
   EXPECT_EQ(pass(0.875), Verdict::undecided);
   EXPECT_EQ(pass(0.875 + 1.1e-6), Verdict::free);
-  // What collides at a pose alone, to the last bit.
+  // The verdict at a pose alone, to the last bit.
   const auto rest = [&](double distance) {
     const Poses poses = {at(0, distance, 0)};
     request.swept = 1e-12;
@@ -403,8 +403,8 @@ TEST(OnMotions, FollowsTheArcOfATip)
   }
 }
 
-/// Points on the way of a point of the model, at random instants, as far from it as the clearance or just beyond the
-/// tolerance: many motions of a batch, so that bounds for groups of them are put to the test.
+/// Points beside the path of a point of the model, at random instants, as far from it as the clearance or just beyond
+/// the tolerance. Many motions make a batch, so that bounds for groups of them are tested.
 TEST(OnMotions, GrazesAreRightInBatches)
 {
   Random random(34);
@@ -566,7 +566,7 @@ TEST(OnMotions, RefusesWhatHasNoMeaningAndNamesIt)
   EXPECT_THAT(messageOf([&] { anyCollisionOnMotions({empty}, a, poses, {{0, 2}}, good); }), testing::HasSubstr("1999"));
 }
 
-/// What a motion cannot be cut into, and what would be refused nowhere else.
+/// Motions that cannot be cut, and would be refused nowhere else.
 TEST(OnMotions, RefusesATightToleranceByTheMotion)
 {
   const Cloud point({{0, 0, 0}, {3e4, 0, 0}});

@@ -95,7 +95,7 @@ TEST(BroadPhase, WhatIsNotPlacedYetMeetsNothing)
   }
 }
 
-/// Of several boxes each voxel counts once; of too many voxels an object is everywhere.
+/// A voxel of several boxes counts once; an object of too many voxels is everywhere.
 TEST(BroadPhase, AnObjectIsInEachVoxelOfItsBoxesOnce)
 {
   GridOfBoxes boxes(1.0);

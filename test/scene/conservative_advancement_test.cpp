@@ -65,7 +65,7 @@ struct StraightPair {
   }
 
 private:
-  /// Of the distance at s, by 2^960.
+  /// Square of the distance at s, times 2^960.
   Integer square(double s) const
   {
     Vector at;

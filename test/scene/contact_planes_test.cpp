@@ -12,7 +12,7 @@ namespace {
 
 using Normals = std::vector<Eigen::Vector3d>;
 
-/// What is left of a motion that meets planes one after another.
+/// The rest of a motion that meets planes one after another.
 Eigen::Vector3d leftAfter(const Normals& normals, Eigen::Vector3d motion)
 {
   ContactPlanes planes;

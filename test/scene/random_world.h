@@ -75,7 +75,7 @@ public:
     return scene;
   }
 
-  /// The same rules, said the other way: the clearance of a pair that is tested.
+  /// The rules in another form: the clearance of a pair that is tested.
   std::optional<double> clearanceOf(ObjectId a, ObjectId b) const
   {
     bool tested = test_pairs_ && !(objects_[a].fixed && objects_[b].fixed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene remembers, whatever happens between its queries, and every combination of effects.
+// Memory of a scene, whatever happens between its queries, with every combination of effects.
 #include <pcl_bsh/hierarchy/update.h>
 #include <pcl_bsh/scene/scene.h>
 

@@ -232,7 +232,7 @@ TEST(SceneResponse, SlideStopsInACorner)
   EXPECT_FALSE(collides(scene, 0, id));
 }
 
-/// What the straight way would not have come near.
+/// The slide stops at an obstacle that the straight path would not have come near.
 TEST(SceneResponse, SlideStopsAtWhatLiesBesideTheStraightWay)
 {
   Shelf shelf;

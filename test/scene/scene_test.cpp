@@ -78,7 +78,7 @@ std::set<IdPair> objectsOf(const Items& items, bool of_self = false)
   return pairs;
 }
 
-/// What is said, is so; what is so, is said or left open. @return how much was left open
+/// A pair that is reported is true; a true pair is reported or left open. @return how many were left open
 std::size_t expectSubset(const std::set<IdPair>& said, const std::set<IdPair>& open, const std::set<IdPair>& truth)
 {
   for (const IdPair& pair : said) EXPECT_TRUE(truth.count(pair) == 1 && open.count(pair) == 0);
@@ -295,7 +295,7 @@ TEST(Scene, AnObjectLeavesTheVoxelsOfItsMotionWhenItRests)
   EXPECT_EQ(scene.query().broad_phase.moved, 0u);
 }
 
-/// Of each query by itself, whichever effects it has.
+/// Progress of each query by itself, whichever effects it has.
 TEST(Scene, ProgressGoesFromNothingToAll)
 {
   for (std::size_t e = 0; e < 8; ++e) { // all that look, and each of them alone
@@ -625,7 +625,7 @@ TEST(Scene, FirstContactIsNeverLateAndSweptPointsAreAllFound)
     scene.query();
     const SceneResult result = scene.step(1);
 
-    // The same way in small steps. Turning about the box's centre and about the origin differ: use the box's centre.
+    // This motion in small steps. Turning about the box's centre and about the origin differ: use the box's centre.
     Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
     for (std::size_t i = 0; i < 40; ++i) {
       const Point3 p = a->view().point(static_cast<std::uint32_t>(i));

@@ -325,7 +325,7 @@ TEST(SceneUncertainty, ResponsesMayCollideAtNoInstant)
   EXPECT_GT(stuck, 10);
 }
 
-/// What may collide at the wider clearance that a query of a moving pair looks ahead with is not free at its own.
+/// A pair that may collide at the wider clearance of a look ahead is not free at its own.
 TEST(SceneUncertainty, WhatMayCollideFartherAheadIsAskedAgain)
 {
   Effects effects;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solids hold on the way, against many instants of the motion: labels there are those of brute force.
+// Records that solids hold during a motion, against many instants of it: labels there are those of brute force.
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/record_corners.h>
@@ -197,7 +197,7 @@ private:
   std::vector<std::uint32_t> record_of_place_;
   std::optional<Solid> whole_solid_;
   std::vector<Solid> solids_;                              ///< of the bodies
-  std::vector<std::shared_ptr<SphereHierarchy>> surfaces_; ///< likewise
+  std::vector<std::shared_ptr<SphereHierarchy>> surfaces_; ///< of the bodies
   SceneOptions options_;
   Eigen::Isometry3d start_ = Eigen::Isometry3d::Identity();
   Motion motion_of_solid_, motion_of_other_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene says of the motion since its last query, against what was done to it: where everything stood is kept
-// here, and the motion is replayed by brute force over points and instants.
+// A scene's answer about the motion since its last query, against the motion itself. This class keeps where everything
+// stood, and replays the motion by brute force over points and instants.
 #pragma once
 
 #include <pcl_bsh/query/pair_reach.h>
@@ -306,7 +306,7 @@ private:
     return {};
   }
 
-  /// Of tested objects, named once, at points that are within the tolerance then.
+  /// The fault of a contact: it must be of tested objects, named once, at points that are within the tolerance then.
   std::string wrongContact(const SceneResult& result, const PartFirstContact& contact, bool certain) const
   {
     const std::string names = "the contact of " + std::to_string(contact.a) + " and " + std::to_string(contact.b);

@@ -113,8 +113,8 @@ public:
   {
   }
 
-  /// The ways that a response claims: they begin where the object stood, end where it stands, have no gap, and collide
-  /// at none of so many instants in all, each object among the others as they stood when its turn came.
+  /// Replays the paths that a response claims. They begin where the object stood, end where it stands, have no gap, and
+  /// collide at none of so many instants in all. Each object is among the others as they stood at its turn.
   /// @return what is wrong, empty if nothing is
   std::string replayResponses(const SceneResult& result, int instants)
   {

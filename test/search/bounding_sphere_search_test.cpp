@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the declaration promises, against brute force and against PCL's own classes.
+// The promises of the declaration, against brute force and against PCL's own classes.
 #include <pcl_bsh/search/bounding_sphere_search.h>
 
 #include <pcl/point_types.h>

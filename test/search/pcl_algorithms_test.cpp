@@ -173,7 +173,7 @@ Cloud smoothedBy(const Cloud::Ptr& cloud)
   return smooth;
 }
 
-/// Both smooth the same neighbours, but for points at the very end of the radius, which ours includes; sums of the same
+/// Both smooth equal neighbours, except for points at the very end of the radius, which ours includes. Sums of equal
 /// terms in another order may differ in their last bits.
 TEST(PclAlgorithms, MovingLeastSquares)
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is called seen and what unseen, against the definition of seen_space.h in numbers of 50 digits, beam by beam.
-// Whether beams lie round a direction is tried in many directions of each cone. Shares no code with either form of
-// markUnseen().
+// Seen and unseen places, against the definition of seen_space.h in numbers of 50 digits, beam by beam. Whether beams
+// lie round a direction is tried in many directions of each cone. Shares no code with either form of markUnseen().
 #include <pcl_bsh/seen/seen_space.h>
 #include <pcl_bsh/seen/unseen_points.h>
 

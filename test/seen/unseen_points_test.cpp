@@ -136,7 +136,7 @@ TEST(MarkUnseen, AgreesWithBruteForce)
   EXPECT_GT(unseen_points, 400u);
 }
 
-/// What the contract says of a ball that is seen, tried in directions of its cone.
+/// The contract of a ball that is seen, tried in directions of its cone.
 void expectSeenByOne(const std::vector<ScanBeams>& scans, double angle, const Eigen::Vector3d& center, double radius)
 {
   bool seen_by_one = false;
@@ -448,7 +448,7 @@ TEST(MarkUnseenHardCases, AFewBeamsSeeWhatLiesBetweenThem)
   EXPECT_FALSE(isSeen({scanOf(square)}, 0.1, {2, 0, 0}, 0.05)) << "they are too far apart";
 }
 
-/// They are told apart by no angle: there is none that they speak for.
+/// No angle tells them apart: they speak for no direction.
 TEST(MarkUnseenHardCases, BeamsOfOneDirectionSeeNothing)
 {
   const std::vector<double> ends = {5, 0, 0, 6, 0, 0, 7, 0, 0}, place = {2, 0, 0};
@@ -458,7 +458,7 @@ TEST(MarkUnseenHardCases, BeamsOfOneDirectionSeeNothing)
   EXPECT_EQ(verdictsOf(space, {SphereHierarchy(viewOf(place.data(), 1))}, 0.1)[0], kUnseen);
 }
 
-/// Of a grid of many levels, whose cells are covered as a whole beside some that are not.
+/// A grid of many levels, whose cells are covered as a whole beside some that are not.
 TEST(MarkUnseen, APatchOfBeamsSeesWhatIsWellWithinIt)
 {
   constexpr double kStep = 0.004, kEdge = 0.3;

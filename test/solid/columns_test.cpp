@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a ray may meet is listed, what is said to be clear is so, and neither costs much.
+// Triangles that a ray may meet are listed, places that are called clear are clear, and neither costs much.
 #include <pcl_bsh/solid/columns.h>
 
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
@@ -176,7 +176,7 @@ TEST(Columns, ListLittleWhereTrianglesCrowd)
   EXPECT_LT(listed, 340) << "of 6252 triangles";
 }
 
-/// Of finer grids, and of strips, which the columns of a place that may be in several of them have.
+/// Finer grids and strips, which the columns of a place that may be in several of them have.
 TEST(Columns, ListWhatIsAboveAnyOfSeveralCrowdedPlaces)
 {
   test::ClosedMesh crowd;

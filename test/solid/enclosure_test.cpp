@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solids hold, and the bodies that do, against every place, every body and every triangle in exact arithmetic.
+// Records that solids hold, and the bodies that hold them, against every place, every body and every triangle in exact
+// arithmetic.
 #include <pcl_bsh/solid/enclosure.h>
 
 #include "meshes.h"

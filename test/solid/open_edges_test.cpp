@@ -97,7 +97,7 @@ OpenEdges find(const TrianglesView& view)
   return open;
 }
 
-/// The same with vertices shared by number and with vertices of each triangle's own.
+/// Finds open edges with vertices shared by number and with vertices of each triangle's own.
 OpenEdges find(const ClosedMesh& mesh)
 {
   const OpenEdges shared = find(mesh.view());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a ray may meet among long triangles is listed, and of those that meet at one end, or lie side by side, few
-// others.
+// Long triangles that a ray may meet are listed, with few others that meet at one end, or lie side by side.
 #include <pcl_bsh/solid/strips.h>
 
 #include <pcl_bsh/solid/columns.h>
@@ -113,7 +112,7 @@ TEST(Strips, OfAFanHaveTheLabelsOfBruteForce)
     EXPECT_EQ(labelPoints({points, pose}, solid).labels, brute_force::labelPoints({points, pose}, solid).labels);
 }
 
-/// Of many long triangles few are marked by themselves.
+/// Few of many long triangles are marked by themselves.
 TEST(Strips, NoPlaceOfAFanIsClear)
 {
   const test::ClosedMesh mesh = test::fanMesh(20000);

@@ -72,7 +72,7 @@ TEST(UpwardRay, MissesWhatIsBesideItOrBelow)
   }
 }
 
-/// Of places beyond all floats, and boxes that reach there.
+/// Places beyond all floats, and boxes that reach there.
 TEST(UpwardRay, HasNoRangeOfFloats)
 {
   const FloatBox all = {{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What attacks on error bounds share: their starts, the instruction sets, and the report of what they reached.
+// Parts that attacks on error bounds share: their starts, the instruction sets, and the report of their results.
 #pragma once
 
 #include <pcl_bsh/geometry/rounding.h>

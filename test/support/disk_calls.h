@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program tells the kernel about files that must survive a loss of power, in order. A test that is linked with
+// Calls to the kernel about files that must survive a loss of power, in order. A test that is linked with
 // disk_calls.cpp has these calls pass through there.
 #pragma once
 

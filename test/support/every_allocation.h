@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is asked of whatever allocates: when an allocation fails, whichever it is, the caller gets std::bad_alloc, or
-// the right answer all the same; afterwards the same objects give the right answer; nothing is leaked.
+// The rules of code that allocates. When any allocation fails, the caller gets std::bad_alloc, or the right answer all
+// the same. Afterwards the same objects give the right answer; nothing is leaked.
 #pragma once
 
 #include <pcl_bsh/base/retained_memory.h>

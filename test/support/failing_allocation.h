@@ -6,7 +6,7 @@
 
 namespace pcl_bsh::test {
 
-/// What an allocation that fails leaves for those after it.
+/// The fate of allocations after one that fails.
 enum class Shortage {
   once,   ///< they get their memory
   lasting ///< they fail as well

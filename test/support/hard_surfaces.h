@@ -19,7 +19,7 @@ namespace pcl_bsh::test {
 
 inline const std::string hard_surfaces_folder = PCL_BSH_SOURCE_DIR "/test/hard_cases/surfaces/";
 
-/// What is told of each, as run_surfaces.py says.
+/// The cases, as in run_surfaces.py.
 inline std::vector<nlohmann::json> hardSurfaces()
 {
   std::ifstream file(hard_surfaces_folder + "cases.json");
@@ -33,7 +33,7 @@ inline OffMesh meshOf(const nlohmann::json& told)
   return readOffMesh(hard_surfaces_folder + told.at("mesh").get<std::string>());
 }
 
-/// Of the mesh, into the input's frame.
+/// The pose of the mesh, into the input's frame.
 inline Eigen::Isometry3d poseOf(const nlohmann::json& told)
 {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -42,7 +42,7 @@ inline Eigen::Isometry3d poseOf(const nlohmann::json& told)
   return pose;
 }
 
-/// What is compared with the mesh: points or triangles.
+/// The input that is compared with the mesh: points or triangles.
 struct HardInput {
   std::vector<Point3> points;
   std::optional<OffMesh> mesh;

@@ -27,7 +27,7 @@ public:
     double distance;
   };
 
-  /// Of the finite points of the view, under a pose. Must not be empty.
+  /// A tree of the finite points of the view, under a pose. Must not be empty.
   KdTree(const PointsView& view, const Eigen::Isometry3d& pose)
   {
     for (std::size_t i = 0; i < view.size(); ++i) {
@@ -87,7 +87,7 @@ private:
   nanoflann::KDTreeSingleIndexAdaptor<Metric, Points, 3, std::size_t> tree_{3, points_};
 };
 
-/// What collisionFlags() should say of a. For clearances well above the rounding of the world's coordinates.
+/// The expected collisionFlags() of a. For clearances well above the rounding of the world's coordinates.
 inline std::vector<Verdict> flagsByKdTree(const PointsView& a, const Eigen::Isometry3d& pose_a, const PointsView& b,
                                           const Eigen::Isometry3d& pose_b, double clearance)
 {

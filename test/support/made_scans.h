@@ -74,7 +74,7 @@ bool shows(const Room& room, const Eigen::Vector3d& origin, const Eigen::Vector3
   return true;
 }
 
-/// The same of a scanner that turns all round.
+/// Whether a scanner that turns all round shows it.
 template <class Room>
 bool shows(const Room& room, const Eigen::Vector3d& origin, const Eigen::Vector3d& center, double radius,
            int directions)

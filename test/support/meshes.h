@@ -29,8 +29,8 @@ struct Mesh {
   }
 };
 
-/// Soups of sizes that differ by 1000, triangles on a lattice, thin ones, those that are segments or points, sheets
-/// with shared vertices, fans about one place, and triangles turned about one centre, some of them twice.
+/// Soups of sizes that differ by 1000, triangles on a lattice, thin ones, segments and points, sheets with shared
+/// vertices, fans about one place. Also triangles turned about one centre, some of them twice.
 enum class MeshKind { soup, lattice, needles, degenerate, sheet, fan, centred };
 inline constexpr MeshKind kMeshKinds[] = {MeshKind::soup,  MeshKind::lattice, MeshKind::needles, MeshKind::degenerate,
                                           MeshKind::sheet, MeshKind::fan,     MeshKind::centred};

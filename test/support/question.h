@@ -5,7 +5,7 @@
 
 namespace pcl_bsh::test {
 
-/// What a test asks several queries alike: the request of each.
+/// A question that a test asks of several queries: the request of each.
 struct Question {
   double clearance = 0.0;
   Side flagged = Side::a;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers, points and poses that are the same on every run; with every compiler, too, where no two of them are
-// arguments of one call, which are evaluated in any order. What stands in braces is evaluated from left to right.
+// Numbers, points and poses that are equal on every run. They are also equal with every compiler, if no two of them are
+// arguments of one call, which are evaluated in any order. Braces are evaluated from left to right.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>

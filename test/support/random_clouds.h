@@ -26,8 +26,8 @@ enum class Shape { uniform, sphere, plane, line, clusters, grid, duplicates, out
 inline constexpr Shape all_shapes[] = {Shape::uniform,  Shape::sphere, Shape::plane,      Shape::line,
                                        Shape::clusters, Shape::grid,   Shape::duplicates, Shape::outlier};
 
-/// Points within [-scale, scale]^3, but for an outlier. Grids have a spacing of scale / 8: exact when scale is a power
-/// of two.
+/// Points within [-scale, scale]^3; one may be an outlier. Grids have a spacing of scale / 8: exact when scale is a
+/// power of two.
 inline std::vector<Point3> makePoints(Shape shape, std::size_t count, double scale, Random& random)
 {
   const auto around = [&](const Point3& center, double reach) {
@@ -112,7 +112,7 @@ public:
   /// One per record.
   void setRadii(std::vector<float> radii) { radii_ = std::move(radii); }
 
-  /// Of all points, and one per record; these may be empty.
+  /// Sets the uncertainty of all points, and one per record; these may be empty.
   void setUncertainties(double of_all, std::vector<float> own)
   {
     view_.uncertainty = of_all;

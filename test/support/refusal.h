@@ -6,7 +6,7 @@
 
 namespace pcl_bsh::test {
 
-/// What a call says of what it is given; empty where it takes it.
+/// The call's refusal; empty where it accepts.
 template <class Call>
 std::string refusalOf(const Call& call)
 {

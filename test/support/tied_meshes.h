@@ -70,7 +70,7 @@ struct TiedPair {
   double gap = 0.0; ///< of most of both, within rounding
 };
 
-/// What all of one is tied with all of the other in, mostly: tips, discs, sheets, and some of it spoilt.
+/// Pairs in which nearly all of one is tied with all of the other: tips, discs, sheets, and some of it spoilt.
 inline TiedPair anyTies(std::uint64_t seed)
 {
   Random random(seed);
@@ -126,7 +126,7 @@ inline double clearanceAbout(double distance, Random& random)
   return std::max(0.0, clearance);
 }
 
-/// What is tied, of n sides.
+/// A tied pair of n sides.
 struct Tied {
   const char* name;
   std::function<TiedPair(std::uint32_t)> make;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all public queries answer about an instance, in a form that symmetries carry over.
+// Answers of all public queries about an instance, in a form that symmetries carry over.
 #pragma once
 
 #include "instance.h"
@@ -24,14 +24,14 @@ struct Answers {
   double closest = 0.0;
   std::vector<std::pair<PointPair, double>> contacts; ///< by pair; with the distance
   std::vector<double> distances_a, distances_b;
-  std::vector<double> limited_a; ///< likewise, within the clearance
+  std::vector<double> limited_a; ///< within the clearance
   double hausdorff = 0.0;
   struct Names {
     std::optional<PointPair> closest, hausdorff;
     std::vector<std::uint32_t> nearest_a, nearest_b, closest_point;
   } names;
 
-  // Of a alone.
+  // Neighbours of a alone.
   struct Near {
     std::vector<std::pair<std::int32_t, float>> within; ///< by record: those within the clearance
     std::vector<float> nearest;                         ///< squared distances of the five nearest
@@ -49,22 +49,22 @@ struct Answers {
   std::vector<double> distance_at;       ///< of what collides
   std::vector<std::uint8_t> any_at;
   std::vector<double> closest_at;
-  /// Of the motion, in doubt between clearance and clearance + tolerance: 1 where it is free, collides, or is free at
-  /// a clearance larger by the tolerance.
+  /// Verdicts of the motion, in doubt between clearance and clearance + tolerance. An entry is 1 where the motion is
+  /// free, collides, or is free at a clearance larger by the tolerance.
   struct Motion {
     std::vector<std::uint8_t> free, hit, free_farther;
   } swept, motions; ///< of each record; of each motion from one pose to the next
 
-  // Of ask().
+  // Answers of ask().
   std::vector<std::uint8_t> asked_flags, asked_obstacle_flags, asked_within, asked_path_flags;
   std::vector<float> asked_distances;
   std::vector<double> asked_both_ways;
   double asked_closest = 0.0;
 
-  /// Of ask(), where faces of b are the obstacle, or the input.
+  /// Answers of ask(), where faces of b are the obstacle, or the input.
   struct Surface {
     std::vector<std::uint8_t> flags, path_flags; ///< of the points of a
-    std::vector<float> distances;                ///< likewise; of a shell, negative inside
+    std::vector<float> distances;                ///< of the points of a; for a shell, negative inside
     std::vector<std::uint8_t> face_flags;        ///< of the faces, against the points of a
     std::vector<float> face_distances;
     double closest = 0.0;
@@ -74,7 +74,7 @@ struct Answers {
 /// Asks all of them, of hierarchies built for this.
 Answers answersOf(const Instance& instance);
 
-/// Likewise, some of them or the same through a face; the other members stay as a new Answers has them.
+/// Asks some of the questions, or asks them through a program; the other members stay as a new Answers has them.
 using Ask = std::function<Answers(const Instance&)>;
 
 /// Which answers a symmetry keeps.
@@ -88,7 +88,7 @@ struct Kept {
   bool motions = false; ///< verdicts of motions, also in doubt
 };
 
-/// What differs first, or nothing.
+/// The first difference, or nothing.
 std::string firstDifference(const Answers& expected, const Answers& found, const Kept& kept);
 
 } // namespace pcl_bsh::symmetries

@@ -34,8 +34,8 @@ inline Instance instanceOf(const hard_cases::HardCase& c)
   return instance;
 }
 
-/// Those of the catalogue of surfaces whose meshes are small enough to be asked about many times: points or the corners
-/// of another mesh, and the mesh as a surface; where it closes, as a solid, too.
+/// Instances of the catalogue of surfaces whose meshes are small enough to be asked about many times. Each has points
+/// or the corners of another mesh, and the mesh as a surface; where it closes, as a solid, too.
 inline std::vector<Instance> instancesOfHardSurfaces()
 {
   std::vector<Instance> instances;

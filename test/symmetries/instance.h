@@ -33,7 +33,7 @@ struct Instance {
   Body a, b;
   double clearance = 0.0;
   std::vector<Triangle> faces;             ///< of b's points: a surface
-  std::vector<Triangle> shell;             ///< likewise, closed
+  std::vector<Triangle> shell;             ///< of a closed mesh
   std::vector<Eigen::Isometry3d> path;     ///< T_world_b; not empty
   double tolerance = 0.0;                  ///< of the motion along the path; 0: it is not asked for
   std::vector<Eigen::Isometry3d> relative; ///< T_a_b, of questions; not empty

@@ -453,7 +453,7 @@ Instance halfOf(const Instance& whole, std::size_t first)
   return half;
 }
 
-/// What the two halves' answers say of the whole cloud.
+/// The answers about the whole cloud, from those of its two halves.
 Answers joinedHalves(const Answers& even, const Answers& odd)
 {
   Answers all;

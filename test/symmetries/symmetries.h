@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must not change an answer: axes exchanged and reversed, all lengths times a power of two, another order of
-// records, a and b exchanged, a cloud split in two, points doubled, turns and shifts by exact numbers of everything or
-// of one cloud's own frame, a path reversed or its poses repeated.
+// Changes that must not change an answer: axes exchanged and reversed, all lengths times a power of two, another order
+// of records, a and b exchanged, a cloud split in two, points doubled. Also turns and shifts by exact numbers of
+// everything or of one cloud's own frame, and a path reversed or its poses repeated.
 #pragma once
 
 #include "answers.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What PCL's faces, pipelines, sites and programs answer about an instance, as the symmetries of the queries compare
-// it. Clouds have neither radii nor uncertainties; a's frame is the one that poses are given in.
+// Answers of PCL's classes, pipelines, sites and programs about an instance, for the symmetries of the queries. Clouds
+// have neither radii nor uncertainties; a's frame is the one that poses are given in.
 #pragma once
 
 #include "symmetries/answers.h"
@@ -15,7 +15,7 @@ Answers askFilters(const Instance& instance);
 /// By the stages filters.bsh_flag and filters.bsh_distance, of clouds in memory.
 Answers askPipelines(const Instance& instance);
 
-/// Of a as a site, in a new folder within `folder`.
+/// Asks about a as a site, in a new folder within `folder`.
 /// @param tile_points at most in a tile
 Answers askSite(const Instance& instance, const std::filesystem::path& folder, std::uint64_t tile_points);
 

@@ -45,7 +45,7 @@ Poses creeping(std::size_t count, double width, double step)
   return poses;
 }
 
-/// What may be asked of a path, each by itself and all at once.
+/// Questions about a path, each by itself and all at once.
 std::vector<TrajectoryRequest> requests(double clearance)
 {
   std::vector<TrajectoryRequest> all(5, flagsOnly(clearance));

@@ -89,7 +89,7 @@ Eigen::Isometry3d placed(double angle, const Eigen::Vector3d& axis, const Eigen:
   return pose;
 }
 
-/// Of radius r in the plane, heading along it.
+/// A pose on a bend of radius r in the plane, heading along it.
 Eigen::Isometry3d onBend(double radius, double way, double rise = 0.0)
 {
   const double angle = way / radius;
@@ -204,8 +204,8 @@ TEST(GrazingPaths, AskedAboutPointsTakeNoMoreLooksThanAboutPoses)
   EXPECT_EQ(first.first_pose, summed.first_pose);
 }
 
-/// Around each point of the scan, points of the model at just the clearance, all along a way that floats hardly see: so
-/// that each pair has to be compared at each pose. What is kept of that until then is little.
+/// Around each point of the scan, points of the model at just the clearance, all along a path that floats hardly see:
+/// each pair has to be compared at each pose. Little is kept of them until then.
 TEST(GrazingPaths, PassManyPointsAtTheClearance)
 {
   constexpr int kAround = 150;

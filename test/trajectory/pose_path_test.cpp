@@ -196,8 +196,8 @@ TEST(PosePath, NoPointStraysFartherAtPoses)
   EXPECT_LE(straight, 1.0);
   EXPECT_GT(straight, 0.999) << "a translation strays by the drift itself";
   EXPECT_LE(on_the_spot, 1.0);
-  // Not tight: how far rotations differ is measured by a Frobenius norm, which exceeds the spectral norm: by sqrt(2)
-  // for turns about one axis, where two singular values are equal; about any axes the search gets to 0.82 of the bound.
+  // Not tight. The difference of rotations is measured by a Frobenius norm, which exceeds the spectral norm: by sqrt(2)
+  // for turns about one axis, where two singular values are equal. About any axes the search gets to 0.82 of the bound.
   EXPECT_GT(on_the_spot, 0.65);
   EXPECT_LE(any, 1.0);
   EXPECT_GT(any, 0.65);

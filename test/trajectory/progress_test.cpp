@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a caller is told of a path, and how it ends one: what its callback throws is its own, and harms nothing.
+// Reports about a path, and how a caller ends one: an exception of its callback is its own, and harms nothing.
 #include "support/journeys.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"

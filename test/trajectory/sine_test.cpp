@@ -26,8 +26,8 @@ Integer fixedOf(double x)
   return Integer(digits) << (kPlaces + exponent - 53); // exact of all that is above 2^-187
 }
 
-/// By the series. What is left out of it is less than 2^-180, and so is what divisions drop: 40 times less than a unit
-/// of 2^-240, which grows as terms do, by e^6.4.
+/// By the series. The omitted terms are less than 2^-180, and so are the digits that divisions drop: 40 times less than
+/// a unit of 2^-240, which grows with the terms, by e^6.4.
 /// @param first 0 of the cosine, 1 of the sine
 Integer valueOf(double angle, int first)
 {

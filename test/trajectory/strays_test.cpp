@@ -96,7 +96,7 @@ TEST(Strays, OfBallsThatReachTheOthers)
              brute_force::collideAlong(of_scan, of_model, poses, everything(0.1)));
 }
 
-/// What is far out for a small scan is in the midst of a large model, which is all in one voxel.
+/// A point far outside a small scan is in the midst of a large model, which is all in one voxel.
 TEST(Strays, OfAScanThatTheModelReachesBeyond)
 {
   Points large = cubeWith({{0.1, 0x1p-22, 0}}, 2);

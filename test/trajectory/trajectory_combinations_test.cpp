@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a trajectory query answers to one question does not depend on what else it is asked.
+// A trajectory query's answer to one question does not depend on its other questions.
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"

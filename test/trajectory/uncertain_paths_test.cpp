@@ -80,8 +80,8 @@ TEST(UncertainPaths, SameAsBruteForceWhateverIsAsked)
   EXPECT_GT(later, 50u) << "points which collide for certain later than they may";
 }
 
-/// Nodes small beside the clearance, which is the reach of one of the pairs, or nearly: they are settled by the lengths
-/// of their own points, which differ by a million, by one, or by none.
+/// Nodes small beside the clearance, which is the reach of one of the pairs, or nearly. The lengths of their own points
+/// settle them; these differ by a million, by one, or by none.
 TEST(UncertainPaths, WholeNodesByLengthsOfTheirOwn)
 {
   std::size_t flags[3] = {};
@@ -201,7 +201,7 @@ TEST(UncertainPaths, AreTwoPlainQueries)
   EXPECT_GT(undecided, 200u);
 }
 
-/// What each instant of a motion says by brute force, the motion says, too.
+/// The motion's answer covers the answer of brute force at each instant.
 TEST(UncertainPaths, SweptMotionHoldsAtEveryInstant)
 {
   std::size_t flags[3] = {};

@@ -98,7 +98,7 @@ TEST_F(ChartPicture, DrawsChartsSideBySideAndPointsBeyondTheEndsAtTheEnds)
   EXPECT_NEAR(second.y, first.y, 1.0);
 }
 
-/// A logarithm of theirs is none: they stand at the lower end.
+/// Their logarithm does not exist: they stand at the lower end.
 TEST_F(ChartPicture, PutsPointsThatAreNotAboveZeroAtTheLowerEnd)
 {
   for (const double x : {0.0, -1.0, 1e-9}) {
@@ -157,7 +157,7 @@ TEST_F(ChartPicture, MarksHaveTheirShapes)
   EXPECT_NEAR(area[Mark::triangle] / radius_squared, 1.35 * 1.35 * 1.30, 0.3);
 }
 
-/// Those that find no room are left out.
+/// Labels that find no room are left out.
 TEST_F(ChartPicture, DrawsAsManyLabelsAsThereIsRoomFor)
 {
   const auto inkOf = [&](std::size_t labels) {

@@ -107,7 +107,7 @@ void expectSame(const std::vector<double>& found, const Values& wanted)
   }
 }
 
-/// What an algorithm and its executive tell by vtkErrorMacro or vtkWarningMacro.
+/// Texts that an algorithm and its executive report by vtkErrorMacro or vtkWarningMacro.
 class Told {
 public:
   explicit Told(vtkAlgorithm& algorithm, unsigned long event = vtkCommand::ErrorEvent)
@@ -586,7 +586,7 @@ TEST_P(Filters, PolygonsOfTwoPointsAreSegmentsAndOfOnePoint)
   expectSame(values(*filter->GetOutput(), "collision"), std::vector<int>{1, 1, 0});
 }
 
-/// Of an obstacle that comes in pieces, too, whichever piece of the cloud is asked for.
+/// An obstacle that comes in pieces is whole, too, whichever piece of the cloud is asked for.
 TEST_P(Filters, ObstaclesAreWholeForEachPiece)
 {
   vtkNew<vtkSphereSource> ball; // halves, when asked for two pieces
@@ -668,7 +668,7 @@ TEST_P(Filters, FailuresLeaveNothingThatLooksLikeAnAnswer)
   filter->Update();
   EXPECT_EQ(values(*filter->GetOutput(), "collision"), values(*first->GetOutput(), "collision"));
 
-  // What depends on a failed execution does not execute with an empty obstacle.
+  // A filter behind a failed execution does not execute with an empty obstacle.
   vtkNew<vtkBSHCollisionFilter> after;
   after->SetInputData(cloud);
   after->SetObstacleConnection(filter->GetOutputPort());
@@ -819,7 +819,7 @@ TEST_P(Filters, TellWhatTheAnswerDoesNot)
   EXPECT_THAT(toldOf(scan, dataOf({{1 << 23, 1, 1}, {1 << 23, 2, 1}}, GetParam()), 2.0),
               testing::Contains(HasSubstr("the boxes of the cloud and of the obstacle, with all of its motion")));
 
-  // Of the floor as a surface; its last point is loose.
+  // The floor as a surface; its last point is loose.
   const auto surface = dataOf({{0, 0, -1}, {19, 0, -1}, {0, 19, -1}, {9, 9, -1}}, GetParam());
   vtkNew<vtkCellArray> faces;
   faces->InsertNextCell({0, 1, 2});

@@ -91,7 +91,7 @@ TEST(WriteVtm, LeavesNothingOnAFullDisk)
   }
 }
 
-/// What failed is not removed once more when the program is told to stop: by then it may be another file.
+/// A failed file is not removed once more when the program is told to stop: by then it may be another file.
 TEST(WriteVtm, ForgetsWhatItCouldNotWrite)
 {
   const TemporaryFolder written, failed;
@@ -155,7 +155,7 @@ TEST(WriteVtm, AFolderOfTheUsersIsInTheWay)
   fs::create_directory(folder / "hall");
   folder.write("hall/scan.pcd", "mine");
   const std::string message = failureOf(folder / "hall.vtm");
-  EXPECT_NE(message.find("and holds scan.pcd, which is none: name another .vtm"), std::string::npos) << message;
+  EXPECT_NE(message.find("and holds scan.pcd, which is not a block: name another .vtm"), std::string::npos) << message;
   EXPECT_EQ(namesIn(folder.path()), std::set<std::string>{"hall"});
   EXPECT_EQ(contentOf(folder / "hall/scan.pcd"), "mine");
 
@@ -175,7 +175,7 @@ TEST(WriteVtm, TellsFilesOfTheUsersFromBlocks)
         "hall_0_1_2.vtp", "hall_x.vtp", "hall_:.vtp", "hall_-1.vtp", "hall0_1.vtp", "vtp", "hall_0"}) {
     const fs::path file = folder / "hall" / name;
     folder.write(std::string("hall/") + name, "mine");
-    EXPECT_NE(failureOf(folder / "hall.vtm").find(std::string("and holds ") + name + ", which is none"),
+    EXPECT_NE(failureOf(folder / "hall.vtm").find(std::string("and holds ") + name + ", which is not a block"),
               std::string::npos)
         << name;
     EXPECT_NO_THROW(requireWritableData(folder / "hall.vtp")) << "which has no blocks";

@@ -41,8 +41,7 @@ private:
     return trajectory ? withFields(cloud, fieldsOf(found)) : withField(cloud, collision_field_name, found.flags);
   }
 
-  /// What is found of the triangles becomes properties of theirs; vertices get the gravest of what their triangles
-  /// have.
+  /// Results of triangles become properties of their faces; vertices get the gravest result of their triangles.
   StageCloudPtr flaggedFaces(StageCloudPtr&& input, TrajectoryResult found) const
   {
     const std::vector<Triangle>& triangles = *input->triangles;
@@ -87,10 +86,10 @@ protected:
 
 StageType bshCollision()
 {
-  auto description = describe<BshCollision>(
-      "filters.bsh_collision", "Keeps the points that do not collide with an obstacle, or those that do. "
-                               "Exact unless `accuracy` says otherwise, for float64 coordinates too. Of an input "
-                               "with faces, it keeps triangles, and the vertices that they use.");
+  auto description = describe<BshCollision>("filters.bsh_collision",
+                                            "Keeps the points that do not collide with an obstacle, or those that do. "
+                                            "Exact unless `accuracy` says otherwise, for float64 coordinates too. From "
+                                            "an input with faces it keeps triangles, and the vertices that they use.");
   withQuestionOptions(description.alias("pcl_bsh::CollisionFilter"), QuestionKind::collisions)
       .option(&BshCollision::keep, "keep", "the points to keep")
       .choices({"free", "colliding"});
@@ -102,13 +101,11 @@ StageType bshFlag()
   auto description = describe<BshFlag>(
       "filters.bsh_flag",
       "Keeps all points and adds a field `collision` (uint8): 1 for those that collide with an obstacle, 2 for those "
-      "that `accuracy` or the points' uncertainties leave undecided, 3 for those that `density` does; along a "
-      "trajectory also `distance` (float32, the "
-      "smallest; NaN where free), "
-      "`first_pose` and `closest_pose` (int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
-      "otherwise, for float64 coordinates too. Of an input with faces, triangles are flagged: writers.ply writes the "
-      "same "
-      "as properties of its faces, and a vertex has the gravest of what its triangles have.");
+      "that `accuracy` or the points' uncertainties leave undecided, 3 for those that `density` does. Along a "
+      "trajectory it also adds `distance` (float32, the smallest; NaN where free), `first_pose` and `closest_pose` "
+      "(int32, numbers of poses from 0; -1 where free). Exact unless `accuracy` says "
+      "otherwise, for float64 coordinates too. An input with faces has its triangles flagged: writers.ply writes the "
+      "flags as properties of its faces, and a vertex has the gravest flag of its triangles.");
   return withQuestionOptions(description, QuestionKind::collisions);
 }
 

@@ -95,8 +95,8 @@ StageType bshDistance()
       "filters.bsh_distance",
       "Adds a field `distance` (float32): from each point to the nearest point of another cloud; keeps the points "
       "whose "
-      "distance is within limits. Exact unless `accuracy` says otherwise, for float64 coordinates too. Of an input "
-      "with faces, triangles are measured, as a property of its faces, and kept.");
+      "distance is within limits. Exact unless `accuracy` says otherwise, for float64 coordinates too. An input with "
+      "faces has its triangles measured, as a property of its faces, and kept.");
   withQuestionOptions(description.alias("pcl_bsh::DistanceFilter"), QuestionKind::distances)
       .option(
           &BshDistance::filter_limits, "filter_limits",

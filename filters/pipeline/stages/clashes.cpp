@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What collides, place by place, as a list.
+// Writes the collisions, place by place, as a list.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
@@ -61,7 +61,7 @@ private:
 
   io::ClashQuestion asked() const { return {question, input_name, obstacle.name}; }
 
-  void write(Asked&& found, const std::string& coordinate_system)
+  void write(AnsweredQuestion&& found, const std::string& coordinate_system)
   {
     const SphereHierarchy &input = found.inputHierarchy(question), &other = found.obstacleHierarchy(question);
     const double distance =
@@ -100,10 +100,9 @@ StageType clashWriter()
               "colliding points farther apart are two clashes; null: computed from clearance and spacing")
       .unit("m")
       .above(0)
-      .option(
-          &ClashWriter::previous, "previous",
-          "the .json of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
-          "new, persisting, resolved, or not visited by the path, unseen or not scanned any more; may be `filename`")
+      .option(&ClashWriter::previous, "previous",
+              "the .json of an earlier run with the same options but `swept` and `seen`: tells clashes that are new, "
+              "persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
       .replaceable()
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");

@@ -29,7 +29,7 @@ struct DistanceWriter : Stage, QuestionStage {
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    Asked asked = ask(inputs[0], *this);
+    AnsweredQuestion asked = ask(inputs[0], *this);
     const Placed input(asked.inputHierarchy(question)), other(asked.obstacleHierarchy(question), question.pose);
     PointDistancesRequest request;
     request.max_distance = question.max_distance.value_or(request.max_distance);
@@ -62,10 +62,9 @@ private:
 StageType distanceWriter()
 {
   auto description = describe<DistanceWriter>(
-      "writers.distances",
-      "Tells how far the input and another cloud are from each other, in both directions: mean, root of the mean "
-      "square, percentiles, the Hausdorff distance, and the farthest places; as JSON for programs, or as a page for "
-      "browsers. The cloud passes unchanged.");
+      "writers.distances", "Tells how far the input and another cloud are from each other, in both directions, as JSON "
+                           "for programs, or as a page for browsers. It has the mean, the root of the mean square, "
+                           "percentiles, the Hausdorff distance, and the farthest places. The cloud passes unchanged.");
   return withQuestionOptions(description
                                  .option(&DistanceWriter::filename, "filename",
                                          "the .json or .html file to write; it appears complete or not at all")

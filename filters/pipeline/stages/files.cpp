@@ -231,11 +231,10 @@ std::deque<StageType> fileReaders()
   mesh.extensions = {".stl"}; // the others have readers of their own
   return {ofFiles<FileReader>("readers.pcd", {".pcd"},
                               "PCL's own format, every field in its type, with the sensor's viewpoint."),
-          ofFiles<FileReader>(
-              "readers.ply", {".ply"},
-              "The vertices of a PLY file and its faces, every property in its type: nx ny nz as normal_x normal_y "
-              "normal_z, uchar red "
-              "green blue [alpha] packed as rgb or rgba, the sensor's viewpoint where it has an element camera."),
+          ofFiles<FileReader>("readers.ply", {".ply"},
+                              "The vertices of a PLY file and its faces, every property in its type. Renamed are nx ny "
+                              "nz (normal_x normal_y normal_z) and uchar red green blue [alpha] (packed as rgb or "
+                              "rgba). An element camera gives the sensor's viewpoint."),
           ofFiles<FileReader>("readers.obj", {".obj"},
                               "The vertices of a Wavefront OBJ file, as float64, with their colours packed as rgb and "
                               "their normals, and its "

@@ -41,7 +41,7 @@ void setInput(Algorithm& algorithm, const FloatCloud& cloud)
 /// Infinite where nothing was rounded.
 double neighbourSpacing(const PointsView& points, const FloatCloud& cloud);
 
-/// What to tell the user when distances are compared with `length`: nothing when rounding does not matter.
+/// Warning for distances that are compared with `length`; empty where rounding does not matter.
 /// @throws std::invalid_argument when rounding moved points by more than a hundredth of the length: results would be
 ///   wrong
 std::string roundingWarning(const FloatCloud& cloud, double length);

@@ -102,7 +102,7 @@ private:
   {
     const std::size_t points = std::size_t{cloud.width} * cloud.height;
     std::vector<std::size_t> from;
-    std::vector<const pcl::PCLPointField*> fields; // but for numbers of scans, where the input has none
+    std::vector<const pcl::PCLPointField*> fields; // except numbers of scans, where the input has none
     for (const pcl::PCLPointField& field : merged.fields) {
       const pcl::PCLPointField* const like = fieldLike(cloud, field);
       if (like == nullptr) continue;

@@ -94,7 +94,7 @@ StageType normalEstimation()
   return describe<NormalEstimation>(
              "filters.normal_estimation",
              "Adds normal_x, normal_y, normal_z and curvature, float32, of the plane through a point's neighbours; NaN "
-             "where there is none. Computed in float32 about the cloud's middle; coordinates stay as they are.")
+             "where they span no plane. Computed in float32 about the cloud's middle; coordinates stay as they are.")
       .alias("pcl::NormalEstimation")
       .alias("pcl::NormalEstimationOMP")
       .option(&NormalEstimation::k_search, "k_search", "number of neighbours, the point itself among them")

@@ -28,8 +28,8 @@ std::vector<Eigen::Isometry3d> readTrajectory(const InputFile& file, std::vector
   }
 }
 
-/// A matrix of few printed digits stands for its nearest rotation, with a warning. What is farther from rigid stays as
-/// it is, for the query to refuse.
+/// A matrix of few printed digits stands for its nearest rotation, with a warning. A pose farther from rigid stays as
+/// it is, and the query refuses it.
 Eigen::Isometry3d rigidPoseOf(const Pose& pose, std::vector<std::string>& warnings)
 {
   Eigen::Isometry3d only;
@@ -50,7 +50,7 @@ void checkField(const char* option, const Uncertainty& uncertainty, const CloudH
   }
 }
 
-/// What to tell the user of points, or of other parts, that are not decided.
+/// Warns of points, or of other parts, that are not decided.
 void warnOfUndecided(const Answer& answer, const Question& question, const char* parts, Stage& stage)
 {
   const std::size_t undecided = answer.collisions.undecided + answer.sparse;
@@ -62,7 +62,7 @@ void warnOfUndecided(const Answer& answer, const Question& question, const char*
   stage.warn(std::to_string(undecided) + ' ' + parts + " stay undecided" + why + ": they are not taken for free");
 }
 
-/// What a cloud is compared as. @param option of what it is made of, in errors
+/// The shape as which a cloud is compared. @param option whose cloud it is, in errors
 io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const char* option)
 {
   if (!cloud->corners_alone.empty() && !question.vertices_only)
@@ -174,7 +174,7 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
-QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
+QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
 {
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
@@ -185,7 +185,7 @@ QuestionStage::Asked QuestionStage::ask(const StageCloudPtr& input, Stage& stage
     facts.scanners = input->scanners;
     asked.origin = io::originsOf(input->cloud, facts);
   }
-  Asked found;
+  AnsweredQuestion found;
   found.compared = shapeOf(obstacle.cloud, question, "obstacle");
   found.obstacle = found.compared.shape("the obstacle");
   found.input = shapeOf(input, question, "input").shape("the input");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stages have in common that ask a question about an obstacle.
+// Base of the stages that ask a question about an obstacle.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_type.h>
@@ -27,8 +27,8 @@ protected:
   /// @throws OptionError
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
-  /// What was asked, and found.
-  struct Asked {
+  /// A question, and its answer.
+  struct AnsweredQuestion {
     io::Obstacle compared; ///< as what the obstacle is compared
     Shape input, obstacle;
     Answer answer;
@@ -44,7 +44,7 @@ protected:
   };
 
   /// For run(): asks, until the stage is cancelled, and warns of what the user should know.
-  Asked ask(const StageCloudPtr& input, Stage& stage) const;
+  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage) const;
 
   /// Whether the triangles of the input are asked about, not its points.
   bool asksAboutFaces(const StageCloud& input) const

@@ -8,9 +8,9 @@
 namespace pcl_bsh {
 
 /// A sum kept with its rounding errors (Ogita, Rump, Oishi: Accurate Sum and Dot Product, 2005, Dot2), and the sum of
-/// the absolute terms. Of up to 16 terms, each of which may be a product, the errors themselves are summed with an
-/// error of less than kError of the absolute sum (test/proof/compensated_sums.g); rounding value() adds half a unit in
-/// its last place. Barring underflow.
+/// the absolute terms. For up to 16 terms, each of which may be a product, the errors are summed with an error below
+/// kError of the absolute sum (test/proof/compensated_sums.g). Rounding value() adds half a unit in its last place.
+/// Barring underflow.
 struct CompensatedSum {
   static constexpr double kError = 2 * (16 * kDoubleUnit) * (16 * kDoubleUnit);
 

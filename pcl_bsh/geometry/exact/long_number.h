@@ -12,8 +12,8 @@ namespace pcl_bsh {
 /// kind stay exact, with an error of 0. Needs round-to-nearest. Overflow makes the sign unknown.
 ///
 /// Error bound: a sum drops two terms that it knows. A product drops the product of the tails and rounds four terms of
-/// low order, each by v of their absolute sum at most; kDoubleMargin pays for the arithmetic of errors. What underflows
-/// is below kVanishing, which is added where something may: in products below 2^-900, of tails, and of errors.
+/// low order, each by v of their absolute sum at most; kDoubleMargin pays for the arithmetic of errors. Underflow costs
+/// less than kVanishing, which is added where it may occur: in products below 2^-900, of tails, and of errors.
 class LongNumber {
 public:
   constexpr LongNumber() = default;

@@ -10,7 +10,7 @@
 namespace pcl_bsh {
 
 /// sqrt(numerator / denominator) - length within a few units in the last place; infinite or 0 where doubles have no
-/// such number. @pre the denominator is above 0, the length not below, and the two differ
+/// such number. @pre denominator > 0, length >= 0, and the two differ
 inline double roughRootLess(const Dyadic& numerator, const Dyadic& denominator, const Dyadic& length)
 {
   // As a quotient, so that the only cancellation happens in exact arithmetic; by exponents, for the root may be beyond

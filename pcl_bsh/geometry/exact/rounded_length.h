@@ -24,8 +24,8 @@ struct LongCoordinate {
 /// kMostLowOrder of high, so that no doubt is left which that is; else NaN. (Ziv's test: what the last rounding leaves
 /// over, with its error on either side, must not change the sum.)
 ///
-/// The root of high + low is r + (high - r^2 + low) / 2 r within (low / high)^2 r, which 2^-100 r exceeds where |low|
-/// <= 2^-50 high; high - r^2 is a double. Sizes are checked, so that nothing overflows, and what underflows is below
+/// The root of high + low is r + (high - r^2 + low) / 2 r within (low / high)^2 r. This is below 2^-100 r where |low|
+/// <= 2^-50 high. high - r^2 is a double. Sizes are checked, so that nothing overflows, and what underflows is below
 /// 2^-1000 beside squares of 2^-900.
 inline double roundedRoot(double high, double low, double error, double radius_p = 0.0, double radius_q = 0.0) noexcept
 {

@@ -52,7 +52,8 @@ public:
   /// The cell's numbers along the axes, in the point's type.
   GivenPoint<T> numbers(const GivenPoint<T>& p) const { return (p * inverse_ - base_).truncated(); }
 
-  /// The same as one number; kOutsideGrid when the point is not finite or too far from the bounds to be counted.
+  /// The cell's numbers packed into one; kOutsideGrid when the point is not finite or too far from the bounds to be
+  /// counted.
   static std::uint64_t together(const GivenPoint<T>& numbers)
   {
     std::int32_t number[4];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree of a voxel, without its spheres. Either points are sorted by cell, in one counting sort, and the cells' tree
-// is cut into wide nodes with leaves of sixteen points at most; or the voxel is an octree, and the points of each small
-// enough cube are split at medians.
+// The tree of a voxel, without its spheres. One of two ways makes it. One counting sort orders points by cell, and the
+// cells' tree is cut into wide nodes with leaves of sixteen points at most. Or the voxel is an octree, and the points
+// of each small enough cube are split at medians.
 
 #if defined(PCL_BSH_HIERARCHY_BUILD_CELL_TREE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_HIERARCHY_BUILD_CELL_TREE_INL_H_
@@ -35,7 +35,7 @@ constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // at most, which rankS
 constexpr std::uint32_t kFullNode = 96;                  // points that eight leaves hold, cut between cells
 constexpr double kRoundedOutside = 0x1p-8; // of a cube's edge: points so near outside were put there by rounding
 
-/// What sorting a voxel's points into cells needs room for; a thread keeps it from voxel to voxel.
+/// Memory for sorting a voxel's points into cells; a thread keeps it from voxel to voxel.
 struct CellScratch {
   std::size_t bytes() const noexcept
   {
@@ -97,8 +97,8 @@ public:
   bool hasMoved() const { return moved_; }
 
 private:
-  /// The voxel's cube in the voxel's frame; one around its points where they have strayed from it since they were
-  /// sorted, or where they are so close together that the cube's edge overflows in their unit.
+  /// The voxel's cube in the voxel's frame. It is a cube around the points instead where they have left the voxel's
+  /// since they were sorted, or where they are so close together that the cube's edge overflows in their unit.
   Cube localCube(const Cube& cube) const
   {
     const LocalFrame& frame = voxel_.frame;

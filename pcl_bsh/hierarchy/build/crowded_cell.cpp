@@ -10,8 +10,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of a leaf, at most, unless they are of one place. Float lanes decide nothing here and every pair is compared
-/// exactly, so that fewer points than a leaf could hold cost less.
+/// The most points of a leaf whose points have different places. Float lanes decide nothing here and every pair is
+/// compared exactly, so that fewer points than a leaf could hold cost less.
 constexpr std::uint32_t kFewPoints = 4;
 
 /// Points with the same coordinates, radius and uncertainty, or the same triangle: [first, first + count) of the points

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of a voxel while points are counted.
+// A voxel's bin while points are counted.
 
 #if defined(PCL_BSH_HIERARCHY_BUILD_VOXEL_BINS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_HIERARCHY_BUILD_VOXEL_BINS_INL_H_
@@ -24,8 +24,8 @@ struct alignas(64) Bin {
   std::uint32_t count = 0;
   std::uint32_t words = 0;       ///< that the chunk's records are stored as
   std::uint32_t voxel = 0;       ///< its number, known after merging
-  std::uint32_t first = 0;       ///< place in the voxel of this chunk's first point, likewise
-  std::uint32_t* list = nullptr; ///< where the chunk's records go, likewise, where they are listed
+  std::uint32_t first = 0;       ///< place in the voxel of this chunk's first point
+  std::uint32_t* list = nullptr; ///< where the chunk's records go, if they are listed
   alignas(16) T low[4];
   alignas(16) T high[4];
 
@@ -47,8 +47,9 @@ struct alignas(64) Bin {
   }
 };
 
-/// Finds or adds the bin of a cell: open addressing. A small table is doubled when a sixteenth of it is in use, so that
-/// points in random order hardly ever try a second slot, which no branch predictor foresees; a large one when half is.
+/// Finds or adds the bin of a cell: open addressing. A table is doubled when half of it is in use. A small one is
+/// doubled when a sixteenth is: so points in random order hardly ever try a second slot, which no branch predictor
+/// foresees.
 template <class T>
 class BinTable {
 public:
@@ -65,7 +66,7 @@ public:
   std::vector<Bin<T>> bins;
 
 private:
-  /// Of 32 bits, for there are fewer slots than 2^32.
+  /// A hash of 32 bits, for there are fewer slots than 2^32.
   std::size_t hash(std::uint64_t cell) const { return (cell * 0x9e3779b97f4a7c15u >> 32) & (slots_.size() - 1); }
 
   std::uint32_t add(std::uint64_t cell, std::size_t slot)

@@ -28,7 +28,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-/// What a thread keeps from voxel to voxel.
+/// Memory that a thread keeps from voxel to voxel.
 struct BuildScratch {
   std::size_t bytes() const noexcept
   {
@@ -86,7 +86,7 @@ public:
     voxel_.list = nullptr;
   }
 
-  /// The same tree for points that have moved.
+  /// Fits the tree to points that have moved.
   void refit(const PointRecord* points)
   {
     scratch_.sorted.assign(points, points + voxel_.count);
@@ -192,7 +192,7 @@ private:
             0.5f * bounds.low[2] + 0.5f * bounds.high[2]};
   }
 
-  /// Of a sphere around points [begin, end) with their own radii; rounded outward.
+  /// Radius of a sphere around points [begin, end) with their own radii; rounded outward.
   float radiusOverBalls(std::uint32_t begin, std::uint32_t end, const std::array<float, 3>& c, double slack) const
   {
     double farthest = 0.0;

@@ -21,8 +21,8 @@ constexpr double kStrayShare = 64.0;
 // Keep an edge and its inverse normal numbers; 2^20 of the largest hold any cloud of doubles.
 constexpr double kSmallestEdge = 0x1p-1000, kLargestEdge = 0x1p1006;
 
-/// The smallest edge for which cells of 20 bits per axis reach over the cloud (one bit of the 21 is to spare), and in
-/// which no coordinate counts more cells than a float can hold.
+/// The smallest edge for which cells of 20 bits per axis reach over the cloud (one bit of the 21 is to spare). No
+/// coordinate may count more cells than a float can hold.
 double finestEdge(const Bounds& bounds)
 {
   double half = 0.0, largest = 0.0; // half of the extent: the extent itself might overflow

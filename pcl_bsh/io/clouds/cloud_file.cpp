@@ -33,7 +33,7 @@ std::string unknown(const std::string& extension)
   return extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
 }
 
-/// What a file holds.
+/// The contents of a file.
 struct Contents {
   pcl::PCLPointCloud2 cloud;
   CloudFacts facts = {};
@@ -143,7 +143,7 @@ std::string extensionByContent(std::string_view file)
   return ".txt";
 }
 
-/// What `read` gives; names the file when that throws.
+/// Returns the result of `read`; names the file when `read` throws.
 template <typename Read>
 auto naming(const std::filesystem::path& path, Read&& read)
 {

@@ -31,12 +31,12 @@ namespace pcl_bsh::io {
 using Viewpoint = std::array<double, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
-/// What a LAS file says beside its points: scale and offset, version, records of the coordinate system and others. For
-/// writeCloud(), which keeps it. Null for other formats.
+/// The part of a LAS file beside its points: scale and offset, version, records of the coordinate system and others.
+/// For writeCloud(), which keeps it. Null for other formats.
 struct LasHeader;
 using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 
-/// What a file says beside its points.
+/// Facts in a file beside its points.
 struct CloudFacts {
   Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx
   std::vector<Viewpoint> scanners = {};  ///< of .ptx, of each scan that was read
@@ -116,12 +116,12 @@ Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts = nu
 /// Throws as readCloud() does for what a header can tell, and for a pipe.
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings = {});
 
-/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .xyz, .txt and .csv (named columns)
-/// or .obj (vertices), .pts or .ptx (scan_text.h), with the names that readers of the format expect: nx ny nz, and a
-/// number per channel of a colour. rgb has no opacity: its fourth byte is kept by PCD alone. `-` is standard output, as
-/// PCD. The file appears complete or not at all; what `path` held before is replaced only then. PCD, PLY and PTX hold a
-/// viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed colour and normals. LAS and
-/// PTS have no place for points without finite coordinates, and leave them out.
+/// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .obj (vertices), .pts or .ptx
+/// (scan_text.h), and named columns as .xyz, .txt and .csv. Fields have the names that readers of the format expect: nx
+/// ny nz, and a number per channel of a colour. An rgb has no opacity: its fourth byte is kept by PCD alone. `-` is
+/// standard output, as PCD. The file appears complete or not at all; what `path` held before is replaced only then.
+/// PCD, PLY and PTX hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed
+/// colour and normals. LAS and PTS have no place for points without finite coordinates, and leave them out.
 /// @param las what the file of these points said, if it was LAS: kept in a .las
 /// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
@@ -147,7 +147,7 @@ void requireWritableMesh(const std::filesystem::path& path);
 /// @throws files::FileError
 void requireWritableCloud(const std::filesystem::path& path);
 
-/// The same, and that the format can hold a cloud with these fields.
+/// Checks also that the format can hold a cloud with these fields.
 void requireWritableCloud(const std::filesystem::path& path, pcl::PCLPointCloud2 header);
 
 } // namespace pcl_bsh::io

@@ -131,8 +131,8 @@ std::optional<PcdBody> binaryBody(const fs::path& path)
   return std::nullopt;
 }
 
-/// What reading a file at once takes at most: the file, and a cloud that may have a double for each two letters of a
-/// text, or 88 bytes for one of a compressed PCD file, whose header tells how many.
+/// Memory for reading a file at once, at most: the file, and its cloud. A cloud of text may have a double for each two
+/// letters. A cloud of a compressed PCD file may have 88 bytes for each byte, and its header tells how many.
 std::uint64_t bytesWhenHeld(const fs::path& path, const pcl::PCLPointCloud2& header)
 {
   const std::uint64_t file = fs::file_size(path);

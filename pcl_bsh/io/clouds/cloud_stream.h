@@ -33,7 +33,7 @@ public:
   /// @return how many; 0 at the end. @throws files::FileError
   virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
 
-  /// What users should know of how the file is read, a line each, without its name.
+  /// Remarks for users about how the file is read, a line each, without its name.
   virtual std::vector<std::string> remarks() const { return {}; }
 
   /// As a .las names it; empty where it does not.

@@ -30,7 +30,7 @@ bool isByte(const PointField& field)
   return field.datatype == PointField::UINT8 && field.count == 1;
 }
 
-/// The place of the one field of that name; none when there is none, or several.
+/// The place of the only field of that name; nothing where no field or several have it.
 std::optional<std::size_t> placeOf(const Fields& fields, std::string_view name)
 {
   const auto is_it = [&](const PointField& field) { return field.name == name; };

@@ -35,8 +35,8 @@ bool isPackedColour(const pcl::PCLPointField& field);
 /// @throws FormatError when a record would grow beyond 4 GiB
 std::vector<std::uint32_t> layOutForPcl(const Fields& values, pcl::PCLPointCloud2& cloud);
 
-/// The other way: fields with a file's names; a packed colour is three or four fields of a byte, which lie in it. What
-/// would get the name of another field stays as it is.
+/// The other way: fields with a file's names; a packed colour is three or four fields of a byte, which lie in it. A
+/// field whose new name another field has keeps its own.
 Fields namedForFiles(Fields fields, const ChannelNames& channels);
 
 /// Says which colours of the cloud are not packed, where PCL's tools will not see them; empty when there are none, or a

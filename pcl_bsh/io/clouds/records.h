@@ -14,7 +14,7 @@
 
 namespace pcl_bsh::io {
 
-/// What a cloud may have at most, so that pcl::Indices can name its points.
+/// The most points of a cloud, so that pcl::Indices can name them.
 inline constexpr std::uint64_t max_points = 0x7fffffff;
 
 /// Appends a field right behind the last one. @throws FormatError when a record would grow beyond 4 GiB
@@ -34,7 +34,7 @@ void requireBytes(std::uint64_t points, std::uint64_t least_bytes, std::uint64_t
 /// Gives the cloud width x height records, all bytes zero.
 void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height = 1);
 
-/// The same for records that are all written then: bytes that the cloud has are as they were.
+/// Resizes a cloud whose records are all written afterwards: its present bytes stay.
 void resizeRecords(pcl::PCLPointCloud2& cloud, std::uint32_t width);
 
 /// Sets is_dense: no value of any floating-point field is NaN or infinite.

@@ -20,9 +20,9 @@ std::filesystem::path folderOf(const std::filesystem::path& path);
 /// @throws FileError for a link that leads back to itself
 std::filesystem::path destinationOf(const std::filesystem::path& path);
 
-/// What tells a file from all others, whatever its name: that of a name for which there is no file yet is the place
-/// where it would be. Names which differ only in the case of ASCII letters are one such place, since many disks hold
-/// them to be one.
+/// Identifies a file, whatever its name. A name for which there is no file yet is identified by the place where the
+/// file would be. Names which differ only in the case of ASCII letters are one such place, since many disks hold them
+/// to be one.
 class FileIdentity {
 public:
   /// @param use says which stream `standard_stream` is

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh::files {
 
-/// What will be written.
+/// The space that output will need.
 struct WantedSpace {
   std::filesystem::path place; ///< a file or folder, which need not be there yet
   std::uint64_t bytes = 0;     ///< beside what is there now, as that of a file that is replaced only in the end
@@ -19,7 +19,7 @@ struct WantedSpace {
 /// @throws FileError that says how much is needed, and how much is free
 void requireSpace(const std::vector<WantedSpace>& wanted);
 
-/// What files of a folder, and of those in it, take on the disk, in bytes; of a folder that is not there, 0.
+/// The space of a folder's files on the disk, in bytes, with the folders in it; 0 where the folder does not exist.
 std::uint64_t spaceTaken(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::files

@@ -4,7 +4,7 @@
 namespace pcl_bsh::files {
 namespace {
 
-/// What is wrong with two names of one file; empty when nothing is.
+/// The fault of two names of one file; empty where they are no fault.
 std::string wrongWith(const UsedFile& file, const UsedFile& other, bool is_stream)
 {
   if (file.use == Use::read) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of a file that cannot be written.
+// Messages about a file that cannot be written.
 #pragma once
 
 #include <pcl_bsh/io/files/file_error.h>

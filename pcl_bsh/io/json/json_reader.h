@@ -50,8 +50,8 @@ public:
   std::vector<double> numbers(std::size_t count) const;
   Eigen::Vector3d vector() const;
 
-  /// x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row; one that few printed digits have
-  /// left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation, of which `warnings` gets a line.
+  /// x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row. A matrix that few printed digits
+  /// have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation; `warnings` gets a line then.
   Eigen::Isometry3d pose(std::vector<std::string>& warnings) const;
 
 private:
@@ -68,7 +68,7 @@ void read(const JsonReader& object, const char* key, bool& value);
 void read(const JsonReader& object, const char* key, std::string& value);
 void read(const JsonReader& object, const char* key, Eigen::Vector3d& value);
 
-/// The same, of a whole number within the range of its type, as a schema has checked.
+/// Reads a whole number within the range of its type, as a schema has checked.
 template <typename Count>
 void readCount(const JsonReader& object, const char* key, Count& value)
 {

@@ -11,7 +11,7 @@
 namespace pcl_bsh::io {
 namespace {
 
-/// What a type is called, what a value of another type should be replaced by, and whether a value is of it.
+/// A type: its name, the word for a value of it, the remedy for other values, and whether a value is of it.
 struct Type {
   const char* name;
   const char* noun;
@@ -163,7 +163,7 @@ void JsonSchema::checkNumber(const JsonReader& value, const Json& schema) const
     value.fail(shown(json) + " is too large", "give at most " + shown(schema["maximum"]));
 }
 
-/// Of several ways to write a value, tells the fault in the one for values of its type, if there is one.
+/// Reports the fault in the alternative for values of this type, if one of several ways to write a value has this type.
 void JsonSchema::checkAlternatives(const JsonReader& value, const Json& schema) const
 {
   const Json& ways = schema["oneOf"];

@@ -14,7 +14,7 @@ bool alike(char a, char b)
   return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
-/// What follows the last dot or colon.
+/// The part of a name behind the last dot or colon.
 std::string_view ownName(std::string_view name)
 {
   const std::size_t prefix = name.find_last_of(".:");
@@ -65,7 +65,7 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& v
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& valid)
 {
-  if (valid.empty()) return "there is none to name";
+  if (valid.empty()) return "no name exists";
   return "did you mean '" + nearestName(name, valid) + "'?";
 }
 

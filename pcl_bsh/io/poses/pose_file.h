@@ -25,13 +25,13 @@ namespace pcl_bsh::io {
 ///
 /// @param warnings if not null, gets a line that counts these
 /// @throws files::FileError naming the file and the line: another number of numbers, or not that of the lines before; a
-///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-4, a mirror, a last row other than 0 0 0 1); a
-///   quaternion whose length is off 1 by more than 1e-3; a value that is not finite. Also when the file cannot be read
+///   word that is no number; a matrix that is not rigid (|R'R - I| > 1e-4, a mirror, a last row other than 0 0 0 1).
+///   Also a quaternion whose length is off 1 by more than 1e-3; a value that is not finite; a file that cannot be read
 ///   or holds no pose.
 std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path,
                                          std::vector<std::string>* warnings = nullptr);
 
-/// The same, of a text. @throws FormatError naming the line
+/// Reads the poses of a text. @throws FormatError naming the line
 std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings = nullptr);
 
 /// Writes twelve numbers a line, which read back to the same bits. The file appears complete or not at all.

@@ -29,7 +29,7 @@ Eigen::Isometry3d poseFrom(double x, double y, double z, double roll, double pit
 /// query to judge. @throws FormatError for any other number of numbers
 Eigen::Isometry3d poseFrom(const std::vector<double>& numbers);
 
-/// What users should know of these numbers: angles of more than two turns, which are degrees perhaps.
+/// A warning about angles of more than two turns, which may be degrees.
 std::optional<std::string> warningOfAngles(const std::vector<double>& numbers);
 
 /// A file of the 12 or 16 numbers of a pose's matrix, row by row. @throws files::FileError

@@ -17,8 +17,8 @@ std::filesystem::path existingFile(const JsonReader& reader, const std::filesyst
 
 CloudSource cloudFrom(const JsonReader& reader, const std::string& name, const std::filesystem::path& folder);
 
-/// x y z of points about `spacing` apart on the surface of a "sphere" (radius size.x), "box" (edges size) or "cylinder"
-/// (radius size.x, height size.y, along z; with size.z > 0 without its lids) around the origin.
+/// x y z of points about `spacing` apart on the surface of a shape around the origin. "sphere": radius size.x. "box":
+/// edges size. "cylinder": radius size.x, height size.y, along z; with size.z > 0 without its lids.
 std::vector<float> shapePoints(const std::string& shape, const Eigen::Vector3d& size, double spacing);
 
 /// How many that are, at most.

@@ -98,7 +98,7 @@ struct SceneFile {
 /// @throws JsonError for what the document has wrong, files::FileError for a file that cannot be read
 SceneFile readSceneFile(const std::filesystem::path& path);
 
-/// The same, of a text; relative file names are looked for beside `path`.
+/// Reads a scene from a text; relative file names are looked for beside `path`.
 SceneFile parseScene(const std::string& text, const std::filesystem::path& path);
 
 /// Gives a scene the file's rules about pairs; the objects are there already.
@@ -114,9 +114,9 @@ public:
   Scene& scene() { return *scene_; }
 
   /// A cloud's points as they were read, scaled and shifted; of a shape, x y z. float32 coordinates have become float64
-  /// where float32 cannot hold what scale and shift make of them. Of a surface, its vertices.
+  /// where float32 cannot hold what scale and shift make of them. A surface gives its vertices.
   const pcl::PCLPointCloud2& cloud(const std::string& name) const { return clouds_.at(name).shape.points(); }
-  /// What a cloud with faces is; null where it is points.
+  /// The surface of a cloud with faces; null where it is points.
   const Obstacle* surface(const std::string& name) const
   {
     const Obstacle& found = clouds_.at(name).shape;

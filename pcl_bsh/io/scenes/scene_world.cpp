@@ -43,7 +43,7 @@ bool fitsFloat(const Point3& p)
   return fits(p[0]) && fits(p[1]) && fits(p[2]);
 }
 
-/// The same cloud with x, y and z as float64, whatever lies between its fields left out.
+/// The cloud with x, y and z as float64; bytes between its fields are left out.
 pcl::PCLPointCloud2 withWideCoordinates(const pcl::PCLPointCloud2& cloud)
 {
   pcl::PCLPointCloud2 wide;

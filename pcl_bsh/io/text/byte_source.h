@@ -19,7 +19,7 @@ public:
   /// Copies `count` bytes from `at` on, all of which are there.
   virtual void read(std::uint64_t at, char* to, std::size_t count) = 0;
 
-  /// The same as a text. To be asked only for what size() holds.
+  /// Reads bytes as a text. To be asked only for what size() holds.
   std::string text(std::uint64_t at, std::size_t count)
   {
     std::string bytes(count, '\0');

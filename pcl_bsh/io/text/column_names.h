@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the columns of a text file are: as users say, as a line of the file says, or as their numbers show.
+// Meaning of the columns of a text file: as users say, as a line of the file says, or as their numbers show.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ inline constexpr std::string_view skipped_column = "_"; ///< the name of a colum
 /// @throws FormatError where one is empty or is given twice
 ColumnNames columnNamesOf(std::string_view text);
 
-/// The same names with x, y and z for what surveyors call them, in any case of letters: E, East, Easting; N, North,
-/// Northing; H, Height, Elevation, Elev, Altitude. An axis that has its own name, or two of these, stays as it is.
+/// Renames surveyors' names to x, y and z, in any case of letters: E, East, Easting; N, North, Northing; H, Height,
+/// Elevation, Elev, Altitude. An axis that has its own name, or two of these, stays as it is.
 ColumnNames withAxes(ColumnNames names);
 
 /// Whether files of that extension, with its dot and in small letters, are columns of text.
@@ -35,7 +35,7 @@ public:
   /// @throws FormatError as columnNamesOf() does, and for a file that is given twice
   void add(const std::string& text);
 
-  /// What a reader of that file is given: the names of the file itself, or of all where it is columns of text or a
+  /// Names for a reader of that file: those of the file itself, or of all files where it is columns of text or a
   /// pipe.
   ColumnNames of(const std::filesystem::path& file) const;
 

@@ -48,7 +48,7 @@ private:
   int number_;
 };
 
-/// That it ends, and how long it is; 0 where that is not known.
+/// Requires that a file ends, and returns its length; 0 where that is not known.
 std::size_t expectedSize(const fs::path& path, int descriptor)
 {
   struct stat status = {};

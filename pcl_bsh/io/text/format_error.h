@@ -10,7 +10,7 @@ namespace pcl_bsh::io {
 
 inline constexpr auto remedy_for_damage = "export or copy the file again";
 
-/// What is wrong with a file's content, told by code that does not know the file's name.
+/// The fault in a file's content, told by code that does not know the file's name.
 class FormatError : public std::runtime_error {
 public:
   explicit FormatError(const std::string& wrong, std::string remedy = remedy_for_damage)

@@ -10,7 +10,7 @@ namespace pcl_bsh::io {
 /// The text with a-z for A-Z.
 std::string inSmallLetters(std::string text);
 
-/// The extension in small letters with its dot, which tells the format: ".ply" of "Scan.PLY"; empty when there is none.
+/// The extension in small letters with its dot, which tells the format: ".ply" of "Scan.PLY"; empty without one.
 std::string extensionOf(const std::filesystem::path& file);
 
 } // namespace pcl_bsh::io

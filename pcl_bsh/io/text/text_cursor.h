@@ -14,8 +14,8 @@
 
 namespace pcl_bsh::io {
 
-/// What separates the values of a line: a semicolon, else a comma, else a tab, where it has one; else blanks (' ').
-/// Tabs beside blanks are blanks.
+/// The separator of a line's values: a semicolon, else a comma, else a tab, where it has one; else blanks (' '). Tabs
+/// beside blanks are blanks.
 inline char separatorOf(std::string_view line)
 {
   for (const char separator : {';', ','})
@@ -52,12 +52,12 @@ public:
     if (isUtf16(text)) throw FormatError("is UTF-16 text", "save it as UTF-8");
   }
 
-  /// From now on exactly one such character separates words, and blanks around a word do not count; two in a row have
-  /// an empty word between them, one at the end of a line has none behind it. Quotes around a word do not count: "x".
-  /// ' ': any number of blanks and tabs.
+  /// From now on exactly one such character separates words, and blanks around a word do not count. Two in a row have
+  /// an empty word between them; one at the end of a line has no word behind it. Quotes around a word do not count:
+  /// "x". ' ': any number of blanks and tabs.
   void separateBy(char separator) noexcept { separator_ = separator; }
 
-  /// Goes to the next line that has a word. False when there is none.
+  /// Goes to the next line that has a word. False at the end of the text.
   bool nextLine()
   {
     do {
@@ -80,7 +80,7 @@ public:
     return true;
   }
 
-  /// What is left of the line, from its next word to its last.
+  /// The rest of the line, from its next word to its last.
   std::string_view line() const noexcept { return line_; }
 
   /// Takes the next word off the line; empty when none is left.
@@ -106,8 +106,8 @@ public:
     return true;
   }
 
-  /// What `parse` gives for the next word, which is taken off the line.
-  /// @throws FormatError naming the line when there is none, or when `parse` throws one
+  /// Takes the next word off the line, and returns the result of `parse`.
+  /// @throws FormatError naming the line when it has no more words, or when `parse` throws one
   template <typename Parse>
   std::invoke_result_t<Parse, std::string_view> parseWord(Parse&& parse)
   {
@@ -137,7 +137,7 @@ public:
     throw FormatError(named(wrong), remedy);
   }
 
-  /// What `parse` gives; a FormatError of it is said to be of this line.
+  /// Returns the result of `parse`; a FormatError of it names this line.
   template <typename Parse>
   std::invoke_result_t<Parse> naming(Parse&& parse) const
   {

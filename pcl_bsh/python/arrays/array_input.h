@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What queries read, from NumPy arrays. All of it needs the interpreter's lock, and throws std::invalid_argument, which
+// Input of queries, from NumPy arrays. All of it needs the interpreter's lock, and throws std::invalid_argument, which
 // Python knows as ValueError.
 #pragma once
 
@@ -37,7 +37,7 @@ struct PointsInput {
   PoseUncertainty pose = {}; ///< on top of both: all points may move together
 };
 
-/// What a hierarchy of Python's lives on. Released by whichever thread lets go of it last.
+/// Owner of the memory that a Python hierarchy refers to. Released by whichever thread lets go of it last.
 class Owner {
 public:
   virtual ~Owner() = default;
@@ -49,7 +49,7 @@ public:
   py::array points;
   bool in_place = false; ///< `points` is the caller's own memory
 
-  /// What was given beside the points, which the view's uncertainties are made of.
+  /// Input beside the points, from which the view's uncertainties are made.
   double uncertainty = 0.0;
   const float* uncertainties = nullptr;
   PoseUncertainty pose = {};
@@ -87,14 +87,14 @@ struct MovedView {
   PointsView before, now;
 };
 
-/// What keeps the arrays of a view of viewOfPoints() or viewOfTriangles(); else null.
+/// The owner of the arrays of a view of viewOfPoints() or viewOfTriangles(); else null.
 const KeptArrays* arraysOf(const PointsView& view);
 
 /// `input` has no subset and no uncertainty of all points, those of the points before stay, as do radii and
-/// uncertainties that it does not have. Of triangles, it has their vertices.
+/// uncertainties that it does not have. For triangles, it has their vertices.
 MovedView movedView(const PointsView& before, PointsInput input);
 
-/// The same for the time of a call: nothing is locked. `kept` has what must live as long as the view.
+/// A view for the time of a call: nothing is locked. `kept` has what must live as long as the view.
 PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept);
 
 /// (4, 4) or (3, 4), anything that NumPy makes an array of; None: the identity.

@@ -23,8 +23,8 @@ py::array asArray(const std::string& name, const py::object& object, Input input
 /// None of integers, and of numbers in the other order of bytes.
 std::optional<Scalar> scalarOf(const py::dtype& type);
 
-/// Of rows, or of records with fields x, y, z. @param name how errors call them @param array becomes the copy, where
-/// one is needed or wanted @param in_place whether none was
+/// The view of rows, or of records with fields x, y, z. Errors call them `name`. The array becomes the copy, where one
+/// is needed or wanted; `in_place` is set where no copy was made.
 PointsView viewOfArray(const std::string& name, py::array& array, bool copy, bool& in_place);
 
 } // namespace pcl_bsh::python

@@ -29,7 +29,7 @@ private:
   std::vector<pybind11::array> locked_; ///< those of which this lock will set the flag, or pass that on
 };
 
-/// What an array, or another object that stands between arrays, shows memory of; null: nothing else.
+/// The object whose memory an array, or another object between arrays, shows; null: no other object.
 pybind11::object baseOf(const pybind11::object& object);
 
 } // namespace pcl_bsh::python

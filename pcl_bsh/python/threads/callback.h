@@ -16,7 +16,7 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
-/// What a callback returns to end what calls it: Python's False or NumPy's. None and all else let it go on.
+/// Whether a callback returned a value that ends its caller: Python's False or NumPy's. None and all else let it go on.
 inline bool isFalse(const py::object& answer)
 {
   static PyObject* numpys = nullptr; // guarded by the interpreter's lock

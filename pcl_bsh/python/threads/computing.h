@@ -15,7 +15,7 @@ public:
 };
 
 /// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it, and for a
-/// while let it go first. To be made without the interpreter's lock. What this thread asks meanwhile need not wait.
+/// while let it go first. To be made without the interpreter's lock. Queries of this thread need not wait meanwhile.
 class Changing {
 public:
   /// @throws std::runtime_error where this thread computes: in the callback of a query
@@ -25,11 +25,11 @@ public:
   Changing& operator=(const Changing&) = delete;
 };
 
-/// Lets the interpreter fork only while no other thread computes or changes points: the child has none of these
-/// threads, and what they were about to make would never be done. A fork waits for their queries, and later ones for
-/// the fork. In the callback of a query it waits for none. Likewise the interpreter ends when no thread computes;
-/// queries that report progress are stopped, and those of daemon threads that begin later wait for ever. Needs the
-/// interpreter's lock; to be called once.
+/// Lets the interpreter fork only while no other thread computes or changes points. The child has none of these
+/// threads, and would never finish their work. A fork waits for their queries, and later ones for the fork. In the
+/// callback of a query it waits for none. The interpreter ends when no thread computes, too. Queries that report
+/// progress are stopped, and those of daemon threads that begin later wait for ever. Needs the interpreter's lock; to
+/// be called once.
 void takeTurnsWithInterpreter();
 
 } // namespace pcl_bsh::python

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interpreter's lock, taken and let go by threads that outlive the interpreter. CPython unwinds a thread that wants
-// the lock when the interpreter is gone, by pthread_exit(): destructors then work on objects without the lock, and
-// std::terminate() ends the process at the first function that nothing may leave by an exception. Here such a thread
-// stops where it is, until the process ends.
+// The interpreter's lock, taken and let go by threads that outlive the interpreter. When the interpreter is gone,
+// CPython unwinds a thread that wants the lock by pthread_exit(). Destructors then work on objects without the lock,
+// and std::terminate() ends the process at the first function that no exception may leave. Here such a thread stops
+// where it is, until the process ends.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -32,7 +32,7 @@ private:
   PyThreadState* state_;
 };
 
-/// What f(argument) returns. Needs the interpreter's lock, which f may let go.
+/// Returns f(argument). Needs the interpreter's lock, which f may let go.
 pybind11::object called(const pybind11::object& f, const pybind11::object& argument);
 
 /// Whether another thread ends the interpreter: this one shall end what it does, and comes back to Python no more.

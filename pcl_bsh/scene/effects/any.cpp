@@ -65,7 +65,7 @@ void Scene::State::decideAny(BroadPair& pair) const
   memory.apart = 0.0;
   const double ahead = remember ? kAhead * (a.last_motion + b.last_motion) : 0.0;
   if (ahead > 0.0 && std::isfinite(pair.clearance + ahead) && memory.patience == 0) {
-    // What is free at a wider clearance need not be asked again until it has moved that far.
+    // A pair that is free at a wider clearance is not asked again until it has moved that far.
     memory.colliding = ask(pair.clearance + ahead);
     if (!memory.colliding && !memory.undecided) {
       memory.apart = pair.clearance + ahead;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the files of a scene's effects share: each asks its pairs side by side, and adds up their work.
+// Helpers of the files of a scene's effects: each asks its pairs side by side, and adds up their work.
 #pragma once
 
 #include <pcl_bsh/base/parallel.h>

@@ -20,7 +20,7 @@ struct PairFlags {
   std::vector<Verdict> a, b;
 };
 
-/// Those of each part, where any of its points is flagged.
+/// Flags of each part that has a flagged point.
 std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std::vector<std::vector<PairFlags>>& found)
 {
   std::map<std::pair<ObjectId, std::uint32_t>, FlaggedPart> parts;
@@ -46,7 +46,7 @@ std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std:
   return list;
 }
 
-/// Of the motion; what may collide is undecided, unless it does for certain.
+/// Flags of the motion; points that may collide are undecided, unless they do for certain.
 void flagSwept(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, PairFlags& flags, Work& work)
 {
   const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
@@ -75,7 +75,7 @@ void Scene::State::findFlags(EffectCost& spent)
   result.flags = mergedFlags(bodies, found);
 }
 
-/// What is held at an instant of the motion.
+/// Adds the points that a solid holds at an instant of the motion.
 void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
                              std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
 {
@@ -95,7 +95,7 @@ void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, c
   for (std::size_t i = 0; i < flags_b.size(); ++i) flags_b[i] = graver(flags_b[i], found.b[i]);
 }
 
-/// What is held at its beginning and its end, and bodies that something passes through on the way.
+/// Adds the points held at the motion's beginning and end, and the bodies that something passes through on the way.
 void Scene::State::addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
                                    std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
 {

@@ -3,7 +3,7 @@
 // voxels it leaves and enters.
 #pragma once
 
-#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 #include <pcl_bsh/scene/pairs/pair_rules.h>
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Versions {
   }
 };
 
-/// What is known of a pair from earlier steps.
+/// Facts about a pair from earlier steps.
 struct PairMemory {
   Versions of_near;
   bool near = false; ///< boxes within the clearance
@@ -73,7 +73,7 @@ public:
   const std::vector<BroadPair*>& pairs();
   std::size_t pairCount() const { return pairs_.size(); }
 
-  /// Those of one object, in no order.
+  /// The pairs of one object, in no order.
   const std::vector<BroadPair*>& pairsOf(ObjectId object) const { return places_[object].pairs; }
 
   /// Pairs that share no voxel any more are kept, with shared == 0, until no list refers to them.

@@ -59,7 +59,7 @@ void Scene::State::place(ObjectId object)
   ++result.broad_phase.moved;
   boxes_.assign(1, swept ? SweptObject(body).box() : body.world_box);
   boxes_.front().grow(0.5 * reach);
-  // What a solid holds may be far from all of its own voxels.
+  // A record held by a solid may be far from all of the solid's voxels.
   const bool solid =
       std::any_of(body.object.parts.begin(), body.object.parts.end(), [](const ScenePart& part) { return part.solid; });
   if (!swept && !solid && grid.voxelsOf(boxes_.front()) > kCoarse) {

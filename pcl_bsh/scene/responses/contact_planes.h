@@ -14,7 +14,7 @@ class ContactPlanes {
 public:
   void forget() { count_ = 0; }
 
-  /// What is left of a motion that must not enter the new plane nor those before it; 0 in a corner.
+  /// Returns the part of a motion that enters neither the new plane nor those before it; 0 in a corner.
   Eigen::Vector3d add(const Eigen::Vector3d& normal, const Eigen::Vector3d& motion)
   {
     if (count_ < normals_.size()) normals_[count_++] = normal;

@@ -170,8 +170,8 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
   return Walked::met;
 }
 
-/// All pairs of points that can meet while the object is within `swept` and none of its points is farther than `length`
-/// from where it is now. @return false when there are more than `most` with one other part
+/// Collects all pairs of points that can meet while the object is within `swept` and none of its points is farther than
+/// `length` from its present place. Returns false when there are more than `most` with one other part
 bool Mover::collect(Box3 swept, double length, std::size_t most)
 {
   encounters_.clear();
@@ -179,7 +179,7 @@ bool Mover::collect(Box3 swept, double length, std::size_t most)
   return collectMore(swept, length, most);
 }
 
-/// Those of objects that have not been collected yet.
+/// Collects the pairs with objects that have not been collected yet.
 bool Mover::collectMore(Box3 swept, double length, std::size_t most)
 {
   if (body_.box.empty()) return true;

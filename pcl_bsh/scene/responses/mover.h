@@ -11,9 +11,9 @@
 
 namespace pcl_bsh {
 
-/// Moves an object leg by leg. Before each leg, all pairs of points that can meet on it are collected, whatever object
-/// they are of; a leg ends where the first of them meets, and its end is taken only if none of them collides there, in
-/// exact arithmetic. Along a bent path, pairs are collected as far as the object may get in any direction.
+/// Moves an object leg by leg. Before each leg, it collects all pairs of points that can meet on it, of any objects. A
+/// leg ends where the first of them meets. Its end is taken only if none of them collides there, in exact arithmetic.
+/// Along a bent path, pairs are collected as far as the object may get in any direction.
 class Mover {
 public:
   Mover(Scene::State& state, ObjectId object, EffectCost& cost);

@@ -187,8 +187,8 @@ void Scene::State::checkMotion(const Body& body, const ObjectMotion& motion, dou
                    ", or move the scene nearer to its origin"));
 }
 
-/// Of all that is about to move, before anything has. A response may lead elsewhere, to coordinates that round by twice
-/// as much at most: a query allows for that.
+/// Checks all objects that are about to move, before any has. A response may lead elsewhere, to coordinates that round
+/// by twice as much at most: a query allows for that.
 void Scene::State::checkMotions(double before, double after) const
 {
   const auto check = [this](const Body& body, const Goal& goal) {
@@ -201,7 +201,7 @@ void Scene::State::checkMotions(double before, double after) const
             checkMotion(body, motion, rounding);
           });
   };
-  // What has not moved was checked when it came where it is.
+  // Objects at rest were checked when they came there.
   for (const ObjectId object : moved) check(bodies[object], {bodies[object].object.pose, Eigen::Vector3d::Zero()});
   for (const Body& body : bodies)
     if (!std::holds_alternative<NoMotion>(body.object.motion)) check(body, goalOf(body, before, after, true));

@@ -14,7 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int kMostInside = 1024; // steps of a pair that starts within the zone and neither leaves nor enters it
 
-/// The smallest h > 0 with gap + slope h - bend h^2 / 2 = 0, for a gap > 0; infinity if there is none.
+/// The smallest h > 0 with gap + slope h - bend h^2 / 2 = 0, for a gap > 0; infinity where no such h exists.
 double firstRoot(double gap, double slope, double bend)
 {
   const double under = slope * slope + 2.0 * bend * gap;

@@ -5,7 +5,7 @@
 #include <pcl_bsh/geometry/rigid_motion.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/scene/motion.h>
-#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 
 namespace pcl_bsh {
 

@@ -56,7 +56,7 @@ public:
   }
 
 private:
-  /// What can meet within the interval is within this at its beginning.
+  /// The distance at the interval's beginning of all pairs that can meet within it.
   double reach(double length) const
   {
     return std::max(0.0, farthest_ + closingReach(a_.motion, b_.motion, length) + 0.5 * tolerance_);
@@ -81,8 +81,8 @@ private:
     return visit(begin, end, found);
   }
 
-  /// None where no distance is near enough. What is hardly below 0 may be so by rounding, and is 0: the tolerance
-  /// covers that.
+  /// None where no distance is near enough. Rounding may make a reach of 0 slightly negative: it counts as 0, and the
+  /// tolerance covers that.
   std::optional<ContactZone> zone(PointPair pair) const
   {
     const double reach = reachOf(reach_of_pairs_.of(pair));
@@ -104,14 +104,14 @@ private:
     return earliest;
   }
 
-  /// What can collide within an interval that is so short, wherever it is in it, is within this at its beginning.
+  /// The clearance at the interval's beginning that covers all collisions within so short an interval.
   double wideClearance(double begin, double end) const
   {
     return clearance_ + closingReach(a_.motion, b_.motion, end - begin) + 0.5 * tolerance_;
   }
 
-  /// Of so many pairs, within so short an interval, that no order of theirs matters: any that can collide in it. Pairs
-  /// collected may be farther apart than their own uncertainties let them be.
+  /// Returns any pair that can collide, where so many can within so short an interval that their order does not matter.
+  /// Pairs collected may be farther apart than their own uncertainties let them be.
   std::optional<PairContact> firstOfCrowd(double begin, double end)
   {
     const AnyResult near = anyCollisionAt(a_.at(begin), b_.at(begin), {wideClearance(begin, end), {}}, places_);

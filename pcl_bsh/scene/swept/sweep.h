@@ -32,7 +32,7 @@ struct PairContact {
 /// Pairs that a query may collect before the interval is halved instead.
 inline constexpr std::size_t kMostPairs = 1 << 15;
 
-/// An interval in which an object turns by more than this is halved while more than a few pairs can meet in it: to look
+/// An interval in which an object turns by more than this is halved while more than a few pairs can meet in it. To look
 /// for pairs anew costs less than to follow pairs that are far apart for most of a turn.
 inline constexpr double kWideTurn = 1.0; // radians
 inline constexpr std::size_t kFewToTurn = 64;
@@ -40,13 +40,13 @@ inline constexpr std::size_t kFewToTurn = 64;
 /// No distance of a point of one to a point of the other shrinks by more than this within an interval of s.
 double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length);
 
-/// Of points that are where `places` says: the first s in [0, 1] at which two points are within clearance + tolerance
-/// and come nearer; at no smaller s do any collide.
+/// Returns the first s in [0, 1] at which two points, placed as `places` says, are within clearance + tolerance and
+/// come nearer; at no smaller s do any collide.
 std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
                                           Places places, Work& work);
 
-/// Flags, one per record, the points that, where `places` says they are, collide with one of the other part at some s
-/// in [0, 1], and none that is farther than clearance + tolerance at all of them.
+/// Flags, one per record, the points that collide with one of the other part at some s in [0, 1], placed as `places`
+/// says. A point farther than clearance + tolerance at all s is not flagged.
 void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
                   std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b, Work& work);
 

@@ -9,7 +9,7 @@ Leg legOf(const Body& body, const Eigen::Isometry3d& to, const Eigen::Vector3d& 
   return {body.last_pose, to, body.center(), turnNearestTo(turned, body.last_pose.linear(), to.linear())};
 }
 
-/// Of T_world_cloud.
+/// The leg of T_world_cloud.
 Leg legOf(const Body& body, std::uint32_t part, const Leg& whole, const Box3& box)
 {
   const Eigen::Isometry3d &before = body.last_parts[part], &now = body.object.parts[part].pose;

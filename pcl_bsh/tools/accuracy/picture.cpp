@@ -60,18 +60,18 @@ double errorOf(const Measurement& m, const View& view)
   return view.scale * (m.peer ? m.actual_error : m.certified_error);
 }
 
-/// Of which question a series has the times.
-enum class Asked { again, once };
+/// The question whose times a series has.
+enum class Timing { again, once };
 
-vtk::ChartPoint pointOf(const Measurement& m, const View& view, Asked asked)
+vtk::ChartPoint pointOf(const Measurement& m, const View& view, Timing asked)
 {
-  const Spread& time = asked == Asked::once ? m.once : m.seconds;
+  const Spread& time = asked == Timing::once ? m.once : m.seconds;
   return {time.median, errorOf(m, view), m.setting, {time.low, time.high}};
 }
 
-vtk::Series oursOf(const Study& study, const View& view, Asked asked)
+vtk::Series oursOf(const Study& study, const View& view, Timing asked)
 {
-  const bool once = asked == Asked::once;
+  const bool once = asked == Timing::once;
   vtk::Series series{
       once ? "" : "pcl_bsh, guaranteed", vtk::distinctColor(0), vtk::Mark::circle, true, !once, once, {}};
   for (const Measurement* m : frontier(study, view.query, view.negligible / view.scale))
@@ -90,9 +90,9 @@ struct Way {
 constexpr std::array ways = {Way{"k-d tree", 6, vtk::Mark::diamond}, Way{"VoxelGrid + k-d tree", 1, vtk::Mark::square},
                              Way{"octree", 2, vtk::Mark::triangle}};
 
-vtk::Series peerOf(const Study& study, const View& view, const Way& way, Asked asked)
+vtk::Series peerOf(const Study& study, const View& view, const Way& way, Timing asked)
 {
-  const bool once = asked == Asked::once;
+  const bool once = asked == Timing::once;
   const std::string name = std::string("PCL ") + way.knob + (way.mark == vtk::Mark::diamond ? "" : ", no guarantee");
   vtk::Series series{once ? "" : name, vtk::distinctColor(way.color), way.mark, false, false, once, {}};
   for (const Measurement& m : study.measurements)
@@ -114,7 +114,7 @@ vtk::Chart chartOf(const Study& study, const View& view)
 {
   vtk::Chart chart;
   chart.lowest_y = view.negligible;
-  for (const Asked asked : {Asked::again, Asked::once}) {
+  for (const Timing asked : {Timing::again, Timing::once}) {
     chart.series.push_back(oursOf(study, view, asked));
     for (const Way& way : ways) chart.series.push_back(peerOf(study, view, way, asked));
   }

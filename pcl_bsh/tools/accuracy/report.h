@@ -14,7 +14,7 @@ namespace pcl_bsh::accuracy {
 void writeReports(const std::filesystem::path& folder, const std::string& heading, const Subject& subject,
                   const Study& study);
 
-/// What to choose: the knee of the certified distance curve, and the best settings for 1 ms, 10 ms and exact.
+/// Settings to choose: the knee of the certified distance curve, and the best settings for 1 ms, 10 ms and exact.
 std::string advice(const Subject& subject, const Study& study);
 
 } // namespace pcl_bsh::accuracy

@@ -6,8 +6,8 @@
 
 namespace pcl_bsh::accuracy {
 
-/// Seconds since it was made. Of a query on one thread it counts this thread's processor time, which other programs on
-/// the machine do not lengthen.
+/// Seconds since it was made. A query on one thread is measured in this thread's processor time, which other programs
+/// on the machine do not lengthen.
 class Stopwatch {
 public:
   explicit Stopwatch(unsigned threads) : one_thread_(threads == 1), start_(now()) {}

@@ -77,8 +77,8 @@ public:
   void time(Query query, const Accuracy& accuracy, std::vector<std::vector<double>>& seconds) const
   {
     seconds.resize(subject_.poses.size());
-    // What was asked before, of another kind perhaps, has left other memory in the caches: no setting may lose by what
-    // comes before it. PCL's ways are asked again and again likewise.
+    // An earlier question, perhaps of another kind, has left other memory in the caches: no setting may lose by its
+    // predecessor. PCL's ways are repeated, too.
     for (const Eigen::Isometry3d& pose : subject_.poses) ask(query, accuracy, {a_}, {b_, pose});
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       const Stopwatch watch(threads_);
@@ -104,7 +104,7 @@ public:
     return spreadOfPoses(seconds);
   }
 
-  /// What the answers at a setting are worth.
+  /// Judges the answers at a setting.
   Measurement judge(Query query, const Accuracy& accuracy) const
   {
     Measurement m;

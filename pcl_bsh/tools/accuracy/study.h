@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What accuracy costs in time, measured on a caller's own clouds.
+// The cost of accuracy in time, measured on a caller's own clouds.
 #pragma once
 
 #include <pcl_bsh/collide.h>
@@ -31,7 +31,7 @@ struct Measurement {
   std::string setting;
   bool peer = false; ///< not ours
   Spread seconds;    ///< of one query, all built before: spreadOfPoses()
-  Spread once;       ///< of one query and of all that is built for it, likewise
+  Spread once;       ///< of one query and of all that is built for it
   Work work;         ///< of all poses together
   bool certified = true;
   double certified_error = 0.0; ///< distance: widest interval of all poses; flags, any: share left undecided
@@ -62,7 +62,7 @@ Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, c
 
 Spread spreadOf(std::vector<double> values);
 
-/// Over the poses, of the median of each: an interruption in one repetition moves nothing. Of a single pose, over its
+/// Over the poses, of the median of each: an interruption in one repetition moves nothing. For a single pose, over its
 /// repetitions. @param samples of each pose, one a repetition; neither may be empty
 Spread spreadOfPoses(const std::vector<std::vector<double>>& samples);
 

@@ -11,7 +11,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// What a shell makes of a variable that is not set must not pass for what was left out.
+/// A shell replaces an unset variable by an empty text, which must not pass for a missing option.
 void requireNoneEmpty(const CLI::App& app)
 {
   for (const CLI::Option* const option : app.get_options())

@@ -19,7 +19,7 @@ namespace pcl_bsh::cli {
 /// printed then. Throws UsageError.
 bool understood(CLI::App& app, const std::string& program, int argc, const char* const* argv);
 
-/// The same for arguments that some were taken out of. @param arguments from last to first, as CLI11 wants them
+/// Parses arguments of which some were taken out. @param arguments from last to first, as CLI11 wants them
 bool understood(CLI::App& app, const std::string& program, std::vector<std::string> arguments,
                 const std::function<void()>& check);
 

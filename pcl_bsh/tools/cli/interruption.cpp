@@ -52,7 +52,7 @@ void stopCleanlyOnSignals(const std::string& program)
 void openStandardStreams()
 {
   for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number) {
-    // What is written to a standard output that was closed must fail. open() gives the lowest number that is free.
+    // Writing to a standard output that was closed must fail.
     const int flags = number == STDOUT_FILENO ? O_RDONLY : O_RDWR;
     if (fcntl(number, F_GETFD) < 0) static_cast<void>(open("/dev/null", flags));
   }

@@ -26,7 +26,7 @@ void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle&
 void writeFlags(const std::filesystem::path& file, const io::Obstacle& obstacle, const std::vector<Verdict>& flags,
                 const io::CloudFacts& facts);
 
-/// What users should know of the obstacle, a line each, with the file's name.
+/// Warnings about the obstacle, a line each, with the file's name.
 std::vector<std::string> warningsOf(const io::Obstacle& obstacle, const std::filesystem::path& path);
 
 } // namespace pcl_bsh::cli

@@ -19,7 +19,7 @@ public:
 /// Writes each warning as a line on stderr.
 void warn(const char* name, const std::vector<std::string>& warnings);
 
-/// The same of remarks on a file, which do not name it.
+/// Prints remarks on a file, which do not name it.
 void warnOfFile(const char* name, const std::filesystem::path& file, const std::vector<std::string>& remarks);
 
 /// Runs `body` as a whole program, which stops cleanly when told to, and returns the exit code: what it returns; 1 when

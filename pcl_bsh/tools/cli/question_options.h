@@ -18,23 +18,23 @@ namespace pcl_bsh::cli {
 /// --name-of-an-option.
 std::string asOption(const std::string& name);
 
-/// Lines of at most `width` characters, but for longer words.
+/// Breaks a text into lines of at most `width` characters; longer words stay whole.
 std::string wrapped(const std::string& text, std::size_t width = 72);
 
 /// Adds the options with these names; what the question has is their default.
 void addQuestionOptions(CLI::App& app, Question& question, const std::vector<std::string>& names);
 
-/// Those of a kind of question, but for some that a program tells in its own way.
+/// Adds the options of a kind of question, except those in `without`, which a program adds in its own way.
 void addQuestionOptions(CLI::App& app, Question& question, QuestionKind kind, const std::vector<std::string>& without);
 
 /// @throws UsageError quoting the text when it is no accuracy
 Accuracy parseAccuracy(const std::string& text);
 
-/// What the core refuses, by the names that command lines have.
+/// Advice on the core's refusal, with the names of the command line.
 /// @param names_of_poses the options that give poses: of the first pose, then of those that follow
 std::string advice(const InvalidInput& error, const Question& question, const std::vector<std::string>& names_of_poses);
 
-/// What `build` returns. @throws std::invalid_argument for what the core refuses, with command lines' names
+/// Returns the result of `build`. @throws std::invalid_argument for refusals of the core, with command lines' names
 template <typename Build>
 decltype(auto) named(const Build& build, const Question& question = {},
                      const std::vector<std::string>& names_of_poses = {"--pose"})

@@ -19,7 +19,7 @@ public:
   /// @param replaces the option whose file this one may replace
   CommandFiles& writes(std::string option, const std::filesystem::path& file, std::string replaces = {});
 
-  /// The same in a program that prints its results to standard output. @throws UsageError for `-`
+  /// Names an output of a program that prints its results to standard output. @throws UsageError for `-`
   CommandFiles& writesFile(std::string option, const std::filesystem::path& file);
 
   /// The value of an option for a pose, where it names a file.

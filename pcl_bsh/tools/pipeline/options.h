@@ -24,7 +24,7 @@ struct PipelineOptions {
   bool progress = false;
   bool json = false; ///< what validation tells
 
-  /// What messages call the document.
+  /// The name of the document in messages.
   std::string name() const { return document == "-" ? "standard input" : document.string(); }
 };
 

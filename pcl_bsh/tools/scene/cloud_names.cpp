@@ -10,7 +10,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// Of long names the beginning: a file's name has 255 bytes at most.
+/// The beginning of a long name: a file's name has 255 bytes at most.
 std::string allowed(std::string text)
 {
   constexpr std::size_t longest = 100;

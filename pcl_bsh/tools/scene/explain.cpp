@@ -10,7 +10,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// What an effect is and what it needs.
+/// Explains an effect, and what it needs.
 const char* explanationOf(Effect effect)
 {
   switch (effect) {

@@ -18,14 +18,14 @@ std::size_t sumOf(const std::vector<FlaggedPart>& parts, std::size_t FlaggedPart
   return sum;
 }
 
-/// Of different objects, or of parts of one.
+/// Pairs of different objects, or of parts of one.
 std::size_t undecidedPairs(const SceneResult& result, bool of_one)
 {
   return static_cast<std::size_t>(std::count_if(result.undecided.begin(), result.undecided.end(),
                                                 [&](const PartPair& pair) { return (pair.a == pair.b) == of_one; }));
 }
 
-/// How many there are, and the smallest value, empty where there is none.
+/// Writes the count of items, and the smallest value, empty without items.
 template <class Item>
 void writeSmallest(std::ostream& out, const std::vector<Item>& items, double Item::*value)
 {

@@ -34,7 +34,8 @@ Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-
 
 Examples:
   pcl_bsh_view hall.ply --model robot.pcd --pose 1.5,2,0,0,0,1.57 --clearance 0.05 --unit m
-  pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose
+  pcl_bsh_view tunnel.pcd --model wagon.ply --trajectory path.txt --clearance 0.1 --color first_pose \
+    --title "The wagon's way" --screenshot way.png
   pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
   pcl_bsh_view machine.stl --model hall.las --pose 1.5,2,0,0,0,1.57 --clearance 0.05
   pcl_bsh_view hall.ply --model press.stl --pose 1.5,2,0,0,0,0 --solid --color distance --screenshot depth.png
@@ -277,6 +278,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(cli::number<unsigned>("give the number of beams"));
   app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
+  app.add_option("--title", options.title, "a first line above the counts")->type_name("TEXT");
   app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
   app.add_option("--screenshot", options.screenshot, "write a picture instead of opening a window; needs no display")
       ->type_name("FILE.png");

@@ -36,7 +36,7 @@ struct Cut {
 struct Options {
   std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
   std::optional<std::filesystem::path> scene; ///< in place of clouds
-  std::optional<std::filesystem::path> site;  ///< likewise
+  std::optional<std::filesystem::path> site;  ///< in place of clouds
   std::uint64_t budget = 10'000'000;          ///< points of a site that are drawn at once
   std::optional<std::filesystem::path> model;
   std::optional<std::filesystem::path> trajectory;
@@ -48,13 +48,14 @@ struct Options {
   unsigned step = 0; ///< of the trajectory or the scene
   bool voxels = false, cells = false, trace = false, closest = false, open_edges = false;
   unsigned beams = 0; ///< of the first cloud's scanner that are drawn
+  std::string title;  ///< first line of the caption
   std::string unit;   ///< of lengths, for titles
   std::optional<std::filesystem::path> screenshot;
   int width = 1280, height = 960;
   Camera camera;
   std::optional<std::filesystem::path> export_to;
   cli::ReadChoice reading;
-  cli::CommandFiles files; ///< but for a scene's clouds
+  cli::CommandFiles files; ///< except a scene's clouds
 };
 
 /// The options, checked one by one; none when only help was asked for. @throws cli::UsageError

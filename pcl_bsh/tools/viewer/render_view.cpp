@@ -115,7 +115,8 @@ void RenderView::writeTexts()
   vtkIdType left_out = 0;
   for (const auto& cloud : clouds_) left_out += cloud->leftOut();
   if (left_out > 0) title += "\nfar off and not drawn: " + counted(static_cast<std::uint64_t>(left_out), "point");
-  caption_.setTitle(title);
+  const std::string& given = content_.options().title;
+  caption_.setTitle(given.empty() ? title : given + "\n" + title);
   caption_.setLegend(legend());
 }
 
@@ -163,7 +164,7 @@ std::vector<LegendEntry> RenderView::legend() const
   return entries;
 }
 
-/// Of a rotated cloud the bounds of its rotated box, which may be larger.
+/// Bounds of a rotated cloud: those of its rotated box, which may be larger.
 vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
 {
   vtkBoundingBox bounds;

@@ -6,10 +6,10 @@
 #include <pcl_bsh/tools/viewer/actors/caption.h>
 #include <pcl_bsh/tools/viewer/actors/cloud_actor.h>
 #include <pcl_bsh/tools/viewer/actors/extras.h>
-#include <pcl_bsh/tools/viewer/actors/sight.h>
 #include <pcl_bsh/tools/viewer/actors/tile_actors.h>
 #include <pcl_bsh/tools/viewer/actors/value_bar.h>
 #include <pcl_bsh/tools/viewer/actors/value_histogram.h>
+#include <pcl_bsh/tools/viewer/actors/visibility.h>
 #include <pcl_bsh/tools/viewer/content/view_content.h>
 
 #include <vtkBoundingBox.h>
@@ -35,15 +35,15 @@ public:
   void setMoving(bool moving);
   void setNote(const std::string& text) { caption_.setNote(text); } ///< as for a picked point; empty: none
 
-  /// Of a site: draws the tiles that the camera sees nearest, one more with each call. @return whether anything changed
+  /// Draws the tiles of a site that the camera sees nearest, one more with each call.
   /// @throws files::FileError for a tile that cannot be read: it is left out from then on
   bool loadTile();
   std::string tilesText() const { return tiles_ ? tiles_->text() : std::string(); }
 
-  /// What the point or triangle says that is seen at a pixel; empty when there is none.
+  /// Describes the point or triangle that is seen at a pixel; empty where it sees none.
   std::string pick(int x, int y) const;
 
-  /// What a picked prop and the id of a point, or of a triangle's cell, say; empty when that is of no cloud.
+  /// Describes a picked prop and the id of a point, or of a triangle's cell; empty when it belongs to no cloud.
   std::string describe(const vtkProp* prop, vtkIdType id) const;
 
   /// Writes clouds with their arrays, spheres of a level, boxes and paths. @throws std::runtime_error naming the file

@@ -57,7 +57,7 @@ Point3 middleOf(const PointsView& view)
   return {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])};
 }
 
-/// What one way of asking PCL found at one pose.
+/// The answer of one way of asking PCL at one pose.
 struct Answer {
   std::vector<Verdict> flags; ///< per finite point of a; empty: not asked
   double distance = infinity;
@@ -169,7 +169,7 @@ public:
   }
 
 private:
-  /// What follows is measured of this way.
+  /// Begins the measurements of this way.
   void begin(const std::string& knob, const char* dial, double value)
   {
     std::array<char, 32> text;

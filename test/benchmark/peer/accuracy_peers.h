@@ -7,8 +7,8 @@
 namespace pcl_bsh::accuracy {
 
 /// FLANN's kd-tree exact and approximate, PCL's octree, and a kd-tree over clouds thinned by pcl::VoxelGrid, one thread
-/// as PCL has them; warm, like ours. What thinning and building a tree take is in `once`. Coordinates are float, as
-/// PCL's are, about the middle of each cloud.
+/// as PCL has them; warm, like ours. The column `once` has the time of thinning and of building a tree. Coordinates are
+/// float, as PCL's are, about the middle of each cloud.
 /// @throws std::invalid_argument a subject has faces
 std::vector<Measurement> measurePeers(const Subject& subject, unsigned repetitions, const Progress& progress);
 

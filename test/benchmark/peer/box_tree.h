@@ -44,9 +44,9 @@ private:
   std::vector<Node> nodes_;
 };
 
-/// Two trees, and the scratch memory of questions about them. Boxes of b are carried when they are first needed at a
-/// pose: the middle is moved, and the half edges become |R| times what they were (Cohen, Lin, Manocha, Ponamgi 1995
-/// refit them likewise).
+/// Two trees, and the scratch memory of questions about them. Boxes of b are carried when they are first needed at
+/// a pose. The middle is moved, and the half edges become |R| times as long (as in Cohen, Lin, Manocha, Ponamgi
+/// 1995).
 class BoxPair {
 public:
   BoxPair(const BoxTree& a, const BoxTree& b);

@@ -150,7 +150,7 @@ private:
     rtcPointQuery(scene_, &query, &context, visit, &search);
   }
 
-  /// What floats make of places is covered.
+  /// The padding covers the rounding of places to floats.
   float padded(double radius) const { return static_cast<float>(radius * (1 + 1e-6) + 1e-6 * largest_); }
 
   static bool visit(RTCPointQueryFunctionArguments* arguments)

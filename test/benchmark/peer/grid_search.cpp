@@ -61,7 +61,7 @@ private:
     return answer;
   }
 
-  /// Of several edges; outside of the time that is measured, for the first run is not counted.
+  /// The fastest of several edges; outside of the measured time, for the first run is not counted.
   std::unique_ptr<UniformGrid> fastest(const Points& centers, const std::vector<float>& radii) const
   {
     const float largest = *std::max_element(radii.begin(), radii.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one would write without this project: flags along a path by loops and a k-d tree.
+// Plain code without this project: flags along a path by loops and a k-d tree.
 #pragma once
 
 #include "../workload/points.h"
@@ -15,7 +15,7 @@ struct PathFlags {
 };
 
 /// The scan's points sorted into cells of 1 m. At each pose, the points of the cells near the model's box are brought
-/// into its frame and tested against the box, inflated by d; what is inside and not yet flagged asks a k-d tree
+/// into its frame and tested against the box, inflated by d. Points inside that are not yet flagged ask a k-d tree
 /// (nanoflann) over the model whether anything is within d.
 PathFlags flagsByBoxes(const Points& scan, const Points& model, const std::vector<RigidPose>& poses, double d);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a peer must be able to do to be raced: index one cloud, then say which query points have a neighbour within d.
+// The interface of a peer in a race: index one cloud, then say which query points have a neighbour within d.
 #pragma once
 
 #include "../workload/points.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a library must be able to do to be raced about a mesh. What one cannot do, it says by returning false.
+// The interface of a library in a race about a mesh. It returns false where it cannot answer.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ public:
   SurfacePeer(const SurfacePeer&) = delete;
   SurfacePeer& operator=(const SurfacePeer&) = delete;
 
-  /// Of `count` points x y z: out[i] = 1 where the surface is within d, else 0.
+  /// For `count` points x y z: out[i] = 1 where the surface is within d, else 0.
   virtual bool flag(const double*, std::size_t, double /*d*/, std::uint8_t*) { return false; }
 
   virtual bool distances(const double*, std::size_t, double*) { return false; }
@@ -31,7 +31,7 @@ public:
   /// out[i] = 1 where it is inside, else 0.
   virtual bool inside(const double*, std::size_t, std::uint8_t*) { return false; }
 
-  /// Of a mesh and itself moved by `shift`: whether any two places are within d; and their smallest distance.
+  /// For a mesh and itself moved by `shift`: whether any two places are within d; and their smallest distance.
   virtual bool any(const std::array<double, 3>& /*shift*/, double /*d*/, bool*) { return false; }
   virtual bool distance(const std::array<double, 3>& /*shift*/, double*) { return false; }
 
@@ -52,7 +52,7 @@ struct SurfaceLibrary {
   bool labels; ///< made for `inside` alone, or for all else
 };
 
-/// Those that were found when the build was configured.
+/// Libraries that were found when the build was configured.
 std::vector<SurfaceLibrary> surfaceLibraries();
 
 // A file each.

@@ -10,8 +10,8 @@
 namespace pcl_bsh::bench {
 
 /// plain: cells in the order x, y, z, visited in that order. crafted: cells run fastest along the cloud's shortest
-/// extent, so that the cells in reach are a few contiguous runs of points, and the run through the query's own cell
-/// comes first.
+/// extent, so that the cells in reach are a few contiguous runs of points. The run through the query's own cell comes
+/// first.
 enum class GridCraft { plain, crafted };
 
 struct GridTuning {

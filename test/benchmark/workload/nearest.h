@@ -13,7 +13,7 @@ public:
   explicit NearestDistance(const Points& points); ///< borrowed
   ~NearestDistance();
 
-  /// Distance to the nearest point; infinity when there is none.
+  /// Distance to the nearest point; infinity without points.
   double to(const Point& query) const;
 
   /// Distance to the nearest point that is not a duplicate of the query; infinity when none of sixteen is.

@@ -18,10 +18,10 @@ struct PathScene {
   double clearance = 0.0;
 };
 
-/// tunnel: a railway wagon in a tunnel (examples/tunnel): the model fills its box.
-/// tight: the same wagon in one long bend whose vault grazes its upper edges, points in random order.
-/// crane: a carriage in an aisle of a store, its mast and its jib above the racks, driving and slewing: its box is full
-/// of racks that it never nears. 15 M scan points, 1 M model points, 10,000 poses at scale 1.
+/// "tunnel": a railway wagon in a tunnel (examples/tunnel): the model fills its box. "tight": this wagon in one long
+/// bend whose vault grazes its upper edges, points in random order. "crane": a carriage in an aisle of a store, driving
+/// and slewing, its mast and its jib above the racks. Its box is full of racks that it never nears. 15 M scan points, 1
+/// M model points, 10,000 poses at scale 1.
 /// @param denser how many times as many poses over the same way
 /// @throws std::invalid_argument for another name
 PathScene pathScene(const std::string& name, double scale, double denser = 1.0);

@@ -63,7 +63,7 @@ struct RigidPose {
 /// Moves every point.
 Points moved(const Points& points, const RigidPose& pose);
 
-/// The same points in an order without any locality, as merged and tiled files have them.
+/// The points in an order without any locality, as in merged and tiled files.
 Points shuffled(Points points, std::uint64_t seed);
 
 /// Median distance to the nearest other point, over some 2,000 sampled points; exact duplicates do not count.

@@ -192,7 +192,7 @@ TEST(TightTunnel, ListsOfClashesAndSweptMotionAreAFewTimesTheWorkOfFlags)
   EXPECT_LT(work(), 3.3 * flags);
 }
 
-/// Where the model is dense along the way, a point collides with several of its points at each pose: one of them is
+/// Where the model is dense along the path, a point collides with several of its points at each pose. One of them is
 /// enough, and another pair is compared only where it may be the nearest.
 TEST(TightTunnel, FewPairsOfADenseModelAreComparedAtEachPose)
 {

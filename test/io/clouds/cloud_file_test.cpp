@@ -330,7 +330,7 @@ TEST(CloudFile, NamesOfColumnsAreForFilesOfColumnsAlone)
   }
 }
 
-/// What comes through a pipe is held in memory, LAS too, whatever the pipe is called.
+/// The content of a pipe is held in memory, LAS too, whatever the pipe is called.
 TEST(CloudFile, PipesMayBeginInAnyWayOfTheirFormat)
 {
   const TemporaryFolder folder;

@@ -136,7 +136,7 @@ TEST(LasNotes, RealFiles)
   EXPECT_EQ(systemIn("test1_4.las"), "NAD83(HARN) / New Mexico Central (ftUS)");
 }
 
-/// Of control characters those between words are blanks.
+/// Control characters between words become blanks.
 TEST(LasNotes, NamesAreALineOfAscii)
 {
   LasSample sample(4, 6);

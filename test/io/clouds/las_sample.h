@@ -79,7 +79,7 @@ struct LasSample {
     return bytes + content;
   }
 
-  /// Of one of the extra bytes. @param options which of no_data (1), scale (8), offset (16) count
+  /// The descriptor of one of the extra bytes. @param options which of no_data (1), scale (8), offset (16) count
   static std::string descriptor(std::uint8_t type, const std::string& name, std::uint8_t options = 0,
                                 double scale_by = 0, double move_by = 0, std::uint64_t no_data = 0)
   {

@@ -93,7 +93,7 @@ bool hasField(const pcl::PCLPointCloud2& cloud, const std::string& name)
   return std::any_of(cloud.fields.begin(), cloud.fields.end(), [&](const Field& field) { return field.name == name; });
 }
 
-/// What becomes of one value of a described field of a file: written, and read again.
+/// One value of a described field of a file: written, and read again.
 double keptValue(std::uint8_t type, const std::string& descriptor, std::size_t bytes, double value)
 {
   LasSample sample(4, 6, bytes);
@@ -433,7 +433,7 @@ TEST(Las, ResultsAreExtraBytesWithDescriptions)
           << "the point itself is as it was";
     }
     EXPECT_EQ(difference(rewritten(file), file), "");
-    // Taken away again, the file is as before, but for a description of what had none.
+    // Taken away again, the file is as before, except for a description of fields that had none.
     if (described) continue;
     const Las less = readText(written(las.cloud, &again.header));
     EXPECT_EQ(less.header.block.record_length, 37);
@@ -590,7 +590,7 @@ TEST(Las, HeadersThatLie)
   EXPECT_THAT(broken(243, std::uint32_t{0xffffffff}), testing::HasSubstr("truncated"));
   EXPECT_THAT(broken(sound.size() - 44, ~std::uint64_t{0}), testing::HasSubstr("truncated")) << "its length";
 
-  // What is between the header and the points may lie: the points are where they are.
+  // The header's count of records may be wrong: the points are where they are.
   std::string file = sound;
   put(file, 100, std::uint32_t{0xffffffff});
   EXPECT_EQ(readText(file).cloud.width, 4U);
@@ -743,7 +743,7 @@ TEST(Las, OnlyExtraBytesAreDescribed)
   }
 }
 
-/// What the type of a field of the file cannot say gets another type; what it can, none.
+/// A value beyond the type of the file's field gives the field another type; other values do not.
 TEST(Las, ValuesOfExtraBytesAreNeverChanged)
 {
   const double nan = std::nan("");
@@ -844,7 +844,7 @@ TEST(Las, ChannelsAreThree)
     EXPECT_EQ(las.header.block.format, 6) << left_out;
     for (const auto& [name, type] : two) EXPECT_TRUE(hasField(las.cloud, name)) << name;
   }
-  // Channels that do not fit leave the packed colour what it is; a field of its name that is none stays, too.
+  // Channels that do not fit leave the packed colour as it is; a field `rgb` of another type stays, too.
   const std::vector<std::pair<std::string, std::uint8_t>> channels = {
       {"red", Field::FLOAT32}, {"green", Field::FLOAT32}, {"blue", Field::FLOAT32}};
   auto fields = channels;
@@ -930,7 +930,7 @@ TEST(Las, DescriptionsComeAndGo)
   }
 }
 
-/// Of a file without points there are no counts to go by.
+/// A file without points has no counts to go by.
 TEST(Las, CountsForOldReaders)
 {
   for (const std::uint8_t format : {std::uint8_t{1}, std::uint8_t{6}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the items of LAZ become when they are compressed; see laz_coder.h.
+// Compressed items of LAZ; see laz_coder.h.
 #pragma once
 
 #include "laz_coder.h"
@@ -193,7 +193,7 @@ struct GpsTime11V1 : Item {
   Integers integers{32, 6};
 };
 
-/// Of GPSTIME11 version 2, and without the symbols of an unchanged time of POINT14.
+/// Times of GPSTIME11 version 2, and without the symbols of an unchanged time of POINT14.
 struct Times {
   Times(std::int64_t first, bool with_unchanged) : times{first}, skip(with_unchanged ? 0 : 1) {}
 

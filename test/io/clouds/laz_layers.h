@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the items of LAZ that lie in layers become when they are compressed; see laz_coder.h.
+// Compressed items of LAZ that lie in layers; see laz_coder.h.
 #pragma once
 
 #include "laz_items.h"

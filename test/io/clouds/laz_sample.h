@@ -33,7 +33,7 @@ inline void addScan(LasSample& sample, std::size_t count, unsigned seed = 1, uns
     if (++number > returns) {
       number = 1;
       returns = 1 + below(extended ? 15 : 5);
-      if (rarely()) number = below(extended ? 16 : 8); // which is none of the pulse
+      if (rarely()) number = below(extended ? 16 : 8); // beyond the returns of the pulse
       if (rarely()) line = below(3);
       double& time = times[line];
       if (below(3) > 0) time += 1e-5 * (rarely() ? below(2000) : 1) * (rarely() ? -3.0 : 1.0);

@@ -228,7 +228,7 @@ TEST(Pcd, ReadsAsciiWithPadding)
   EXPECT_EQ(valueOf(cloud, 1, "y"), 5);
   EXPECT_EQ(valueOf(cloud, 0, "z"), 3);
   EXPECT_EQ(defect("FIELDS x\nSIZE 4\nTYPE FF\nPOINTS 1\nDATA ascii\n1\n"),
-            "line 3 has the type 'FF', which is none of F I U");
+            "line 3 has the type 'FF', which must be F, I or U");
 }
 
 TEST(Pcd, RefusesAViewpointThatIsNotFinite)

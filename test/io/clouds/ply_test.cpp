@@ -369,7 +369,7 @@ TEST(Ply, RefusesHeadersThatMakeNoCloud)
   EXPECT_EQ(parse(ascii("element nothing 18446744073709551615\n" + xyz(1), "1 2 3\n")).width, 1U);
 }
 
-/// Of each type that a length or an index may have, none that would be cut or turned into another.
+/// Each type of a length or an index is tried: no number may be cut or turned into another.
 TEST(Ply, RefusesLengthsAndIndicesThatNoFileCanHave)
 {
   const auto list = [](const std::string& value) {
@@ -424,7 +424,7 @@ TEST(Ply, CamerasWithoutRowsOrValuesAreNone)
   }
 }
 
-/// To the byte, but for the comment that has it in full.
+/// Equal to the byte, except for the comment that has it in full.
 TEST(Ply, AViewpointWithoutATurnIsWrittenAsNotTurned)
 {
   const pcl::PCLPointCloud2 cloud = parse(ascii(xyz(1), "1 2 3\n"));

@@ -415,7 +415,7 @@ TEST(Ptx, RefusesEachIntensityThatMeansNothingSeen)
   EXPECT_NO_THROW(printedPtx(parsePts("1 2 3 0\n"))) << "elsewhere it may have any";
 }
 
-/// Of float32 no digits that it does not have, and only of numbers that have a place.
+/// Texts of float32 have no digits that it does not have, and only numbers with a place.
 TEST(Pts, WritesWhatFieldsHold)
 {
   pcl::PCLPointCloud2 cloud;

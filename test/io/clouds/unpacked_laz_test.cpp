@@ -473,7 +473,7 @@ TEST(UnpackedLaz, LayersInWhichNothingChangesAreLeftOut)
   }
 }
 
-/// Of a bit that was always the same the other stays possible.
+/// A bit that was always equal may still change.
 TEST(UnpackedLaz, LongTheSameAndThenNot)
 {
   LasSample sample(2, 0);

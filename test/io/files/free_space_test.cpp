@@ -78,7 +78,7 @@ TEST_F(FreeSpace, KnowsWhatAFolderTakes)
   EXPECT_EQ(spaceTaken(folder.path()), of_files) << "folders and links are no files";
 }
 
-/// Of sums beyond all numbers, too; and told in whole mebibytes.
+/// Sums beyond all numbers, too; and told in whole mebibytes.
 TEST_F(FreeSpace, CountsWithoutOverflow)
 {
   constexpr auto most = std::numeric_limits<std::uint64_t>::max();

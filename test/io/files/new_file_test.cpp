@@ -73,7 +73,7 @@ TEST(NewFile, IsGoneUnlessItIsKept)
   EXPECT_EQ(contentOf(folder / "kept"), "HEAD, and more.");
 }
 
-/// What has the name of a file that is gone is nobody's unfinished file.
+/// A file with the name of a file that is gone is nobody's unfinished file.
 TEST(NewFile, IsForgottenWhenItIsGone)
 {
   const TemporaryFolder folder;
@@ -95,7 +95,7 @@ TEST(NewFile, IsRemovedWhenTheProgramIsToldToStop)
   EXPECT_EQ(folder.files(), 0U);
 }
 
-/// What is no interruption is not tried again.
+/// An error other than an interruption is not tried again.
 TEST(NewFile, TellsThatTheDiskIsFull)
 {
   const TemporaryFolder folder;

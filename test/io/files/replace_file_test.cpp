@@ -362,7 +362,7 @@ TEST(ReplaceFile, WritesToStandardOutputWhereAsked)
   EXPECT_FALSE(fs::exists("-"));
 }
 
-/// Of a thousand names beside the file.
+/// A thousand names beside the file are tried.
 TEST(ReplaceFile, TakesAFreeNameIfThereIsOne)
 {
   const TemporaryFolder folder;

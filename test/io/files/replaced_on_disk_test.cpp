@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a loss of power leaves: the content is on the disk before it gets its name, and the name before the call
+// The state after a loss of power: the content is on the disk before it gets its name, and the name before the call
 // returns.
 #include "support/disk_calls.h"
 #include "support/temporary_folder.h"
@@ -54,7 +54,7 @@ TEST_F(ReplacedOnDisk, ContentThenNameThenFolder)
   EXPECT_THAT(disk.calls, ElementsAre("write out.part0", "fsync out.part0", "rename out.part0 out", fsync_folder));
 }
 
-/// What is larger than the buffer is written at once, after what is in it.
+/// Content larger than the buffer is written at once, after the buffer's content.
 TEST_F(ReplacedOnDisk, LargeContentInOneCall)
 {
   test::DiskCalls disk;

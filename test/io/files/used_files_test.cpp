@@ -105,7 +105,7 @@ TEST(UsedFiles, APipeIsNotWrittenToByItsReader)
   EXPECT_EQ(clashOf({out("B", pipe), in("A", pipe)}), "B: is the file of A, which is read: choose another name");
 }
 
-/// Of which nothing is known but its name.
+/// Files of which only the name is known.
 TEST(UsedFiles, FoldersThatLeadBackToThemselvesAreTwoWhereTheyHaveTwoNames)
 {
   const TemporaryFolder folder;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is read of a document, and the place, the fault and the remedy of what is refused.
+// Values that are read of a document, and the place, the fault and the remedy of a refusal.
 #include <pcl_bsh/io/json/json_reader.h>
 
 #include <gmock/gmock.h>

@@ -24,7 +24,7 @@ TEST(NearestName, IsFoundWithAndWithoutPrefix)
   EXPECT_EQ(nearestName(std::string(100000, 'x') + "pcd", valid), "filters.voxel_grid") << "by its beginning";
   EXPECT_EQ(nearestName("x", {}), "");
   EXPECT_EQ(suggestion("crop", valid), "did you mean 'filters.crop_box'?");
-  EXPECT_EQ(suggestion("crop", {}), "there is none to name");
+  EXPECT_EQ(suggestion("crop", {}), "no name exists");
 }
 
 TEST(NearestName, TakesTheFirstOfThoseAsNear)

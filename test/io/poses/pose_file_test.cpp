@@ -79,7 +79,7 @@ TEST_F(PoseFile, NamesOfColumnsDecide)
   expectQuarterTurn(read("X;Y;Z;QW;QX;QY;QZ\n0;0;0;1;0;0;0\n1;2;3;" + half + ";0;0;" + half + "\n"));
   expectQuarterTurn(
       read("#\n# \n# time qw qx qy qz tx ty tz\n#\n0 1 0 0 0 0 0 0\n1 " + half + " 0 0 " + half + " 1 2 3\n"));
-  // Of another number of columns than the poses: a comment like any other.
+  // A line with another number of columns than the poses is a comment.
   expectQuarterTurn(read("# made of tx ty tz qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n"));
   expectRefused("timestamp x y z\n0 1 2 3\n", "line 1 names columns, and not one each of tx ty tz qx qy qz qw");
   expectRefused("tx ty tz qx qy qz qw tx\n", "line 1 names columns, and not one each");

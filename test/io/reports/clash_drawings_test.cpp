@@ -188,7 +188,7 @@ TEST_F(ClashDrawings, ApproachesLieAtTheirPoses)
   EXPECT_EQ(with(tagsOf(other, "circle"), "class", "closest").at(0)["cx"], 282);
 }
 
-/// Of many points some are drawn, evenly picked.
+/// Some of many points are drawn, evenly picked.
 TEST_F(ClashDrawings, AtMostSoManyDots)
 {
   std::vector<std::array<double, 2>> stops;

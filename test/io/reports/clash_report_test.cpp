@@ -645,7 +645,7 @@ TEST_F(ClashReports, TellWhatASurfaceIs)
   EXPECT_THAT(clashCsv(list), HasSubstr(",obstacle_triangle,"));
 }
 
-/// Whatever there is none of is null.
+/// A missing value is null.
 TEST_F(ClashReports, TellWhereNothingWas)
 {
   ClashReport list = twoClashes();
@@ -678,7 +678,7 @@ TEST_F(ClashReports, PagesHaveNoControlCharacters)
   EXPECT_TRUE(has(page, "a\xef\xbf\xbd \xef\xbf\xbd~.ply"));
 }
 
-/// What is not there any more, and what is not known, is no number of the page.
+/// Clashes that are gone, and unknown values, are no number of the page.
 TEST_F(ClashReports, PagesTellWhatIsThere)
 {
   ClashReport list = twoClashes();

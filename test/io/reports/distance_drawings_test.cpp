@@ -43,7 +43,7 @@ protected:
   DistanceQuestion question;
 };
 
-/// Of a share of the scale's end: pale grey, orange, red, deep red.
+/// The colour at a share of the scale's end: pale grey, orange, red, deep red.
 void expectShade(const std::string& text, double share)
 {
   const double stops[4][3] = {{176, 190, 205}, {244, 196, 80}, {224, 98, 36}, {140, 8, 38}};
@@ -183,7 +183,7 @@ TEST_F(DistanceDrawings, APlaceIsAsLargeAsItsLongestSide)
       testing::Value(table, HasSubstr("<tr><td>1</td><td>0.000, 0.000, 9.000</td><td>9</td><td>5</td><td>2</td>")));
 }
 
-/// Of 23 places twenty are in the table, and ten in the drawing.
+/// Twenty of 23 places are in the table, and ten in the drawing.
 TEST_F(DistanceDrawings, TwentyPlacesAreListed)
 {
   for (int i = 0; i < 400; ++i) add(4.0 * i, 0, i % 10 == 0 && i < 230 ? 9.0 - 0.0125 * i : 0.125);

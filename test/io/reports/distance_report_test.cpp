@@ -34,7 +34,7 @@ protected:
     question.obstacle = "before.ply";
   }
 
-  /// What these files say of each other. @param use called with the report
+  /// The report on these files. @param use called with the report
   template <typename Use>
   void with(const Use& use) const
   {

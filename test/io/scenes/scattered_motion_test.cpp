@@ -103,7 +103,7 @@ TEST(ScatteredMotions, AreThoseOfTheirSeed)
   }
 }
 
-/// Of the C++ standard's engine, by six numbers each: a scene is the same with any library and compiler.
+/// The numbers of the C++ standard's engine, six each: a scene is equal with any library and compiler.
 TEST(ScatteredMotions, AreTheSameEverywhere)
 {
   ScatteredMotions motions(kBox, 5);

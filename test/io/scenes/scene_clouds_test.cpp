@@ -130,7 +130,7 @@ TEST(ShapePoints, OfAnOpenCylinderHasNoLids)
   EXPECT_EQ(within, 2u * (1 + 7 + 13 + 19)) << "rings of a quarter's radius more each, in both lids";
 }
 
-/// Of whatever is larger they would be too many to be made.
+/// A larger shape would have too many points to be made.
 TEST(ShapePoints, AreAsManyAsToldBefore)
 {
   constexpr double pi = 3.14159265358979323846;

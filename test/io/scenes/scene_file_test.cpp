@@ -336,7 +336,7 @@ TEST(SceneFile, ShiftsLoseNothing)
           << is.name;
     }
   }
-  // What float32 can hold stays float32.
+  // Numbers that float32 can hold stay float32.
   EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 2)", world).scalar, Scalar::float32);
   EXPECT_EQ(placed(folder, "local.pcd", R"("scale": 1)", world).scalar, Scalar::float32);
   EXPECT_EQ(placed(folder, "local.pcd", R"("shift": [1e39, 0, 0])", world).point(0)[0], 1e39)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene's file says, in the scene that is made of it.
+// The content of a scene's file, in the scene that is made of it.
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
@@ -62,7 +62,7 @@ TEST(SceneWorld, WideCoordinatesKeepTheRest)
   EXPECT_EQ(world.points(), 23u) << "finite ones";
 }
 
-/// What floats hold stays in floats.
+/// Numbers that floats hold stay in floats.
 TEST(SceneWorld, NarrowCoordinatesAreScaledEach)
 {
   const TemporaryFolder folder;
@@ -249,7 +249,7 @@ TEST(SceneWorld, NamesTheCloudOfWhatIsNoSurface)
               ThrowsMessage<JsonError>(HasSubstr("scene.json: clouds.a: triangle 0 is too large")));
 }
 
-/// What its reader took for granted is told with the file's name.
+/// Assumptions of its reader are told with the file's name.
 TEST(SceneWorld, TellsWhatIsToBeKnownOfAFile)
 {
   const TemporaryFolder folder;

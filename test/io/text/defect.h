@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 using files::contentOf;
 using files::TemporaryFolder;
 
-/// What the FormatError that `parse` throws says; fails the test when it throws none.
+/// The text of the FormatError that `parse` throws; fails the test when it throws none.
 template <typename Parse>
 std::string defectOf(Parse&& parse)
 {

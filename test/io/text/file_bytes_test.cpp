@@ -74,7 +74,7 @@ TEST(FileBytes, OfAFileThatIsAsLongAsMayBeReadAreNotKnownToBeAll)
   EXPECT_TRUE(FileBytes(file, 5).isWhole());
 }
 
-/// What FileBytes and openBytes() refuse, each with what to do.
+/// Refusals of FileBytes and openBytes(), each with its remedy.
 TEST(FileBytes, AreRefusedWithReasons)
 {
   const TemporaryFolder folder;

@@ -54,7 +54,7 @@ std::vector<DirectionCell> holesOf(const ScanBeams& scan, double angle)
   return holes;
 }
 
-bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& ball)
+bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const BallView& ball)
 {
   if (!ball.isMeasured() || (ball.is_around && !holes.empty())) return false;
   if (!ball.is_around) {
@@ -72,7 +72,7 @@ bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double
   return beams >= 2 && !open;
 }
 
-bool isDark(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const Sight& place)
+bool isDark(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double angle, const BallView& place)
 {
   if (!place.isMeasured()) return true;
   bool passed = false;
@@ -132,7 +132,7 @@ UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
     if (!isFinite(view.point(record)) || verdicts[record] != Verdict::free) continue;
-    const RecordSight sight(model, request.clearance, sees_ball);
+    const RecordSeen sight(model, request.clearance, sees_ball);
     if (sight(record)) continue;
     verdicts[record] = Verdict::unseen;
     ++result.unseen;

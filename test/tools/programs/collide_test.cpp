@@ -359,7 +359,7 @@ TEST_F(Collide, PrintedMatricesStandForTheirNearestRotations)
     EXPECT_THAT(done.err, HasSubstr("the nearest rotation is used")) << pose;
     EXPECT_THAT(report()["warnings"].dump(), HasSubstr("the nearest rotation is used")) << pose;
   }
-  // What is said of an earlier list stands beside it.
+  // Notes on an earlier list stand beside it.
   folder.write("other.xyz", "1 0 0\n");
   const std::string along = " {out.pcd} --clearance 1 --trajectory {poses.txt} --clashes {a.json} ";
   expectDone("{input.ply} {point.xyz}" + along);
@@ -743,7 +743,7 @@ TEST_F(CollideAlong, ListsClashesAndComparesThem)
   EXPECT_THAT(html, HasSubstr("id=\"C1_0_0\""));
   EXPECT_EQ(html.find("http"), std::string::npos) << "needs nothing from elsewhere";
 
-  // The same again, then without the first place.
+  // Once more, then without the first place.
   expectDone(job + lists + "--cluster-distance 0.5 --previous {a.json}");
   for (const Json& clash : clashes("a.json")) EXPECT_EQ(clash["status"], "persisting");
   folder.write("poses.txt", "0 8 0.1 0 0 0 0 1\n0 9.5 0.1 0 0 0 0 1\n");
@@ -787,7 +787,7 @@ TEST_F(CollideAlong, ClashesAreResolvedOnlyWhereTheRunLooked)
   EXPECT_THAT(io::contentOf(folder / "b.html"), HasSubstr("<span class=\"badge not_scanned\">not scanned</span>"));
   EXPECT_THAT(io::contentOf(folder / "b.csv"), HasSubstr("\nC4_0_0,not_scanned,3,"));
 
-  // What was not scanned is not forgotten, as long as nobody looks.
+  // A place that was not scanned is not forgotten, as long as nobody looks.
   expectDone("{half.txt}" + options + "--clashes {b.json} --previous {b.json}");
   EXPECT_EQ(statusOf("C4_0_0"), "not_scanned");
   expectDone("{wall.txt}" + options + "--clashes {b.json} --previous {b.json}");

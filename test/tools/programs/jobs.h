@@ -41,7 +41,7 @@ inline std::vector<Job> allJobs()
   return jobs;
 }
 
-/// What all jobs read.
+/// The input of all jobs.
 inline void prepareJobs(const files::TemporaryFolder& folder)
 {
   std::string scan = "x y z\n", robot = scan;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users copy from runs as it stands: the README's commands, in their order, and each sample scene and pipeline.
+// Texts that users copy run as they stand: the README's commands, in their order, and each sample scene and pipeline.
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 const fs::path source = PCL_BSH_SOURCE_DIR;
 
-/// A clone after the README's first command: its samples, the programs, and the scans of the demonstration.
+/// A clone after the README's first command: its samples, the programs, and the scans of the demonstration. Two files
+/// stand for a reader's own.
 class Samples : public testing::Test {
 protected:
   Samples()
@@ -27,6 +28,23 @@ protected:
     fs::create_directory(clone / "build/release");
     fs::create_directory_symlink(PCL_BSH_PROGRAM_DIR, clone / "build/release/bin");
     if (haveScans()) fs::create_directory_symlink(source / "build/demo", clone / "build/demo");
+    fs::copy_file(source / "test/fuzz/corpus/laz/f1_v2_chunks", clone / "hall.laz");
+    clone.write("machine.stl", tetrahedron());
+  }
+
+  static std::string tetrahedron()
+  {
+    constexpr const char* faces[4][3] = {{"0 0 0", "0 1 0", "1 0 0"},
+                                         {"0 0 0", "1 0 0", "0 0 1"},
+                                         {"0 0 0", "0 0 1", "0 1 0"},
+                                         {"1 0 0", "0 1 0", "0 0 1"}};
+    std::string stl = "solid machine\n";
+    for (const auto& corners : faces) {
+      stl += "facet normal 0 0 0\nouter loop\n";
+      for (const char* const corner : corners) stl += std::string("vertex ") + corner + '\n';
+      stl += "endloop\nendfacet\n";
+    }
+    return stl + "endsolid machine\n";
   }
 
   static bool haveScans()
@@ -80,12 +98,12 @@ TEST_P(Documents, CommandsRunInTheirOrder)
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Documents,
-                         testing::Values("README.md", "filters/pipeline/PIPELINES.md", "pcl_bsh/io/FORMATS.md",
-                                         "pcl_bsh/query/ACCURACY.md", "pcl_bsh/scene/SCENES.md",
-                                         "pcl_bsh/site/SITES.md", "pcl_bsh/tools/viewer/VIEWER.md",
-                                         "pcl_bsh/trajectory/PATHS.md"));
+                         testing::Values("README.md", "YOU_ASKED.md", "filters/pipeline/PIPELINES.md",
+                                         "pcl_bsh/io/FORMATS.md", "pcl_bsh/query/ACCURACY.md",
+                                         "pcl_bsh/scene/SCENES.md", "pcl_bsh/site/SITES.md",
+                                         "pcl_bsh/tools/viewer/VIEWER.md", "pcl_bsh/trajectory/PATHS.md"));
 
-/// What one document points at is there.
+/// Links of documents lead to files.
 TEST_F(Samples, LinksOfDocumentsLead)
 {
   const auto skipped = [](const fs::path& path) {

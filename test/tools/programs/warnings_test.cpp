@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one program warns of, all do.
+// Every program gives the warnings of one.
 #include "program_run.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What is asked, of each program in its own way.
+/// A question, asked of each program in its own way.
 struct Asked {
   std::string input, obstacle;
   std::string clearance;
@@ -80,7 +80,7 @@ protected:
     return done("pcl_bsh_pipeline", "pipeline.json");
   }
 
-  /// Of each program, by its name.
+  /// The warnings of each program, by its name.
   std::map<std::string, std::string> told(const Asked& asked) const
   {
     const std::string how = " --clearance " + asked.clearance + " --pose " + asked.pose;

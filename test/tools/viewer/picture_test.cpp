@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pictures show, pixel by pixel; without a display.
+// Pictures of the viewer, pixel by pixel; without a display.
 #include "pixels.h"
 #include "support/verdicts.h"
 
@@ -29,7 +29,7 @@ class Picture : public ViewTest {
 protected:
   Picture() { unsetenv("DISPLAY"); }
 
-  /// What a program run draws.
+  /// The picture of a program's run.
   Pixels drawn(const std::string& arguments) const
   {
     const Outcome done = run("pcl_bsh_view", arguments + " --size 400x300 --screenshot " + (folder / "p.png").string());
@@ -76,6 +76,23 @@ TEST_F(Picture, MarksWhatCollidesWhereItIs)
   OffscreenView apart(touching);
   ASSERT_EQ(apart.view->collisions().colliding, 0u);
   EXPECT_EQ(apart.draw().countNear(colliding_color, x, y, 40), 0u);
+}
+
+TEST_F(Picture, ATitleStandsAboveTheCounts)
+{
+  const auto rows_of_text = [this](const std::string& title) {
+    Options titled = options();
+    titled.title = title;
+    const Pixels pixels = OffscreenView(titled).draw();
+    int lowest = pixels.height;
+    for (int y = 0; y < pixels.height; ++y)
+      for (int x = 0; x < pixels.width / 8; ++x)
+        if (y < lowest && pixels.at(x, y) == text_color) lowest = y;
+    return pixels.height - lowest;
+  };
+  const int counts = rows_of_text("");
+  EXPECT_GT(counts, 5);
+  EXPECT_GT(rows_of_text("A ball on a floor"), counts + 10);
 }
 
 TEST_F(Picture, DistancesHaveColoursUpToTheRangeAndCollisionsTheirOwn)

@@ -46,7 +46,7 @@ struct Pixels {
     return {bytes[i], bytes[i + 1], bytes[i + 2]};
   }
 
-  /// Of a square around (x, y): pixels for which ask(x, y) holds.
+  /// Counts pixels of a square around (x, y) for which ask(x, y) holds.
   template <class Ask>
   std::size_t countIf(int x, int y, int reach, const Ask& ask) const
   {

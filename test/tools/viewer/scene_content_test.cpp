@@ -43,7 +43,7 @@ protected:
     return made;
   }
 
-  /// What collides at a step, by the query for two clouds.
+  /// Colliding points at a step, by the query for two clouds.
   static std::size_t collidingAt(const ViewContent& content, std::size_t step, double clearance)
   {
     FlagsRequest request;

@@ -165,7 +165,7 @@ TEST_F(SiteView, AWindowLoadsTilesWhileNothingMovesAndOutlivesADamagedOne)
   EXPECT_THAT(viewer.renderView().tilesText(), HasSubstr(" of 1 tile"));
 }
 
-/// What is wrong with the arguments; "nothing" if nothing is.
+/// The complaint about the arguments; "nothing" if nothing is.
 std::string complaintOf(std::vector<std::string> arguments)
 {
   arguments.insert(arguments.begin(), program);

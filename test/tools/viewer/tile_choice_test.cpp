@@ -126,7 +126,7 @@ TEST(TileChoice, HoldsItsPromisesOnRandomWalks)
         ASSERT_LE(choice.heldPoints(), budget);
       }
       ASSERT_EQ(choice.held(), choice.wanted());
-      // A choice without a past takes the same, but for what was held already: this eye alone decides.
+      // A choice without a past takes these, except for tiles that were held: this eye alone decides.
       TileChoice fresh(site, budget);
       const std::vector<std::size_t> first = settle(fresh, eye);
       const auto distance = [&](std::size_t tile) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for oneTBB under ThreadSanitizer. That sees nothing of what goes on inside libtbb, so that every piece of
-// work handed from thread to thread would look like a race; std::thread it understands.
+// Stands in for oneTBB under ThreadSanitizer. ThreadSanitizer does not see inside libtbb, so that every piece of work
+// handed from thread to thread would look like a race; it understands std::thread.
 #pragma once
 
 namespace tbb {

@@ -44,8 +44,8 @@ private:
   Cell most_ = {0, 0, 0};
 };
 
-/// The finite points by cell. Of a cloud of many points this is the largest part of what a stage needs beside the
-/// cloud, so that its entries are as narrow as the number of cells allows.
+/// The finite points by cell. For a cloud of many points this is the largest part of a stage's memory beside the cloud,
+/// so its entries are as narrow as the number of cells allows.
 class SortedCells {
 public:
   /// @throws OptionError when the cells are too many for 64 bits

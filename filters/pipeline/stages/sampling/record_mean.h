@@ -10,8 +10,8 @@
 namespace pcl_bsh::pipeline {
 
 /// Floating-point fields: the mean, computed in double relative to the first value, so that georeferenced coordinates
-/// keep their digits. rgb and rgba: the mean of each channel. normal_x, normal_y, normal_z: the mean, scaled to
-/// length 1. Integers, which may be labels: the value that occurs most often, the least of several.
+/// keep their digits. Fields rgb and rgba: the mean of each channel. Fields normal_x, normal_y, normal_z: the mean,
+/// scaled to length 1. Integers, which may be labels: the value that occurs most often, the least of several.
 class RecordMeans {
 public:
   /// @param cloud must outlive this

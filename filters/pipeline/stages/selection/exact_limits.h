@@ -55,8 +55,8 @@ std::optional<T> inward(const std::optional<long double>& limit, bool up)
 
 } // namespace detail
 
-/// Nothing when no finite T lies within the limits. As PCL has it, a limit of float values is the nearest float, so
-/// that 0.3 is the same number on both sides; of all other types, the values are those within the limits as written.
+/// Nothing when no finite T lies within the limits. As in PCL, a limit of float values is the nearest float, so that
+/// 0.3 is one number on both sides. Values of all other types lie within the limits as written.
 template <typename T>
 std::optional<RangeOf<T>> rangeOf(const Limits& limits)
 {

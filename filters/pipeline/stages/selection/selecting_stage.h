@@ -17,7 +17,7 @@ struct SelectionOptions {
   std::optional<double> user_filter_value;
 
 protected:
-  /// What a removed point's coordinates become in an organised cloud.
+  /// Coordinate of removed points in an organised cloud.
   float filterValue() const;
 };
 
@@ -29,8 +29,8 @@ protected:
   /// The triangles that pass, and the vertices that they use. @throws OptionError for `keep_organized`
   StageCloudPtr keepFaces(const StageCloud& mesh, std::vector<std::uint8_t> passes) const;
 
-  /// One per record: 1 for what the stage lets pass when `negative` is false. What it says of points that are not
-  /// finite does not count.
+  /// One per record: 1 for what the stage lets pass when `negative` is false. Entries of points that are not finite do
+  /// not count.
   virtual std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) = 0;
 };
 

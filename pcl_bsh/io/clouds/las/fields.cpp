@@ -13,7 +13,7 @@ namespace {
 
 using Type = pcl::PCLPointField;
 
-/// What a point format has (sections 2.5.1 to 2.5.11).
+/// The parts of a point format (sections 2.5.1 to 2.5.11).
 struct FormatParts {
   std::size_t bytes;
   bool extended; ///< formats 6 to 10: more returns, classes and angles

@@ -59,8 +59,8 @@ struct LasField {
 std::vector<LasField> lasFields(std::uint8_t format, const std::array<double, 3>& scale,
                                 const std::array<double, 3>& offset);
 
-/// Appends the extra bytes of a record: those that `descriptors` (192 bytes each) tell of, under their names, with
-/// blanks and what is no ASCII as '_', as `extra_NAME`, `extra_NAME_2` ... where a name is taken; the rest as a field
+/// Appends the extra bytes of a record. Bytes that `descriptors` (192 bytes each) describe become fields `extra_NAME`,
+/// or `extra_NAME_2` ... where a name is taken; blanks and letters outside ASCII become '_'. The rest becomes a field
 /// `extra_bytes` of bytes. A field with a scale, an offset or a value that means none is float64, others have their own
 /// type. Descriptors of more bytes than there are count for nothing (section 2.6.5 of the specification).
 /// @throws FormatError when a scale or an offset is no number, or a scale is 0
@@ -84,7 +84,7 @@ void decodeLas(const LasField& field, const char* records, std::size_t record_le
 bool encodeLas(const LasField& field, const std::uint8_t* in, std::uint8_t datatype, std::size_t step,
                std::size_t points, char* records, std::size_t record_length);
 
-/// The same from a packed rgb or rgba into red, green and blue.
+/// Encodes a packed rgb or rgba as red, green and blue.
 void encodeLasColour(const std::uint8_t* in, std::size_t step, std::size_t points, std::size_t red_at, char* records,
                      std::size_t record_length);
 

@@ -68,7 +68,7 @@ void requireInside(const LasBlock& block, std::uint64_t file_bytes)
   }
 }
 
-/// That a record of waveforms, which the header points to, is there.
+/// Requires the record of waveforms that the header points to.
 void requireWaveforms(ByteSource& file, const LasBlock& block)
 {
   const bool inside = (block.global_encoding & internal_waveforms) != 0 && block.waveforms_at != 0;

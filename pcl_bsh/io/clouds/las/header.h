@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a LAS file says beside its points: LAS specification 1.4 R15 (ASPRS), and 1.0 to 1.3 before it.
+// The part of a LAS file beside its points: LAS specification 1.4 R15 (ASPRS), and 1.0 to 1.3 before it.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/stored_number.h>
@@ -62,8 +62,8 @@ void setLasNumber(std::string& bytes, std::size_t at, T value)
 }
 
 /// Reads the public header block and checks all of it that says where something is.
-/// @throws FormatError when the points or the records behind them are not in the file, or scales are no numbers. Of a
-///   compressed file neither the points nor what is behind them is looked for
+/// @throws FormatError when the points or the records behind them are not in the file, or scales are no numbers. In a
+///   compressed file it looks neither for the points nor for the records behind them
 LasBlock readLasBlock(ByteSource& file);
 
 /// A variable length record with its head of 54 bytes.
@@ -75,8 +75,8 @@ struct LasRecord {
   std::string_view content() const { return std::string_view(bytes).substr(las_record_head); }
 };
 
-/// The records between the public header block and the points: as many as the block counts and as have room there. What
-/// is left, as the signature of LAS 1.0, is padding.
+/// The records between the public header block and the points: as many as the block counts and as have room there. The
+/// rest, such as the signature of LAS 1.0, is padding.
 struct LasRecords {
   std::vector<LasRecord> records;
   std::string padding;

@@ -14,7 +14,7 @@ constexpr std::string_view projection = "LASF_Projection";
 constexpr std::uint16_t wkt_id = 2112, keys_id = 34735, texts_id = 34737;
 constexpr std::uint16_t is_wkt = 16; ///< of the global encoding
 
-/// The content of the record of the coordinate system with that number; empty where there is none.
+/// The content of the record of the coordinate system with that number; empty where the file has no such record.
 std::string projectionRecord(const LasHeader& header, std::uint16_t id)
 {
   for (const LasRecord& record : lasRecordsOf(header.before_points, header.block).records)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users should know of a LAS file beside its points.
+// Notes for users about a LAS file, beside its points.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/header.h>
@@ -12,7 +12,7 @@ namespace pcl_bsh::io {
 
 /// The name of the coordinate system: that of a WKT record, or the citations and EPSG codes of GeoTIFF's keys, which
 /// the header's global encoding chooses between where both are there. In ASCII, with '?' for other letters. Empty where
-/// there is none, or it is damaged.
+/// it is missing or damaged.
 std::string coordinateSystemOf(const LasHeader& header);
 inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& header) ///< null: empty
 {

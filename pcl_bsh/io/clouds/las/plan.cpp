@@ -139,7 +139,7 @@ void chooseFormat(const LasPoints& points, std::uint8_t given, const std::vector
   }
 }
 
-/// What our own fields mean, in at most 32 letters.
+/// The meaning of our own fields, in at most 32 letters.
 std::string descriptionOf(const std::string& name)
 {
   constexpr std::array<std::array<const char*, 2>, 4> known = {{

@@ -19,10 +19,10 @@
 
 namespace pcl_bsh::io {
 
-/// LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, as the LAS that was compressed (unpacked_laz.h). What the header
-/// says of places and lengths is checked against the file's size before anything is read there. Counts of records that
-/// have no room before the points are taken for what has room, and bounds are not looked at; the points themselves must
-/// all be there.
+/// LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, as the LAS that was compressed (unpacked_laz.h). Places and lengths
+/// in the header are checked against the file's size before anything is read there. Counts of records that have no room
+/// before the points are taken for what has room, and bounds are not looked at; the points themselves must all be
+/// there.
 class LasReader {
 public:
   /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
@@ -50,7 +50,7 @@ public:
   /// @return how many; 0 at the end
   std::size_t read(pcl::PCLPointCloud2& batch, std::size_t most);
 
-  /// The same into records of cloudHeader()'s layout, for which there is room.
+  /// Reads into records of cloudHeader()'s layout; @param records has room for `most`.
   std::size_t read(std::uint8_t* records, std::size_t most);
 
   /// All points, when none has been read. @throws FormatError beyond max_points

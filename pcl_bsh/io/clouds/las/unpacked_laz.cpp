@@ -26,7 +26,7 @@ bool isLazRecord(const LasRecord& record)
   return record.user() == laz::laz_user && record.id() == laz::laz_id;
 }
 
-/// What says where the parts of a COPC file are, which are there in no other one.
+/// Whether a record tells where the parts of a COPC file are; no other file has such records.
 bool isOfCopc(std::string_view user, std::uint16_t id)
 {
   constexpr std::uint16_t info = 1, hierarchy = 1000;
@@ -103,7 +103,7 @@ private:
     std::uint64_t at, end;
   };
 
-  /// What lies behind the points lies behind them unpacked.
+  /// Records behind the points stay behind them, unpacked.
   void keepBehind(const LasBlock& block, std::uint64_t end)
   {
     const bool extended = block.extended_records > 0 && block.extended_at >= block.points_at;

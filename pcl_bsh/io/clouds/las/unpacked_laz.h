@@ -10,11 +10,11 @@
 
 namespace pcl_bsh::io {
 
-/// The file itself when its points are not compressed. Otherwise all that is in it, with the places of an uncompressed
-/// file in its header, but for the records of the compression and of COPC's parts. Points are unpacked where they are
-/// read: some chunks at once, on as many threads, or a piece of a large one. So reading from front to back is fast, and
-/// takes memory for a chunk per thread, compressed, and at most 4 MB of its points; where chunks have no table, for all
-/// that is compressed.
+/// The file itself when its points are not compressed. Otherwise it has all contents of the file, with the places of an
+/// uncompressed file in its header. It leaves out the records of the compression and of COPC's parts. Points are
+/// unpacked where they are read: some chunks at once, on as many threads, or a piece of a large one. So reading from
+/// front to back is fast, and takes memory for a chunk per thread, compressed, and at most 4 MB of its points; where
+/// chunks have no table, for all that is compressed.
 /// @param threads 0: as many as the caller's oneTBB arena has
 /// @param more null, or gets how many points the chunks have at least that the header does not count
 /// @throws FormatError as readLasBlock(); for a compression that is not read; for a table of chunks that the file has

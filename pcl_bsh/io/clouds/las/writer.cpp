@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_returns = 15;
 
-/// What a header says of all points.
+/// Sums over all points for the header.
 struct LasSums {
   std::array<std::int32_t, 3> least{}, greatest{};
   std::array<std::uint64_t, most_returns> returns{};
@@ -134,7 +134,7 @@ void setCounts(std::string& block, const LasPlan& plan, std::uint64_t points, co
   }
 }
 
-/// What is behind the old end of the points moves with it.
+/// Moves a place behind the old end of the points to the new end.
 void moveBehind(std::string& block, std::size_t at, std::uint64_t old_end, std::uint64_t new_end)
 {
   const auto place = lasNumber<std::uint64_t>(block, at);

@@ -26,7 +26,7 @@ std::vector<std::string_view> nextWords(TextCursor text)
   return words;
 }
 
-/// What the values of a point are, by the first point's line.
+/// The meaning of a point's values, by the first point's line.
 struct PointLine {
   Fields values;
   bool shares = false; ///< colours are shares of 1
@@ -53,7 +53,7 @@ class PointReader {
 public:
   explicit PointReader(PointLine line) : line_(std::move(line)), numbers_(line_.values.size()) {}
 
-  /// @return false when the next line is none of numbers alone, and nothing has happened
+  /// @return false when the next line has other words than numbers; nothing has happened then
   bool nextPlain(TextCursor& text)
   {
     if (!text.nextNumbers(numbers_)) return false;

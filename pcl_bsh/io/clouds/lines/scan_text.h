@@ -16,7 +16,7 @@
 namespace pcl_bsh::io {
 
 /// .pts: a line with the number of points, then a point per line: x y z, x y z intensity, x y z r g b or x y z
-/// intensity r g b; more values are column_8 ... Several such blocks may follow each other. A block may have more
+/// intensity r g b. More values are column_8 ... Several such blocks may follow each other. A block may have more
 /// points than it says, as some writers' do, but no fewer. x y z are float64, intensity float32, colours are packed as
 /// rgb. A file whose first line names columns, is a comment, or has commas or semicolons is one of columns
 /// (parseColumns()).
@@ -28,9 +28,9 @@ pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* re
 /// @throws FormatError
 pcl::PCLPointCloud2 parsePtsHeader(std::string_view file, bool whole = true);
 
-/// .ptx: scans, each of ten lines (columns, rows, the scanner's registered position and axes, a 4 x 4 transform whose
-/// rows are applied to a point from the left) and columns x rows points, column by column. All points are transformed
-/// into the common frame. "No return", which is 0 0 0 with intensity 0, 0.5 or none, is NaN.
+/// .ptx: scans, each of ten lines and columns x rows points, column by column. The lines have columns, rows, the
+/// scanner's registered position and axes, and a 4 x 4 transform whose rows are applied to a point from the left. All
+/// points are transformed into the common frame. "No return", which is 0 0 0 with intensity 0, 0.5 or none, is NaN.
 ///
 /// One scan is an organised cloud of its columns and rows. Several scans are one row of their points, in the file's
 /// order, with a field `scan` (uint16, from 0). x y z are float64, intensity float32, colours are packed as rgb.
@@ -58,7 +58,7 @@ std::vector<pcl::PCLPointField> fieldsForScans(const pcl::PCLPointCloud2& cloud,
 void writePts(std::ostream& out, const pcl::PCLPointCloud2& cloud);
 
 /// One scan, or one for each run of points with the same value of a field `scan`. Points that are not finite are "no
-/// return". Of an organised cloud, its columns and rows; else a column for each point.
+/// return". An organised cloud keeps its columns and rows; others have a column for each point.
 /// @param viewpoint the scanner's pose: points are written as it sees them, which rounds their coordinates a few times
 ///   in float64. no_viewpoint: as they are
 /// @throws FormatError when there is a field but those of writePts() and `scan`; for a point that PTX takes for no

@@ -26,7 +26,7 @@ std::optional<pcl::PCLPointField> take(Fields& fields, const std::string& name)
   return field;
 }
 
-/// What stands in a point's line behind x y z. Readers tell by the number of values what they are, so only those can be
+/// The values in a point's line behind x y z. Readers tell by the number of values what they are, so only those can be
 /// written whose number says the same.
 struct LineFields {
   std::optional<pcl::PCLPointField> intensity, scan;

@@ -92,7 +92,7 @@ void forEachRow(TextCursor text, std::size_t columns, const Use& use)
   } while (nextRow(text));
 }
 
-/// What the numbers of columns without names show.
+/// The kinds of columns without names, as their numbers show them.
 class ShownColumns {
 public:
   explicit ShownColumns(std::size_t columns) : counts_(columns > 3), coloured_(columns >= 6), normals_(columns >= 9) {}

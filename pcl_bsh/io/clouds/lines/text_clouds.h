@@ -19,11 +19,11 @@ namespace pcl_bsh::io {
 /// PCL's names (pcl_names.h). Without a row, a file that names x, y and z is an empty cloud. A line of one whole number
 /// before the first row counts the points, as CloudCompare writes it: fewer are an error, more a remark.
 ///
-/// Where nothing names them, columns 4 to 6 are a colour if in all rows they are whole numbers from 0 to 255, and each
-/// of them exceeds 31 in some, as no return and no class of LAS does; the last three of nine or more are a normal
-/// beside it if all are of length 1 (or 0).
-/// Columns are float64. Whole numbers beyond 2^53 are INT64 or UINT64. Words that are no number, or have more digits
-/// than float64 holds, are INT8 of a count: the bytes of the text and zeros behind them (column_kinds.h).
+/// Columns without names may be a colour or a normal. Columns 4 to 6 are a colour if in all rows they are whole numbers
+/// from 0 to 255, and each exceeds 31 in some row, as no return and no class of LAS does. The last three of nine or
+/// more are a normal beside it if all are of length 1 (or 0). Columns are float64. Whole numbers beyond 2^53 are INT64
+/// or UINT64. Words that are no number, or have more digits than float64 holds, are INT8 of a count: the bytes of the
+/// text and zeros behind them (column_kinds.h).
 /// @param given names of all columns, whatever the file says
 /// @param remarks if not null, what was taken for granted is appended, and where the first of four or more columns
 ///   without a name counts the rows

@@ -69,8 +69,8 @@ public:
     return cloud_.data.data() + record * cloud_.point_step + offsets_[i];
   }
 
-  /// Takes values i from `first` to `last` (exclusive) of that record from the line. What is empty between separators
-  /// is NaN; a coordinate must not be. A value of count 0 may be any word.
+  /// Takes values i from `first` to `last` (exclusive) of that record from the line. An empty word between separators
+  /// is NaN; a coordinate must not be empty. A value of count 0 may be any word.
   void take(TextCursor& text, std::size_t record, std::size_t first, std::size_t last)
   {
     for (std::size_t i = first; i < last; ++i) {

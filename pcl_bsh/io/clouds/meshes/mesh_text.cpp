@@ -92,7 +92,7 @@ void seeColour(TextCursor line, std::size_t before, std::size_t behind, ColourSc
   colours.see(std::span(words).subspan(before, count - before - behind));
 }
 
-/// What an .obj holds.
+/// The counts of an .obj.
 struct ObjScan {
   std::size_t vertices = 0;
   std::size_t normals = 0;

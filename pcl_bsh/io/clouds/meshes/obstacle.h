@@ -45,15 +45,15 @@ public:
   bool isSurface() const { return triangles_ != nullptr; }
   const std::vector<Triangle>* triangles() const { return triangles_.get(); } ///< null where it is no surface
 
-  /// What queries ask: points or triangles, which it keeps alive.
+  /// The records that queries ask about: points or triangles, which it keeps alive.
   const PointsView& view() const { return view_; }
 
-  /// The same for ask(). @param name that its user knows it by
+  /// The shape for ask(). @param name that its user knows it by
   Shape shape(std::string name) const { return {std::move(name), view_, fields_}; }
 
   const char* partName() const { return isSurface() ? "triangle" : "point"; } ///< of a record of the view
 
-  /// What users should know of how the file was read, a line each, without its name.
+  /// Remarks for users about how the file was read, a line each, without its name.
   const std::vector<std::string>& remarks() const { return remarks_; }
   void addRemarks(const std::vector<std::string>& more) { remarks_.insert(remarks_.end(), more.begin(), more.end()); }
 
@@ -65,11 +65,12 @@ private:
   std::vector<std::string> remarks_;
 };
 
-/// What users should know of an obstacle that is a surface, in one sentence. @param solid it counts with what it
-/// encloses
+/// The promise to users about an obstacle that is a surface, in one sentence. @param solid it counts with its
+/// inside
 std::string promiseOf(const Obstacle& surface, bool solid);
 
-/// What readMesh() reads, without faces where the settings take a mesh for its vertices. Arguments and errors are its.
+/// Reads a mesh like readMesh(), without faces where the settings take a mesh for its vertices. Arguments and errors
+/// are its.
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
               const ReadSettings& reading, unsigned threads);
 
@@ -79,7 +80,7 @@ Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings
 Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& settings,
                       const ReadSettings& reading = {}, CloudFacts* facts = nullptr, unsigned threads = 0);
 
-/// That of a file whose mesh is read already.
+/// The obstacle of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces are no surface
 Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings);
 

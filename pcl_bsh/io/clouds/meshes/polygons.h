@@ -19,7 +19,7 @@ public:
   void addCorner(std::uint64_t vertex) { corners_.push_back(vertex); }
   void end() { ends_.push_back(corners_.size()); }
 
-  /// What is known of the polygons beside their corners: values of the first, second ... polygon.
+  /// Values of the first, second ... polygon, beside its corners.
   std::vector<FaceValues>& values() { return values_; }
   const std::vector<FaceValues>& values() const { return values_; }
 
@@ -41,7 +41,7 @@ private:
   LeftOuts left_out_;
 };
 
-/// Those of addTriangles().
+/// The triangles that addTriangles() adds.
 /// @param values gets what is known of the polygons, for each of their triangles
 /// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices,

@@ -34,7 +34,7 @@ struct PcdHeader {
 char typeLetter(TextCursor& text)
 {
   const std::string_view word = text.word();
-  if (word.size() != 1) text.fail("has the type '" + std::string(word.substr(0, 40)) + "', which is none of F I U");
+  if (word.size() != 1) text.fail("has the type '" + std::string(word.substr(0, 40)) + "', which must be F, I or U");
   return word.front();
 }
 

@@ -19,7 +19,7 @@ struct PlyCameraValue {
   bool whole; ///< an int, else a float
 };
 
-/// What a camera has, in the order of PCL's writer: position, rotation, and properties of a lens, zero here.
+/// The values of a camera, in the order of PCL's writer: position, rotation, and properties of a lens, zero here.
 inline constexpr std::array<PlyCameraValue, 21> ply_camera_values = {
     {{"view_px", false}, {"view_py", false}, {"view_pz", false},  {"x_axisx", false},  {"x_axisy", false},
      {"x_axisz", false}, {"y_axisx", false}, {"y_axisy", false},  {"y_axisz", false},  {"z_axisx", false},

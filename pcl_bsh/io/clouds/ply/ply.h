@@ -35,7 +35,7 @@ bool isPlyOfPoints(std::string_view beginning);
 /// @throws FormatError when a field cannot be held
 void writePly(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
 
-/// The same with an element `face` of triangles, whose fields are properties beside the list `vertex_indices`.
+/// Writes an element `face` of triangles, too, whose fields are properties beside the list `vertex_indices`.
 /// @pre one value per triangle
 void writePlyMesh(std::ostream& out, const pcl::PCLPointCloud2& vertices, const std::vector<Triangle>& triangles,
                   const std::vector<FaceField>& fields, const Viewpoint& viewpoint);

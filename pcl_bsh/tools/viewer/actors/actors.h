@@ -46,7 +46,7 @@ void setColors(vtkDataSetAttributes& parts, vtkIdType count, const ColorOf& colo
 /// The data in another frame; itself where that is the same.
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose);
 
-/// What is drawn beside the clouds, and cannot be picked.
+/// Parts of the picture beside the clouds, which cannot be picked.
 class PropGroup {
 public:
   explicit PropGroup(vtkRenderer& renderer) : renderer_(renderer) {}

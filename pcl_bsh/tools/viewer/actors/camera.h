@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sight.h"
+#include "visibility.h"
 
 #include <pcl_bsh/tools/viewer/options.h>
 

@@ -81,7 +81,7 @@ using CloudActors = std::span<const std::unique_ptr<CloudActor>>;
 std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
                                             const Color& marked);
 
-/// A surface whose triangles have colours of their own. What is marked is outlined, too: small triangles are seen from
+/// A surface whose triangles have colours of their own. Marked triangles are outlined, too: small ones are seen from
 /// afar. @pre viewed.hasTriangles()
 std::unique_ptr<CloudActor> makeTrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
                                                const Color& marked);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// What colours stand for, one value per part; none where it is NaN.
+/// Values that the colours show, one per part; NaN: no value.
 struct Values {
   std::vector<float> values;
   std::string title;
@@ -68,7 +68,8 @@ std::vector<Color> colorsOf(const Values& shown, vtkLookupTable& table)
   return colors;
 }
 
-/// What the whole has, of which the content is a part; none where it is no part, or the whole has none.
+/// The colour range of the whole cloud of which the content is a part; null where it is no part, or the whole has no
+/// range.
 const ColorRange* sharedRange(const ViewContent& content)
 {
   const SharedColors* const alike = content.sharedColors();
@@ -84,7 +85,7 @@ void paintValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, c
   if (!shared) bar.show(*table, shown.title, false);
 }
 
-/// Of what is not free.
+/// The colour of a verdict other than free.
 Color colorOfFlag(Verdict flag)
 {
   if (flag == Verdict::undecided) return undecided_color;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is drawn beside the clouds.
+// Parts of the picture beside the clouds.
 #pragma once
 
 #include "actors.h"

@@ -43,9 +43,9 @@ Bulk bulkOf(vtkPolyData& cloud)
   return bulk;
 }
 
-/// The cloud without the points that lie more than a thousand times as far from its bulk (99 of 100 points, along each
-/// axis) as that is large; the cloud itself where there are none, or the bulk is one place. A picture with them, a
-/// sensor's "no return" written as a number, would show nothing of the others.
+/// The cloud without points far from its bulk, which are 99 of 100 points along each axis. Far is more than a thousand
+/// times the bulk's size. Returns the cloud itself where it has no such points, or the bulk is one place. A picture
+/// with them, a sensor's "no return" written as a number, would show nothing of the others.
 vtkSmartPointer<vtkPolyData> withoutFarPoints(vtkPolyData& cloud)
 {
   const vtkIdType count = cloud.GetNumberOfPoints();
@@ -115,7 +115,7 @@ public:
     few_->SetVisibility(moving);
   }
 
-  /// Of a picture that does not move.
+  /// For a picture that does not move.
   void setVisible(bool visible) { all_->SetVisibility(visible); }
 
 private:

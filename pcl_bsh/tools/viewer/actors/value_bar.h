@@ -26,7 +26,7 @@ public:
   void show(vtkLookupTable& table, const std::string& title, bool counts);
   void hide() { bar_->VisibilityOff(); }
 
-  /// Of the colours shown; none where it is hidden.
+  /// The range of the colours shown; nothing where the bar is hidden.
   std::optional<ColorRange> range() const;
 
   /// The share of the picture's width that it leaves to all else.

@@ -19,7 +19,7 @@ class ValueHistogram {
 public:
   ValueHistogram(vtkRenderer& renderer, int width, int height); ///< of the picture, in pixels
 
-  /// @param distances one per part, NaN where there is none
+  /// @param distances one per part, NaN where a part has none
   /// @param colors whose range ends where the axis does
   void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
             const ViewContent& content);

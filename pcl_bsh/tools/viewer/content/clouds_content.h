@@ -37,7 +37,7 @@ public:
   /// Or the scan's field `first_pose`. Asked once, then kept.
   std::vector<std::int32_t> firstPoses() const override;
 
-  /// Of the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
+  /// For the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
   std::string details(std::size_t cloud, std::uint32_t part, std::size_t step) const override;
   std::vector<Trace> traces(std::size_t step) const override;
   std::vector<std::array<Eigen::Vector3d, 2>> beams() const override;

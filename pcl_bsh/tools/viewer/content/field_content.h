@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the fields of a cloud say of it, where nothing is asked.
+// The content of a cloud's own fields, where no question is asked.
 #pragma once
 
 #include "view_content.h"

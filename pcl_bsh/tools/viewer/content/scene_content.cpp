@@ -51,11 +51,11 @@ public:
   bool moves(std::size_t cloud) const override { return viewed_clouds_[cloud].role == ViewedCloud::Role::obstacle; }
   bool deforms(std::size_t cloud) const override { return file_.objects[places_[cloud].object].wave.has_value(); }
 
-  /// By the clearance of the options, else by the scene's. Of all clouds.
+  /// Collisions of all clouds, by the clearance of the options, else by the scene's.
   StepCollisions collisions(std::size_t step) const override;
   std::string heading(const StepCollisions& collisions, std::size_t step) const override;
 
-  /// Of moving objects until this step, where they are not too many.
+  /// Paths of moving objects until this step, where they are not too many.
   MotionPaths paths(std::size_t step) const override;
 
 private:

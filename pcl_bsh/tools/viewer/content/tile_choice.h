@@ -19,12 +19,12 @@ namespace pcl_bsh::viewer {
 
 struct Eye {
   Point3 place = {};
-  /// What is seen lies on the positive side of each: a x + b y + c z + d > 0. None: all is seen.
+  /// The eye sees the positive side of each: a x + b y + c z + d > 0. None: all is seen.
   std::vector<std::array<double, 4>> planes;
 };
 
 /// The tiles that an eye sees, the nearest first, as many as the budget holds: the first that does not fit ends the
-/// list. What is left of the budget keeps tiles which are held and no longer seen. A tile that is held counts as nearer
+/// list. The rest of the budget keeps tiles which are held and no longer seen. A tile that is held counts as nearer
 /// than it is, so that small moves of the eye change nothing.
 class TileChoice {
 public:

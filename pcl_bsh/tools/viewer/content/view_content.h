@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the viewer shows, without how it is drawn: clouds, their hierarchies and poses, and what collides at each step.
+// The data that the viewer shows, without how it is drawn: clouds, their hierarchies and poses, and collisions at each
+// step.
 #pragma once
 
 #include "viewed_cloud.h"
@@ -24,14 +25,14 @@ struct ClosestPair {
   double distance = 0.0;
 };
 
-/// What collides at one step.
+/// The collisions at one step.
 struct StepCollisions {
   bool known = false;                      ///< whether a query ran or a field says it
   std::vector<std::vector<Verdict>> flags; ///< of each viewed cloud, per part; empty: all are free
   std::size_t colliding = 0;               ///< parts of the scan, or points of all clouds of a scene
-  std::size_t undecided = 0;               ///< likewise
-  std::size_t sparse = 0;                  ///< likewise, not scanned densely enough
-  std::size_t unseen = 0;                  ///< likewise, free, but seen by no scanner
+  std::size_t undecided = 0;               ///< parts that may collide, or not
+  std::size_t sparse = 0;                  ///< parts not scanned densely enough
+  std::size_t unseen = 0;                  ///< free parts that no scanner saw
   std::optional<ClosestPair> closest;
 };
 
@@ -47,7 +48,7 @@ struct Trace {
   CollisionTrace trace;
 };
 
-/// What the two ends of a range of colours stand for.
+/// The values at the two ends of a range of colours.
 struct ColorRange {
   double low = 0.0, high = 1.0;
 };
@@ -86,7 +87,7 @@ public:
   virtual std::string heading(const StepCollisions& collisions, std::size_t step) const = 0;
   virtual MotionPaths paths(std::size_t step) const = 0;
 
-  // Of the scan, per part; empty where that is not known.
+  // Distances of the scan, per part; empty where they are not known.
   virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; }     ///< NaN where free
   virtual std::vector<double> allDistances(std::size_t /*step*/) const { return {}; } ///< of free points, too
   virtual std::vector<std::int32_t> firstPoses() const { return {}; }                 ///< -1 where always free
@@ -110,8 +111,8 @@ protected:
   std::vector<ViewedCloud> viewed_clouds_;
 };
 
-/// What the options name, loaded and indexed. @throws files::FileError, io::JsonError, std::invalid_argument naming
-/// the file
+/// Loads and indexes the clouds that the options name. @throws files::FileError, io::JsonError, std::invalid_argument
+/// naming the file
 std::unique_ptr<ViewContent> makeViewContent(const Options& options);
 
 } // namespace pcl_bsh::viewer

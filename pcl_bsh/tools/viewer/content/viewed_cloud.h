@@ -33,22 +33,22 @@ struct ViewedCloud {
 
   const PointsView& points() const { return hierarchy ? hierarchy->view() : records; } ///< of a surface, its triangles
 
-  /// What is asked about, coloured and picked: points or, of a surface, triangles.
+  /// Parts that are coloured and picked: points or, for a surface, triangles.
   bool hasTriangles() const { return surface.has_value(); }
   std::size_t parts() const { return points().count; }
   const char* partName() const { return hasTriangles() ? "triangle" : "point"; }
 
-  /// Of a triangle, its middle.
+  /// The part's place; for a triangle, its middle.
   Point3 placeOf(std::uint32_t part) const;
 
   /// The corners of a triangle, or three times a point. @param pose of the cloud
   Triangle3 cornersOf(std::uint32_t part, const Eigen::Isometry3d& pose) const;
 
-  /// A field's values, one per part; none where the cloud has no such field, or one of several values. Of triangles:
+  /// A field's values, one per part; none where the cloud has no such field, or one of several values. For triangles:
   /// the property of its faces or, without one, the mean of the field at the corners.
   std::optional<std::vector<float>> field(const std::string& field_name) const;
 
-  /// What was found out about each part, as a field has it; of triangles, only a property of their faces.
+  /// A result of each part, as a field has it; for triangles, only a property of their faces.
   std::optional<std::vector<float>> result(const std::string& field_name) const;
 
   /// Red, green, blue, per part; none where the cloud has no colours.

@@ -29,14 +29,14 @@ private:
 
   std::size_t slotsAt() const { return 2 * (std::size_t{symbols_} + 1); }
 
-  /// Of each symbol where its part of 2^15 begins, and its count; once more, beyond all places. Then slots of places:
-  /// twice the symbol where each begins.
+  /// For each symbol, where its part of 2^15 begins, and its count; one entry more, beyond all places. Then slots of
+  /// places: twice the symbol where each begins.
   std::vector<std::uint16_t> numbers_;
   unsigned symbols_, slot_shift_ = 0;
   unsigned total_ = 0, cycle_ = 0, until_update_ = 0;
 };
 
-/// The same for a bit.
+/// The model of a bit.
 class BitModel {
 private:
   friend class ArithmeticDecoder;

@@ -15,9 +15,9 @@ namespace pcl_bsh::io::laz {
 
 class ChunkDecoder {
 public:
-  /// @param scheme which outlives the decoder. @param bytes of the chunk, compressed. @param points which it has, not
-  /// 0;
-  ///   where these are more than all chunks of the scheme have, the bytes are those of several, one behind the other
+  /// @param scheme outlives the decoder. @param bytes of the chunk, compressed. @param points
+  /// number of points, not 0; more than the scheme's chunks have: the bytes of several chunks in a
+  /// row
   /// @throws FormatError, as read() does, for bytes that are not those of so many points
   ChunkDecoder(const Scheme& scheme, std::string bytes, std::uint64_t points);
   ChunkDecoder(const ChunkDecoder&) = delete;

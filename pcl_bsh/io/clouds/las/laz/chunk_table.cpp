@@ -37,7 +37,7 @@ std::string nameOf(std::size_t chunk, std::size_t chunks)
   return "chunk " + std::to_string(chunk + 1) + " of " + std::to_string(chunks);
 }
 
-/// That the points of a chunk can be in its bytes.
+/// Requires that the points of a chunk fit its bytes.
 void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t record_length)
 {
   if (chunk.points <= chunk.bytes * most_laz_growth / record_length) return;
@@ -45,7 +45,7 @@ void requireGrowth(const Chunk& chunk, const std::string& name, std::size_t reco
                     std::to_string(chunk.bytes) + " bytes");
 }
 
-/// Of compressor 1, or where no table tells them apart: one, to the end of the file or to the records behind it.
+/// The only chunk of a file of compressor 1, or without a table: to the end of the file, or to the records behind it.
 ChunkTable oneChunk(ByteSource& file, const LasBlock& block, std::uint64_t at)
 {
   ChunkTable table{{}, file.size(), 0};

@@ -21,7 +21,7 @@ struct Chunk {
 /// Chunks of one size need no table: where it is missing, one stands for all that follow each other.
 struct ChunkTable {
   std::vector<Chunk> chunks; ///< those that have points, which together have all of the header's
-  std::uint64_t end;         ///< of what belongs to the points in the file, but for records that lie before
+  std::uint64_t end;         ///< of the points' data in the file, except for records that lie before
   std::uint64_t more = 0;    ///< points that chunks have at least, and the header does not count
 };
 

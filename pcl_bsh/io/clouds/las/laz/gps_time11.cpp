@@ -7,7 +7,7 @@ namespace pcl_bsh::io::laz {
 
 namespace {
 
-/// Of one sequence.
+/// Times of one sequence.
 class GpsTime11V1 {
 public:
   void read(ArithmeticDecoder& in, char* last)

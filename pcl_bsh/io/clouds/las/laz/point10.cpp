@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t y10 = 4, z10 = 8, intensity10 = 12, returns10 = 14, class10 = 15, angle10 = 16, user10 = 17,
                       source10 = 18;
 
-/// Of a byte, by the byte before.
+/// Models of a byte, one for each value of the byte before.
 using ModelsByLast = std::vector<SymbolModel>;
 
 ModelsByLast byteModels()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contexts from the number of returns of a pulse and the number of one of them: many files count from 0, know only one
-// of the two, or have them in each other's place, so that all pairs have one, and the order does not matter.
+// Contexts from the number of returns of a pulse and the number of one of them. Many files count from 0, know only one
+// of the two, or exchange them. So all pairs have a context, and the order does not matter.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io::laz {
 
-/// Of returns up to 7: 16 contexts.
+/// The context of up to 7 returns, one of 16.
 constexpr unsigned returnContext10(unsigned returns, unsigned number)
 {
   const unsigned least = std::min(returns, number), most = std::max(returns, number);
@@ -18,7 +18,7 @@ constexpr unsigned returnContext10(unsigned returns, unsigned number)
   return least + (most == 6 ? 9 : 8);
 }
 
-/// Of returns up to 15: 6 contexts.
+/// The context of up to 15 returns, one of 6.
 constexpr unsigned returnContext14(unsigned returns, unsigned number)
 {
   const unsigned least = std::min(returns, number), most = std::max(returns, number);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 
 #include "scene_worlds.h"
 
@@ -24,7 +24,7 @@ bool holds(const Box3& box, const Eigen::Vector3d& p)
   return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
 }
 
-TEST(Bounds, OfAMovedBoxHoldItsCornersAndLittleMore)
+TEST(ObjectBoxes, OfAMovedBoxHoldItsCornersAndLittleMore)
 {
   test::Random random(8);
   for (int i = 0; i < 500; ++i) {
@@ -50,7 +50,7 @@ TEST(Bounds, OfAMovedBoxHoldItsCornersAndLittleMore)
   }
 }
 
-TEST(Bounds, OfNothingAreNothing)
+TEST(ObjectBoxes, OfNothingAreNothing)
 {
   const Box3 nothing;
   EXPECT_TRUE(nothing.empty());
@@ -64,8 +64,8 @@ TEST(Bounds, OfNothingAreNothing)
   EXPECT_TRUE(flat.empty());
 }
 
-/// What cannot be computed with may be anywhere, on either side.
-TEST(Bounds, BeyondAllNumbersAreEverywhere)
+/// A box beyond all numbers may be anywhere, on either side.
+TEST(ObjectBoxes, BeyondAllNumbersAreEverywhere)
 {
   for (const double x : {greatest, -greatest}) {
     const Box3 there = moved({{0, 0, 0}, {1, 1, 1}}, test::at(x, 0, 0));

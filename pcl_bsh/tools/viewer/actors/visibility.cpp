@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sight.h"
+#include "visibility.h"
 
 #include <vtkCellArray.h>
 #include <vtkIdList.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/python/asked.h>
+#include <pcl_bsh/python/python_question.h>
 
 namespace pcl_bsh::python {
 
-Asked::Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b)
+PythonQuestion::PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b,
+                               const Cloud& cloud_b)
 : a(cloud_a, poseOf(std::string("pose_") + name_a, pose_a)),
   b(cloud_b),
   input(cloud_a.named(name_a)),
@@ -12,8 +13,9 @@ Asked::Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, c
   question.pose_of_input = a.pose;
 }
 
-Asked::Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b)
-: Asked("a", cloud_a, pose_a, "b", cloud_b)
+PythonQuestion::PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b,
+                               const PoseLike& pose_b)
+: PythonQuestion("a", cloud_a, pose_a, "b", cloud_b)
 {
   question.pose = b.pose = poseOf("pose_b", pose_b);
 }
@@ -26,7 +28,7 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind)
          !is(&Question::input_pose_uncertainty) && !is(&Question::sigmas);
 }
 
-void Asked::set(const py::kwargs& options, QuestionKind kind)
+void PythonQuestion::set(const py::kwargs& options, QuestionKind kind)
 {
   for (const auto& [key, value] : options) {
     const std::string name = py::str(key);
@@ -38,14 +40,14 @@ void Asked::set(const py::kwargs& options, QuestionKind kind)
   }
 }
 
-Answer Asked::answer()
+Answer PythonQuestion::answer()
 {
   Answer found = unlocked([&] { return ask(question, input, obstacle); });
   warn(found.warnings);
   return found;
 }
 
-void Asked::warn(const std::vector<Warning>& warnings)
+void PythonQuestion::warn(const std::vector<Warning>& warnings)
 {
   for (const Warning& warning : warnings) python::warn(warning.text);
 }

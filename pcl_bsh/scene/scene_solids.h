@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solid parts of a scene hold: added to what its effects find of surfaces.
+// Records that solid parts of a scene hold: added to the records that its effects find near surfaces.
 #pragma once
 
 #include <pcl_bsh/flags/collision_flags.h>
@@ -30,8 +30,8 @@ public:
   /// Makes what is not made yet of a solid. @throws InvalidInput as Solid does
   void addSolid(const std::shared_ptr<SphereHierarchy>& hierarchy);
 
-  /// Before queries, of each part's hierarchy: makes what they need, anew where points have changed since. Once a
-  /// scene has a solid. @throws likewise
+  /// Before queries, of each part's hierarchy: makes what they need, anew where points have changed since. Does so once
+  /// a scene has a solid. @throws InvalidInput
   void follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool solid);
 
   /// A record of a and one of b of which the one is held, and the other is a triangle of a body that holds it, where
@@ -47,9 +47,9 @@ public:
   /// The deepest that is held.
   void turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const;
 
-  /// Triangles, ascending, of each body of a solid that may hold a place of the other at an instant of their motion,
-  /// but for those whose place stays inside of it: it holds them at the beginning. What such a body does not hold comes
-  /// within the tolerance of a place that it does.
+  /// Triangles, ascending, of each body of a solid that may hold a place of the other at an instant of their motion.
+  /// Bodies in which that place stays throughout are left out: they hold it at the beginning. A body that does not hold
+  /// the place comes within the tolerance of it.
   std::vector<std::uint32_t> entered(const SweptPart& solid, const SweptPart& other, double tolerance,
                                      Work& work) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/solids.h>
+#include <pcl_bsh/scene/scene_solids.h>
 
 #include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/hierarchy/storage.h>

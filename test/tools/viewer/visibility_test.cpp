@@ -2,7 +2,7 @@
 // From which side what collides is seen, and words before bright points.
 #include "pixels.h"
 
-#include <pcl_bsh/tools/viewer/actors/sight.h>
+#include <pcl_bsh/tools/viewer/actors/visibility.h>
 
 #include <gmock/gmock.h>
 
@@ -36,7 +36,7 @@ Gaze gazeFrom(const Vector3d& at, const Vector3d& up)
   return gaze;
 }
 
-TEST(Sight, AThingHidesWhatIsBehindIt)
+TEST(Visibility, AThingHidesWhatIsBehindIt)
 {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
   const std::vector<Vector3d> wall = gridOf({0, 0, 0}, x, z, 100, 0.01);
@@ -53,7 +53,7 @@ TEST(Sight, AThingHidesWhatIsBehindIt)
   EXPECT_EQ(shareSeen(gazeFrom(3 * y, z), {}), 0.0);
 }
 
-TEST(Sight, PlacesCoverTriangles)
+TEST(Visibility, PlacesCoverTriangles)
 {
   vtkNew<vtkPoints> points;
   points->InsertNextPoint(0, 0, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/scene/pairs/bounds.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>

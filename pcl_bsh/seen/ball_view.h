@@ -11,8 +11,8 @@
 
 namespace pcl_bsh {
 
-/// A beam counts for directions up to this many angles from its own: the angle, from the middle of a cell of directions
-/// (direction_cells.h), and half the diagonal of a cell, which is less than 0.18 of the angle.
+/// A beam counts for directions up to this many angles from its own. It is the angle, from the middle of a cell of
+/// directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
 inline constexpr double kReachOfAngle = 1.2;
 
 /// The directions that a beam counts for, and the share of its range that it is sure of.
@@ -28,17 +28,17 @@ struct BeamAngle {
 };
 
 /// Lengths are enlarged by this share of all coordinates that they were computed of: more than the some thirty
-/// roundings of a pose, of Sight and of leavesOpen() err by together.
-inline constexpr double kSightSlack = 0x1p-46;
+/// roundings of a pose, of BallView and of leavesOpen() err by together.
+inline constexpr double kBallViewSlack = 0x1p-46;
 
-/// Of a ball, from the origin of a scan. Where a length is rounded, the ball grows.
-struct Sight {
+/// A ball, seen from the origin of a scan. Where a length is rounded, the ball grows.
+struct BallView {
   /// @param center rounded from terms of at most `magnitude`. @param guard slacks on top of the radius: with 8, what is
   ///   not left open of this ball is not of those in it
-  Sight(const Point3& origin, const Eigen::Vector3d& center, double magnitude, double ball, double guard = 0.0)
+  BallView(const Point3& origin, const Eigen::Vector3d& center, double magnitude, double ball, double guard = 0.0)
   : way(center - Eigen::Vector3d(origin.data())),
     distance(way.norm()),
-    slack(kSightSlack * (magnitude + Eigen::Vector3d(origin.data()).lpNorm<1>() + distance + ball)),
+    slack(kBallViewSlack * (magnitude + Eigen::Vector3d(origin.data()).lpNorm<1>() + distance + ball)),
     radius(ball + (1.0 + guard) * slack),
     is_around(distance <= radius),
     direction(is_around ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(way / distance)),
@@ -65,10 +65,10 @@ inline double chordOf(double angle)
   return 2.0 * std::sin(0.5 * angle) * (1.0 + 0x1p-40);
 }
 
-/// Whether a beam counts for a direction in which something may be in the ball: the nearest such direction to the
-/// ball's centre is the beam's own, turned towards it by at most the reach, and it leaves the ball last.
+/// Whether a beam counts for a direction in which something may be in the ball. The nearest such direction to the
+/// ball's centre is the beam's own, turned towards the centre by at most the reach. It leaves the ball last.
 /// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
-inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
+inline bool leavesOpen(const BallView& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {
   const Eigen::Vector3d unit = beam / beam.norm(); // products of both lengths would overflow
   double along = ball.distance, off = 0.0;         // of the centre, seen in that direction
@@ -83,12 +83,12 @@ inline bool leavesOpen(const Sight& ball, const Eigen::Vector3d& beam, double em
   }
   if (off > ball.radius || (along < -ball.slack && !ball.is_around)) return false;
   return along + ball.slack + std::sqrt(ball.radius * ball.radius - off * off) >=
-         empty * speaks.sure * (1.0 - kSightSlack);
+         empty * speaks.sure * (1.0 - kBallViewSlack);
 }
 
-/// Whether a beam counts for the direction of a place and went beyond it. @pre not around: the place is a ball of
-/// radius 0. @param beam not 0; its length does not matter. @param empty how far it went
-inline bool passes(const Sight& place, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
+/// Whether a beam counts for the direction of a place and went beyond it. The place is a ball of radius 0, and not
+/// around the origin. The beam is not 0, and its length does not matter. It is empty for the length `empty`.
+inline bool passes(const BallView& place, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {
   if (!(empty > place.distance + place.slack)) return false;
   const Eigen::Vector3d unit = beam / beam.norm();

@@ -38,21 +38,22 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
 
 /// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
 /// clouds thousands of times: how far their points are apart is measured once.
-struct Asked {
+struct PythonQuestion {
   /// The second cloud is where the question says.
-  Asked(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b, const Cloud& cloud_b);
+  PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b,
+                 const Cloud& cloud_b);
 
   /// The arguments a, pose_a, b and pose_b.
-  Asked(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
+  PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
 
   /// Options by their names in the table, of a kind of question: faces have them without a word of their own.
-  /// @throws py::type_error for a name or a value that is none
+  /// @throws py::type_error for an unknown name or a wrong value
   void set(const py::kwargs& options, QuestionKind kind);
 
-  /// What ask() answers, computed without the interpreter's lock; its warnings are told.
+  /// The answer of ask(), computed without the interpreter's lock; its warnings are told.
   Answer answer();
 
-  /// The same of a query that no question has. @param nearest of what it answers, as nearestOf() has it
+  /// The answer of a query that no question has. @param nearest its nearest pair, as nearestOf() has it
   template <class Query, class Nearest>
   auto answer(Query&& query, const Nearest& nearest)
   {

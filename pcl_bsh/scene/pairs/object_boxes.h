@@ -46,13 +46,13 @@ Box3 moved(const Box3& box, const Eigen::Isometry3d& pose);
 /// How far places of a part may be from its points: their radii and uncertainties.
 double outreach(const SphereHierarchy& hierarchy);
 
-/// Of all places that a frame stores, but for rounding.
+/// Box of all places that a frame stores, within rounding.
 Box3 boxOf(const LocalFrame& frame);
 
-/// Of all places that a part's points and their radii may take, in the frame of its cloud.
+/// Box of all places that a part's points and their radii may take, in the frame of its cloud.
 Box3 boxOf(const ScenePart& part);
 
-/// Of all parts, in the object's frame.
+/// Box of all parts, in the object's frame.
 Box3 boxOf(const SceneObject& object);
 
 /// No point of a box moves farther than this when its pose changes.
