@@ -35,6 +35,7 @@ set(pcl_components common search filters)
 if(PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES)
   find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
   mark_as_advanced(KAINJOW_INCLUDE_DIR)
+  find_package(pugixml 1.12 REQUIRED CONFIG)
   list(APPEND pcl_components io features segmentation)
 endif()
 if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_TOOLS) # algorithms that are given our search class

@@ -10,8 +10,8 @@ namespace {
 
 constexpr auto certify_footer =
     R"(Every sphere is checked against every point below it in exact arithmetic. Its radius is compared with that of the
-smallest sphere around the same points, also exact, as CGAL finds it. Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv
-.xyz .txt, pipes, and standard input as -; --report - is standard output.
+smallest sphere around the same points, also exact, as CGAL finds it. Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx
+.csv .xyz .txt, pipes, and standard input as -; --report - is standard output.
 Exit code: 0 all points are in their spheres; 1 some are not, or failed; 2 command line not understood; 130 stopped by Ctrl-C.
 This program is under the GPL-3.0-or-later, because it contains CGAL's Bounding_volumes.
 

@@ -19,7 +19,7 @@ An OBSTACLE with faces (.obj .off .ply .stl) is a surface: q is any point of its
 them. What a closed surface encloses counts with --solid alone. Reports name its triangles, from 0; polygons are cut
 into triangles.
 An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
-Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .laz .off .stl. Files may be
+Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .txt, writes all of these but .laz .e57 .off .stl. Files may be
 pipes; - is standard input (PCD, PLY, LAS, OFF or columns), or standard output for OUTPUT (PCD) and --report.
 Exit code: 0 done, colliding or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -34,7 +34,9 @@ Example: where would a robot stand in what no scanner of the hall ever looked in
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface?
-  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05)";
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05
+Example: what of the third scan of an E57 file is within 5 cm of a robot?
+  pcl_bsh_collide hall.e57 robot.pcd marked.pcd --scan 2 --clearance 0.05)";
 
 /// Checks that involve several options; those of the question are the core's.
 void requireConsistent(const CollideOptions& options)

@@ -17,8 +17,8 @@ namespace {
 
 constexpr auto site_footer =
     R"(A site is a folder of tiles, each a binary PCD file with all fields of the points and two more, source and record:
-which record of which cloud a point was. Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt; .las, .laz and
-binary .pcd of any size, the others where they fit into half of the memory given.
+which record of which cloud a point was. Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .txt; .las, .laz, .e57
+and binary .pcd of any size, the others where they fit into half of the memory given.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example: two scans become one site, and a file with the points of both
@@ -64,7 +64,7 @@ void requireExport(const SiteOptions& options)
 {
   requireOutside(options.site, "SITE", "OUT", options.out);
   const std::string extension = io::inSmallLetters(options.out.extension().string());
-  for (const char* other : {".ply", ".las", ".laz", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
+  for (const char* other : {".ply", ".las", ".laz", ".e57", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
     if (extension == other)
       throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + other +
                        ": name a .pcd file, a .pvtp, or a folder");

@@ -27,7 +27,7 @@ camera sees nearest one by one, as many as the budget holds; with its fields col
 coloured as clouds are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
-Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
+Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .txt, pipes, and standard input as -.
 Without --screenshot and --export a window opens: h shows its keys.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
