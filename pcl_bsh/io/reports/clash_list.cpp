@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/question/options.h>
@@ -200,7 +201,16 @@ Survey::Survey(const std::vector<Eigen::Isometry3d>& all_poses, const std::optio
 ClashList readClashes(const std::filesystem::path& path)
 {
   const FileBytes file(path);
-  return parseClashes(file.view(), path.string());
+  if (!isBcfExtension(extensionOf(path))) return parseClashes(file.view(), path.string());
+  try {
+    BcfContents contents = parseBcf(file.view());
+    ClashList list = parseClashes(contents.list, path.string() + ": " + bcf_list_file);
+    list.topics = std::move(contents.topics);
+    return list;
+  }
+  catch (const FormatError& error) {
+    throw files::FileError(path, error.what(), error.remedy());
+  }
 }
 
 ClashList parseClashes(std::string_view text, const std::string& name)

@@ -70,7 +70,7 @@ Json toJson(const ClashReport& report, const Clash& clash)
 
 std::string formatOf(const std::filesystem::path& path)
 {
-  return io::formatOf(path, {".json", ".csv", ".html"});
+  return io::formatOf(path, {".json", ".csv", ".html", ".bcf", ".bcfzip"});
 }
 
 } // namespace
@@ -239,6 +239,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
                                          const ClashList& earlier, const std::function<void(FormerPlaces&)>& look)
 {
   report.previous = file.string();
+  report.topics = earlier.topics;
   compareWithEarlier(report.clashes, earlier.clashes, report.cluster_distance);
   FormerPlaces former(report.clashes, *report.question.clearance, report.cluster_distance);
   if (!former.empty()) {
@@ -271,9 +272,10 @@ double clusterDistanceFor(double clearance, const Spacing& scan)
 void writeClashes(const std::filesystem::path& path, const ClashReport& report)
 {
   const std::string format = formatOf(path);
-  const std::string text = format == ".json"  ? clashJson(report)
-                           : format == ".csv" ? clashCsv(report)
-                                              : clashPage(report);
+  const std::string text = format == ".json"        ? clashJson(report)
+                           : format == ".csv"       ? clashCsv(report)
+                           : isBcfExtension(format) ? clashBcf(report, format == ".bcf")
+                                                    : clashPage(report);
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 

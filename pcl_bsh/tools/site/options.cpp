@@ -64,7 +64,8 @@ void requireExport(const SiteOptions& options)
 {
   requireOutside(options.site, "SITE", "OUT", options.out);
   const std::string extension = io::inSmallLetters(options.out.extension().string());
-  for (const char* other : {".ply", ".las", ".laz", ".e57", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
+  for (const char* other :
+       {".ply", ".las", ".laz", ".e57", ".obj", ".off", ".stl", ".pts", ".ptx", ".csv", ".xyz", ".txt"})
     if (extension == other)
       throw UsageError("OUT: " + options.out.string() + ": sites are not written as " + other +
                        ": name a .pcd file, a .pvtp, or a folder");
@@ -88,8 +89,10 @@ struct CollideTexts {
     app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
     app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
         ->type_name("FILE");
-    app.add_option("--clashes", options.clashes,
-                   "list of the places that collide, to .json, .csv or .html; may be given more than once")
+    app.add_option(
+           "--clashes", options.clashes,
+           "list of the places that collide, to .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1); may be given more "
+           "than once")
         ->type_name("FILE")
         ->allow_extra_args(false);
     app.add_option("--cluster-distance", options.cluster_distance,
@@ -97,9 +100,10 @@ struct CollideTexts {
                    "of SITE's tiles, rounded up to a power of two)")
         ->type_name("L")
         ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-    app.add_option("--previous", options.previous,
-                   "earlier .json list, of the same options but --swept and --seen: clashes are new, persisting, "
-                   "resolved, or not visited by the path, unseen or not scanned any more")
+    app.add_option(
+           "--previous", options.previous,
+           "earlier list, .json or BCF, of the same options but --swept and --seen: clashes are new, persisting, "
+           "resolved, or not visited by the path, unseen or not scanned any more")
         ->type_name("FILE");
     app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
     app.add_flag("--any", any, "only whether any point collides");

@@ -41,7 +41,7 @@ struct SiteOptions {
   Question question;
   std::filesystem::path obstacle, trajectory, report;
   std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
-  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   std::string unit;    ///< of the clouds, for the clash report; empty: not known
