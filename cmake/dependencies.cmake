@@ -35,6 +35,10 @@ set(pcl_components common search filters)
 if(PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES)
   find_path(KAINJOW_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
   mark_as_advanced(KAINJOW_INCLUDE_DIR)
+  find_package(pugixml 1.12 REQUIRED CONFIG)
+  find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED) # its CMake package asks for programs of other Debian packages
+  find_library(LIBZIP_LIBRARY zip REQUIRED)
+  mark_as_advanced(LIBZIP_INCLUDE_DIR LIBZIP_LIBRARY)
   list(APPEND pcl_components io features segmentation)
 endif()
 if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_TOOLS) # algorithms that are given our search class

@@ -19,7 +19,7 @@ constexpr auto kRead = R"(The points of a file as a structured array, every fiel
 Parameters
 ----------
 path : str or path-like
-    .pcd, .ply, .las, .laz, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
+    .pcd, .ply, .las, .laz, .e57, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
 columns : sequence of str, optional
     Of .csv, .xyz and .txt: names of all columns in place of what the file says, ``["x", "y", "z", "_"]``; "_" is not
     read.

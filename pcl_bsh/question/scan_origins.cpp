@@ -72,8 +72,8 @@ std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordF
 {
   if (origins.empty()) {
     throw InvalidInput(Input::points, cloud, "does not say where its scanner stood",
-                       "give `origin`, as X,Y,Z in its frame, or a file that has it (.ptx, .pcd with VIEWPOINT, .ply "
-                       "with camera)");
+                       "give `origin`, as X,Y,Z in its frame, or a file that has it (.ptx, .e57, .pcd with VIEWPOINT, "
+                       ".ply with camera)");
   }
   std::vector<ScanBeams> scans(origins.entries.size());
   for (std::size_t s = 0; s < scans.size(); ++s) scans[s].origin = origins.entries[s].origin;

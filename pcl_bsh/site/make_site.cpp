@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/making/density_tree.h>
 #include <pcl_bsh/site/making/make_state.h>
@@ -78,7 +79,9 @@ private:
   std::unique_ptr<io::CloudStream> open(std::size_t cloud) const
   {
     const fs::path& file = clouds_[cloud];
-    const io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale);
+    const bool may_have_scans = io::mayHaveScans(io::extensionOf(file));
+    const io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale,
+                                   may_have_scans ? options_.scan : std::nullopt);
     return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct MakeOptions {
   std::uint64_t save_points = 50'000'000;
   /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
   bool vertices_only = false;
-  bool allow_scale = false; ///< transforms of .ptx files may scale uniformly; else they are refused
-  unsigned threads = 0;     ///< that unpack LAZ; 0: all of the machine's
+  bool allow_scale = false;             ///< transforms of .ptx files may scale uniformly; else they are refused
+  unsigned threads = 0;                 ///< that unpack LAZ; 0: all of the machine's
+  std::optional<std::size_t> scan = {}; ///< of .ptx and .e57 files only that one, from 0
   /// Names of a cloud's columns, as readCloud() takes them; null: as the files say. A run that goes on needs the same.
   std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
   /// Called with a cloud and what users should know of how it is read; null: not told.

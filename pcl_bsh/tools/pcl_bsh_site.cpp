@@ -81,6 +81,7 @@ int make(const Options& options)
   wanted.vertices_only = options.question.vertices_only;
   wanted.columns = [&](const std::filesystem::path& file) { return options.reading.columns.of(file); };
   wanted.allow_scale = options.reading.allow_scale;
+  wanted.scan = options.reading.scan;
   wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {
     cli::warnOfFile(cli::site_program, file, remarks);
   };

@@ -488,7 +488,7 @@ TEST_F(ClashWriter, RefusesFilesItCannotWriteOrRead)
   const auto file = [&](const std::string& name) { return R"("filename": )" + quoted(folder / name); };
   EXPECT_THAT(error(type, R"("clearance": 0)"), HasSubstr("/filename: is missing"));
   EXPECT_THAT(error(type, R"("filename": "a.txt")"),
-              EndsWith("/filename: a.txt: unknown extension '.txt': give a .json, .csv or .html file"));
+              EndsWith("/filename: a.txt: unknown extension '.txt': give a .json, .csv, .html, .bcf or .bcfzip file"));
   EXPECT_THAT(error(type, file("none/a.csv")), HasSubstr("there is no folder"));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "also": "a.pdf")"), HasSubstr("/also: a.pdf: unknown extension"));
   EXPECT_THAT(error(type, file("a.csv") + R"(, "also": )" + quoted(folder / "a.csv")),

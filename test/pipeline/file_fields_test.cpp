@@ -4,6 +4,7 @@
 #include "io/clouds/laz_sample.h"
 #include "io/clouds/samples.h"
 #include "run_stage.h"
+#include "support/e57_sample.h"
 #include "support/threads_of.h"
 
 #include <pcl_bsh/base/parallel.h>
@@ -240,9 +241,9 @@ TEST_F(FileFields, OneScanOfSeveral)
 {
   const std::string head = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 ";
   folder.write("a.ptx", head + "5 1\n1 2 3 0.5\n" + head + "9 1\n1 2 3 0.5\n");
-  const auto read = [&](const std::string& option) {
-    Pipeline::parse("[{\"type\": \"readers.ptx\", \"filename\": \"" + (folder / "a.ptx").string() + "\"" + option +
-                    "}, \"" + (folder / "b.pcd").string() + "\"]")
+  const auto read = [&](const std::string& option, const std::string& format = "ptx") {
+    Pipeline::parse("[{\"type\": \"readers." + format + "\", \"filename\": \"" + (folder / ("a." + format)).string() +
+                    "\"" + option + "}, \"" + (folder / "b.pcd").string() + "\"]")
         .run();
     io::CloudFacts facts;
     const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "b.pcd", &facts);
@@ -253,6 +254,14 @@ TEST_F(FileFields, OneScanOfSeveral)
   EXPECT_EQ(read(""), "x y z intensity scan 2 5");
   EXPECT_EQ(read(", \"scan\": 1"), "x y z intensity 1 9");
   EXPECT_THROW(read(", \"scan\": 2"), std::exception);
+
+  E57SampleScan first = E57Sample::points({1}, {2}, {3}), second = E57Sample::points({1, 2}, {3, 4}, {5, 6});
+  first.more_xml = E57SampleScan::pose("", "0 0 5");
+  second.more_xml = E57SampleScan::pose("", "0 0 9");
+  folder.write("a.e57", E57Sample{{first, second}}.text());
+  EXPECT_EQ(read("", "e57"), "x y z scan 3 5");
+  EXPECT_EQ(read(", \"scan\": 1", "e57"), "x y z 2 9");
+  EXPECT_THROW(read(", \"scan\": 2", "e57"), std::exception);
 }
 
 TEST_F(FileFields, TransformsOfScansMayScaleWhereThatIsAllowed)

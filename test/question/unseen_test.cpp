@@ -430,7 +430,7 @@ TEST_F(Unseen, NeedsToKnowWhereScannersStood)
   question.origin = {};
   EXPECT_EQ(refusalOf(first_),
             "room.ptx: does not say where its scanner stood: give `origin`, as X,Y,Z in its frame, or "
-            "a file that has it (.ptx, .pcd with VIEWPOINT, .ply with camera)");
+            "a file that has it (.ptx, .e57, .pcd with VIEWPOINT, .ply with camera)");
   question.origin = ScanOrigins::parse("scan:5=1,3,1.5");
   EXPECT_THAT(refusalOf(both_), HasSubstr("is of scan 6 in field 'scan', which has no origin: give one for each scan"));
   question.origin = ScanOrigins::parse("id:5=1,3,1.5");

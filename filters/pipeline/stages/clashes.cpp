@@ -88,21 +88,23 @@ StageType clashWriter()
   auto description = describe<ClashWriter>(
       "writers.clashes",
       "Lists where the input's points collide with an obstacle, place by place, the nearest first: as JSON or CSV for "
-      "programs, or as a page for browsers. The query is that of `filters.bsh_flag` with these options; the cloud "
+      "programs, as a page for browsers, or as topics of BCF (.bcf: 3.0, .bcfzip: 2.1). The query is that of "
+      "`filters.bsh_flag` with these options; the cloud "
       "passes unchanged.");
-  return withQuestionOptions(description
-                                 .option(&ClashWriter::filename, "filename",
-                                         "the .json, .csv or .html file to write; it appears complete or not at all")
-                                 .required()
-                                 .option(&ClashWriter::also, "also", "another such file, of the same clashes"),
-                             QuestionKind::collisions)
+  return withQuestionOptions(
+             description
+                 .option(&ClashWriter::filename, "filename",
+                         "the .json, .csv, .html, .bcf or .bcfzip file to write; it appears complete or not at all")
+                 .required()
+                 .option(&ClashWriter::also, "also", "another such file, of the same clashes"),
+             QuestionKind::collisions)
       .option(&ClashWriter::cluster_distance, "cluster_distance",
               "colliding points farther apart are two clashes; null: computed from clearance and spacing")
       .unit("m")
       .above(0)
       .option(&ClashWriter::previous, "previous",
-              "the .json of an earlier run with the same options but `swept` and `seen`: tells clashes that are new, "
-              "persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
+              "the .json or BCF of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
+              "new, persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
       .replaceable()
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");

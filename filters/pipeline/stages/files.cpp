@@ -79,29 +79,23 @@ protected:
   }
 };
 
-/// A PTX file may hold several scans.
-struct PtxReader : FileReader {
+/// Files of these formats may hold several scans.
+struct ScanReader : FileReader {
   std::optional<int> scan;
-  bool allow_scale = false;
-
-  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
-  {
-    CloudHeader header = FileReader::plan(inputs);
-    return scan ? io::readPtxScanHeader(filename.path, static_cast<std::size_t>(*scan), allow_scale) : header;
-  }
-
-  StageCloudPtr run(StageClouds&& inputs) override
-  {
-    if (!scan) return FileReader::run(std::move(inputs));
-    auto cloud = std::make_shared<StageCloud>();
-    io::CloudFacts facts;
-    cloud->cloud = io::readPtxScan(filename.path, static_cast<std::size_t>(*scan), &facts, allow_scale);
-    take(facts, *cloud);
-    return cloud;
-  }
 
 protected:
-  io::ReadSettings settings() const override { return {io::ColumnNames(), allow_scale}; }
+  io::ReadSettings settings() const override { return {io::ColumnNames(), false, number()}; }
+  std::optional<std::size_t> number() const
+  {
+    return scan ? std::optional<std::size_t>(static_cast<std::size_t>(*scan)) : std::nullopt;
+  }
+};
+
+struct PtxReader : ScanReader {
+  bool allow_scale = false;
+
+protected:
+  io::ReadSettings settings() const override { return {io::ColumnNames(), allow_scale, number()}; }
 };
 
 struct FileWriter : Stage {
@@ -199,12 +193,19 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
               std::is_base_of_v<FileWriter, S> ? "the file to write; it appears complete or not at all"
                                                : "the file to read")
       .required();
+  if constexpr (std::is_base_of_v<ScanReader, S>) {
+    constexpr bool is_ptx = std::is_same_v<S, PtxReader>;
+    description
+        .option(&S::scan, "scan",
+                is_ptx ? "only that scan, from 0, as an organised cloud; all when it is not given"
+                       : "only that scan, from 0; all when it is not given")
+        .atLeast(0);
+  }
   if constexpr (std::is_same_v<S, PtxReader>) {
-    description.option(&S::scan, "scan", "only that scan, from 0, as an organised cloud; all when it is not given")
-        .atLeast(0)
-        .option(&S::allow_scale, "allow_scale",
-                "the scans' transforms may scale uniformly; they are refused otherwise, and whatever else is no rigid "
-                "motion always");
+    description.option(
+        &S::allow_scale, "allow_scale",
+        "the scans' transforms may scale uniformly; they are refused otherwise, and whatever else is no rigid "
+        "motion always");
   }
   if constexpr (std::is_same_v<S, TextReader>) {
     description.option(&S::columns, "columns",
@@ -249,6 +250,10 @@ std::deque<StageType> fileReaders()
               "LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, .copc.laz too: x y z as float64, every field and the "
               "extra bytes by their descriptions. Scale, offset and all records, as of the coordinate system, go on to "
               "writers.las."),
+          ofFiles<ScanReader>("readers.e57", {".e57"},
+                              "E57 (ASTM E2807): x y z as float64, of all scans in their common frame, every value "
+                              "but texts, colours packed as rgb, the first scanner's pose as viewpoint; NaN where the "
+                              "file says that a point is invalid. Several scans have a field `scan`."),
           ofFiles<FileReader>("readers.pts", {".pts"},
                               "Leica's PTS: x y z as float64, intensity as float32, colours packed as rgb."),
           ofFiles<PtxReader>("readers.ptx", {".ptx"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
+#include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/las/las.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
@@ -49,9 +50,25 @@ Contents readAll(LasReader reader)
   return contents;
 }
 
-void requireColumnText(const std::string& extension, const ColumnNames& columns)
+bool isReadByPlace(const std::string& extension)
 {
-  if (columns.empty() || isColumnText(extension)) return;
+  return isLasExtension(extension) || isE57Extension(extension);
+}
+
+Contents readByPlace(const std::string& extension, std::unique_ptr<ByteSource> file, const ReadSettings& settings,
+                     unsigned threads)
+{
+  if (!isE57Extension(extension)) return readAll(LasReader(std::move(file), threads));
+  E57Reader reader(std::move(file), settings.scan);
+  return {reader.readAll(), reader.facts()};
+}
+
+void requireSettings(const std::string& extension, const ReadSettings& settings)
+{
+  if (settings.scan && !mayHaveScans(extension))
+    throw FormatError("is a " + extension + ", which has no numbered scans",
+                      "give a scan of .ptx and .e57 files alone");
+  if (settings.columns.empty() || isColumnText(extension)) return;
   throw FormatError("is a " + extension + ", which names its fields itself",
                     "give names of columns for .xyz, .txt and .csv files alone");
 }
@@ -66,8 +83,8 @@ struct Faces {
 Contents parse(const std::string& extension, std::string_view file, const ReadSettings& settings, unsigned threads,
                Faces* faces)
 {
-  requireColumnText(extension, settings.columns);
-  if (isLasExtension(extension)) return readAll(LasReader(std::make_unique<HeldBytes>(file), threads));
+  requireSettings(extension, settings);
+  if (isReadByPlace(extension)) return readByPlace(extension, std::make_unique<HeldBytes>(file), settings, threads);
   Contents contents;
   if (extension == ".pcd") {
     contents.cloud = parsePcd(file, contents.facts.viewpoint, &contents.facts.remarks);
@@ -77,8 +94,8 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
         parsePly(file, contents.facts.viewpoint, faces ? &faces->polygons : nullptr, &contents.facts.remarks);
   }
   else if (extension == ".ptx") {
-    contents.cloud = parsePtx(file, contents.facts.viewpoint, {}, &contents.facts.scanners, settings.allow_scale,
-                              &contents.facts.remarks);
+    contents.cloud = parsePtx(file, contents.facts.viewpoint, settings.scan, &contents.facts.scanners,
+                              settings.allow_scale, &contents.facts.remarks);
   }
   else if (extension == ".obj") {
     contents.cloud = parseObj(file, &contents.facts.remarks);
@@ -101,7 +118,8 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
 }
 
 /// The number of points is known, too.
-pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
+template <typename Reader>
+pcl::PCLPointCloud2 sizedHeader(const Reader& reader)
 {
   pcl::PCLPointCloud2 header = reader.cloudHeader();
   requirePoints(reader.size());
@@ -112,14 +130,14 @@ pcl::PCLPointCloud2 lasHeader(const LasReader& reader)
 pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file, bool whole,
                                 const ReadSettings& settings)
 {
-  requireColumnText(extension, settings.columns);
+  requireSettings(extension, settings);
   if (extension == ".pcd") return parsePcdHeader(file);
   if (extension == ".ply") return parsePlyHeader(file);
   if (extension == ".obj") return parseObjHeader(file);
   if (extension == ".off") return parseOffHeader(file);
   if (extension == ".stl") return parseStlHeader(file);
   if (extension == ".pts") return parsePtsHeader(file, whole);
-  if (extension == ".ptx") return parsePtxHeader(file, {}, settings.allow_scale);
+  if (extension == ".ptx") return parsePtxHeader(file, settings.scan, settings.allow_scale);
   return parseColumnNames(file, whole, settings.columns);
 }
 
@@ -165,10 +183,10 @@ std::string readableExtension(const std::filesystem::path& path, std::string_vie
   return extensionByContent(beginning);
 }
 
-/// Whether the file is LAS or LAZ, which is not held in memory.
-bool isLasFile(const std::filesystem::path& path)
+/// Whether the file is read piece by piece, and not held in memory.
+bool isFileReadByPlace(const std::filesystem::path& path)
 {
-  return isLasExtension(extensionOf(path)) && !isPipe(path);
+  return isReadByPlace(extensionOf(path)) && !isPipe(path);
 }
 
 /// The cloud, once it is known to be usable.
@@ -199,10 +217,11 @@ pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes&
 pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
                          unsigned threads, Faces* faces)
 {
-  if (isLasFile(path)) {
+  if (isFileReadByPlace(path)) {
     return naming(path, [&] {
-      requireColumnText(extensionOf(path), settings.columns);
-      return checked(readAll(LasReader(openBytes(path), threads)), facts);
+      const std::string extension = extensionOf(path);
+      requireSettings(extension, settings);
+      return checked(readByPlace(extension, openBytes(path), settings, threads), facts);
     });
   }
   const FileBytes file(path);
@@ -216,18 +235,6 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* fac
                               unsigned threads)
 {
   return read(path, facts, settings, threads, nullptr);
-}
-
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts,
-                                bool allow_scale)
-{
-  const FileBytes file(path);
-  return naming(path, [&] {
-    Contents contents;
-    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners, allow_scale,
-                              &contents.facts.remarks);
-    return checked(std::move(contents), facts);
-  });
 }
 
 Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
@@ -252,22 +259,18 @@ Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ReadSe
   return mesh;
 }
 
-pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, bool allow_scale)
-{
-  const FileBytes file(path);
-  return naming(path, [&] { return parsePtxHeader(file.view(), scan, allow_scale); });
-}
-
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings)
 {
   if (isPipe(path)) {
     throw files::FileError(path, "is a pipe, whose header and points cannot be read one after the other",
                            "save the cloud to a file first");
   }
-  if (isLasFile(path)) {
+  if (isFileReadByPlace(path)) {
     return naming(path, [&] {
-      requireColumnText(".las", settings.columns);
-      return checkedHeader(lasHeader(LasReader(openBytes(path))));
+      const std::string extension = extensionOf(path);
+      requireSettings(extension, settings);
+      return checkedHeader(isE57Extension(extension) ? sizedHeader(E57Reader(openBytes(path), settings.scan))
+                                                     : sizedHeader(LasReader(openBytes(path))));
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;

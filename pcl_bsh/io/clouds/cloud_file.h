@@ -38,10 +38,10 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 
 /// Facts in a file beside its points.
 struct CloudFacts {
-  Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx
-  std::vector<Viewpoint> scanners = {};  ///< of .ptx, of each scan that was read
+  Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx, .e57
+  std::vector<Viewpoint> scanners = {};  ///< of .ptx and .e57, of each scan that was read; empty: not known
   LasHeaderPtr las = nullptr;            ///< of .las
-  std::string coordinate_system = {};    ///< as a .las names it; empty where it does not
+  std::string coordinate_system = {};    ///< as a .las or .e57 names it; empty where it does not
   std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name
 };
 
@@ -57,34 +57,29 @@ struct CloudFacts {
 ///             too: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1 to 4
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
-/// .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says.
+/// .e57        ASTM E2807 (e57/reader.h): all scans in their common frame, Cartesian or spherical, every value but
+/// texts .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line
+/// says.
 ///             Columns: x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a
 ///             comment before it names them (column_names.h). Lines that start with // are comments, and text after a #
 ///             that begins a line or stands behind a blank. Columns that float64 does not hold are whole numbers of 64
 ///             bits or text (column_kinds.h), which .csv has again as they were.
 ///
-/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS or LAZ file does, and
-/// columns otherwise.
+/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS, LAZ or E57 file does,
+/// and columns otherwise.
 ///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
 /// x y z (integers become float64), at most 2^31 - 1 points, and is_dense as PCL defines
 /// it. A file that says it holds no points is an empty cloud.
 /// @param facts if not null, set to what the file says beside its points
-/// @param settings columns of .xyz, .txt and .csv, and whether transforms may scale (read_settings.h)
+/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
-///   for columns of another format; for a matrix that is no rigid motion (rigid_pose.h), with the scan that has it
+///   for settings of another format; for a matrix that is no rigid motion (rigid_pose.h), with the scan that
+///   has it
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
                               const ReadSettings& settings = {}, unsigned threads = 0);
-
-/// Only one of the scans of a .ptx file, as an organised cloud. Throws as readCloud() does.
-/// @param scan from 0
-pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts = nullptr,
-                                bool allow_scale = false);
-
-/// The fields that readPtxScan() makes. Throws as readCloud() does.
-pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, bool allow_scale = false);
 
 /// A number of each triangle.
 struct FaceValues {

@@ -3,6 +3,7 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
+#include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/reader.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
@@ -44,6 +45,35 @@ public:
 private:
   fs::path path_;
   LasReader reader_;
+};
+
+class E57Stream : public CloudStream {
+public:
+  E57Stream(const fs::path& path, const ReadSettings& settings)
+  : path_(path),
+    reader_(openBytes(path), settings.scan),
+    facts_(reader_.facts())
+  {
+  }
+
+  const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
+  std::uint64_t size() const override { return reader_.size(); }
+  std::vector<std::string> remarks() const override { return facts_.remarks; }
+  std::string coordinateSystem() const override { return facts_.coordinate_system; }
+  std::size_t read(std::uint8_t* records, std::size_t most) override
+  {
+    try {
+      return reader_.read(records, most);
+    }
+    catch (const FormatError& error) {
+      throw files::FileError(path_, error.what(), error.remedy());
+    }
+  }
+
+private:
+  fs::path path_;
+  E57Reader reader_;
+  CloudFacts facts_;
 };
 
 /// The points of a binary PCD file stand there as they do in memory.
@@ -158,10 +188,11 @@ std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memor
 {
   const pcl::PCLPointCloud2 header = readCloudHeader(path, settings); // which checks that it can be read
   if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path, threads);
+  if (isE57Extension(extensionOf(path))) return std::make_unique<E57Stream>(path, settings);
   if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
-                           "give more memory, or convert it to .las or binary .pcd");
+                           "give more memory, or convert it to .las, .e57 or binary .pcd");
   }
   return std::make_unique<HeldCloud>(path, settings);
 }

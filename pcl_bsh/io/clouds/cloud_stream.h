@@ -36,15 +36,15 @@ public:
   /// Remarks for users about how the file is read, a line each, without its name.
   virtual std::vector<std::string> remarks() const { return {}; }
 
-  /// As a .las names it; empty where it does not.
+  /// As a .las or .e57 names it; empty where it does not.
   virtual std::string coordinateSystem() const { return {}; }
 
   /// Leaves out the next points. @throws files::FileError
   virtual void skip(std::uint64_t points);
 };
 
-/// Opens any file that readCloud() reads. LAS, LAZ and binary PCD are read batch by batch, the other formats at once,
-/// for which `memory`, in bytes, must hold the file and its cloud together.
+/// Opens any file that readCloud() reads. LAS, LAZ, E57 and binary PCD are read batch by batch, the other formats at
+/// once, for which `memory`, in bytes, must hold the file and its cloud together.
 /// @param settings and @param threads as readCloud() has them
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,

@@ -28,6 +28,7 @@ inline constexpr CloudFormat cloud_formats[] = {
     {".ply", true, true, [](std::string_view bytes) { return bytes.starts_with("ply"); }},
     {".las", false, true, [](std::string_view bytes) { return bytes.starts_with("LASF"); }},
     {".laz", false, false},
+    {".e57", false, false, [](std::string_view bytes) { return bytes.starts_with("ASTM-E57"); }},
     {".obj", true, true},
     {".off", true, false, [](std::string_view bytes) { return beginsAsOff(bytes); }},
     {".stl", true, false},

@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/reports/clash_list.h>
 #include <pcl_bsh/io/text/file_bytes.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/question/options.h>
@@ -227,7 +228,16 @@ void addClashes(const JsonReader& reader, std::vector<ClashList>& lists)
 std::vector<ClashList> readClashLists(const std::filesystem::path& path)
 {
   const FileBytes file(path);
-  return parseClashLists(file.view(), path.string());
+  if (!isBcfExtension(extensionOf(path))) return parseClashLists(file.view(), path.string());
+  try {
+    const BcfContents contents = parseBcf(file.view());
+    std::vector<ClashList> lists = parseClashLists(contents.list, path.string() + ": " + bcf_list_file);
+    for (ClashList& list : lists) list.topics = contents.topics;
+    return lists;
+  }
+  catch (const FormatError& error) {
+    throw files::FileError(path, error.what(), error.remedy());
+  }
 }
 
 std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name)

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/io/reports/bcf_topics.h>
 #include <pcl_bsh/question/question.h>
 
 #include <Eigen/Geometry>
@@ -45,11 +46,13 @@ struct ClashList {
   bool states_options = true;   ///< false of lists of earlier versions: what was asked beside clearance is not known
   std::optional<Survey> survey; ///< none of lists of earlier versions
   std::vector<Clash> clashes;
+  BcfTopics topics = {}; ///< of a BCF file
 };
 
 /// The lists of an earlier run, one for each of its obstacles, for compareWithEarlier().
-/// @throws files::FileError when the file cannot be read, JsonError naming the place in it that no run would have
-/// written
+/// @param path of a list in JSON, or of BCF
+/// @throws files::FileError when the file cannot be read, or is no BCF; JsonError naming the place in it that no run
+/// would have written
 std::vector<ClashList> readClashLists(const std::filesystem::path& path);
 
 /// The same, of a text. @throws JsonError whose message begins with `name`

@@ -94,7 +94,7 @@ Json pairJson(const DistanceResult& closest)
 
 std::string formatOf(const std::filesystem::path& path)
 {
-  return io::formatOf(path, {".json", ".csv", ".html"});
+  return io::formatOf(path, {".json", ".csv", ".html", ".bcf", ".bcfzip"});
 }
 
 } // namespace
@@ -292,6 +292,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
                                          const ClashList& earlier, const std::function<void(FormerPlaces&)>& look)
 {
   report.previous = file.string();
+  report.topics = earlier.topics;
   compareWithEarlier(report.clashes, earlier.clashes, report.cluster_distance);
   FormerPlaces former(report.clashes, *report.question.clearance, report.cluster_distance);
   if (!former.empty()) {
@@ -337,7 +338,10 @@ std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::file
 void writeClashes(const std::filesystem::path& path, const ClashLists& lists)
 {
   const std::string format = formatOf(path);
-  const std::string text = format == ".json" ? clashJson(lists) : format == ".csv" ? clashCsv(lists) : clashPage(lists);
+  const std::string text = format == ".json"        ? clashJson(lists)
+                           : format == ".csv"       ? clashCsv(lists)
+                           : isBcfExtension(format) ? clashBcf(lists, format == ".bcf")
+                                                    : clashPage(lists);
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
 }
 

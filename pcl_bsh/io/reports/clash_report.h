@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clashes as lists for programs (.json, .csv), compared with those of an earlier run, and as a page for people (.html).
+// Clashes as lists for programs (.json, .csv), compared with those of an earlier run, as a page for people
+// (.html), and as topics for programs that coordinate models (.bcf, .bcfzip).
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -42,6 +43,7 @@ struct ClashReport {
   std::string unit = {};                    ///< of the clouds' lengths; empty: not known
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
   std::optional<std::string> previous = {}; ///< file name
+  BcfTopics topics = {};                    ///< what people said of its clashes
   const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
   const Answer::Unseen* unseen = nullptr;   ///< of a question with `seen` and `unseen_places`
   /// The source of a point of `scan`, where the input is several files.
@@ -150,7 +152,13 @@ std::string clashCsv(const ClashLists& lists);
 /// A page that opens alone in a browser: a chart of the path, tables, and two pictures of each clash.
 std::string clashPage(const ClashLists& lists);
 
-/// Writes what the extension says: .json, .csv or .html. The file appears complete or not at all.
+/// A topic for each clash, with a viewpoint, as an archive of BCF 3.0 or 2.1. The GUID of a topic follows from the id
+/// of its clash. Status, comments and who is to act are those of `topics`; what is resolved is closed, what is new
+/// open. With the list of clashJson() as a document. Coordinates of viewpoints are in metres where the unit is known.
+std::string clashBcf(const ClashLists& lists, bool is_version_3);
+
+/// Writes what the extension says: .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1). The file appears complete or not at
+/// all.
 /// @throws files::FileError
 void writeClashes(const std::filesystem::path& path, const ClashLists& lists);
 

@@ -29,6 +29,8 @@ Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turne
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
 Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: the same as topics for a coordinator, with the comments that last week's topics got
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes w48.bcf --previous w47.bcf
 Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: where would a robot stand in what no scanner of the hall ever looked into?
@@ -39,7 +41,9 @@ Example: which of two machines stands too near to a hall's points or to the othe
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
 Example: which points of a hall are within 5 cm of a machine's surface?
-  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05)";
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05
+Example: what of the third scan of an E57 file is within 5 cm of a robot?
+  pcl_bsh_collide hall.e57 robot.pcd marked.pcd --scan 2 --clearance 0.05)";
 
 /// Checks that involve several options; those of the question are the core's.
 void requireConsistent(const CollideOptions& options)
@@ -155,8 +159,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,
-                 "list of the places that collide, to .json, .csv or .html; may be given\n"
-                 "more than once")
+                 "list of the places that collide, to .json, .csv, .html, .bcf (3.0) or\n"
+                 ".bcfzip (2.1); may be given more than once")
       ->type_name("FILE")
       ->allow_extra_args(false);
   app.add_option("--cluster-distance", options.cluster_distance,
@@ -165,9 +169,9 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("L")
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
   app.add_option("--previous", options.previous,
-                 "earlier .json list, of the same options but --swept and --seen: clashes\n"
-                 "are new, persisting, resolved, or not visited by the path or not scanned\n"
-                 "any more")
+                 "earlier list, .json or BCF, of the same options but --swept and --seen:\n"
+                 "clashes are new, persisting, resolved, or not visited by the path or not\n"
+                 "scanned any more; BCF brings comments and topics' states")
       ->type_name("FILE");
   app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
       ->type_name("NAME");

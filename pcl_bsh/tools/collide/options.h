@@ -33,7 +33,7 @@ struct CollideOptions {
   Keep keep = Keep::flagged;
   Question question;                          ///< its path: a straight run, or that of the trajectory, once it is read
   std::filesystem::path trajectory;           ///< a file of poses, or empty
-  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   bool distances = false; ///< of every point

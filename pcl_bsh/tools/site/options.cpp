@@ -21,7 +21,7 @@ namespace {
 
 constexpr auto site_footer =
     R"(A site is a folder of tiles, each a binary PCD file with all fields of the points and two more, source and record:
-which record of which cloud a point was. Reads {read}; .las, .laz and
+which record of which cloud a point was. Reads {read}; .las, .laz, .e57 and
 binary .pcd of any size, the others where they fit into half of the memory given.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
@@ -91,8 +91,10 @@ struct CollideTexts {
     app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
     app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
         ->type_name("FILE");
-    app.add_option("--clashes", options.clashes,
-                   "list of the places that collide, to .json, .csv or .html; may be given more than once")
+    app.add_option(
+           "--clashes", options.clashes,
+           "list of the places that collide, to .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1); may be given more "
+           "than once")
         ->type_name("FILE")
         ->allow_extra_args(false);
     app.add_option("--cluster-distance", options.cluster_distance,
@@ -100,9 +102,10 @@ struct CollideTexts {
                    "of SITE's tiles, rounded up to a power of two)")
         ->type_name("L")
         ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-    app.add_option("--previous", options.previous,
-                   "earlier .json list, of the same options but --swept and --seen: clashes are new, persisting, "
-                   "resolved, or not visited by the path, unseen or not scanned any more")
+    app.add_option(
+           "--previous", options.previous,
+           "earlier list, .json or BCF, of the same options but --swept and --seen: clashes are new, persisting, "
+           "resolved, or not visited by the path, unseen or not scanned any more")
         ->type_name("FILE");
     app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
     app.add_flag("--any", any, "only whether any point collides");

@@ -38,7 +38,7 @@ struct SiteOptions {
   bool alongPath() const { return question.path || question.wanted.contacts; } ///< if only of one pose
   std::filesystem::path obstacle, trajectory, report;
   std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
-  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html
+  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;
   std::string unit;    ///< of the clouds, for the clash report; empty: not known

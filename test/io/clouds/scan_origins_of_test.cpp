@@ -26,7 +26,7 @@ TEST(ScanOriginsOf, AreWhatTheFileSays)
   const std::string at_zero = "1\n1\n" + axes + "0 0 0 1\n1 2 3 0.5\n";
   EXPECT_EQ(originsIn(folder.write("zero.ptx", at_zero)), "0,0,0") << "which a .ptx always says";
   CloudFacts facts;
-  const pcl::PCLPointCloud2 second = readPtxScan(folder.write("second.ptx", one + at_zero), 1, &facts);
+  const pcl::PCLPointCloud2 second = readCloud(folder.write("second.ptx", one + at_zero), &facts, {{}, false, 1});
   EXPECT_EQ(originsOf(second, facts).text(), "0,0,0");
   EXPECT_EQ(originsIn(folder.write("camera.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                                                  "property float y\nproperty float z\nelement camera 1\n"

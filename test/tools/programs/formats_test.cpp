@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every program takes every format, wherever it takes a cloud.
 #include "program_run.h"
+#include "support/e57_sample.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 
@@ -50,6 +51,10 @@ protected:
     io::writeMesh(folder / "mesh.ply", cloud, io::readMesh(folder / "c.off").triangles);
     for (const char* name : {"c.pcd", "c.ply", "c.las", "c.pts", "c.ptx", "c.csv", "c.xyz", "c.txt"})
       io::writeCloud(folder / name, cloud);
+    std::vector<std::vector<double>> axes(3);
+    for (const pcl::PointXYZ& corner : corners)
+      for (std::size_t k = 0; k < 3; ++k) axes[k].push_back(corner.data[k]);
+    folder.write("c.e57", E57Sample{{E57Sample::points(axes[0], axes[1], axes[2])}}.text());
   }
 
   /// In the folder of the clouds. @return what it said
@@ -71,7 +76,7 @@ protected:
   io::TemporaryFolder folder;
 };
 
-const std::vector<std::string> EveryFormat::names = {"c.pcd", "c.ply", "mesh.ply", "c.las", "c.pts", "c.ptx",
+const std::vector<std::string> EveryFormat::names = {"c.pcd", "c.ply", "mesh.ply", "c.las", "c.e57", "c.pts", "c.ptx",
                                                      "c.csv", "c.xyz", "c.txt",    "c.off", "c.obj", "c.stl"};
 
 TEST_F(EveryFormat, IsTakenByCollide)

@@ -49,14 +49,6 @@ std::string plain(std::string_view text)
   return line.substr(from, line.find_last_not_of(' ') + 1 - from);
 }
 
-/// The first name in quotes, which is that of the whole system.
-std::string nameOfWkt(std::string_view text)
-{
-  const std::size_t from = std::min(text.find('"'), text.size() - 1) + 1;
-  const std::size_t to = text.find('"', from);
-  return to == std::string_view::npos ? std::string() : plain(text.substr(from, to - from));
-}
-
 /// GeoTIFF 1.0: a directory of keys, four numbers each, some of whose values are parts of a text.
 class GeoKeys {
 public:
@@ -126,6 +118,14 @@ std::string nameOfKeys(const GeoKeys& keys)
 }
 
 } // namespace
+
+/// The first name in quotes.
+std::string nameOfWkt(std::string_view text)
+{
+  const std::size_t from = std::min(text.find('"'), text.size() - 1) + 1;
+  const std::size_t to = text.find('"', from);
+  return to == std::string_view::npos ? std::string() : plain(text.substr(from, to - from));
+}
 
 std::string coordinateSystemOf(const LasHeader& header)
 {

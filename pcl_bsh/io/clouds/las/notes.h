@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -18,6 +19,9 @@ inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& he
 {
   return header ? coordinateSystemOf(*header) : std::string();
 }
+
+/// The name of the whole system in WKT, in ASCII, too; or empty.
+std::string nameOfWkt(std::string_view text);
 
 /// How many records behind the points the header does not count, if any.
 std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes);

@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 namespace {
 
 constexpr std::size_t batch_points = 4096;
-constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
 double coordinate(const std::uint8_t* record, const pcl::PCLPointField& field)
 {
@@ -66,7 +66,7 @@ void chooseScale(const LasPoints& points, LasPlan& plan)
     plan.offset[k] = std::nearbyint(middle / step) * step;
     const bool finite = std::isfinite(plan.scale[k] * 0x1p31 + std::abs(plan.offset[k])); // as readers ask for
     if (!finite || !hasPlaces(points, k, plan.scale[k], plan.offset[k])) {
-      throw FormatError("its coordinates " + std::string(axes[k]) + " are too far apart for LAS",
+      throw FormatError("its coordinates " + std::string(axis_names[k]) + " are too far apart for LAS",
                         "write a .pcd instead");
     }
   }
@@ -313,7 +313,7 @@ LasPoints::LasPoints(const pcl::PCLPointCloud2& cloud) : cloud_(cloud), fields_(
   greatest_.fill(-std::numeric_limits<double>::infinity());
   std::array<pcl::PCLPointField, 3> xyz;
   for (std::size_t k = 0; k < 3; ++k) {
-    const pcl::PCLPointField* const axis = field(axes[k]);
+    const pcl::PCLPointField* const axis = field(axis_names[k]);
     const bool real = axis != nullptr && axis->count == 1 &&
                       (axis->datatype == pcl::PCLPointField::FLOAT32 || axis->datatype == pcl::PCLPointField::FLOAT64);
     if (!real) throw FormatError("the cloud has not one each of x, y and z", "write a cloud with float x y z");
