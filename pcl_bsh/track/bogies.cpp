@@ -15,43 +15,49 @@ Eigen::Vector3d vectorOf(const Point3& p)
   return {p[0], p[1], p[2]};
 }
 
-} // namespace
-
-double rearPivotOf(const Axis& axis, double pivots, double front)
+/// How far along the axis, back (-1) or on (1), the other pivot is.
+double alongToPivot(const Axis& axis, double pivots, double from, double direction)
 {
   const auto refuse = [&](const std::string& wrong, double value) {
     throw InvalidInput(Input::trajectory, "vehicle", wrong, "give a place where both pivots stand on the axis")
         .withValue(value);
   };
   if (!(pivots > 0.0 && std::isfinite(pivots))) refuse(plainText("its pivots are ", pivots, " apart"), pivots);
-  if (!(front >= 0.0 && front <= axis.length()))
-    refuse(plainText("its first pivot is at distance ", front, ", not on an axis ", axis.length(), " long"), front);
-  const Eigen::Vector3d at = vectorOf(axis.frame(front).origin);
-  const auto tooFar = [&](double distance) { return (at - vectorOf(axis.frame(distance).origin)).norm() - pivots; };
-  double high = front, low = std::max(0.0, front - pivots);
-  while (tooFar(low) < 0.0 && low > 0.0 && front - low < 4.0 * pivots) low = std::max(0.0, low - 0.1 * pivots);
-  if (tooFar(low) < -1e-9)
-    refuse(plainText("its second pivot, ", pivots, " behind the first at distance ", front, ", is not on the axis"),
-           front);
-  double below = tooFar(low), above = -pivots; // false position with halved ends (Illinois)
-  for (int step = 0, side = 0; step < 100 && high - low > 1e-13; ++step) {
-    const double at_zero = std::clamp((low * above - high * below) / (above - below), low, high);
-    const double value = tooFar(at_zero);
-    if (std::abs(value) <= 1e-14) return at_zero;
-    if (value > 0.0) {
-      low = at_zero;
-      below = value;
-      if (side > 0) above *= 0.5;
-      side = 1;
-    }
-    else {
-      high = at_zero;
-      above = value;
-      if (side < 0) below *= 0.5;
-      side = -1;
-    }
+  if (!(from >= 0.0 && from <= axis.length()))
+    refuse(plainText("a pivot is at distance ", from, ", not on an axis ", axis.length(), " long"), from);
+  const Eigen::Vector3d at = vectorOf(axis.frame(from).origin);
+  const auto tooFar = [&](double t) {
+    return (vectorOf(axis.frame(from + direction * t).origin) - at).norm() - pivots;
+  };
+  const double most = direction > 0.0 ? axis.length() - from : from;
+  double near = 0.0, far = std::min(pivots, most), at_near = -pivots;
+  while (tooFar(far) < 0.0 && far < most && far < 4.0 * pivots) far = std::min(most, far + 0.1 * pivots);
+  double at_far = tooFar(far);
+  if (at_far < -1e-9)
+    refuse(plainText("its other pivot, ", pivots, " from that at distance ", from, ", is not on the axis"), from);
+  for (int step = 0, side = 0; step < 100 && far - near > 1e-13; ++step) { // false position with halved ends (Illinois)
+    const double t = std::clamp((near * at_far - far * at_near) / (at_far - at_near), near, far);
+    const double value = tooFar(t);
+    if (std::abs(value) <= 1e-14) return t;
+    const bool beyond = value > 0.0;
+    (beyond ? far : near) = t;
+    (beyond ? at_far : at_near) = value;
+    if (side == (beyond ? 1 : -1)) (beyond ? at_near : at_far) *= 0.5;
+    side = beyond ? 1 : -1;
   }
-  return below < -above ? low : high;
+  return at_far < -at_near ? far : near;
+}
+
+} // namespace
+
+double rearPivotOf(const Axis& axis, double pivots, double front)
+{
+  return front - alongToPivot(axis, pivots, front, -1.0);
+}
+
+double frontPivotOf(const Axis& axis, double pivots, double rear)
+{
+  return rear + alongToPivot(axis, pivots, rear, 1.0);
 }
 
 Eigen::Isometry3d poseOnPivots(const Axis& axis, double pivots, double front)

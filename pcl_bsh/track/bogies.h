@@ -13,9 +13,11 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Where the second pivot stands: behind the first along the axis, as far from it in space as `pivots` says.
-/// @param front distance of the first pivot, at least pivots from the axis' beginning, along it
 /// @throws InvalidInput where the axis does not hold both
 double rearPivotOf(const Axis& axis, double pivots, double front);
+
+/// Where the first pivot stands, when the second one is at `rear`. @throws InvalidInput as rearPivotOf()
+double frontPivotOf(const Axis& axis, double pivots, double rear);
 
 /// The pose of the vehicle in the axis' coordinates. The vehicle's own frame has its origin midway between its pivots,
 /// x towards the first one, y to the left and z up; it leans by the mean of the cants at both pivots.

@@ -223,6 +223,8 @@ TEST(Bogies, StandOnRampsAndInclines)
     EXPECT_NEAR((poses[i].linear().transpose() * poses[i].linear() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-14);
     EXPECT_GT(poses[i].linear()(2, 2), 0.99);
   }
+  EXPECT_NEAR(frontPivotOf(axis, 19, rearPivotOf(axis, 19, 222)), 222, 2e-9);
+  EXPECT_THROW(frontPivotOf(axis, 19, 390), InvalidInput);
   EXPECT_THROW(poseOnPivots(axis, 19, 10), InvalidInput);
   EXPECT_THROW(poseOnPivots(axis, 19, 401), InvalidInput);
   EXPECT_THROW(posesAlong(axis, 19, 20, 30, 0), InvalidInput);
