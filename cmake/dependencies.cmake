@@ -14,6 +14,7 @@ find_package(hwy 1.0 REQUIRED CONFIG)
 if(PCL_BSH_WITHOUT_PCL OR PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES OR PCL_BSH_BUILD_VTK)
   find_package(nlohmann_json 3.11 REQUIRED CONFIG)
   find_package(FastFloat REQUIRED CONFIG) # 3 or later: its package names itself compatible with its own major version alone
+  find_package(pugixml 1.10 REQUIRED CONFIG)
 endif()
 if(PCL_BSH_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED CONFIG)

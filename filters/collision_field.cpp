@@ -39,7 +39,10 @@ void requireSame(const Field& field, std::uint8_t datatype, const pcl::PCLPointC
 {
   const auto bytes = static_cast<std::size_t>(pcl::getFieldSize(datatype));
   if (field.datatype != datatype || field.count > 1 || field.offset + bytes > cloud.point_step) {
-    const char* type = datatype == Field::UINT8 ? "UINT8" : datatype == Field::INT32 ? "INT32" : "FLOAT32";
+    const char* type = datatype == Field::UINT8     ? "UINT8"
+                       : datatype == Field::INT32   ? "INT32"
+                       : datatype == Field::FLOAT32 ? "FLOAT32"
+                                                    : "FLOAT64";
     throw std::invalid_argument("field '" + field.name + "' exists already and is not one " + type +
                                 " per point: rename or remove it");
   }

@@ -26,11 +26,11 @@ inline constexpr const char* distance_field_name = "distance";
 inline constexpr const char* first_pose_field_name = "first_pose";
 inline constexpr const char* closest_pose_field_name = "closest_pose";
 
-/// One value per point: UINT8 (verdicts, too), INT32 or FLOAT32. The values are borrowed.
+/// One value per point: UINT8 (verdicts, too), INT32, FLOAT32 or FLOAT64. The values are borrowed.
 struct NewField {
   std::string name;
   std::variant<const std::vector<Verdict>*, const std::vector<std::uint8_t>*, const std::vector<std::int32_t>*,
-               const std::vector<float>*>
+               const std::vector<float>*, const std::vector<double>*>
       values; ///< one per point
 };
 

@@ -8,7 +8,7 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 cmake_path(GET root PARENT_PATH root)
 
 # The targets that a component brings, itself last, and the packages that it must not ask for.
-set(all VTK CGAL MPI Python Python3 pybind11 CLI11 nlohmann_json FastFloat urdfdom assimp GTest nanoflann)
+set(all VTK CGAL MPI Python Python3 pybind11 CLI11 nlohmann_json FastFloat pugixml urdfdom assimp GTest nanoflann)
 set(brings_NONE "")
 set(brings_PIPELINES pipeline)
 set(brings_SITES sites)
@@ -19,7 +19,7 @@ set(brings_TOOLS pipeline collide)
 set(brings_VIEWER pipeline collide sites vtk view)
 set(brings_SELF_FILTER pipeline collide self_filter)
 set(needs_NONE "")
-set(needs_PIPELINES nlohmann_json FastFloat)
+set(needs_PIPELINES nlohmann_json FastFloat pugixml)
 set(needs_SITES ${needs_PIPELINES} VTK MPI)
 set(needs_VTK ${needs_PIPELINES} VTK MPI) # Debian's VTK is built with MPI
 set(needs_CERTIFY CGAL)

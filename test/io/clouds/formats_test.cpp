@@ -63,7 +63,7 @@ TEST(CloudFormats, AreReadAndWrittenAsTheTableSays)
 TEST(CloudFormats, AreListedInHelp)
 {
   EXPECT_EQ(withFormats("Reads {read}, not {unwritten}."),
-            "Reads .pcd .ply .las .laz .obj .off .stl .pts .ptx .csv .xyz .txt, not .laz .off .stl.");
+            "Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .txt, not .laz .e57 .off .stl.");
   EXPECT_EQ(extensionsOf(isWritten, ", ", " or "), ".pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt");
 }
 

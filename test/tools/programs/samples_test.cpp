@@ -6,6 +6,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 #include <vector>
@@ -101,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(Each, Documents,
                          testing::Values("README.md", "YOU_ASKED.md", "filters/pipeline/PIPELINES.md",
                                          "pcl_bsh/io/FORMATS.md", "pcl_bsh/query/ACCURACY.md",
                                          "pcl_bsh/scene/SCENES.md", "pcl_bsh/site/SITES.md",
-                                         "pcl_bsh/tools/viewer/VIEWER.md", "pcl_bsh/trajectory/PATHS.md"));
+                                         "pcl_bsh/tools/viewer/VIEWER.md", "pcl_bsh/track/TRACKS.md",
+                                         "pcl_bsh/trajectory/PATHS.md"));
 
 /// Links of documents lead to files.
 TEST_F(Samples, LinksOfDocumentsLead)
@@ -143,6 +145,20 @@ TEST_F(Samples, EachPipelineRunsOnTheCloudsMadeForIt)
   EXPECT_EQ(clashes.find("\"closest_pose\""), clashes.rfind("\"closest_pose\"")) << "one clash";
   EXPECT_NE(clashes.find("\"triangle\""), std::string::npos);
   EXPECT_GT(fs::file_size(clone / "build/samples/road.las"), 10000U);
+}
+
+/// A gauging run on the made line: the cable, the cabinet, and the part that was not scanned.
+TEST_F(Samples, TheMadeLineIsGauged)
+{
+  expectDone(
+      "bash examples/track/make_line.sh build/line\n"
+      "build/release/bin/pcl_bsh_gauge build/line/scan.xyz --axis build/line/line.axis --profile build/line/gauge.csv "
+      "--profile build/line/wagon.csv --vehicle wagon=19,3.7 --unit m --infringements build/line/list.csv "
+      "--page build/line/page.html");
+  const std::string list = files::contentOf(clone / "build/line/list.csv");
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 3) << list;
+  EXPECT_NE(files::contentOf(clone / "build/line/page.html").find("No data at chainages 1640 to 1650"),
+            std::string::npos);
 }
 
 /// Two epochs: what came, what went, a page, and a picture.

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of the page; gauge_page.html has the page itself.
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/gauge_drawings.h>
+#include <pcl_bsh/io/reports/gauge_report.h>
+#include <pcl_bsh/io/reports/page_text.h>
+
+#include "gauge_page.html.h"
+
+namespace pcl_bsh::io {
+namespace {
+
+constexpr std::size_t most_rows = 50, most_gaps = 20;
+
+Data rowsOf(const GaugeReport& report)
+{
+  if (report.infringements.empty()) return false;
+  List rows;
+  for (const Infringement& infringement : report.infringements) {
+    if (rows.size() == most_rows) break;
+    const Infringing& worst = infringement.worst;
+    rows.push_back(
+        Object{{"rank", std::to_string(rows.size() + 1)},
+               {"envelope", plain(report.envelopes[static_cast<std::size_t>(worst.envelope)].name())},
+               {"chainage", coordinate(report.axis.chainage(worst.place.distance))},
+               {"from", coordinate(report.axis.chainage(infringement.from))},
+               {"to", coordinate(report.axis.chainage(infringement.to))},
+               {"clearance", coordinate(worst.clearance)},
+               {"offset", coordinate(worst.place.offset)},
+               {"height", coordinate(worst.place.height)},
+               {"points", std::to_string(infringement.members.size())},
+               {"at", coordinate(worst.at[0]) + ", " + coordinate(worst.at[1]) + ", " + coordinate(worst.at[2])}});
+  }
+  const std::size_t more = report.infringements.size() - rows.size();
+  return Object{{"list", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};
+}
+
+/// Chainages of parts where an envelope counts and has no data, neighbours joined.
+Data gapsOf(const GaugeReport& report, std::size_t envelope)
+{
+  std::string text;
+  std::size_t gaps = 0;
+  for (std::size_t part = 0; part < report.table.parts(); ++part) {
+    const auto isGap = [&](std::size_t p) {
+      const double middle = 0.5 * (report.table.from(p) + report.table.to(p));
+      return stateOf(report, p, envelope) == PartState::no_data &&
+             report.envelopes[envelope].countsAt(report.axis.chainage(middle));
+    };
+    if (!isGap(part)) continue;
+    const std::size_t first = part;
+    while (part + 1 < report.table.parts() && isGap(part + 1)) ++part;
+    if (++gaps <= most_gaps)
+      text += (gaps == 1 ? "" : ", ") + number(report.axis.chainage(report.table.from(first)), 9) + " to " +
+              number(report.axis.chainage(report.table.to(part)), 9);
+  }
+  if (gaps > most_gaps) text += " and " + std::to_string(gaps - most_gaps) + " more";
+  return textOrNone(text);
+}
+
+} // namespace
+
+void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report)
+{
+  List envelopes, sections;
+  std::size_t no_data = 0;
+  for (std::size_t part = 0; part < report.table.parts(); ++part) no_data += report.table.points(part) == 0;
+  for (std::size_t e = 0; e < report.envelopes.size(); ++e)
+    envelopes.push_back(Object{{"name", plain(report.envelopes[e].name())},
+                               {"chart", clearanceChart(report, e)},
+                               {"map", clearanceMap(report, e)},
+                               {"gaps", gapsOf(report, e)}});
+  for (const GaugeSection& section : report.sections)
+    sections.push_back(Object{{"drawing", sectionDrawing(report, section)}});
+  const Object page = {{"style", std::string(page_style_css)},
+                       {"scan", plain(report.scan)},
+                       {"axis", plain(report.axis_file)},
+                       {"from", coordinate(report.axis.chainage(0.0))},
+                       {"to", coordinate(report.axis.chainage(report.axis.length()))},
+                       {"unit", textOrNone(report.unit)},
+                       {"coordinate_system", textOrNone(report.coordinate_system)},
+                       {"program", reportProgram()},
+                       {"date", reportDate()},
+                       {"infringements", std::to_string(report.infringements.size())},
+                       {"infringing", std::to_string(report.infringing)},
+                       {"worst", report.infringements.empty()
+                                     ? Data(false)
+                                     : Data(coordinate(report.infringements.front().worst.clearance))},
+                       {"limit", number(report.limit)},
+                       {"placed", std::to_string(report.placed())},
+                       {"no_data", std::to_string(no_data)},
+                       {"parts", std::to_string(report.table.parts())},
+                       {"two", std::to_string(report.counts[1])},
+                       {"before", std::to_string(report.counts[2])},
+                       {"behind", std::to_string(report.counts[3])},
+                       {"far", std::to_string(report.counts[4])},
+                       {"not_finite", std::to_string(report.counts[5])},
+                       {"rows", rowsOf(report)},
+                       {"envelopes", envelopes},
+                       {"sections", sections.empty() ? Data(false) : Data(Object{{"list", sections}})}};
+  const std::string html = rendered("gauge_page.html", gauge_page_html, page);
+  files::replaceFile(path, [&](std::ostream& out) { out << html; });
+}
+
+} // namespace pcl_bsh::io

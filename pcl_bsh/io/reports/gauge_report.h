@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A gauging run for people and programs: tables by chainage, infringements, JSON, and a page with drawings.
+#pragma once
+
+#include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/track/gauge_table.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Points of a scan near one section.
+struct GaugeSection {
+  std::string name;                ///< for people, and of its file
+  double distance = 0.0;           ///< along the axis
+  std::optional<Infringing> worst; ///< drawn with its clearance
+  std::vector<SectionPoint> points;
+};
+
+struct GaugeReport {
+  std::string scan, axis_file;
+  std::string unit;              ///< of lengths; empty: not known
+  std::string coordinate_system; ///< of the scan; empty: not known
+  const Axis& axis;
+  const std::vector<Envelope>& envelopes;
+  const GaugeTable& table;
+  AxisReach reach;
+  double limit = 0.0;     ///< clearances up to this are infringements
+  double thickness = 0.1; ///< of sections
+  std::array<std::size_t, 6> counts{};
+  std::size_t infringing = 0; ///< points
+  std::vector<Infringement> infringements;
+  std::vector<GaugeSection> sections = {};
+
+  std::size_t placed() const { return counts[0] + counts[1]; } ///< points that have a place at the axis
+};
+
+/// Whether a part of the axis has data of an envelope, and whether that is clear.
+enum class PartState : std::uint8_t { no_data, clear, infringed };
+PartState stateOf(const GaugeReport& report, std::size_t part, std::size_t envelope);
+const char* textOf(PartState state);
+
+/// A line for each part and envelope that counts there: .csv. Cells without data are empty. @throws files::FileError
+void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& report);
+
+/// A line for each infringement, the worst first: .csv. @throws files::FileError
+void writeInfringements(const std::filesystem::path& path, const GaugeReport& report);
+
+/// All of that, null where there is no data.
+Json gaugeJson(const GaugeReport& report);
+
+/// A page that opens alone in a browser. @throws files::FileError
+void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report);
+
+} // namespace pcl_bsh::io

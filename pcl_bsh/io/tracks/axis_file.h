@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Axes from files: measured points, elements as text, or an alignment of LandXML.
+#pragma once
+
+#include <pcl_bsh/track/axis.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+struct AxisSettings {
+  std::string alignment = {};                     ///< its name in LandXML; empty: the only one
+  std::optional<double> cant_unit = std::nullopt; ///< lengths are so often this; none: 0.001 in LandXML, else 1
+  std::optional<double> gauge = std::nullopt;     ///< instead of the file's
+  std::optional<CantPivot> pivot = std::nullopt;  ///< instead of the file's
+};
+
+/// Reads an axis, by the file's extension:
+///
+/// .csv        points, a line each, as a first line names their columns: chainage, x y z (also E N H) and, if there,
+///             cant. Arcs go through them
+/// .xml        LandXML's Alignment: CoordGeom with Line, Curve and Spiral (clothoid), ProfAlign with PVI and ParaCurve,
+///             Cant, StaEquation
+/// others      elements, as parseElements() has them
+/// @param remarks what users should know of how it was read, without the file's name
+/// @throws files::FileError naming the file, the line or the distance, the value, and what to do
+Axis readAxis(const std::filesystem::path& path, const AxisSettings& settings = {},
+              std::vector<std::string>* remarks = nullptr);
+
+/// Elements as text: a word and its numbers in each line. A # begins a comment.
+///
+/// - angle UNIT: of bearings, deg (default), gon or rad
+/// - start X Y BEARING: bearings count clockwise from y
+/// - chainage C: of the start, 0 otherwise
+/// - straight LENGTH
+/// - arc LENGTH RADIUS: radii are positive where the line turns to the right
+/// - clothoid LENGTH FROM TO: radii at its ends, inf of a straight
+/// - height C Z [LENGTH]: grades meet at that chainage, in a parabola of that length
+/// - cant C VALUE: the left rail is so much higher; ramps between
+/// - equation C AHEAD: from here on chainages count from AHEAD
+/// - gauge LENGTH, pivot low_rail, pivot centre
+///
+/// Chainages C count on from the start, without the jumps of equations.
+/// @throws FormatError naming the line
+AxisDescription parseElements(std::string_view text);
+
+/// An alignment of LandXML. @throws FormatError naming the line
+AxisDescription parseLandXml(std::string_view text, const AxisSettings& settings, std::vector<std::string>& remarks);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Outlines of envelopes from files, and tables of how they widen.
+#pragma once
+
+#include <pcl_bsh/track/envelope.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Reads the corners of a profile, in order round it. .dxf: one closed outline of LINE, LWPOLYLINE and POLYLINE among
+/// the entities, x to the right and y up, in the unit that $INSUNITS says. Others: a corner in each line, in columns
+/// offset and height, which a first line may name.
+/// @param unit how many of the cloud's units one of the file's is; none: as the drawing says, else 1
+/// @param remarks what users should know of how it was read, without the file's name
+/// @throws files::FileError naming the file, the line, the value, and what to do; also for an outline that crosses
+/// itself
+std::vector<SectionPoint> readProfile(const std::filesystem::path& path, std::optional<double> unit = std::nullopt,
+                                      std::vector<std::string>* remarks = nullptr);
+
+/// The outline of a drawing. @param unit becomes that of $INSUNITS, where it says one @throws FormatError naming the
+/// line
+std::vector<SectionPoint> parseDxf(std::string_view text, std::optional<double>& unit,
+                                   std::vector<std::string>& remarks);
+
+/// How an envelope widens to its left and right.
+struct WideningTable {
+  Piecewise left, right;
+};
+
+/// Reads columns chainage, left and right; straight between lines, held beyond them.
+/// @throws files::FileError as readProfile() does, and for a chainage that the axis has not, or has twice
+WideningTable readWidening(const std::filesystem::path& path, const Axis& axis);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of pcl_bsh_gauge.
+#pragma once
+
+#include <pcl_bsh/tools/cli/reading.h>
+#include <pcl_bsh/tools/cli/used_files.h>
+
+#include <pcl_bsh/io/tracks/axis_file.h>
+#include <pcl_bsh/track/envelope.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::cli {
+
+inline constexpr auto gauge_program = "pcl_bsh_gauge";
+
+/// A profile, and all that is said of it by its name, the file's without extension.
+struct ProfileOptions {
+  std::string name;
+  std::filesystem::path file;
+  std::vector<ChainageRange> ranges;
+  std::filesystem::path widening;
+  std::optional<Vehicle> vehicle;
+};
+
+struct GaugeOptions {
+  std::filesystem::path input, output; ///< each may be empty
+  std::filesystem::path axis;
+  io::AxisSettings axis_settings;
+  std::vector<ProfileOptions> profiles;
+  std::optional<double> profile_unit;
+  double limit = 0.0, step = 1.0, cluster_distance = 0.5, thickness = 0.1;
+  AxisReach reach;
+  std::filesystem::path table, infringements, report, page, sections, poses;
+  std::vector<double> at; ///< chainages of sections
+  double pivots = 0.0;
+  std::string unit;
+  unsigned threads = 0;
+  ReadChoice reading;
+  CommandFiles files;
+
+  bool draws() const { return !sections.empty() || !page.empty(); }
+};
+
+/// The options, checked; none when only help was asked for. @throws UsageError
+std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv);
+
+} // namespace pcl_bsh::cli

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far is a scan from what must stay free along a track? From an axis, profiles and a scan to tables and drawings.
+#include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/gauge/options.h>
+#include <pcl_bsh/tools/gauge/scan.h>
+
+#include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/io/files/output_folder.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/reports/gauge_drawings.h>
+#include <pcl_bsh/io/reports/gauge_report.h>
+#include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/io/tracks/profile_file.h>
+#include <pcl_bsh/track/bogies.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using Options = cli::GaugeOptions;
+
+constexpr auto program = cli::gauge_program;
+constexpr std::size_t most_worst_sections = 12, most_section_points = 20'000;
+
+std::vector<Envelope> readEnvelopes(const Options& options, const Axis& axis)
+{
+  std::vector<Envelope> envelopes;
+  for (const cli::ProfileOptions& profile : options.profiles) {
+    EnvelopeDescription description;
+    description.name = profile.name;
+    std::vector<std::string> remarks;
+    description.corners = io::readProfile(profile.file, options.profile_unit, &remarks);
+    cli::warnOfFile(program, profile.file, remarks);
+    description.ranges = profile.ranges;
+    description.vehicle = profile.vehicle;
+    if (!profile.widening.empty()) {
+      io::WideningTable table = io::readWidening(profile.widening, axis);
+      description.left = std::move(table.left);
+      description.right = std::move(table.right);
+    }
+    envelopes.emplace_back(std::move(description));
+    if (profile.vehicle) overthrowOf(*profile.vehicle, axis.smallestRadius()); // fails now
+  }
+  return envelopes;
+}
+
+/// Fields of OUTPUT, point by point.
+struct OutputFields {
+  std::vector<double> chainage;
+  std::vector<float> offset, height, clearance;
+  std::vector<std::int32_t> envelope;
+  std::vector<std::uint8_t> place;
+
+  void add(const Axis& axis, const GaugedPoints& found)
+  {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < found.state.size(); ++i) {
+      const bool placed = found.state[i] == PlaceState::found || found.state[i] == PlaceState::two_places;
+      const AxisPlace& at = found.place[i];
+      chainage.push_back(placed ? axis.chainage(at.distance) : none);
+      offset.push_back(static_cast<float>(placed ? at.offset : none));
+      height.push_back(static_cast<float>(placed ? at.height : none));
+      clearance.push_back(static_cast<float>(found.clearance[i]));
+      place.push_back(static_cast<std::uint8_t>(found.state[i]));
+    }
+    envelope.insert(envelope.end(), found.envelope.begin(), found.envelope.end());
+  }
+  std::vector<NewField> fields() const
+  {
+    return {{"chainage", &chainage},   {"offset", &offset},     {"height", &height},
+            {"clearance", &clearance}, {"envelope", &envelope}, {"place", &place}};
+  }
+};
+
+/// Sections that are wanted: at given chainages, and at the worst places.
+std::vector<io::GaugeSection> sectionsOf(const Options& options, const io::GaugeReport& report)
+{
+  std::vector<io::GaugeSection> sections;
+  for (const double chainage : options.at) {
+    const std::vector<double> distances = report.axis.distancesAt(chainage);
+    if (distances.empty())
+      throw cli::UsageError("--at: " + io::numberText(chainage) + ": the axis has no such chainage: give one from " +
+                            io::numberText(report.axis.chainage(0.0)) + " to " +
+                            io::numberText(report.axis.chainage(report.axis.length())));
+    for (const double distance : distances)
+      sections.push_back({"Section " + std::to_string(sections.size() + 1), distance, std::nullopt, {}});
+  }
+  for (std::size_t i = 0; i < std::min(report.infringements.size(), most_worst_sections); ++i) {
+    const Infringing& worst = report.infringements[i].worst;
+    sections.push_back({"Infringement " + std::to_string(i + 1), worst.place.distance, worst, {}});
+  }
+  return sections;
+}
+
+/// Reads the scan once more for the points near sections.
+void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport& report)
+{
+  if (report.sections.empty()) return;
+  cli::Step step("Drawing sections");
+  std::vector<Point3> origins;
+  for (const io::GaugeSection& section : report.sections) origins.push_back(report.axis.frame(section.distance).origin);
+  const double near = options.reach.offset + options.thickness + 1.0; // cant moves the middle between the rails
+  scan.forEachBatch([&](const PointsView& points, std::uint64_t first) {
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const Point3 p = points.point(static_cast<std::uint32_t>(i));
+      std::optional<AxisPlaces> places;
+      for (std::size_t s = 0; s < origins.size(); ++s) {
+        if (!(std::abs(p[0] - origins[s][0]) <= near && std::abs(p[1] - origins[s][1]) <= near)) continue;
+        if (!places) places = report.axis.nearest(p, options.reach);
+        io::GaugeSection& section = report.sections[s];
+        const auto add = [&](const AxisPlace& at) {
+          if (std::abs(at.distance - section.distance) <= options.thickness / 2 &&
+              section.points.size() < most_section_points)
+            section.points.push_back({at.offset, at.height});
+        };
+        if (places->state == PlaceState::found || places->state == PlaceState::two_places) add(places->best);
+        if (places->state == PlaceState::two_places) add(places->second);
+      }
+    }
+    step.share(static_cast<double>(first + points.count) / static_cast<double>(scan.points()));
+  });
+  step.done(counted(report.sections.size(), "section"));
+}
+
+void writeSections(const fs::path& folder, const io::GaugeReport& report)
+{
+  if (folder.empty()) return;
+  const files::OutputFolder made(folder);
+  for (const io::GaugeSection& section : report.sections) {
+    std::string name = section.name + ".svg";
+    for (char& c : name) c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    files::replaceFile(folder / name, [&](std::ostream& out) { out << io::sectionDrawing(report, section); });
+  }
+}
+
+void summarise(const Options& options, const io::GaugeReport& report)
+{
+  std::size_t no_data = 0;
+  for (std::size_t part = 0; part < report.table.parts(); ++part) no_data += report.table.points(part) == 0;
+  std::ostream& out = options.files.summary();
+  out << counted(report.infringements.size(), "infringement") << " of " << counted(report.infringing, "point");
+  if (!report.infringements.empty()) {
+    const Infringing& worst = report.infringements.front().worst;
+    out << ", the worst " << io::numberText(worst.clearance, std::chars_format::fixed, 3) << " at chainage "
+        << io::numberText(report.axis.chainage(worst.place.distance), std::chars_format::fixed, 3);
+  }
+  out << "; " << counted(report.placed(), "point") << " at the axis, " << report.counts[2] + report.counts[3]
+      << " beyond its ends, " << report.counts[4] << " too far";
+  if (report.counts[5] > 0) out << ", " << report.counts[5] << " not finite";
+  if (no_data > 0) out << "; no data in " << no_data << " of " << counted(report.table.parts(), "part");
+  out << '\n';
+}
+
+void compare(const Options& options, const Axis& axis)
+{
+  const std::vector<Envelope> envelopes = readEnvelopes(options, axis);
+  axis.requireReach(options.reach);
+  GaugeTable table(axis, envelopes.size(), options.step);
+  if (!options.output.empty()) io::requireWritableCloud(options.output);
+  for (const fs::path* file : {&options.table, &options.infringements, &options.report, &options.page})
+    if (!file->empty()) files::requireWritable(*file);
+
+  std::optional<cli::GaugeScan> scan;
+  {
+    cli::Step step("Opening " + options.input.string());
+    scan.emplace(options);
+    step.done(counted(scan->points(), "point"));
+  }
+  cli::warnOfFile(program, options.input, scan->remarks());
+  OutputFields fields;
+  if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
+
+  io::GaugeReport report{options.input.string(),
+                         options.axis.string(),
+                         options.unit,
+                         scan->coordinateSystem(),
+                         axis,
+                         envelopes,
+                         table,
+                         options.reach,
+                         options.limit,
+                         options.thickness,
+                         {},
+                         0,
+                         {}};
+  std::vector<Infringing> list;
+  cli::Step step("Gauging");
+  scan->forEachBatch([&](const PointsView& points, std::uint64_t first) {
+    const GaugedPoints found = gauge(points, axis, envelopes, {options.reach, options.threads});
+    table.add(found, envelopes);
+    addInfringing(points, found, options.limit, first, list);
+    for (std::size_t state = 0; state < report.counts.size(); ++state) report.counts[state] += found.counts[state];
+    if (!options.output.empty()) fields.add(axis, found);
+    step.share(static_cast<double>(first + points.count) / static_cast<double>(scan->points()));
+  });
+  report.infringing = list.size();
+  report.infringements = infringementsOf(list, options.cluster_distance);
+  step.done(counted(list.size(), "infringing point"));
+  if (options.draws()) {
+    report.sections = sectionsOf(options, report);
+    fillSections(options, *scan, report);
+  }
+
+  if (!options.output.empty())
+    io::writeCloud(options.output, withFields(scan->whole(), fields.fields()), scan->facts().viewpoint,
+                   scan->facts().las);
+  if (!options.table.empty()) io::writeGaugeTable(options.table, report);
+  if (!options.infringements.empty()) io::writeInfringements(options.infringements, report);
+  if (!options.report.empty()) cli::writeJson(options.report, io::gaugeJson(report));
+  if (!options.page.empty()) io::writeGaugePage(options.page, report);
+  writeSections(options.sections, report);
+  summarise(options, report);
+}
+
+void makePoses(const Options& options, const Axis& axis)
+{
+  if (options.poses.empty()) return;
+  const double first = frontPivotOf(axis, options.pivots, 0.0);
+  const std::vector<Eigen::Isometry3d> poses = posesAlong(axis, options.pivots, first, axis.length(), options.step);
+  io::writePoses(options.poses, poses);
+  options.files.summary() << counted(poses.size(), "pose") << " of a vehicle on two pivots\n";
+}
+
+int runGauge(const Options& options)
+{
+  options.files.requireApart();
+  std::vector<std::string> remarks;
+  const Axis axis = io::readAxis(options.axis, options.axis_settings, &remarks);
+  cli::warnOfFile(program, options.axis, remarks);
+  makePoses(options, axis);
+  if (!options.input.empty()) compare(options, axis);
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    const std::optional<Options> options = cli::parseGaugeOptions(argc, argv);
+    return options ? runGauge(*options) : 0;
+  });
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The room that must stay free along an axis: a polygon in section, which may widen along it.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/track/axis.h>
+#include <pcl_bsh/track/section_polygon.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// A rigid vehicle on two pivots: how far it leaves the axis in a curve.
+struct Vehicle {
+  double pivots = 0.0;   ///< from one pivot to the other
+  double overhang = 0.0; ///< from a pivot to the vehicle's end
+};
+
+/// By how much a vehicle on a circle needs more room, at its middle and at its ends. For a radius R and pivots 2p
+/// apart, the middle is R - sqrt(R^2 - p^2) to the inner side. The ends are sqrt(R^2 - p^2 + (p + overhang)^2) - R to
+/// the outer side, of the vehicle's own axis.
+struct Overthrow {
+  double inner = 0.0, outer = 0.0;
+};
+/// @param radius > 0; infinity: 0. @throws InvalidInput where the pivots cannot both stand on the circle
+Overthrow overthrowOf(const Vehicle& vehicle, double radius);
+
+/// Chainages from the first to the second, both inclusive.
+struct ChainageRange {
+  double from = 0.0, to = 0.0;
+};
+
+/// More room to either side. Corners right of the axis move to the right, those left of it to the left.
+struct Widening {
+  double left = 0.0, right = 0.0;
+};
+
+struct EnvelopeDescription {
+  std::string name;
+  std::vector<SectionPoint> corners;
+  std::vector<ChainageRange> ranges = {};        ///< where it counts; none: everywhere
+  Piecewise left = {}, right = {};               ///< widening at distances along the axis, >= 0
+  std::optional<Vehicle> vehicle = std::nullopt; ///< widens, too, by the axis' radius at each place
+};
+
+class Envelope {
+public:
+  /// @throws InvalidInput naming the envelope: its polygon as simplePolygon() has it, a widening below 0, a range that
+  ///   ends before it begins, a vehicle without meaning
+  explicit Envelope(EnvelopeDescription description);
+
+  const std::string& name() const { return description_.name; }
+  const std::vector<SectionPoint>& corners() const { return description_.corners; }
+  bool countsAt(double chainage) const;
+  bool widens() const;
+  Widening wideningAt(const Axis& axis, double distance) const;
+
+  /// The polygon at a distance, in `room` if it is another than corners().
+  std::span<const SectionPoint> outlineAt(const Axis& axis, double distance, std::vector<SectionPoint>& room) const;
+
+  /// Where about the envelope a place is, going round its box from its lower left corner: [0, 1) at its left, [1, 2)
+  /// above, [2, 3) at its right, [3, 4) below. Diagonals of the box divide the four.
+  double aroundOf(const SectionPoint& place) const;
+
+private:
+  EnvelopeDescription description_;
+  SectionPoint middle_, half_; ///< of the box about the corners
+};
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

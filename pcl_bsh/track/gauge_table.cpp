@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/track/gauge_table.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/clusters/clusters.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace pcl_bsh {
+
+GaugeTable::GaugeTable(const Axis& axis, std::size_t envelopes, double step)
+: length_(axis.length()),
+  step_(step),
+  envelopes_(envelopes)
+{
+  const double parts = std::ceil(length_ / step);
+  if (!(step > 0.0 && std::isfinite(step) && parts * static_cast<double>(envelopes) <= 1e7))
+    throw InvalidInput(Input::trajectory, "step", plainText(step, " makes no table of an axis ", length_, " long"),
+                       "give a length above 0, such as 1")
+        .withValue(step);
+  points_.resize(static_cast<std::size_t>(std::max(1.0, parts)));
+  cells_.assign(points_.size() * envelopes * cells_around, std::numeric_limits<double>::infinity());
+}
+
+std::size_t GaugeTable::partOf(double distance) const
+{
+  return std::min(parts() - 1, static_cast<std::size_t>(std::max(0.0, distance) / step_));
+}
+
+void GaugeTable::add(const GaugedPoints& found, const std::vector<Envelope>& envelopes)
+{
+  for (std::size_t i = 0; i < found.state.size(); ++i) {
+    if (found.state[i] != PlaceState::found && found.state[i] != PlaceState::two_places) continue;
+    const AxisPlace& place = found.place[i];
+    const std::size_t part = partOf(place.distance);
+    ++points_[part];
+    for (std::size_t e = 0; e < envelopes_; ++e) {
+      const double clearance = found.each[i * envelopes_ + e];
+      if (std::isnan(clearance)) continue;
+      const double around = envelopes[e].aroundOf({place.offset, place.height});
+      double& least =
+          cells_[(part * envelopes_ + e) * cells_around + static_cast<std::size_t>(around * cells_of_sector)];
+      least = std::min(least, clearance);
+    }
+  }
+}
+
+double GaugeTable::smallest(std::size_t part, std::size_t envelope, Sector sector) const
+{
+  const double* const first =
+      &cells_[(part * envelopes_ + envelope) * cells_around + static_cast<std::size_t>(sector) * cells_of_sector];
+  return *std::min_element(first, first + cells_of_sector);
+}
+
+double GaugeTable::smallest(std::size_t part, std::size_t envelope) const
+{
+  const double* const first = &cells_[(part * envelopes_ + envelope) * cells_around];
+  return *std::min_element(first, first + cells_around);
+}
+
+void addInfringing(const PointsView& points, const GaugedPoints& found, double limit, std::uint64_t first_record,
+                   std::vector<Infringing>& list)
+{
+  for (std::size_t i = 0; i < found.clearance.size(); ++i)
+    if (found.clearance[i] <= limit)
+      list.push_back({points.point(points.record(i)), first_record + points.record(i), found.place[i],
+                      found.clearance[i], found.envelope[i]});
+}
+
+std::vector<Infringement> infringementsOf(const std::vector<Infringing>& list, double distance)
+{
+  std::vector<Point3> places;
+  for (const Infringing& point : list) places.push_back(point.at);
+  const SphereHierarchy cloud(viewOf(places.empty() ? nullptr : places.front().data(), places.size()));
+  const Clusters clusters = euclideanClusters(cloud, distance);
+  std::vector<Infringement> found(clusters.sizes.size());
+  const auto isWorse = [](const Infringing& a, const Infringing& b) {
+    return std::tie(a.clearance, a.record) < std::tie(b.clearance, b.record);
+  };
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Infringement& infringement = found[static_cast<std::size_t>(clusters.of[i])];
+    const double at = list[i].place.distance;
+    const bool first = infringement.members.empty();
+    if (first || isWorse(list[i], infringement.worst)) infringement.worst = list[i];
+    infringement.from = first ? at : std::min(infringement.from, at);
+    infringement.to = first ? at : std::max(infringement.to, at);
+    infringement.members.push_back(i);
+  }
+  std::sort(found.begin(), found.end(),
+            [&](const Infringement& a, const Infringement& b) { return isWorse(a.worst, b.worst); });
+  return found;
+}
+
+} // namespace pcl_bsh

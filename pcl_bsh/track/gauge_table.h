@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A gauging run by chainage: the smallest clearances of each part of the axis, and where they are too small.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/track/gauge.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+enum class Sector : std::uint8_t { left, above, right, below }; ///< of an envelope, as Envelope::aroundOf() divides it
+
+/// Cells about an envelope, as many in each sector.
+inline constexpr std::size_t cells_of_sector = 12, cells_around = 4 * cells_of_sector;
+
+/// Smallest clearances in parts of an axis, gathered batch by batch. A part or a sector without points has no data, and
+/// is not clear.
+class GaugeTable {
+public:
+  /// @param step length of a part; the last one may be shorter
+  /// @throws InvalidInput when it is no length, or makes more than 10^7 parts
+  GaugeTable(const Axis& axis, std::size_t envelopes, double step);
+
+  /// Takes the answer of gauge() for some points. @param envelopes the same each time
+  void add(const GaugedPoints& found, const std::vector<Envelope>& envelopes);
+
+  std::size_t parts() const { return points_.size(); }
+  double from(std::size_t part) const { return step_ * static_cast<double>(part); } ///< distance along the axis
+  double to(std::size_t part) const { return std::min(length_, step_ * static_cast<double>(part + 1)); }
+  std::size_t points(std::size_t part) const { return points_[part]; }
+  std::size_t partOf(double distance) const;
+
+  /// Infinity where there is no data.
+  double cell(std::size_t part, std::size_t envelope, std::size_t around) const
+  {
+    return cells_[(part * envelopes_ + envelope) * cells_around + around];
+  }
+  double smallest(std::size_t part, std::size_t envelope, Sector sector) const;
+  double smallest(std::size_t part, std::size_t envelope) const;
+
+private:
+  double length_, step_;
+  std::size_t envelopes_;
+  std::vector<std::size_t> points_;
+  std::vector<double> cells_;
+};
+
+/// A point that is too near, or inside.
+struct Infringing {
+  Point3 at = {};
+  std::uint64_t record = 0; ///< of the whole scan
+  AxisPlace place = {};
+  double clearance = 0.0;
+  std::int32_t envelope = -1;
+};
+
+/// Points too near that lie together.
+struct Infringement {
+  Infringing worst;                 ///< the smallest clearance, of equal ones the first record
+  double from = 0.0, to = 0.0;      ///< distances along the axis
+  std::vector<std::size_t> members; ///< numbers in the list
+};
+
+/// Appends points whose clearance is at most `limit` to the list.
+/// @param first_record of the points among all of the scan
+void addInfringing(const PointsView& points, const GaugedPoints& found, double limit, std::uint64_t first_record,
+                   std::vector<Infringing>& list);
+
+/// Clusters whose neighbours are `distance` apart at most, the worst first. @throws InvalidInput as euclideanClusters()
+std::vector<Infringement> infringementsOf(const std::vector<Infringing>& list, double distance);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program_run.h"
+
+#include <pcl_bsh/io/clouds/cloud_file.h>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+
+/// A straight of 20 to the east with a box about it, and a scan of few points whose clearances are known.
+class GaugeProgram : public testing::Test {
+protected:
+  GaugeProgram()
+  {
+    folder.write("line.axis", "start 500000 4000000 90\nchainage 100\nstraight 20\nheight 100 30\nequation 110 210\n");
+    folder.write("box.csv", "offset,height\n-1.5,0\n1.5,0\n1.5,4\n-1.5,4\n");
+    folder.write("tall.csv", "offset,height\n-1,0\n1,0\n1,5\n-1,5\n");
+    // right is -y; chainages 105, 105.2, 210 + 2.5, 210 + 8, beyond, too far
+    folder.write("scan.xyz", "500005 3999998.6 32 1\n500005.2 3999998.75 32 2\n500012.5 4000000.5 34.5 3\n"
+                             "500018 4000002 31 4\n500021 4000000 31 5\n500005 4000050 31 6\n");
+  }
+
+  Outcome gauge(std::string arguments) const
+  {
+    for (std::size_t at; (at = arguments.find('{')) != std::string::npos;) {
+      const std::size_t end = arguments.find('}', at);
+      arguments.replace(at, end - at + 1, (folder / arguments.substr(at + 1, end - at - 1)).string());
+    }
+    return run("pcl_bsh_gauge", arguments);
+  }
+
+  void expectRefused(const std::string& arguments, int exit_code, const std::string& message) const
+  {
+    const std::size_t files = folder.files();
+    const Outcome failed = gauge(arguments);
+    EXPECT_EQ(failed.exit_code, exit_code) << arguments << failed.err;
+    EXPECT_THAT(failed.err, testing::StartsWith("pcl_bsh_gauge: ")) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+    EXPECT_EQ(folder.files(), files) << arguments;
+  }
+
+  std::vector<std::string> linesOf(const std::string& name) const
+  {
+    std::istringstream text(io::contentOf(folder / name));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    return lines;
+  }
+
+  const io::TemporaryFolder folder;
+};
+
+TEST_F(GaugeProgram, TablesByChainage)
+{
+  const Outcome done =
+      gauge("{scan.xyz} --axis {line.axis} --profile {box.csv} --profile {tall.csv} --range tall=212:220 "
+            "--table {table.csv} --infringements {list.csv} --report {report.json} --step 5");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out,
+            "2 infringements of 3 points, the worst -0.500 at chainage 212.500; 4 points at the axis, 1 beyond its "
+            "ends, 1 too far; no data in 1 of 4 parts\n");
+  const std::vector<std::string> table = linesOf("table.csv");
+  ASSERT_EQ(table.size(), 7u);
+  EXPECT_EQ(table[1], "100,105,0,5,box,no data,0,,,,,");
+  EXPECT_EQ(table[2], "105,110,5,10,box,infringed,2,-0.25,,,-0.25,");
+  EXPECT_THAT(table[3], HasSubstr(",10,15,box,clear,1,0.5,,0.5,,")) << table[3];
+  EXPECT_THAT(table[4], HasSubstr(",10,15,tall,infringed,1,-0.5,,-0.5,,")) << table[4];
+  EXPECT_THAT(table[5], HasSubstr(",15,20,box,clear,1,0.5,0.5,,,")) << table[5];
+  const std::vector<std::string> list = linesOf("list.csv");
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[1], "1,tall,212.5,212.5,212.5,12.5,-0.5,4.5,-0.5,1,2,500012.5,4000000.5,34.5");
+  EXPECT_THAT(list[2], testing::StartsWith("2,box,105,105.2")) << list[2];
+  const auto report = nlohmann::json::parse(io::contentOf(folder / "report.json"));
+  EXPECT_EQ(report["points"]["behind_the_end"], 1);
+  EXPECT_EQ(report["infringements"][0]["clearance"], -0.5);
+  EXPECT_TRUE(report["table"][0]["smallest"].is_null()) << "no data";
+}
+
+TEST_F(GaugeProgram, OutputHasFieldsOfEachPoint)
+{
+  for (const char* output : {"out.pcd", "out.las", "out.ply"}) {
+    const Outcome done =
+        gauge("{scan.xyz} {" + std::string(output) + "} --axis {line.axis} --profile {box.csv} --limit 0.5");
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("of 4 points"));
+    const pcl::PCLPointCloud2 cloud = io::readCloud(folder / output);
+    ASSERT_EQ(cloud.width * cloud.height, 6u);
+    EXPECT_NEAR(io::valueOf(cloud, 2, "chainage"), 212.5, 1e-9);
+    EXPECT_NEAR(io::valueOf(cloud, 1, "offset"), 1.25, 1e-6);
+    EXPECT_NEAR(io::valueOf(cloud, 1, "height"), 2, 1e-6);
+    EXPECT_NEAR(io::valueOf(cloud, 1, "clearance"), -0.25, 1e-6);
+    EXPECT_EQ(io::valueOf(cloud, 1, "envelope"), 0);
+    EXPECT_EQ(io::valueOf(cloud, 4, "place"), 3);
+    EXPECT_EQ(io::valueOf(cloud, 5, "place"), 4);
+    EXPECT_TRUE(std::isnan(io::valueOf(cloud, 5, "clearance")));
+    EXPECT_EQ(io::valueOf(cloud, 5, "envelope"), -1);
+  }
+}
+
+TEST_F(GaugeProgram, StreamsWhatItNeedNotHold)
+{
+  ASSERT_EQ(gauge("{scan.xyz} {scan.las} --axis {line.axis} --profile {box.csv}").exit_code, 0);
+  const std::string rest = "--axis {line.axis} --profile {box.csv} --step 7 --table {";
+  const Outcome whole = gauge("{scan.xyz} " + rest + "whole.csv}"),
+                streamed = gauge("{scan.las} " + rest + "streamed.csv}");
+  EXPECT_EQ(streamed.out, whole.out) << streamed.err;
+  EXPECT_EQ(linesOf("streamed.csv").size(), linesOf("whole.csv").size());
+}
+
+TEST_F(GaugeProgram, DrawsPagesAndSections)
+{
+  const Outcome done =
+      gauge("{scan.xyz} --axis {line.axis} --profile {box.csv} --page {page.html} --sections {drawn} --at 212.5 "
+            "--at 102 --unit m");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const std::string page = io::contentOf(folder / "page.html");
+  for (const char* text : {"Gauging run", "of 2 points", "No data at chainages 100 to 105", "clearances by chainage",
+                           "Infringement 1, chainage 105.200 m"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_THAT(page, testing::Not(HasSubstr("{{")));
+  EXPECT_THAT(io::contentOf(folder / "drawn/infringement_1.svg"), HasSubstr("-0.250 m"));
+  EXPECT_THAT(io::contentOf(folder / "drawn/section_1.svg"), HasSubstr("1 point within 0.05"));
+  EXPECT_THAT(io::contentOf(folder / "drawn/section_2.svg"), HasSubstr("no data: no point within 0.05"));
+}
+
+TEST_F(GaugeProgram, PosesOfAVehicleOnPivots)
+{
+  const Outcome done = gauge("--axis {line.axis} --pivots 8 --step 6 --poses-out {poses.txt}");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, "3 poses of a vehicle on two pivots\n");
+  const std::vector<std::string> poses = linesOf("poses.txt");
+  ASSERT_EQ(poses.size(), 3u);
+  std::istringstream last(poses[2]);
+  std::vector<double> numbers(12);
+  for (double& number : numbers) last >> number;
+  EXPECT_NEAR(numbers[0], 1, 1e-12);
+  EXPECT_NEAR(numbers[3], 500016, 1e-9);
+  EXPECT_NEAR(numbers[11], 30, 1e-12);
+}
+
+TEST_F(GaugeProgram, RefusesWrongInputInOneLine)
+{
+  folder.write("crossed.csv", "offset,height\n0,0\n1,1\n1,0\n0,1\n");
+  folder.write("bend.axis", "start 0 0 0\narc 20 9\n");
+  const std::string both = "{scan.xyz} --axis {line.axis} --profile {box.csv} ";
+  expectRefused("{scan.xyz} --axis {line.axis}", 2, "--profile is required");
+  expectRefused("--axis {line.axis}", 2, "INPUT is required");
+  expectRefused("--axis {line.axis} --pivots 8", 2, "--pivots: makes poses: give --poses-out FILE");
+  expectRefused("{scan.xyz} --axis {line.axis} --profile {crossed.csv}", 1,
+                "crossed.csv: its edges from (0, 0) to (1, 1)");
+  expectRefused("{scan.xyz} --axis {bend.axis} --profile {box.csv}", 1, "more than 0.8 of its smallest radius, 9");
+  expectRefused(both + "--range wagon=1:2", 2, "--range: wagon=1:2: no profile is called 'wagon': give one of box");
+  expectRefused(both + "--range 5", 2, "--range: '5' is no pair: give FROM:TO");
+  expectRefused(both + "--range 7:5", 1, "envelope box: its range ends at 5, before it begins at 7");
+  expectRefused(both + "--vehicle 19", 2, "--vehicle: '19' is no pair: give P,O");
+  expectRefused(both + "--profile {box.csv}", 2, "another is called 'box', too: rename a file");
+  expectRefused(both + "--page {page.html} --at 205", 2,
+                "--at: 205: the axis has no such chainage: give one from 100 to 220");
+  expectRefused(both + "--at 105", 2, "--at: draws sections");
+  expectRefused(both + "--table {box.csv}", 2, "box.csv");
+  expectRefused("{none.xyz} --axis {line.axis} --profile {box.csv}", 1, "none.xyz");
+}
+
+} // namespace
+} // namespace pcl_bsh

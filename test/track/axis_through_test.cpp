@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/track/axis.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+
+#include "made_lines.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace pcl_bsh {
+namespace {
+
+std::vector<AxisPoint> measuredOf(const std::vector<PlanElement>& plan, double length, double step, double cant = 0.001)
+{
+  std::vector<AxisPoint> points;
+  for (double at = 0; at <= length; at += step) {
+    const test::TrueFrame truth = test::trueFrameAt(plan, at);
+    points.push_back({1000 + at, {static_cast<double>(truth.x), static_cast<double>(truth.y), 0.01 * at}, cant * at});
+  }
+  return points;
+}
+
+TEST(AxisThrough, PointsOfACircleGiveTheCircle)
+{
+  const std::vector<PlanElement> plan = {{190, 0.01, 0.01, AxisStart{500000, 4000000, 1}}};
+  const Axis axis = Axis::through(measuredOf(plan, 190, 5));
+  EXPECT_NEAR(axis.length(), 190, 1e-8);
+  EXPECT_NEAR(axis.smallestRadius(), 100, 1e-5) << "points have nanometres";
+  for (double at = 1; at < 190; at += 13.7) {
+    const test::TrueFrame truth = test::trueFrameAt(plan, at);
+    const Point3 point = {static_cast<double>(truth.x + 3 * std::sin(truth.heading)),
+                          static_cast<double>(truth.y - 3 * std::cos(truth.heading)), 7};
+    const AxisPlaces found = axis.nearest(point, {});
+    EXPECT_NEAR(axis.chainage(found.best.distance), 1000 + at, 4e-9);
+    EXPECT_NEAR(axis.cant(found.best.distance), 0.001 * at, 1e-11);
+  }
+  EXPECT_NEAR(axis.fit().deviation, 25 / 800.0, 2e-4) << "a chord's height";
+  EXPECT_LT(axis.fit().stretch, 1e-9);
+}
+
+TEST(AxisThrough, PointsOfAClothoidGiveALineNearIt)
+{
+  const std::vector<PlanElement> plan = test::curve({0, 0, 0});
+  const Axis axis = Axis::through(measuredOf(plan, 400, 5, 0));
+  for (double at = 10; at < 390; at += 7.1) {
+    const AxisPlaces found = axis.nearest(
+        {static_cast<double>(test::trueFrameAt(plan, at).x), static_cast<double>(test::trueFrameAt(plan, at).y), 1},
+        {});
+    EXPECT_NEAR(found.best.offset, 0, 3e-4) << at;
+    EXPECT_NEAR(axis.chainage(found.best.distance), 1000 + at, 1e-5) << at;
+  }
+}
+
+TEST(AxisThrough, PointsKeepTheirChainages)
+{
+  const Axis axis = Axis::through({{10, {0, 0, 0}}, {20.5, {10, 0, 0}}, {30, {20, 0, 0}}});
+  EXPECT_DOUBLE_EQ(axis.chainage(10), 20.5);
+  EXPECT_DOUBLE_EQ(axis.chainage(5), 15.25);
+  EXPECT_NEAR(axis.fit().stretch, 1 / 19.0, 1e-12);
+}
+
+TEST(AxisThrough, RefusesWhatIsNoLine)
+{
+  const auto refusal = [](const std::vector<AxisPoint>& points) -> std::string {
+    try {
+      Axis::through(points);
+      return {};
+    }
+    catch (const InvalidInput& error) {
+      return error.what();
+    }
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal({{0, {0, 0, 0}}}), HasSubstr("has 1 points"));
+  EXPECT_THAT(refusal({{5, {0, 0, 0}}, {4, {1, 0, 0}}}), HasSubstr("point 1: its chainage 4 does not exceed"));
+  EXPECT_THAT(refusal({{5, {0, 0, 0}}, {6, {0, 0, 1}}}), HasSubstr("lies where the one before lies"));
+  EXPECT_THAT(refusal({{5, {0, 0, 0}}, {6, {1, 0, 0}}, {7, {1, 1, 0}}}),
+              HasSubstr("turns by 1.5708 radians at chainage 6"));
+  EXPECT_THAT(refusal({{5, {0, 0, 0}}, {6, {1, 0, 0}}, {7, {0.5, 0, 0}}}), HasSubstr("turns by 3.14159"));
+  EXPECT_THAT(refusal({{5, {0, 0, 0}}, {6, {1, std::nan(""), 0}}}), HasSubstr("not finite"));
+}
+
+} // namespace
+} // namespace pcl_bsh
