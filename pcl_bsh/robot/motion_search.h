@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot at an instant and about it: what is certainly free for some time, what collides, what has to be looked at
+// again.
+//
+// A ball whose gap is above the clearance, the way that it goes in the time h (kinematics.h) and the error of doubles
+// is free for as long. Others are split: first into the balls that it holds, then the time in halves.
+#pragma once
+
+#include <pcl_bsh/base/pulse.h>
+#include <pcl_bsh/robot/gaps.h>
+#include <pcl_bsh/robot/robot_world.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_bsh::robots {
+
+/// To be had by a ScratchLease.
+struct MotionScratch {
+  /// Balls and pairs [begin, end) of the lists, at the instant m and for the time h before and after it.
+  struct Task {
+    double m, h;
+    std::size_t ball_begin, ball_end, pair_begin, pair_end, bodies;
+  };
+
+  RobotState from, slopes, largest, values;
+  Gaps::Poses poses;
+  std::vector<Kinematics::Twist> twists;
+  std::vector<double> turning, bend; ///< of bodies: sums and terms of A (kinematics.h)
+  std::vector<std::uint32_t> balls, open_balls;
+  std::vector<LinkPair> pairs, open_pairs;
+  std::vector<Task> tasks;
+
+  std::size_t bytes() const noexcept
+  {
+    return sizeof(Kinematics::Pose) * (poses.capacity() + twists.capacity()) + 4 * balls.capacity() +
+           sizeof(LinkPair) * pairs.capacity() + sizeof(Task) * tasks.capacity();
+  }
+};
+
+class MotionSearch {
+public:
+  /// @pre states that Gaps::requireState() lets pass
+  MotionSearch(const Gaps& gaps, const RobotState& from, const RobotState& to, MotionScratch& scratch);
+
+  /// At the start alone.
+  StateCheck atStart();
+
+  /// All of the motion, breadth first: what collides is found soon.
+  MotionCheck all();
+
+  /// How far it is certainly free.
+  double lastValid();
+
+private:
+  using Task = MotionScratch::Task;
+  enum class Outcome : std::uint8_t { free, open, colliding, undecided };
+
+  Task roots(double m, double h);
+  Outcome assess(const Task& task, Task& open);
+  void place(const Task& task);
+  Outcome ofBall(std::uint32_t index, double h);
+  Outcome ofPair(const LinkPair& pair, double h);
+  bool isFreeUntilEnd(const Task& task);
+
+  double bendOf(const Ball& ball, std::size_t rest) const;
+  double way(const Ball& ball, const Eigen::Vector3d& center, std::size_t rest, double h) const;
+
+  const Gaps& gaps_;
+  MotionScratch& s_;
+  double error_ = 0.0, speed_ = 0.0; ///< of gaps; no place is faster
+  double valid_ = 0.0;
+  Meeting meeting_; ///< of the last outcome that is colliding or undecided
+  Pulse pulse_;
+};
+
+} // namespace pcl_bsh::robots

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far one solid is from one cloud, or from one mesh, up to a limit.
+#pragma once
+
+#include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/robot/kinematics.h>
+#include <pcl_bsh/robot/shapes/shape.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace pcl_bsh::robots {
+
+/// Bounds of a gap: of a distance less radii.
+struct Gap : Interval {
+  std::uint32_t record = kNothing; ///< the nearest; none: all are beyond the limit
+
+  bool isBeyond(double limit) const noexcept { return record == kNothing || lower > limit; }
+};
+
+/// A cloud or a mesh that solids are held against. The hierarchy is borrowed.
+class Obstacle {
+public:
+  explicit Obstacle(const SphereHierarchy& hierarchy);
+
+  const SphereHierarchy& hierarchy() const noexcept { return *hierarchy_; }
+
+  /// The gap of a point. Beyond the limit: from that to infinity. Expects the DefaultFloatEnvironment.
+  Gap gap(const Eigen::Vector3d& point, double limit) const;
+
+  /// The gap of a solid that stands there.
+  Gap gap(const Solid& solid, const Kinematics::Pose& pose, double limit) const;
+
+private:
+  const SphereHierarchy* hierarchy_;
+  std::optional<double> radius_; ///< of all points
+};
+
+} // namespace pcl_bsh::robots

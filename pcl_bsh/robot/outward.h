@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+namespace pcl_bsh::robots {
+
+/// Factor of bounds that are made once or are sums of a few terms. Pays for their rounding, and for rotations that are
+/// not quite (1e-12 is let pass).
+inline constexpr double kOutward = 1.0 + 1e-9;
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+} // namespace pcl_bsh::robots

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/robot/outward.h>
+#include <pcl_bsh/robot/parts.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace pcl_bsh::robots {
+
+namespace {
+
+constexpr std::size_t kChildren = 4;
+
+/// A ball that holds a mesh.
+std::pair<Eigen::Vector3d, double> around(const PointsView& view)
+{
+  const PointsView& vertices = view.triangles->vertices;
+  Eigen::AlignedBox3d box;
+  for (std::uint32_t i = 0; i < vertices.count; ++i)
+    if (const Point3 p = vertices.point(i); isFinite(p)) box.extend(Eigen::Vector3d(p[0], p[1], p[2]));
+  double radius = 0.0;
+  for (std::uint32_t i = 0; i < vertices.count; ++i)
+    if (const Point3 p = vertices.point(i); isFinite(p))
+      radius = std::max(radius, (Eigen::Vector3d(p[0], p[1], p[2]) - box.center()).norm());
+  return {box.center(), kOutward * radius};
+}
+
+class Maker {
+public:
+  Maker(Parts& parts, const Robot& robot, const Kinematics& kinematics)
+  : parts_(parts),
+    robot_(robot),
+    kinematics_(kinematics)
+  {
+  }
+
+  void make()
+  {
+    const std::size_t bodies = kinematics_.bodies().size();
+    std::vector<std::vector<Ball>> links_of_body(bodies);
+    std::vector<std::uint32_t> of_links(robot_.links.size(), kNoPart);
+    for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+      std::vector<Ball> balls = ballsOf(i);
+      if (balls.empty()) continue;
+      of_links[i] = add(root(std::move(balls)));
+      links_of_body[kinematics_.bodyOf(i)].push_back(parts_.balls[of_links[i]]);
+    }
+    for (std::size_t body = 0; body < bodies; ++body) {
+      parts_.chains.push_back(kinematics_.chain(body));
+      parts_.of_bodies.push_back(links_of_body[body].empty() ? kNoPart : add(root(std::move(links_of_body[body]))));
+    }
+    for (Ball& ball : parts_.balls) {
+      ball.axis_distances = kinematics_.axisDistances(ball.body, ball.center, ball.spread);
+      parts_.extent = std::max(parts_.extent, ball.center.norm() + ball.radius);
+    }
+    addPairs(of_links);
+  }
+
+private:
+  std::uint32_t add(Ball ball)
+  {
+    parts_.balls.push_back(std::move(ball));
+    return static_cast<std::uint32_t>(parts_.balls.size() - 1);
+  }
+
+  std::vector<Ball> ballsOf(std::size_t link)
+  {
+    std::vector<Ball> balls;
+    const Link& of = robot_.links[link];
+    for (std::size_t i = 0; i < of.shapes.size(); ++i) {
+      const Shape& shape = of.shapes[i];
+      const Eigen::Isometry3d pose = kinematics_.inBody(link) * shape.pose;
+      Piece piece{solidOf(shape), nullptr, {pose.linear(), pose.translation()}, link, i};
+      Ball ball;
+      ball.body = kinematics_.bodyOf(link);
+      ball.center = pose.translation();
+      if (piece.solid) {
+        ball.radius = kOutward * enclosingRadius(*piece.solid);
+        ball.is_sphere = std::holds_alternative<Sphere>(*piece.solid);
+        if (ball.is_sphere) ball.radius = enclosingRadius(*piece.solid);
+      }
+      else {
+        const auto& mesh = std::get<Mesh>(shape.form);
+        if (!mesh.surface || !mesh.surface->view().triangles)
+          throw InvalidInput(Input::scene, "link '" + of.name + "'",
+                             "has the mesh " + mesh.path + ", which is not read", "read it first");
+        if (mesh.surface->empty()) continue;
+        piece.surface = mesh.surface.get();
+        const auto [center, radius] = around(mesh.surface->view());
+        ball.center = pose * center;
+        ball.radius = radius;
+      }
+      ball.spread = ball.is_sphere ? 0.0 : ball.radius;
+      ball.padding = of.padding;
+      ball.radius += of.padding;
+      ball.piece = static_cast<std::uint32_t>(parts_.pieces.size());
+      parts_.pieces.push_back(std::move(piece));
+      balls.push_back(std::move(ball));
+    }
+    return balls;
+  }
+
+  static Ball holding(const Ball* begin, const Ball* end)
+  {
+    Eigen::AlignedBox3d box;
+    for (const Ball* ball = begin; ball != end; ++ball) {
+      box.extend(Eigen::Vector3d(ball->center.array() - ball->radius));
+      box.extend(Eigen::Vector3d(ball->center.array() + ball->radius));
+    }
+    Ball all;
+    all.center = box.center();
+    all.body = begin->body;
+    for (const Ball* ball = begin; ball != end; ++ball) {
+      const double way = (ball->center - all.center).norm();
+      all.radius = std::max(all.radius, kOutward * (way + ball->radius));
+      all.spread = std::max(all.spread, kOutward * (way + ball->spread));
+    }
+    return all;
+  }
+
+  /// One ball that holds all; what it holds is added.
+  Ball root(std::vector<Ball> balls)
+  {
+    if (balls.size() == 1) return balls[0];
+    // Halves along the longest axis, until there are so few parts as a ball has children.
+    std::vector<std::pair<std::size_t, std::size_t>> ranges = {{0, balls.size()}};
+    while (ranges.size() < std::min(kChildren, balls.size())) {
+      const auto widest = std::max_element(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) {
+        return a.second - a.first < b.second - b.first;
+      });
+      const auto [begin, end] = *widest;
+      Eigen::AlignedBox3d box;
+      for (std::size_t i = begin; i < end; ++i) box.extend(balls[i].center);
+      int axis = 0;
+      box.sizes().maxCoeff(&axis);
+      const std::size_t middle = (begin + end) / 2;
+      const auto at = [&](std::size_t i) { return balls.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::stable_sort(at(begin), at(end),
+                       [&](const Ball& a, const Ball& b) { return a.center[axis] < b.center[axis]; });
+      *widest = {begin, middle};
+      ranges.insert(std::upper_bound(ranges.begin(), ranges.end(), std::pair(begin, middle)), {middle, end});
+    }
+    Ball all = holding(balls.data(), balls.data() + balls.size());
+    std::vector<Ball> children;
+    for (const auto& [begin, end] : ranges)
+      children.push_back(
+          root({balls.begin() + static_cast<std::ptrdiff_t>(begin), balls.begin() + static_cast<std::ptrdiff_t>(end)}));
+    all.first = static_cast<std::uint32_t>(parts_.balls.size());
+    all.count = static_cast<std::uint32_t>(children.size());
+    for (Ball& child : children) add(std::move(child));
+    return all;
+  }
+
+  void addPairs(const std::vector<std::uint32_t>& of_links)
+  {
+    const std::size_t count = robot_.links.size();
+    std::vector<bool> compared(count * count, true);
+    const auto leaveOut = [&](std::size_t a, std::size_t b) {
+      compared[a * count + b] = compared[b * count + a] = false;
+    };
+    for (const auto& [a, b] : robot_.disabled_pairs) {
+      if (a >= count || b >= count)
+        throw InvalidInput(Input::scene, "robot '" + robot_.name + "'", "disables a pair of links that it has not",
+                           "name links by their numbers");
+      leaveOut(a, b);
+    }
+    for (std::size_t i = 1; i < count; ++i) leaveOut(i, robot_.links[i].joint->parent);
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = a + 1; b < count; ++b) {
+        const std::size_t body_a = kinematics_.bodyOf(a), body_b = kinematics_.bodyOf(b);
+        if (!compared[a * count + b] || body_a == body_b || of_links[a] == kNoPart || of_links[b] == kNoPart) continue;
+        const auto &chain_a = parts_.chains[body_a], &chain_b = parts_.chains[body_b];
+        const auto parted = std::mismatch(chain_a.begin(), chain_a.end(), chain_b.begin(), chain_b.end()).first;
+        parts_.pairs.push_back({of_links[a], of_links[b], parted == chain_a.begin() ? 0 : *(parted - 1)});
+      }
+  }
+
+  Parts& parts_;
+  const Robot& robot_;
+  const Kinematics& kinematics_;
+};
+
+} // namespace
+
+Parts::Parts(const Robot& robot, const Kinematics& kinematics)
+{
+  Maker(*this, robot, kinematics).make();
+}
+
+} // namespace pcl_bsh::robots

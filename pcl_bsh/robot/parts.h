@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot as its questions see it: balls about its shapes, and trees of these on each body.
+#pragma once
+
+#include <pcl_bsh/robot/kinematics.h>
+#include <pcl_bsh/robot/shapes/shape.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh::robots {
+
+inline constexpr std::uint32_t kNoPart = 0xffffffffu;
+
+/// A solid or a mesh of a link, in the frame of its body.
+struct Piece {
+  std::optional<Solid> solid; ///< none: a mesh
+  const SphereHierarchy* surface = nullptr;
+  Kinematics::Pose pose; ///< T_body_piece
+  std::size_t link = 0, shape = 0;
+};
+
+/// Holds a piece, or other balls of its body.
+struct Ball {
+  Eigen::Vector3d center; ///< in the body's frame
+  double radius = 0.0;    ///< with the link's padding
+  double spread = 0.0;    ///< how far from the centre are the places that its motion is about: 0 of a sphere
+  std::size_t body = 0;
+  std::uint32_t piece = kNoPart;      ///< none: of balls
+  bool is_sphere = false;             ///< the piece is no more than this
+  double padding = 0.0;               ///< of the piece
+  std::uint32_t first = 0, count = 0; ///< balls that it holds, one after another
+  std::vector<double> axis_distances; ///< from the axes of the chain (kinematics.h)
+};
+
+/// Two links to be held against each other, by the balls that hold them, and the body that neither moves against.
+struct LinkPair {
+  std::uint32_t a = 0, b = 0;
+  std::size_t common = 0;
+};
+
+struct Parts {
+  /// @throws InvalidInput for a mesh that was not read
+  Parts(const Robot& robot, const Kinematics& kinematics);
+
+  std::vector<Piece> pieces;
+  std::vector<Ball> balls;
+  std::vector<std::uint32_t> of_bodies;         ///< the balls that hold what each body has
+  std::vector<LinkPair> pairs;                  ///< of links
+  std::vector<std::vector<std::size_t>> chains; ///< of each body
+  double extent = 0.0;                          ///< nothing is farther from the origin of its body
+};
+
+} // namespace pcl_bsh::robots

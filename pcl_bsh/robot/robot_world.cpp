@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/float_environment.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/robot/motion_search.h>
+#include <pcl_bsh/robot/robot_world.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcl_bsh::robots {
+
+namespace {
+
+std::vector<Obstacle> obstaclesOf(const std::vector<const SphereHierarchy*>& hierarchies)
+{
+  std::vector<Obstacle> obstacles;
+  for (const SphereHierarchy* hierarchy : hierarchies) obstacles.emplace_back(*hierarchy);
+  return obstacles;
+}
+
+/// Calls check(i) for each one, some at a time.
+template <class Check>
+std::vector<Verdict> checkAll(std::size_t count, unsigned threads, const Check& check)
+{
+  constexpr std::size_t some = 64;
+  std::vector<Verdict> verdicts(count);
+  parallelFor((count + some - 1) / some, threadCount(threads), [&](std::size_t part) {
+    for (std::size_t i = part * some; i < std::min(count, (part + 1) * some); ++i) verdicts[i] = check(i);
+  });
+  return verdicts;
+}
+
+/// The least gap of all that it is shown.
+class LeastGap {
+public:
+  LeastGap(const Gaps& gaps, const RobotState& state, double limit) : gaps_(gaps), limit_(limit)
+  {
+    best_.gap = {limit, limit};
+    gaps.kinematics.poses(state, gaps.base, gaps.kinematics.bodies().size(), poses_);
+    for (const std::uint32_t ball : gaps.parts.of_bodies)
+      if (ball != kNoPart) ofBall(gaps.parts.balls[ball]);
+    if (gaps.options.with_self)
+      for (const LinkPair& pair : gaps.parts.pairs) ofPair(gaps.parts.balls[pair.a], gaps.parts.balls[pair.b]);
+  }
+
+  ClearanceResult result(double error) const
+  {
+    ClearanceResult result = best_;
+    result.gap.lower -= error;
+    result.gap.upper = best_.meeting ? best_.gap.upper + error : std::numeric_limits<double>::infinity();
+    return result;
+  }
+
+private:
+  void take(const Interval& gap, const Meeting& meeting)
+  {
+    if (!(gap.lower <= best_.gap.upper)) return;
+    best_.gap.lower = std::min(best_.gap.lower, gap.lower);
+    if (!(gap.upper <= limit_) || (best_.meeting && gap.upper >= best_.gap.upper)) return;
+    best_.gap.upper = gap.upper;
+    best_.meeting = meeting;
+  }
+
+  void ofBall(const Ball& ball)
+  {
+    const double reach = best_.gap.upper + ball.radius;
+    if (gaps_.roughly(gaps_.centerOf(ball, poses_), reach).lower > reach) return;
+    for (std::uint32_t i = 0; i < ball.count; ++i) ofBall(gaps_.parts.balls[ball.first + i]);
+    if (ball.piece == kNoPart) return;
+    std::size_t obstacle = 0;
+    const Gap gap = gaps_.toObstacles(ball, poses_, best_.gap.upper, obstacle);
+    if (gap.record != kNothing) take(gap, gaps_.meetingOf(ball, obstacle, gap.record));
+  }
+
+  void ofPair(const Ball& a, const Ball& b)
+  {
+    const double least = (gaps_.centerOf(a, poses_) - gaps_.centerOf(b, poses_)).norm() - a.radius - b.radius;
+    if (least > best_.gap.upper) return;
+    for (std::uint32_t i = 0; i < a.count; ++i) ofPair(gaps_.parts.balls[a.first + i], b);
+    if (a.piece == kNoPart) return;
+    for (std::uint32_t i = 0; i < b.count; ++i) ofPair(a, gaps_.parts.balls[b.first + i]);
+    if (b.piece == kNoPart) return;
+    take(a.is_sphere && b.is_sphere ? Interval{least, least} : gaps_.between(a, b, poses_, best_.gap.upper),
+         gaps_.meetingOf(a, b));
+  }
+
+  const Gaps& gaps_;
+  const double limit_;
+  Gaps::Poses poses_;
+  ClearanceResult best_;
+};
+
+} // namespace
+
+class RobotWorld::Inside {
+public:
+  Inside(const Robot& robot, std::vector<Obstacle> obstacles, const WorldOptions& options)
+  : gaps(robot, std::move(obstacles), options)
+  {
+  }
+
+  Gaps gaps;
+};
+
+RobotWorld::RobotWorld(const Robot& robot, const std::vector<const SphereHierarchy*>& obstacles,
+                       const WorldOptions& options)
+: inside_(std::make_unique<Inside>(robot, obstaclesOf(obstacles), options))
+{
+}
+
+RobotWorld::~RobotWorld() = default;
+RobotWorld::RobotWorld(RobotWorld&&) noexcept = default;
+RobotWorld& RobotWorld::operator=(RobotWorld&&) noexcept = default;
+
+const Robot& RobotWorld::robot() const noexcept
+{
+  return inside_->gaps.robot;
+}
+
+const Kinematics& RobotWorld::kinematics() const noexcept
+{
+  return inside_->gaps.kinematics;
+}
+
+const WorldOptions& RobotWorld::options() const noexcept
+{
+  return inside_->gaps.options;
+}
+
+void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacles)
+{
+  inside_ = std::make_unique<Inside>(robot(), obstaclesOf(obstacles), options());
+}
+
+void RobotWorld::setBase(const Eigen::Isometry3d& T_world_root)
+{
+  WorldOptions options = this->options();
+  options.base = T_world_root;
+  inside_ = std::make_unique<Inside>(robot(), inside_->gaps.obstacles, options);
+}
+
+void RobotWorld::attach(const std::string& name, std::size_t link, std::vector<Shape> shapes,
+                        const std::vector<std::size_t>& ignored)
+{
+  Robot robot = this->robot();
+  const bool is_new =
+      std::none_of(robot.links.begin(), robot.links.end(), [&](const Link& l) { return l.name == name; });
+  if (!is_new || link >= robot.links.size())
+    throw InvalidInput(Input::scene, "attached '" + name + "'",
+                       is_new ? "hangs on a link that " + robot.name + " has not" : "has the name of a link",
+                       is_new ? "name a link by its number" : "give another name");
+  Joint joint;
+  joint.name = name;
+  joint.parent = link;
+  for (const std::size_t other : ignored) robot.disabled_pairs.push_back({robot.links.size(), other});
+  robot.links.push_back({name, std::move(shapes), joint});
+  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles, options());
+}
+
+void RobotWorld::detach(const std::string& name)
+{
+  Robot robot = this->robot();
+  const std::size_t link = robot.linkNamed(name);
+  const auto hangs = [&](const Link& other) { return other.joint && other.joint->parent == link; };
+  const std::optional<Joint>& joint = robot.links[link].joint;
+  if (!joint || joint->name != name || std::any_of(robot.links.begin(), robot.links.end(), hangs))
+    throw InvalidInput(Input::scene, "link '" + name + "'", "is not attached, or carries another",
+                       "name what attach() added last");
+  robot.links.erase(robot.links.begin() + static_cast<std::ptrdiff_t>(link));
+  for (Link& other : robot.links)
+    if (other.joint && other.joint->parent > link) --other.joint->parent;
+  std::erase_if(robot.disabled_pairs, [&](const auto& pair) { return pair[0] == link || pair[1] == link; });
+  for (auto& pair : robot.disabled_pairs)
+    for (std::size_t& of : pair) of -= of > link ? 1 : 0;
+  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles, options());
+}
+
+StateCheck RobotWorld::checkState(const RobotState& state) const
+{
+  const DefaultFloatEnvironment environment;
+  inside_->gaps.requireState(state);
+  const ScratchLease<MotionScratch> scratch;
+  return MotionSearch(inside_->gaps, state, state, *scratch).atStart();
+}
+
+MotionCheck RobotWorld::checkMotion(const RobotState& from, const RobotState& to, bool with_last_valid) const
+{
+  const DefaultFloatEnvironment environment;
+  inside_->gaps.requireState(from);
+  inside_->gaps.requireState(to);
+  const ScratchLease<MotionScratch> scratch;
+  MotionSearch search(inside_->gaps, from, to, *scratch);
+  MotionCheck check = search.all();
+  if (with_last_valid && check.verdict != Verdict::free) check.last_valid = search.lastValid();
+  return check;
+}
+
+ClearanceResult RobotWorld::clearance(const RobotState& state, double limit) const
+{
+  const DefaultFloatEnvironment environment;
+  inside_->gaps.requireState(state);
+  if (std::isnan(limit))
+    throw InvalidInput(Input::max_distance, "limit", "is not a number", "give a length, or infinity");
+  RobotState largest = state;
+  for (double& value : largest) value = std::abs(value);
+  return LeastGap(inside_->gaps, state, limit).result(inside_->gaps.error(largest));
+}
+
+std::vector<Verdict> RobotWorld::checkStates(const std::vector<RobotState>& states, unsigned threads) const
+{
+  const DefaultFloatEnvironment environment;
+  for (const RobotState& state : states) inside_->gaps.requireState(state);
+  return checkAll(states.size(), threads, [&](std::size_t i) {
+    const ScratchLease<MotionScratch> scratch;
+    return MotionSearch(inside_->gaps, states[i], states[i], *scratch).atStart().verdict;
+  });
+}
+
+std::vector<Verdict> RobotWorld::checkMotions(const std::vector<Motion>& motions, unsigned threads) const
+{
+  const DefaultFloatEnvironment environment;
+  for (const Motion& motion : motions) {
+    inside_->gaps.requireState(motion.from);
+    inside_->gaps.requireState(motion.to);
+  }
+  return checkAll(motions.size(), threads, [&](std::size_t i) {
+    const ScratchLease<MotionScratch> scratch;
+    return MotionSearch(inside_->gaps, motions[i].from, motions[i].to, *scratch).all().verdict;
+  });
+}
+
+} // namespace pcl_bsh::robots

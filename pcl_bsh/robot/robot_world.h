@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot among obstacles: whether it is free, how far from them it is, and whether a motion is free at each instant.
+//
+//   RobotWorld world(arm, {&scan}, {0.01});  // 1 cm from all points of a SphereHierarchy
+//   world.checkState(state).verdict;         // free: farther than that
+//
+//   world.checkMotion(from, to).verdict;     // at each instant of the line in joint space
+//   world.clearance(state).gap;              // and between which two
+//
+// Answers hold for exact arithmetic on the given numbers (kinematics.h). A state is undecided where it is within
+// rounding of the clearance. A motion is undecided only where its least gap is within the tolerance of the clearance.
+// Boxes, cylinders, capsules and spheres are solid, and meshes are surfaces: two that cross are at 0 from each other,
+// which is undecided where the clearance is 0. Obstacles are in one frame, the world's.
+// Points may have radii; at clearance 0 without radii, a finger passes between points.
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/query/result.h>
+#include <pcl_bsh/robot/kinematics.h>
+#include <pcl_bsh/robot/robot.h>
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh::robots {
+
+struct WorldOptions {
+  double clearance = 0.0;      ///< from obstacles, m, finite and >= 0: what is no farther collides
+  double self_clearance = 0.0; ///< of links from each other, m, finite and >= 0
+  double tolerance = 1e-4;     ///< m, > 0: see above
+  bool with_self = true;       ///< whether links are held against each other
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity(); ///< T_world_root
+};
+
+/// Two things that are nearest to each other, or collide.
+struct Meeting {
+  std::size_t link = 0, shape = 0;            ///< of the robot
+  std::optional<std::size_t> other_link = {}; ///< where the robot meets itself
+  std::size_t other_shape = 0, obstacle = 0;  ///< else one of the obstacles, and
+  std::uint32_t record = kNothing;            ///< the record of its view
+};
+
+struct StateCheck {
+  Verdict verdict = Verdict::free;
+  std::optional<Meeting> meeting; ///< what collides, or is undecided
+};
+
+struct MotionCheck {
+  Verdict verdict = Verdict::free;
+  double fraction = 1.0;          ///< where it collides, or is undecided; 1 where it is free
+  std::optional<Meeting> meeting; ///< what collides there, or is undecided
+  double last_valid = 1.0; ///< the motion is certainly free up to here; 0 unless that was asked for, or it is free
+};
+
+struct ClearanceResult {
+  Interval gap;                   ///< the least one, less all radii and paddings; negative inside of solids. Two
+                                  ///< solids that meet are at most at its upper end
+  std::optional<Meeting> meeting; ///< none: there is nothing within the limit
+};
+
+/// Const methods may run in several threads at once. Robots and options are copied, hierarchies borrowed.
+class RobotWorld {
+public:
+  /// @throws InvalidInput as Kinematics does; for options without meaning; for a mesh that was not read
+  RobotWorld(const Robot& robot, const std::vector<const SphereHierarchy*>& obstacles,
+             const WorldOptions& options = {});
+  ~RobotWorld();
+  RobotWorld(RobotWorld&&) noexcept;
+  RobotWorld& operator=(RobotWorld&&) noexcept;
+
+  const Robot& robot() const noexcept; ///< with what is attached
+  const Kinematics& kinematics() const noexcept;
+  const WorldOptions& options() const noexcept;
+
+  /// Other obstacles; or the same, after a HierarchyUpdate or a refit has changed them.
+  void setObstacles(const std::vector<const SphereHierarchy*>& obstacles);
+
+  void setBase(const Eigen::Isometry3d& T_world_root);
+
+  /// A link of its own that moves with another and is not held against that nor against `ignored`. Its name is new.
+  void attach(const std::string& name, std::size_t link, std::vector<Shape> shapes,
+              const std::vector<std::size_t>& ignored = {});
+  void detach(const std::string& name); ///< @throws InvalidInput for a name that is not attached
+
+  /// @throws InvalidInput (Input::motion) naming the joint, for a state of another size, a value that is not finite or
+  ///   out of its joint's limits
+  StateCheck checkState(const RobotState& state) const;
+
+  /// The line in joint space: continuous joints go the shorter way. @throws as checkState() does
+  /// @param with_last_valid also look for the first instant that is not free
+  MotionCheck checkMotion(const RobotState& from, const RobotState& to, bool with_last_valid = false) const;
+
+  /// The least gap, of obstacles and, with WorldOptions::with_self, of links. @throws as checkState() does
+  /// @param limit gaps beyond it are not looked for: then the gap is from that to infinity
+  ClearanceResult clearance(const RobotState& state, double limit = std::numeric_limits<double>::infinity()) const;
+
+  /// All at once. @param threads 0: all of the machine's
+  std::vector<Verdict> checkStates(const std::vector<RobotState>& states, unsigned threads = 1) const;
+
+  struct Motion {
+    RobotState from, to;
+  };
+  std::vector<Verdict> checkMotions(const std::vector<Motion>& motions, unsigned threads = 1) const;
+
+private:
+  class Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+} // namespace pcl_bsh::robots
+PCL_BSH_EXPORT_END

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/robot/robot_world.h>
+
+#include "made_arms.h"
+#include "support/refusal.h"
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace pcl_bsh {
+namespace {
+
+using namespace robots;
+using test::LongVector;
+
+/// Gaps again, in long double, over all pairs. Gaps of links from each other: for spheres alone.
+class GapTwin {
+public:
+  GapTwin(const Robot& robot, const PointsView& points) : robot_(robot), kinematics_(robot), points_(points) {}
+
+  long double toPoints(const std::vector<long double>& values) const
+  {
+    long double least = std::numeric_limits<long double>::infinity();
+    const std::vector<test::LongPose> poses = test::longPoses(kinematics_, values);
+    forEachShape([&](std::size_t link, const Eigen::Isometry3d& pose, const Shape& shape) {
+      const test::LongPose& body = poses[kinematics_.bodyOf(link)];
+      const LongVector at = body * LongVector(pose.translation().cast<long double>());
+      const test::LongMatrix turn = body.rotation * pose.linear().cast<long double>();
+      for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        const Point3 p = points_.point(i);
+        if ((LongVector(p[0], p[1], p[2]) - at).norm() > least + kLargest) continue;
+        const LongVector seen = turn.transpose() * (LongVector(p[0], p[1], p[2]) - at);
+        const auto* ball = std::get_if<Sphere>(&shape.form);
+        const long double gap =
+            ball ? seen.norm() - ball->radius : signedDistance(*solidOf(shape), Eigen::Vector3d(seen.cast<double>()));
+        least = std::min(least, gap - static_cast<long double>(points_.radius(i)) - robot_.links[link].padding);
+      }
+    });
+    return least;
+  }
+
+  long double toItself(const std::vector<long double>& values) const
+  {
+    struct Ball {
+      std::size_t link;
+      LongVector center;
+      double radius;
+    };
+    std::vector<Ball> balls;
+    const std::vector<test::LongPose> poses = test::longPoses(kinematics_, values);
+    forEachShape([&](std::size_t link, const Eigen::Isometry3d& pose, const Shape& shape) {
+      balls.push_back({link, poses[kinematics_.bodyOf(link)] * LongVector(pose.translation().cast<long double>()),
+                       std::get<Sphere>(shape.form).radius});
+    });
+    long double least = std::numeric_limits<long double>::infinity();
+    for (const Ball& a : balls)
+      for (const Ball& b : balls) {
+        const bool child = robot_.links[b.link].joint && robot_.links[b.link].joint->parent == a.link;
+        if (a.link >= b.link || child || kinematics_.bodyOf(a.link) == kinematics_.bodyOf(b.link)) continue;
+        least = std::min(least, (a.center - b.center).norm() - a.radius - b.radius);
+      }
+    return least;
+  }
+
+private:
+  template <class Visit>
+  void forEachShape(const Visit& visit) const
+  {
+    for (std::size_t link = 0; link < robot_.links.size(); ++link)
+      for (const Shape& shape : robot_.links[link].shapes) visit(link, kinematics_.inBody(link) * shape.pose, shape);
+  }
+
+  static constexpr long double kLargest = 0.4L; ///< of shapes and points, at least
+
+  const Robot& robot_;
+  const Kinematics kinematics_;
+  const PointsView points_;
+};
+
+struct MadeScene {
+  MadeScene(std::uint64_t seed, std::size_t count, bool only_spheres) : random(seed)
+  {
+    robot = test::madeArm(random, 7, only_spheres);
+    for (std::size_t i = 0; i < 3 * count; ++i) xyz.push_back(static_cast<float>(random.uniform(-0.9, 0.9)));
+    for (std::size_t i = 0; i < count; ++i) radii.push_back(static_cast<float>(random.uniform(0, 0.02)));
+    view = viewOf(xyz.data(), count);
+    if (seed % 2 == 0) view.radii = radii.data();
+    cloud = std::make_unique<SphereHierarchy>(view);
+  }
+
+  test::Random random;
+  Robot robot;
+  std::vector<float> xyz, radii;
+  PointsView view;
+  std::unique_ptr<SphereHierarchy> cloud;
+};
+
+/// Never free where one of 1,025 samples collides; what collides does at the fraction that is told; undecided only near
+/// the clearance.
+TEST(RobotWorld, CertifiesMotions)
+{
+  std::array<int, 3> seen = {};
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+    MadeScene scene(seed, 80, seed <= 4);
+    WorldOptions options;
+    options.clearance = seed % 3 == 0 ? 0.02 : 0.0;
+    options.with_self = false;
+    const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
+    const GapTwin twin(scene.robot, scene.view);
+    for (int i = 0; i < 8; ++i) {
+      const RobotState from = test::madeState(scene.random, scene.robot);
+      RobotState to = test::madeState(scene.random, scene.robot);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + 0.2 * (to[k] - from[k]);
+      const MotionCheck check = world.checkMotion(from, to, true);
+      long double least = std::numeric_limits<long double>::infinity();
+      for (int sample = 0; sample <= 1024; ++sample) {
+        const long double t = sample / 1024.0L;
+        const long double gap = twin.toPoints(test::longValues(scene.robot, from, to, t));
+        least = std::min(least, gap);
+        if (t < check.last_valid) {
+          ASSERT_GT(gap, options.clearance) << seed << " " << i << " " << sample;
+        }
+      }
+      ++seen[static_cast<std::size_t>(check.verdict)];
+      if (check.verdict == Verdict::free) {
+        EXPECT_EQ(check.last_valid, 1.0);
+        continue;
+      }
+      ASSERT_TRUE(check.meeting.has_value());
+      const auto there = test::longValues(scene.robot, from, to, check.fraction);
+      EXPECT_LE(check.last_valid, check.fraction);
+      if (check.verdict == Verdict::colliding) {
+        EXPECT_LE(twin.toPoints(there), options.clearance + 1e-12L);
+      }
+      else {
+        EXPECT_NEAR(static_cast<double>(least), options.clearance, 2e-4);
+      }
+      // Just behind the last valid instant something is near.
+      const auto end = test::longValues(scene.robot, from, to, check.last_valid);
+      EXPECT_LT(twin.toPoints(end), options.clearance + 2 * options.tolerance);
+    }
+  }
+  EXPECT_GT(seen[0], 8);
+  EXPECT_GT(seen[1], 8);
+  EXPECT_LT(seen[2], 2);
+}
+
+TEST(RobotWorld, CertifiesMotionsAmongItsLinks)
+{
+  std::array<int, 3> seen = {};
+  for (const std::uint64_t seed : {21u, 22u, 23u, 24u, 25u, 26u}) {
+    MadeScene scene(seed, 0, true);
+    const RobotWorld world(scene.robot, {});
+    const GapTwin twin(scene.robot, scene.view);
+    for (int i = 0; i < 25; ++i) {
+      const RobotState from = test::madeState(scene.random, scene.robot);
+      RobotState to = test::madeState(scene.random, scene.robot);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + 0.3 * (to[k] - from[k]);
+      const MotionCheck check = world.checkMotion(from, to);
+      ++seen[static_cast<std::size_t>(check.verdict)];
+      for (int sample = 0; sample <= 1024 && check.verdict == Verdict::free; ++sample)
+        ASSERT_GT(twin.toItself(test::longValues(scene.robot, from, to, sample / 1024.0L)), 0.0) << seed << " " << i;
+      if (check.verdict != Verdict::colliding) continue;
+      EXPECT_TRUE(check.meeting->other_link.has_value());
+      EXPECT_LE(twin.toItself(test::longValues(scene.robot, from, to, check.fraction)), 1e-12L);
+    }
+  }
+  EXPECT_GT(seen[0], 10);
+  EXPECT_GT(seen[1], 10);
+}
+
+TEST(RobotWorld, MeasuresClearances)
+{
+  for (const std::uint64_t seed : {31u, 32u, 33u, 34u}) {
+    MadeScene scene(seed, 40, true);
+    scene.robot.links[2].padding = 0.01;
+    WorldOptions options;
+    options.with_self = false;
+    const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
+    const GapTwin twin(scene.robot, scene.view);
+    for (int i = 0; i < 20; ++i) {
+      const RobotState state = test::madeState(scene.random, scene.robot);
+      const auto exact = static_cast<double>(twin.toPoints({state.begin(), state.end()}));
+      const ClearanceResult found = world.clearance(state);
+      EXPECT_LE(found.gap.lower, exact + 1e-15);
+      EXPECT_GE(found.gap.upper, exact - 1e-15);
+      EXPECT_LT(found.gap.upper - found.gap.lower, 1e-6);
+      const ClearanceResult limited = world.clearance(state, 0.5 * std::abs(exact));
+      EXPECT_EQ(limited.meeting.has_value(), exact <= 0.0);
+      const StateCheck check = world.checkState(state);
+      EXPECT_EQ(check.verdict, exact > 0.0 ? Verdict::free : Verdict::colliding);
+    }
+  }
+}
+
+/// An arm of one link, 1 m long with a ball at its end, that turns about z.
+Robot pendulum()
+{
+  Robot robot{"pendulum", {{"base", {}, {}}, {"bob", {{Sphere{0.1}, {}}}, Joint{"turn"}}}};
+  robot.links[1].joint->kind = Joint::Kind::revolute;
+  robot.links[1].joint->axis = Eigen::Vector3d::UnitZ();
+  robot.links[1].shapes[0].pose.setIdentity();
+  robot.links[1].shapes[0].pose.translation() = Eigen::Vector3d(1, 0, 0);
+  return robot;
+}
+
+TEST(RobotWorld, FindsWhereAndWhenAndWhat)
+{
+  const double angle = 1.0;
+  const std::vector<double> xyz = {5, 5, 5, 1.2 * std::cos(angle), 1.2 * std::sin(angle), 0};
+  const SphereHierarchy cloud(viewOf(xyz.data(), 2));
+  const RobotWorld below(pendulum(), {&cloud}, {0.0998}), above(pendulum(), {&cloud}, {0.1002});
+  EXPECT_EQ(below.checkMotion({0}, {2}).verdict, Verdict::free);
+  const MotionCheck hit = above.checkMotion({0}, {2}, true);
+  EXPECT_EQ(hit.verdict, Verdict::colliding);
+  EXPECT_EQ(hit.meeting->link, 1u);
+  EXPECT_EQ(hit.meeting->record, 1u);
+  EXPECT_NEAR(hit.fraction, 0.5, 0.02);
+  EXPECT_LT(hit.last_valid, hit.fraction);
+  EXPECT_GT(hit.last_valid, 0.45);
+  const ClearanceResult clearance = above.clearance({angle});
+  EXPECT_NEAR(clearance.gap.lower, 0.1, 1e-7);
+  EXPECT_EQ(clearance.meeting->record, 1u);
+}
+
+/// The tip of an arm that folds goes along a line, and stands still when the arm is straight.
+TEST(RobotWorld, SeesWhereWhatStandsStillHasBeen)
+{
+  Robot robot = pendulum();
+  robot.links[1].shapes.clear();
+  Joint elbow{"elbow", Joint::Kind::revolute, 1, Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))};
+  elbow.axis = Eigen::Vector3d::UnitZ();
+  Shape tip{Sphere{0.1}};
+  tip.pose.translation() = Eigen::Vector3d(1, 0, 0);
+  robot.links.push_back({"forearm", {tip}, elbow});
+  const std::vector<double> xyz = {1.3, 0, 0};
+  const SphereHierarchy cloud(viewOf(xyz.data(), 1));
+  const RobotWorld world(robot, {&cloud});
+  EXPECT_EQ(world.checkMotion({-0.7, 1.4}, {0.7, -1.4}).verdict, Verdict::free);
+  EXPECT_EQ(world.checkMotion({-1.0, 2.0}, {1.0, -2.0}).verdict, Verdict::colliding);
+}
+
+TEST(RobotWorld, TurnsContinuousJointsTheShorterWay)
+{
+  Robot robot = pendulum();
+  robot.links[1].joint->kind = Joint::Kind::continuous;
+  const std::vector<double> xyz = {1, 0, 0};
+  const SphereHierarchy cloud(viewOf(xyz.data(), 1));
+  const RobotWorld world(robot, {&cloud});
+  EXPECT_EQ(world.checkMotion({-3.0}, {3.0}).verdict, Verdict::free); // by way of pi
+  EXPECT_EQ(world.checkMotion({-1.0}, {1.0}).verdict, Verdict::colliding);
+}
+
+TEST(RobotWorld, AttachesAndDetaches)
+{
+  Robot robot = pendulum();
+  const std::vector<double> xyz = {0, 1.5, 0};
+  const SphereHierarchy cloud(viewOf(xyz.data(), 1));
+  RobotWorld world(robot, {&cloud});
+  EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::free);
+  Shape stick{Capsule{0.05, 0.6}};
+  stick.pose.translation() = Eigen::Vector3d(1.3, 0, 0);
+  stick.pose.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  world.attach("stick", 1, {stick}, {0});
+  const MotionCheck hit = world.checkMotion({0}, {3});
+  EXPECT_EQ(hit.verdict, Verdict::colliding);
+  EXPECT_EQ(world.robot().links[hit.meeting->link].name, "stick");
+  EXPECT_THAT(test::refusalOf([&] { world.attach("stick", 0, {}); }), testing::HasSubstr("name of a link"));
+  EXPECT_THAT(test::refusalOf([&] { world.detach("bob"); }), testing::HasSubstr("is not attached"));
+  world.detach("stick");
+  EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::free);
+  world.setBase(Eigen::Isometry3d(Eigen::Translation3d(0, 0.5, 0)));
+  EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::colliding);
+  world.setObstacles({});
+  EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::free);
+}
+
+TEST(RobotWorld, HoldsMeshesAgainstAll)
+{
+  const std::vector<float> corners = {0.9f, -0.1f, 0, 1.1f, -0.1f, 0, 1, 0.1f, 0};
+  const std::vector<std::uint32_t> triangle = {0, 1, 2};
+  const PointsView plate = viewOf(TrianglesView{viewOf(corners.data(), 3), triangle.data(), 1});
+  Robot robot = pendulum();
+  robot.links[1].shapes = {{Mesh{"plate.stl", {1, 1, 1}, std::make_shared<SphereHierarchy>(plate)}}};
+  const std::vector<double> xyz = {0, 1, 0.005};
+  const SphereHierarchy cloud(viewOf(xyz.data(), 1));
+  EXPECT_EQ(RobotWorld(robot, {&cloud}, {0.004}).checkMotion({0}, {3}).verdict, Verdict::free);
+  EXPECT_EQ(RobotWorld(robot, {&cloud}, {0.006}).checkMotion({0}, {3}).verdict, Verdict::colliding);
+  EXPECT_NEAR(RobotWorld(robot, {&cloud}).clearance({std::numbers::pi / 2}).gap.lower, 0.005, 1e-7);
+  // against a box of another link
+  Shape post{Box{{0.2, 0.2, 0.2}}};
+  post.pose.translation() = Eigen::Vector3d(0, 1, 0);
+  robot.links[0].shapes = {post};
+  robot.links.push_back(robot.links[1]);
+  robot.links[2].name = "twin";
+  robot.links[2].joint->name = "twin";
+  robot.links[2].joint->parent = 1;
+  const RobotWorld world(robot, {});
+  EXPECT_EQ(world.checkMotion({0.0, 0.3}, {0.5, 0.3}).verdict, Verdict::free);
+  EXPECT_EQ(world.checkMotion({0.0, 0.3}, {1.5, 0.3}).verdict, Verdict::colliding);
+  robot.links[1].shapes = {{Mesh{"unread.stl"}}};
+  EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}); }), testing::HasSubstr("unread.stl, which is not read"));
+}
+
+TEST(RobotWorld, AnswersManyAtOnce)
+{
+  MadeScene scene(41, 60, true);
+  const RobotWorld world(scene.robot, {scene.cloud.get()});
+  std::vector<RobotState> states;
+  std::vector<RobotWorld::Motion> motions;
+  for (int i = 0; i < 300; ++i) {
+    states.push_back(test::madeState(scene.random, scene.robot));
+    motions.push_back({states.back(), test::madeState(scene.random, scene.robot)});
+  }
+  const std::vector<Verdict> of_states = world.checkStates(states), of_motions = world.checkMotions(motions);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    EXPECT_EQ(of_states[i], world.checkState(states[i]).verdict);
+    EXPECT_EQ(of_motions[i], world.checkMotion(motions[i].from, motions[i].to).verdict);
+  }
+  const RobotWorld anew(scene.robot, {scene.cloud.get()});
+  EXPECT_EQ(anew.checkStates(states, 2), of_states);
+  EXPECT_EQ(anew.checkMotions(motions, 2), of_motions);
+}
+
+TEST(RobotWorld, RefusesWhatHasNoMeaning)
+{
+  const RobotWorld world(pendulum(), {});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using testing::HasSubstr;
+  EXPECT_THAT(test::refusalOf([&] { world.checkState({}); }), HasSubstr("has 0 values"));
+  EXPECT_THAT(test::refusalOf([&] { world.checkMotion({0}, {nan}); }), HasSubstr("joint 'turn': has the value nan"));
+  EXPECT_THAT(test::refusalOf([&] { world.clearance({0}, nan); }), HasSubstr("limit"));
+  EXPECT_THAT(test::refusalOf([&] { RobotWorld(pendulum(), {}, {-1.0}); }), HasSubstr("clearance: is -1"));
+  EXPECT_THAT(test::refusalOf([&] { RobotWorld(pendulum(), {}, {0.0, 0.0, 0.0}); }), HasSubstr("tolerance: is 0"));
+  Robot robot = pendulum();
+  robot.links[1].joint->upper = 1.0;
+  EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}).checkState({1.5}); }), HasSubstr("its limits are"));
+}
+
+} // namespace
+} // namespace pcl_bsh
