@@ -2,6 +2,7 @@
 // Contacts: depth first as any and closest pair, keeping the nearest pairs in a heap once there are enough of them.
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/pairs/nearest_places.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/planes_between.h>
 
@@ -14,122 +15,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <pcl_bsh/traversal/visit_pairs-inl.h>
+#include <pcl_bsh/pairs/reach_walk-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
-
-/// What a sink did with a pair.
-enum class Added { kept, dropped, stop };
-
-/// Walks to every pair of points that may be within a reach and hands it to a sink: `pairs`, which decides them;
-/// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
-/// `Added add(PointPair, bool surely, Work&)`, of which it may be known that they collide; `bool passesOver(PairWalk,
-/// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
-template <class Sink>
-class ReachWalk : public PairVisitor {
-public:
-  ReachWalk(const Placed& a, const Placed& b, Sink& sink, Progress& progress)
-  : PairVisitor(Watch{&progress, 1.0}),
-    walk_(a, b),
-    sink_(sink)
-  {
-  }
-
-  Work run()
-  {
-    stack_.clear();
-    walk_.seed(reach(), [this](LanePair pair, const PairWalk::Step& step, std::uint32_t lane) {
-      keep(pair, Opened::b, step, lane);
-      stack_.push_back(pair);
-    });
-    nearestLast(stack_, 0);
-    visitPairs(walk_, stack_, *this);
-    return walk_.work;
-  }
-
-  // As visitPairs() asks.
-
-  /// What spheres are tested with.
-  double reach() const { return std::max(sink_.reach(), 0.0); }
-
-  Next visit(const LanePair& pair)
-  {
-    return pair.key > sink_.reach() || sink_.passesOver(walk_, pair) ? Next::prune : Next::go_on;
-  }
-
-  bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
-  {
-    pair.key = walk_.boundKey(pair, step, lane);
-    return true;
-  }
-
-  Next compare(const LanePair& pair)
-  {
-    const ComparedLeaves leaves = walk_.compare(pair, reach());
-    if (leaves.near == 0) return Next::go_on;
-    const LeafRange &a = leaves.a, &b = leaves.b;
-    // Points of one place share a leaf, and the first of them was compared for all.
-    const std::uint32_t places_a = coincident(walk_.a, pair.a), places_b = coincident(walk_.b, pair.b);
-    bool going = true;
-    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
-      going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b}, surely);
-      return !going;
-    };
-    if (walk_.haveTriangles()) {
-      eachPairNearTriangles(
-          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
-          [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
-    }
-    else if (sink_.pairs.haveRadii()) {
-      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), sink_.pairs.surelyOfBalls(),
-                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
-    }
-    else {
-      const float hit = leaves.frame.band(sink_.pairs.reach.length()).hit;
-      double reach = sink_.reach();
-      float miss = leaves.frame.band(reach).miss;
-      eachPairNotBeyond(leaves.points, leaves.near, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
-        if (sink_.reach() < reach) { // shrunk since the last pair that was near
-          reach = sink_.reach();
-          miss = leaves.frame.band(reach).miss;
-        }
-        return !(squared > miss) && found(i, j, squared <= hit);
-      });
-    }
-    return going ? Next::go_on : Next::stop;
-  }
-
-private:
-  /// How many points stand where the leaf's compared ones do: more than one only where a single one is compared.
-  std::uint32_t coincident(const Spaces& side, const Lane& lane) const
-  {
-    const Node& node = walk_.nodeOf(side, lane);
-    return node.isCoincident(lane.lane) ? node.points(lane.lane) : 1;
-  }
-
-  /// All pairs of two ranges of points, each of one place and one radius; records ascend where a range has several.
-  bool addAll(const LeafRange& a, const LeafRange& b, bool surely)
-  {
-    for (std::uint32_t i = 0; i < a.count; ++i)
-      for (std::uint32_t j = 0; j < b.count; ++j) {
-        pulse_.count(1);
-        const Added added = sink_.add({a.record(i), b.record(j)}, surely, walk_.work);
-        if (added == Added::stop) return false;
-        if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
-        surely = true;
-      }
-    return true;
-  }
-
-  PairWalk walk_;
-  Sink& sink_;
-  Pulse pulse_; ///< of pairs at one place
-  const ScratchLease<PairStack> kept_stack_;
-  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
-};
 
 /// All of them, until there are too many.
 class AllPairs {
@@ -290,12 +181,13 @@ public:
     if (!result.complete) kept_.pop_back();
     result.contacts.reserve(kept_.size());
     for (const PairGap& entry : kept_) {
-      const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
-      const Eigen::Vector3d apart =
-          pairs.ofTriangles() ? pairs.distance.between(entry.pair)
-                              : a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+      auto [at_a, at_b] = nearestPlaces(a, b, entry.pair);
+      const Eigen::Vector3d apart = pairs.ofTriangles() ? pairs.distance.between(entry.pair) : at_a - at_b;
       const double gap = pairs.ofTriangles() ? pairs.gap(entry.pair) : entry.high;
-      result.contacts.push_back({entry.pair, gap, apart.stableNormalized()});
+      const Eigen::Vector3d normal = apart.stableNormalized();
+      at_a -= a.hierarchy().view().ownRadius(entry.pair.a) * normal;
+      at_b += b.hierarchy().view().ownRadius(entry.pair.b) * normal;
+      result.contacts.push_back({entry.pair, gap, normal, at_a, at_b});
     }
   }
 

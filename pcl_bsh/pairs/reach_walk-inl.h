@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk to pairs of records within a reach, nearest first, for contacts.
+
+#if defined(PCL_BSH_PAIRS_REACH_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PCL_BSH_PAIRS_REACH_WALK_INL_H_
+#undef PCL_BSH_PAIRS_REACH_WALK_INL_H_
+#else
+#define PCL_BSH_PAIRS_REACH_WALK_INL_H_
+#endif
+
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// What a sink did with a pair.
+enum class Added { kept, dropped, stop };
+
+/// Walks to every pair of points that may be within a reach and hands it to a sink: `pairs`, which decides them;
+/// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
+/// `Added add(PointPair, bool surely, Work&)`, of which it may be known that they collide; `bool passesOver(PairWalk,
+/// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
+template <class Sink>
+class ReachWalk : public PairVisitor {
+public:
+  ReachWalk(const Placed& a, const Placed& b, Sink& sink, Progress& progress)
+  : PairVisitor(Watch{&progress, 1.0}),
+    walk_(a, b),
+    sink_(sink)
+  {
+  }
+
+  Work run()
+  {
+    stack_.clear();
+    walk_.seed(reach(), [this](LanePair pair, const PairWalk::Step& step, std::uint32_t lane) {
+      keep(pair, Opened::b, step, lane);
+      stack_.push_back(pair);
+    });
+    nearestLast(stack_, 0);
+    visitPairs(walk_, stack_, *this);
+    return walk_.work;
+  }
+
+  // As visitPairs() asks.
+
+  /// What spheres are tested with.
+  double reach() const { return std::max(sink_.reach(), 0.0); }
+
+  Next visit(const LanePair& pair) { return sink_.passesOver(walk_, pair) ? Next::prune : Next::go_on; }
+
+  bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
+  {
+    pair.key = walk_.boundKey(pair, step, lane);
+    return true;
+  }
+
+  Next compare(const LanePair& pair)
+  {
+    const ComparedLeaves leaves = walk_.compare(pair, reach());
+    if (leaves.near == 0) return Next::go_on;
+    const LeafRange &a = leaves.a, &b = leaves.b;
+    // Points of one place share a leaf, and the first of them was compared for all.
+    const std::uint32_t places_a = coincident(walk_.a, pair.a), places_b = coincident(walk_.b, pair.b);
+    bool going = true;
+    const auto found = [&](std::uint32_t i, std::uint32_t j, bool surely) {
+      going = addAll({a.voxel, a.begin + i, places_a}, {b.voxel, b.begin + j, places_b}, surely);
+      return !going;
+    };
+    if (walk_.haveTriangles()) {
+      eachPairNearTriangles(
+          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
+          [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
+    }
+    else if (sink_.pairs.haveRadii()) {
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), sink_.pairs.surelyOfBalls(),
+                       [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
+    }
+    else {
+      const float hit = leaves.frame.band(sink_.pairs.reach.length()).hit;
+      double reach = sink_.reach();
+      float miss = leaves.frame.band(reach).miss;
+      eachPairNotBeyond(leaves.points, leaves.near, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
+        if (sink_.reach() < reach) { // shrunk since the last pair that was near
+          reach = sink_.reach();
+          miss = leaves.frame.band(reach).miss;
+        }
+        return !(squared > miss) && found(i, j, squared <= hit);
+      });
+    }
+    return going ? Next::go_on : Next::stop;
+  }
+
+private:
+  /// How many points stand where the leaf's compared ones do: more than one only where a single one is compared.
+  std::uint32_t coincident(const Spaces& side, const Lane& lane) const
+  {
+    const Node& node = walk_.nodeOf(side, lane);
+    return node.isCoincident(lane.lane) ? node.points(lane.lane) : 1;
+  }
+
+  /// All pairs of two ranges of points, each of one place and one radius; records ascend where a range has several.
+  bool addAll(const LeafRange& a, const LeafRange& b, bool surely)
+  {
+    for (std::uint32_t i = 0; i < a.count; ++i)
+      for (std::uint32_t j = 0; j < b.count; ++j) {
+        pulse_.count(1);
+        const Added added = sink_.add({a.record(i), b.record(j)}, surely, walk_.work);
+        if (added == Added::stop) return false;
+        if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
+        surely = true;
+      }
+    return true;
+  }
+
+  PairWalk walk_;
+  Sink& sink_;
+  Pulse pulse_; ///< of pairs at one place
+  const ScratchLease<PairStack> kept_stack_;
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
+};
+
+} // namespace
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#endif // toggle
