@@ -2,6 +2,7 @@
 // Contacts: depth first as any and closest pair, keeping the nearest pairs in a heap once there are enough of them.
 #include <pcl_bsh/pairs/check_request.h>
 #include <pcl_bsh/pairs/contacts.h>
+#include <pcl_bsh/pairs/nearest_places.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/planes_between.h>
 
@@ -180,12 +181,13 @@ public:
     if (!result.complete) kept_.pop_back();
     result.contacts.reserve(kept_.size());
     for (const PairGap& entry : kept_) {
-      const Point3 p = a.hierarchy().view().point(entry.pair.a), q = b.hierarchy().view().point(entry.pair.b);
-      const Eigen::Vector3d apart =
-          pairs.ofTriangles() ? pairs.distance.between(entry.pair)
-                              : a.pose * Eigen::Vector3d(p[0], p[1], p[2]) - b.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+      auto [at_a, at_b] = nearestPlaces(a, b, entry.pair);
+      const Eigen::Vector3d apart = pairs.ofTriangles() ? pairs.distance.between(entry.pair) : at_a - at_b;
       const double gap = pairs.ofTriangles() ? pairs.gap(entry.pair) : entry.high;
-      result.contacts.push_back({entry.pair, gap, apart.stableNormalized()});
+      const Eigen::Vector3d normal = apart.stableNormalized();
+      at_a -= a.hierarchy().view().ownRadius(entry.pair.a) * normal;
+      at_b += b.hierarchy().view().ownRadius(entry.pair.b) * normal;
+      result.contacts.push_back({entry.pair, gap, normal, at_a, at_b});
     }
   }
 

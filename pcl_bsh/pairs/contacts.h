@@ -30,12 +30,17 @@ struct ContactsRequest : Effort {
   std::size_t most = kAll; ///< pairs in the result; they may be as many as a x b
 };
 
-/// A colliding pair of points, or of triangles.
+/// A colliding pair of points, or of triangles; or one of a manifold (manifold/contact_manifold.h).
 struct Contact {
   PointPair pair;
-  double distance = 0.0; ///< |T_a p - T_b q| less both radii, rounded to the nearest double
-  Eigen::Vector3d normal =
-      Eigen::Vector3d::Zero(); ///< from b's nearest place to a's, unit length, in the world; 0 where they meet
+  double distance = 0.0; ///< |T_a p - T_b q| less both radii, rounded to the nearest double; of a manifold: the gap
+  /// From b's nearest place to a's, unit length, in the world; 0 where they meet. In a manifold it is the surface's.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d place_a = Eigen::Vector3d::Zero(); ///< nearest to each other, in the world, within rounding; of
+  Eigen::Vector3d place_b = Eigen::Vector3d::Zero(); ///< balls on their surfaces
+  double residual = 0.0;                             ///< of a manifold: of the plane that gave the normal
+  std::uint32_t id = 0;                              ///< of a manifold: lives while the contact does; otherwise 0
+  std::uint32_t patch = 0;                           ///< of a manifold: which of its patches, from 0
 };
 
 /// What nearestContacts() found.

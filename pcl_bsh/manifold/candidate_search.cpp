@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Best first by bounds of scores. Pairs of nodes and of records wait in a list that is kept from goal to goal, so that
+// none is opened twice.
+#include <pcl_bsh/manifold/candidate_search.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/traversal/point_pairs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/manifold/candidate_search.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/traversal/visit_pairs-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+class ChannelSearch final : public CandidateSearch {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+public:
+  ChannelSearch(const Channel& channel, double most_gap, double thickness)
+  : channel_(channel),
+    walk_(channel.probe, channel.surface),
+    most_gap_(most_gap),
+    thickness_(thickness),
+    // Rounded distances less the thickness are no greater than the gap only within this.
+    reach_(std::nextafter(most_gap + thickness + 0x1p-50 * (most_gap + thickness), kInfinity)),
+    pairs_(channel.probe, channel.surface, reach_)
+  {
+    walk_.makeWholes();
+    walk_.seedWhole(reach_, [this](LanePair pair, const PairWalk::Step& step) {
+      alignas(32) float keys[kLanes];
+      walk_.boundKeys(pair, step, keys);
+      pair.key = keys[0];
+      wait(pair);
+    });
+  }
+
+  void seek(const PatchGoal& goal, Candidate& best, Work& work) override
+  {
+    order_.clear();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) consider(boundOf(goal, nodes_[i]), {i, false}, best);
+    for (std::size_t i = 0; i < records_.size(); ++i) consider(boundOf(goal, records_[i]), {i, true}, best);
+    std::make_heap(order_.begin(), order_.end());
+    SearchPulse pulse({}, order_.size(), walk_.work);
+    while (!order_.empty() && !(order_.front().bound < best.score)) {
+      pulse.step(order_.size());
+      const Turn turn = order_.front();
+      std::pop_heap(order_.begin(), order_.end());
+      order_.pop_back();
+      if (turn.of.second)
+        decide(goal, records_[turn.of.first], best);
+      else
+        open(goal, turn.of.first, best);
+    }
+    forgetOpened();
+    work += std::exchange(walk_.work, Work());
+  }
+
+private:
+  /// Two lanes, and the sphere of the probe's.
+  struct WaitingNodes {
+    LanePair lanes;
+    Eigen::Vector3d middle;
+    double radius, slack, least_gap;
+    bool is_opened = false;
+  };
+  struct WaitingRecords {
+    PointPair pair;
+    Eigen::Vector3d place;
+    double least_gap;
+    bool is_known; ///< that is the gap
+    bool is_beyond = false;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+  struct Turn {
+    double bound;
+    std::pair<std::size_t, bool> of; ///< which of the nodes or of the records
+    bool operator<(const Turn& other) const { return bound < other.bound; }
+  };
+
+  static double down(double x) { return std::nextafter(x, -kInfinity); }
+
+  static double boundOf(const PatchGoal& goal, const WaitingNodes& nodes)
+  {
+    return goal.bound(nodes.middle, nodes.radius, nodes.slack, nodes.least_gap);
+  }
+  static double boundOf(const PatchGoal& goal, const WaitingRecords& records)
+  {
+    return goal.score(records.place, records.least_gap);
+  }
+
+  bool consider(double bound, std::pair<std::size_t, bool> of, const Candidate& best)
+  {
+    if (bound < best.score || bound == -kInfinity) return false;
+    order_.push_back({bound, of});
+    return true;
+  }
+
+  template <class Waiting>
+  void enter(const PatchGoal& goal, const std::vector<Waiting>& all, std::size_t from, const Candidate& best)
+  {
+    for (std::size_t i = from; i < all.size(); ++i)
+      if (consider(boundOf(goal, all[i]), {i, std::is_same_v<Waiting, WaitingRecords>}, best))
+        std::push_heap(order_.begin(), order_.end());
+  }
+
+  void wait(const LanePair& lanes)
+  {
+    const Node& node = walk_.nodeOf(walk_.a, lanes.a);
+    const LocalFrame& frame = walk_.a.frame(lanes.a.space);
+    const std::uint32_t of = lanes.a.lane;
+    Eigen::Vector3d middle(node.x[of], node.y[of], node.z[of]);
+    for (int k = 0; k < 3; ++k) middle[k] = middle[k] * frame.unit + frame.origin[static_cast<std::size_t>(k)];
+    const double size = middle.norm(), radius = double{node.r[of]} * frame.unit * (1.0 + 0x1p-18);
+    middle = walk_.a.pose * middle;
+    const double slack = kDoubleMargin * (size + walk_.a.pose.translation().norm() + middle.norm() + radius);
+    // An edge may lie beyond the other one: how far is not known from how far they are apart.
+    const double least = channel_.isOfEdges() ? -most_gap_ - 2 * thickness_ : down(lanes.key - thickness_);
+    nodes_.push_back({lanes, middle, radius, slack, least});
+  }
+
+  void open(const PatchGoal& goal, std::size_t index, const Candidate& best)
+  {
+    nodes_[index].is_opened = true;
+    const LanePair pair = nodes_[index].lanes;
+    const Opened opened = walk_.choose(pair);
+    const std::size_t nodes = nodes_.size(), records = records_.size();
+    if (opened == Opened::neither) {
+      compare(pair);
+      enter(goal, records_, records, best);
+      return;
+    }
+    walk_.step<true>(pair, opened, std::max(reach_, 0.0), step_);
+    if (step_.near == 0) return;
+    alignas(32) float keys[kLanes];
+    walk_.boundKeys(PairWalk::childOf(pair, opened, step_, 0), step_, keys);
+    for (std::uint32_t near = step_.near; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      LanePair child = PairWalk::childOf(pair, opened, step_, lane);
+      child.key = std::max(keys[lane], pair.key);
+      if (child.key <= reach_) wait(child);
+    }
+    enter(goal, nodes_, nodes, best);
+  }
+
+  void compare(const LanePair& pair)
+  {
+    const ComparedLeaves leaves = walk_.compare(pair, reach_);
+    if (leaves.near == 0) return;
+    const auto found = [&](std::uint32_t i, std::uint32_t j) {
+      if (channel_.isOfEdges())
+        addEdges({leaves.a.record(i), leaves.b.record(j)});
+      else
+        add({leaves.a.record(i), leaves.b.record(j)});
+      return false;
+    };
+    if (walk_.haveTriangles()) {
+      eachPairNearTriangles(
+          leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach_; }, found);
+    }
+    else if (pairs_.haveRadii()) {
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, leaves.a, leaves.b, reach_, -kInfinity,
+                       [&](std::uint32_t i, std::uint32_t j, float, bool) { return found(i, j); });
+    }
+    else {
+      const float miss = leaves.frame.band(reach_).miss;
+      eachPairNotBeyond(
+          leaves.points, leaves.near, leaves.b, miss,
+          [&](std::uint32_t i, std::uint32_t j, float squared) { return !(squared > miss) && found(i, j); });
+    }
+  }
+
+  void add(PointPair pair)
+  {
+    if (!channel_.held.empty() && channel_.held[pair.a]) return;
+    const RecordDistance::Pair posed = pairs_.posed(pair);
+    const auto [low, high] = pairs_.distance.enclose(posed);
+    const double radii = posed.radius_p + posed.radius_q, rounding = kFewDoubleRoundings * (high + radii);
+    const bool is_near = std::isfinite(high);
+    double least = is_near ? down(down(low - radii - rounding) - thickness_) : pairs_.distance.gap(posed) - thickness_;
+    if (!(least <= most_gap_)) return;
+    records_.push_back({pair, probePlace(channel_, pair.a), least, !is_near});
+  }
+
+  void addEdges(PointPair pair)
+  {
+    const auto crossing = crossingOf(channel_, pair);
+    if (!crossing) return;
+    ++walk_.work.exact_decisions;
+    const double apart = pairs_.distance.gap(pair);
+    const bool is_beyond = crossing->normal.dot(crossing->on_probe - crossing->on_surface) < 0.0;
+    if (!(apart <= most_gap_ + thickness_)) return;
+    const double gap = (is_beyond ? -apart : apart) - thickness_;
+    records_.push_back({pair, crossing->on_probe, gap, true, is_beyond, crossing->normal});
+  }
+
+  void decide(const PatchGoal& goal, WaitingRecords& of, Candidate& best)
+  {
+    if (!of.is_known) {
+      ++walk_.work.exact_decisions;
+      of.least_gap = pairs_.distance.gap(of.pair) - thickness_;
+      of.is_known = true;
+    }
+    const Candidate candidate{
+        goal.score(of.place, of.least_gap), of.least_gap, channel_.number, of.pair, of.is_beyond, of.place, of.normal};
+    if (candidate.isThere() && candidate.isBefore(best)) best = candidate;
+  }
+
+  void forgetOpened()
+  {
+    nodes_.erase(std::remove_if(nodes_.begin(), nodes_.end(), [](const WaitingNodes& one) { return one.is_opened; }),
+                 nodes_.end());
+  }
+
+  const Channel& channel_;
+  PairWalk walk_;
+  const double most_gap_, thickness_, reach_;
+  const PointPairs pairs_;
+  PairWalk::Step step_;
+  std::vector<WaitingNodes> nodes_;
+  std::vector<WaitingRecords> records_;
+  std::vector<Turn> order_;
+};
+
+} // namespace
+
+std::unique_ptr<CandidateSearch> makeOnTarget(const Channel& channel, double most_gap, double thickness)
+{
+  return std::make_unique<ChannelSearch>(channel, most_gap, thickness);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(makeOnTarget);
+
+std::unique_ptr<CandidateSearch> makeCandidateSearch(const Channel& channel, double most_gap, double thickness)
+{
+  return HWY_DYNAMIC_DISPATCH(makeOnTarget)(channel, most_gap, thickness);
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The best candidate of a channel by a goal, for one goal after another: what was opened for one is kept for the next.
+#pragma once
+
+#include <pcl_bsh/manifold/collider_parts.h>
+#include <pcl_bsh/manifold/patch_goal.h>
+#include <pcl_bsh/query/placed.h>
+#include <pcl_bsh/query/result.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace pcl_bsh {
+
+/// Records of two sides that may touch: points of the probe against records of the surface, or edges against
+/// edges.
+struct Channel {
+  std::uint8_t number = 0; ///< 0: places of a against b, 1: places of b against a, 2: edges of a against edges of b
+  Placed probe, surface;
+  const std::vector<SharpEdge>*sharp_probe = nullptr, *sharp_surface = nullptr; ///< of channel 2
+  std::vector<std::uint8_t> held; ///< not 0: of probes that the other side holds; empty: it holds none
+  std::vector<Candidate> inside;  ///< these, without scores
+
+  bool isOfEdges() const { return sharp_probe != nullptr; }
+};
+
+/// Where edges come nearest to each other, both within: nothing where they are parallel, or at an end of one. The
+/// unit normal from the surface's edge to the probe's is outside of both.
+struct EdgeCrossing {
+  Eigen::Vector3d on_probe, on_surface, normal;
+};
+std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges);
+
+/// The place of a channel's probe, in the world.
+Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record);
+
+/// Searches one channel, which must outlive it. Expects the DefaultFloatEnvironment.
+class CandidateSearch {
+public:
+  virtual ~CandidateSearch() = default;
+
+  /// Makes `best` the best candidate, where one is before it.
+  virtual void seek(const PatchGoal& goal, Candidate& best, Work& work) = 0;
+};
+
+/// @param most_gap that candidates have @param thickness taken from gaps
+std::unique_ptr<CandidateSearch> makeCandidateSearch(const Channel& channel, double most_gap, double thickness);
+
+} // namespace pcl_bsh
