@@ -16,8 +16,10 @@ std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud)
 
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud)
 {
-  return std::make_shared<StageCloud>(
+  auto empty = std::make_shared<StageCloud>(
       StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint, cloud.las_header, cloud.scanners});
+  empty->coordinate_system = cloud.coordinate_system;
+  return empty;
 }
 
 } // namespace pcl_bsh::pipeline

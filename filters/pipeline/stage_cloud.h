@@ -41,6 +41,7 @@ struct StageCloud {
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
   /// Why a file's points say less than the file: it joins them by lines, edges ... and has no faces. Empty else.
   std::string corners_alone = {};
+  std::string coordinate_system = {}; ///< as a LAS or E57 file names it; else empty
 };
 
 /// Several stages may read one cloud, so it does not change.
@@ -54,7 +55,7 @@ using CloudHeader = pcl::PCLPointCloud2;
 /// The cloud itself, to be changed in place, when this is the only pointer to it; otherwise a copy.
 std::shared_ptr<StageCloud> ownCloud(StageCloudPtr&& cloud);
 
-/// A cloud with all that this one has but its points and triangles.
+/// A cloud with the fields of this one and what its file said, but without points and triangles.
 std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud);
 
 } // namespace pcl_bsh::pipeline

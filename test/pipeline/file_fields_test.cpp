@@ -264,6 +264,23 @@ TEST_F(FileFields, OneScanOfSeveral)
   EXPECT_THROW(read(", \"scan\": 2", "e57"), std::exception);
 }
 
+/// From an E57 as from a LAS, through a stage that selects points.
+TEST_F(FileFields, ListsNameTheCoordinateSystem)
+{
+  E57Sample sample{{E57Sample::points({1, 2, 3}, {0, 0, 0}, {0, 0, 0})}};
+  sample.more_xml = "<coordinateMetadata>PROJCS[&quot;UTM 32N&quot;]</coordinateMetadata>";
+  folder.write("a.e57", sample.text());
+  folder.write("b.xyz", "x y z\n1 0 0\n");
+  const auto path = [&](const char* name) { return '"' + (folder / name).string() + '"'; };
+  const std::string asked = ", \"obstacle\": " + path("b.xyz") + ", \"clearance\": 0.5}";
+  Pipeline::parse(
+      "[" + path("a.e57") +
+      R"(, {"type": "filters.crop_box", "min": [0, -1, -1], "max": [2.5, 1, 1]}, {"type": "filters.bsh_flag")" + asked +
+      R"(, {"type": "writers.clashes", "filename": )" + path("c.json") + asked + "]")
+      .run();
+  EXPECT_THAT(contentOf(folder / "c.json"), HasSubstr("\"coordinate_system\": \"UTM 32N\""));
+}
+
 TEST_F(FileFields, TransformsOfScansMayScaleWhereThatIsAllowed)
 {
   const std::string head = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n", end = "5 6 7 1\n1 2 3 0.5\n";

@@ -25,11 +25,8 @@ struct BshFlag : Stage, QuestionStage {
   {
     TrajectoryResult found = ask(inputs[0], *this).answer.collisions;
     if (asksAboutFaces(*inputs[0])) return flaggedFaces(std::move(inputs[0]), std::move(found));
-    auto output = std::make_shared<StageCloud>();
+    auto output = emptyLike(*inputs[0]);
     output->cloud = withResults(inputs[0]->cloud, found);
-    output->viewpoint = inputs[0]->viewpoint;
-    output->las_header = inputs[0]->las_header;
-    output->scanners = inputs[0]->scanners;
     output->triangles = inputs[0]->triangles;
     output->face_properties = inputs[0]->face_properties;
     return output;

@@ -33,11 +33,8 @@ struct BshDistance : SelectingStage, QuestionStage {
   {
     Answer answer = ask(inputs[0], *this).answer;
     if (asksAboutFaces(*inputs[0])) return measuredFaces(std::move(inputs[0]), std::move(answer));
-    auto measured = std::make_shared<StageCloud>();
+    auto measured = emptyLike(*inputs[0]);
     measured->cloud = withDistances(inputs[0]->cloud, answer.distances.a.distance);
-    measured->viewpoint = inputs[0]->viewpoint;
-    measured->las_header = inputs[0]->las_header;
-    measured->scanners = inputs[0]->scanners;
     within_ = std::move(answer.within);
     inputs[0] = std::move(measured);
     return SelectingStage::run(std::move(inputs));

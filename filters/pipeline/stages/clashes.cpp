@@ -2,7 +2,6 @@
 // Writes the collisions, place by place, as a list.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
-#include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
@@ -32,7 +31,7 @@ struct ClashWriter : Stage, QuestionStage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    write(ask(inputs[0], *this), io::coordinateSystemOf(inputs[0]->las_header));
+    write(ask(inputs[0], *this), inputs[0]->coordinate_system);
     return inputs[0];
   }
 

@@ -2,7 +2,6 @@
 // How far two clouds are from each other, in numbers and as a page.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
-#include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/distance_report.h>
@@ -37,7 +36,7 @@ struct DistanceWriter : Stage, QuestionStage {
     const io::DistanceQuestion told = {input_name,     obstacle.name,
                                        unit,           request,
                                        places_beyond,  asked.compared.isSurface() ? &asked.compared : nullptr,
-                                       question.solid, io::coordinateSystemOf(inputs[0]->las_header)};
+                                       question.solid, inputs[0]->coordinate_system};
     const io::DistanceReport report = io::reportOf(told, input, other, asked.answer.distances);
     io::writeDistances(filename.path, report);
     if (also) io::writeDistances(also->path, report);

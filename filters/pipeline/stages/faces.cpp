@@ -12,8 +12,8 @@ StageCloudPtr keptFaces(const StageCloud& mesh, const std::vector<std::uint8_t>&
 {
   auto triangles = std::make_shared<std::vector<Triangle>>(keptValues(*mesh.triangles, kept));
   const pcl::Indices vertices = keepUsedVertices(viewOf(mesh.cloud).count, *triangles);
-  auto output = std::make_shared<StageCloud>(
-      StageCloud{selectedRecords(mesh.cloud, vertices), mesh.viewpoint, mesh.las_header, mesh.scanners});
+  auto output = emptyLike(mesh);
+  output->cloud = selectedRecords(mesh.cloud, vertices);
   output->triangles = std::move(triangles);
   for (const FaceProperty& property : mesh.face_properties) {
     std::visit(

@@ -60,6 +60,7 @@ protected:
     cloud.viewpoint = facts.viewpoint;
     cloud.scanners = facts.scanners;
     cloud.las_header = facts.las;
+    cloud.coordinate_system = facts.coordinate_system;
   }
 };
 

@@ -29,8 +29,9 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
     }
   }
   if (!keep_organized) {
-    return std::make_shared<StageCloud>(
-        StageCloud{selectedRecords(input->cloud, kept), input->viewpoint, input->las_header, input->scanners});
+    auto output = emptyLike(*input);
+    output->cloud = selectedRecords(input->cloud, kept);
+    return output;
   }
   const auto output = ownCloud(std::move(input));
   output->triangles.reset(); // whose corners may go
