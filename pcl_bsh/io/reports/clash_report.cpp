@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/question/options.h>
 
 #include <cmath>
 #include <utility>
