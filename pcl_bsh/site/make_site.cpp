@@ -78,7 +78,9 @@ private:
   std::unique_ptr<io::CloudStream> open(std::size_t cloud) const
   {
     const fs::path& file = clouds_[cloud];
-    const io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale);
+    io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale);
+    if (!options_.unit.empty()) reading.unit = io::lengthUnitOf(options_.unit);
+    if (!options_.to_unit.empty()) reading.to_unit = io::lengthUnitOf(options_.to_unit);
     return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 

@@ -16,6 +16,7 @@
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/pose_fit.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -153,7 +154,7 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, const 
   const std::vector<Eigen::Isometry3d> poses = report.question.poses();
   io::ClashReport list =
       io::clashesOf(question, a, b, poses, report.answer, distance, report.surface ? &*report.surface : nullptr);
-  list.unit = options.unit;
+  list.unit = report.unit;
   list.coordinate_system = report.coordinate_system;
   if (earlier)
     for (std::string& warning : io::compareWithList(list, *options.previous, *earlier, a, b))
@@ -179,10 +180,14 @@ std::optional<io::DistanceReport> reportDistances(const Options& options, const 
   PointDistancesRequest request;
   request.max_distance = options.question.max_distance.value_or(request.max_distance);
   request.accuracy = options.question.accuracy;
-  const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
-                                         options.unit,           request,
-                                         std::nullopt,           found.surface ? &*found.surface : nullptr,
-                                         options.question.solid, found.coordinate_system};
+  const io::DistanceQuestion question = {options.input.string(),
+                                         options.obstacle.string(),
+                                         found.unit,
+                                         request,
+                                         std::nullopt,
+                                         found.surface ? &*found.surface : nullptr,
+                                         options.question.solid,
+                                         found.coordinate_system};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.question.pose}, found.answer.distances);
   if (options.distance_page) io::writeDistances(*options.distance_page, report);
   return report;
@@ -197,6 +202,7 @@ void check(const Options& options, const Question& question)
   if (options.obstacle_out && (question.vertices_only || !io::mayHaveFaces(options.obstacle)))
     io::requireWritableCloud(*options.obstacle_out); // of what may be a surface, once that is known
   if (options.report) files::requireWritable(*options.report);
+  if (!options.poses_out.empty()) files::requireWritable(options.poses_out);
   for (const fs::path& list : options.clashes) {
     try {
       io::requireClashFormat(list);
@@ -224,10 +230,14 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
   const auto built = [&](Shape& shape, const Uncertainty& uncertainty) -> const SphereHierarchy& {
     return cli::build(shape, uncertainty, question.threads, report.seconds.build);
   };
+  scan.ignore(question.ignore_points);
+  other.ignore(question.obstacle_ignore_points);
   const SphereHierarchy& a = built(scan, question.uncertaintyOfInput());
   const SphereHierarchy& b = built(other, question.uncertaintyOfObstacle());
   report.input = {options.input.string(), a.view().count, a.size()};
   report.obstacle = {options.obstacle.string(), b.view().count, b.size()};
+  if (scan.counted()) report.input.ignored = scan.counted()->all;
+  if (other.counted()) report.obstacle.ignored = other.counted()->all;
   report.input_is_surface = scan.isSurface();
   if (obstacle.isSurface()) {
     report.surface = obstacle;
@@ -256,7 +266,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, const io::Obsta
   return 0;
 }
 
-int collide(const Options& options)
+int collide(Options options)
 {
   options.files.requireApart();
   cli::CollisionReport report;
@@ -268,14 +278,29 @@ int collide(const Options& options)
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
+  report.unit = options.reading.unitOfReports(options.unit, input.facts.unit);
   if (question.seen && question.origin.empty()) question.origin = io::originsOf(input.cloud(), input.facts);
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
   io::CloudFacts facts;                                                               // of the obstacle
-  const io::Obstacle obstacle = cli::loadObstacle(options.obstacle, {question.vertices_only}, report.seconds.load,
-                                                  options.reading.of(options.obstacle), &facts, question.threads);
+  const io::Obstacle obstacle = cli::loadObstacle(
+      options.obstacle, {question.vertices_only}, report.seconds.load,
+      options.reading.ofObstacle(options.obstacle, input.facts.unit, question.obstacle_uncertainty.field), &facts,
+      question.threads);
+  if (!options.reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
+    const std::string unit = io::nameOf(*input.facts.unit);
+    report.warnings.push_back(options.obstacle.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
+                              options.input.string() + " in " + unit +
+                              ", by their coordinate systems: give --input-unit " + unit + " to convert it");
+  }
   if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, obstacle);
+  if (!options.pairs.empty()) {
+    const io::PoseFit fit = io::readPoseFit(options.pairs, facts.scale);
+    report.warnings.push_back("--pairs: " + options.pairs.string() + ": " + fit.text());
+    options.question.pose = question.pose = fit.pose;
+  }
+  if (!options.poses_out.empty()) io::writePoses(options.poses_out, question.poses());
   return cli::named([&] { return tell(options, input, scan, obstacle, facts, earlier, report); }, question,
                     options.names_of_poses);
 }

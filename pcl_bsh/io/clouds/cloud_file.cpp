@@ -49,6 +49,7 @@ Contents readAll(LasReader reader)
   Contents contents = {readLas(reader)};
   const auto header = std::make_shared<const LasHeader>(reader.header());
   contents.facts.coordinate_system = coordinateSystemOf(*header);
+  contents.facts.unit = unitOf(*header);
   contents.facts.remarks = reader.remarks();
   contents.facts.las = header;
   return contents;
@@ -178,29 +179,53 @@ bool isLasFile(const std::filesystem::path& path)
   return isLasExtension(extensionOf(path)) && !isPipe(path);
 }
 
+/// Lengths in the unit that is wanted.
+void convert(Contents& contents, const ReadSettings& settings)
+{
+  CloudFacts& facts = contents.facts;
+  const LengthScale scale = scaleOf(settings, facts.unit, &facts.remarks);
+  if (settings.unit) facts.unit = settings.unit;
+  if (scale.isOne()) return;
+  facts.scale = scale;
+  scaleLengths(contents.cloud, scale, settings.length_fields);
+  const auto move = [&](Viewpoint& viewpoint) {
+    for (std::size_t k = 0; k < 3; ++k) viewpoint[k] = scale(viewpoint[k]);
+  };
+  move(facts.viewpoint);
+  for (Viewpoint& scanner : facts.scanners) move(scanner);
+  facts.unit = settings.to_unit;
+  facts.las = nullptr;
+  facts.coordinate_system.clear();
+}
+
 /// The cloud, once it is known to be usable.
-pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
+pcl::PCLPointCloud2 checked(Contents contents, const ReadSettings& settings, CloudFacts* facts)
 {
   makeCoordinatesPlain(contents.cloud);
   requireCoordinates(contents.cloud);
+  convert(contents, settings);
   setDense(contents.cloud);
   if (facts != nullptr) *facts = std::move(contents.facts);
   return std::move(contents.cloud);
 }
 
-pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
+/// @param told unit that the file names
+pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header, const ReadSettings& settings,
+                                  std::optional<LengthUnit> told = {})
 {
   makeCoordinatesPlain(header);
   pcl::PCLPointCloud2 fields = header;
   fields.width = fields.height = fields.row_step = 0; // the records are not there
   requireCoordinates(fields);
+  scaleLengths(header, scaleOf(settings, told), settings.length_fields);
   return header;
 }
 
 pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ReadSettings& settings)
 {
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), settings)); });
+  return naming(path,
+                [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), settings), settings); });
 }
 
 pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
@@ -209,12 +234,13 @@ pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, c
   if (isLasFile(path)) {
     return naming(path, [&] {
       requireColumnText(extensionOf(path), settings.columns);
-      return checked(readAll(LasReader(openBytes(path), threads)), facts);
+      return checked(readAll(LasReader(openBytes(path), threads)), settings, facts);
     });
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view(), settings, threads, faces), facts); });
+  return naming(path,
+                [&] { return checked(parse(extension, file.view(), settings, threads, faces), settings, facts); });
 }
 
 } // namespace
@@ -226,14 +252,14 @@ pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* fac
 }
 
 pcl::PCLPointCloud2 readPtxScan(const std::filesystem::path& path, std::size_t scan, CloudFacts* facts,
-                                bool allow_scale)
+                                const ReadSettings& settings)
 {
   const FileBytes file(path);
   return naming(path, [&] {
     Contents contents;
-    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners, allow_scale,
-                              &contents.facts.remarks);
-    return checked(std::move(contents), facts);
+    contents.cloud = parsePtx(file.view(), contents.facts.viewpoint, scan, &contents.facts.scanners,
+                              settings.allow_scale, &contents.facts.remarks);
+    return checked(std::move(contents), settings, facts);
   });
 }
 
@@ -259,10 +285,10 @@ Mesh readMesh(const std::filesystem::path& path, CloudFacts* facts, const ReadSe
   return mesh;
 }
 
-pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, bool allow_scale)
+pcl::PCLPointCloud2 readPtxScanHeader(const std::filesystem::path& path, std::size_t scan, const ReadSettings& settings)
 {
   const FileBytes file(path);
-  return naming(path, [&] { return parsePtxHeader(file.view(), scan, allow_scale); });
+  return naming(path, [&] { return checkedHeader(parsePtxHeader(file.view(), scan, settings.allow_scale), settings); });
 }
 
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings)
@@ -274,7 +300,8 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
   if (isLasFile(path)) {
     return naming(path, [&] {
       requireColumnText(".las", settings.columns);
-      return checkedHeader(lasHeader(LasReader(openBytes(path))));
+      const LasReader reader(openBytes(path));
+      return checkedHeader(lasHeader(reader), settings, unitOf(reader.header()));
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;

@@ -27,14 +27,20 @@ Example: which points of a hall are within 5 cm of a robot at (1.5, 2, 0), turne
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708
 Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: the same way as a few places and headings, and the poses that these stand for
+  printf 'waypoints 0.05 2\n0 0 0 0\n9 0 0 0\n12 3 0 90 arc\n' > way.txt
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory way.txt --poses-out poses.txt
 Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: where would a robot stand in what no scanner of the hall ever looked into?
   pcl_bsh_collide hall.ptx robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --seen
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
-Example: which points of a hall are within 5 cm of a machine's surface?
-  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05)";
+Example: which points of a hall are within 5 cm of a machine's surface, which CAD has in millimetres?
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --input-unit m --obstacle-unit mm
+Example: the same machine on its place, where the floor does not count
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --input-unit m --obstacle-unit mm
+    --place 412004.5,5653210.25,98.1,30 --ignore-points "classification=2,9")";
 
 /// Checks that involve several options; those of the question are the core's.
 void requireConsistent(const CollideOptions& options)
@@ -66,8 +72,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   CollideOptions options;
   Question& question = options.question;
   question.threads = 0;
-  std::string pose;
   bool in_place = false;
+  PoseOptions pose;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(collide_footer);
@@ -75,12 +81,10 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("")->required();
   addQuestionOptions(app, question, {"clearance"});
-  app.add_option("--pose", pose,
-                 "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
-                 "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
-                 "numbers, the rows of its matrix (default: no motion)")
-      ->type_name("POSE");
+  pose.addTo(app);
   path.addTo(app);
+  app.add_option("--poses-out", options.poses_out, "file for the poses that are asked about, as --trajectory reads it")
+      ->type_name("FILE");
   app.add_option("--keep", options.keep,
                  "flagged: all points, with a field 'collision': 1 collides, 0 is free,\n"
                  "2 and 3 are undecided (default)\n"
@@ -102,6 +106,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("FILE");
   ReadOptions reading;
   reading.addTo(app);
+  reading.addUnitsTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,
@@ -119,17 +124,18 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "are new, persisting, resolved, or not visited by the path or not scanned\n"
                  "any more")
       ->type_name("FILE");
-  app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
+  app.add_option("--unit", options.unit, "name of INPUT's unit, for reports of distances and clashes")
       ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   options.reading = reading.read({options.input, options.obstacle});
-  path.requireConsistent(!pose.empty());
-  if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
+  path.requireConsistent(pose.given() ? pose.option() : "");
+  if (const auto given = pose.read(options.warnings)) question.pose = *given;
+  options.pairs = pose.pairs;
   options.trajectory = path.file;
   if (path.isStraight()) question.path = path.straightRun(options.warnings);
   options.names_of_poses = path.isStraight() ? std::vector<std::string>{"--from", "--to"}
-                                             : std::vector<std::string>{pose.empty() ? "--trajectory" : "--pose"};
+                                             : std::vector<std::string>{pose.given() ? pose.option() : "--trajectory"};
   question.swept = path.swept.value_or(0.0);
   requireConsistent(options);
   question.wanted.flags = question.wanted.closest = true;
@@ -139,7 +145,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.wanted.distances = question.wanted.both_ways = options.distances;
 
   CommandFiles& files = options.files;
-  files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
+  files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose.pose);
+  files.reads("--pairs", pose.pairs).writes("--poses-out", options.poses_out);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));

@@ -15,7 +15,7 @@ namespace {
 
 nlohmann::ordered_json toJson(const CloudReport& cloud)
 {
-  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
+  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}, {"ignored", cloud.ignored}};
 }
 
 nlohmann::ordered_json toJson(const Spacing& spacing)
@@ -60,6 +60,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["input_surface"] =
       report.input_is_surface ? nlohmann::ordered_json{{"triangles", report.input.points}} : nullptr;
   json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, question.solid);
+  json["unit"] = report.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.unit);
   json["clearance"] = clearance;
   json["colliding"] = colliding;
   json["undecided"] = undecided;

@@ -19,6 +19,7 @@ struct CloudReport {
   std::string file;
   std::size_t points = 0;
   std::size_t finite = 0;
+  std::size_t ignored = 0;
 };
 
 struct Seconds {
@@ -35,6 +36,7 @@ struct CollisionReport {
   CloudReport obstacle;                ///< of a surface, its vertices
   std::optional<io::Obstacle> surface; ///< the obstacle, where it is one
   bool input_is_surface = false;       ///< its numbers are those of triangles
+  std::string unit;                    ///< of all lengths, where it is known; else empty
   std::string coordinate_system;       ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;
