@@ -239,6 +239,11 @@ public:
   /// The angle for which a beam speaks, in radians, in [1e-4, 0.25]; 0 (default): measured of each scan.
   void setSeenAngle(double angle) { question_.seen_angle = angle == 0.0 ? std::nullopt : std::optional(angle); }
 
+  /// Which points of the input, and of the obstacle, do not count; their beams and their density do. A field's name is
+  /// one of the cloud's. Default: all count.
+  void setIgnoredPoints(const IgnoredPoints& ignored) { question_.ignore_points = ignored; }
+  void setIgnoredObstaclePoints(const IgnoredPoints& ignored) { question_.obstacle_ignore_points = ignored; }
+
   /// How far the obstacle's pose, or each of its trajectory, may truly be from what is given. Default: not at all.
   void setPoseUncertainty(const PoseUncertainty& uncertainty) { question_.pose_uncertainty = uncertainty; }
 

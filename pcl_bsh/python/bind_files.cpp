@@ -8,8 +8,10 @@
 #include <pybind11/stl.h>
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace pcl_bsh::python {
 namespace {
@@ -27,6 +29,12 @@ threads : int, default 0
     That unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False
     Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
+unit : str, optional
+    Of the file's lengths: mm, cm, m, ft or us-ft. Else that of a LAS file's coordinate system.
+to_unit : str, optional
+    That lengths are read in, as float64; else they stay as they are.
+length_fields : sequence of str, optional
+    With `to_unit`: more fields that are lengths, such as sigmas.
 
 Returns
 -------
@@ -97,6 +105,12 @@ threads : int, default 0
     That unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False
     Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
+unit : str, optional
+    Of the file's lengths: mm, cm, m, ft or us-ft. Else that of a LAS file's coordinate system.
+to_unit : str, optional
+    That lengths are read in, as float64; else they stay as they are.
+length_fields : sequence of str, optional
+    With `to_unit`: more fields that are lengths, such as sigmas.
 
 Returns
 -------
@@ -112,12 +126,35 @@ std::string pathOf(const PathLike& path)
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
 }
 
+/// How a file is read, by the arguments that readers share.
+io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, bool allow_scale,
+                              const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
+                              const std::optional<std::vector<std::string>>& length_fields)
+{
+  io::ReadSettings settings(columns.value_or(io::ColumnNames()), allow_scale);
+  const auto unitOf = [](const char* argument, const std::optional<std::string>& name) {
+    try {
+      return name ? std::optional(io::lengthUnitOf(*name)) : std::nullopt;
+    }
+    catch (const std::runtime_error& error) {
+      throw py::value_error(std::string(argument) + ": " + error.what() + ": give " + io::length_units);
+    }
+  };
+  settings.unit = unitOf("unit", unit);
+  settings.to_unit = unitOf("to_unit", to_unit);
+  settings.length_fields = length_fields.value_or(std::vector<std::string>());
+  return settings;
+}
+
 std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns,
-                                              unsigned threads, bool allow_scale)
+                                              unsigned threads, bool allow_scale,
+                                              const std::optional<std::string>& unit,
+                                              const std::optional<std::string>& to_unit,
+                                              const std::optional<std::vector<std::string>>& length_fields)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  const io::ReadSettings settings(columns.value_or(io::ColumnNames()), allow_scale);
+  const io::ReadSettings settings = readSettings(columns, allow_scale, unit, to_unit, length_fields);
   pcl::PCLPointCloud2 cloud = unlocked([&] { return io::readCloud(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   return {recordsFrom(std::move(cloud)), std::move(header)};
@@ -132,11 +169,14 @@ void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, c
   unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
 }
 
-std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale)
+std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale,
+                                                          const std::optional<std::string>& unit,
+                                                          const std::optional<std::string>& to_unit,
+                                                          const std::optional<std::vector<std::string>>& length_fields)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  const io::ReadSettings settings({}, allow_scale);
+  const io::ReadSettings settings = readSettings({}, allow_scale, unit, to_unit, length_fields);
   io::Mesh mesh = unlocked([&] { return io::readMesh(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
@@ -160,17 +200,28 @@ void bindFiles(py::module_& module)
       .def_property_readonly(
           "coordinate_system", [](const FileHeader& header) { return header.coordinate_system; },
           "As a LAS file names it; empty where it does not.")
+      .def_property_readonly(
+          "unit",
+          [](const FileHeader& header) -> std::optional<std::string> {
+            return header.unit ? std::optional<std::string>(io::nameOf(*header.unit)) : std::nullopt;
+          },
+          "The unit of lengths, as was given or by the coordinate system; None where nobody tells.")
       .def_property_readonly("is_las", [](const FileHeader& header) { return header.las != nullptr; })
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
   module.def(
       "read",
-      [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale) {
-        return readWithHeader(path, columns, threads, allow_scale).first;
+      [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale,
+         const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
+         const std::optional<std::vector<std::string>>& length_fields) {
+        return readWithHeader(path, columns, threads, allow_scale, unit, to_unit, length_fields).first;
       },
-      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0, "allow_scale"_a = false);
+      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
+      "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none());
   module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(),
-             "threads"_a = 0, "allow_scale"_a = false);
-  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false);
+             "threads"_a = 0, "allow_scale"_a = false, "unit"_a = py::none(), "to_unit"_a = py::none(),
+             "length_fields"_a = py::none());
+  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
+             "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none());
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }
 

@@ -25,7 +25,8 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind)
   const auto is = [&](auto member) { return option.member == OptionMember(member); };
   return isOf(option.kind, kind) && !is(&Question::vertices_only) && !is(&Question::uncertainty) &&
          !is(&Question::obstacle_uncertainty) && !is(&Question::pose_uncertainty) &&
-         !is(&Question::input_pose_uncertainty) && !is(&Question::sigmas);
+         !is(&Question::input_pose_uncertainty) && !is(&Question::sigmas) && !is(&Question::ignore_points) &&
+         !is(&Question::obstacle_ignore_points);
 }
 
 void PythonQuestion::set(const py::kwargs& options, QuestionKind kind)

@@ -337,6 +337,9 @@ private:
   {
     const NamedCloud input = input_.facts(wanted_.spacings), obstacle = obstacle_.facts(wanted_.spacings);
     answer_.density = {input.spacing, obstacle.spacing};
+    for (const Shape* const shape : {&input_, &obstacle_})
+      if (shape->counted())
+        answer_.warnings.push_back(warningOfIgnored(shape->name(), shape->ignored(), *shape->counted()));
     for (Warning& warning : warningsOf(question_, input, obstacle)) answer_.warnings.push_back(std::move(warning));
     for (Warning& hollow : warningsOfHollow(question_, nearestOf(question_, answer_), input_, obstacle_))
       answer_.warnings.push_back(std::move(hollow));
@@ -370,6 +373,8 @@ Answer ask(const Question& question, Shape& input, Shape& obstacle)
 {
   checkOptions(question);
   requireAnswerable(question, input);
+  input.ignore(question.ignore_points);
+  obstacle.ignore(question.obstacle_ignore_points);
   return Asking(question, input, obstacle).answer();
 }
 
@@ -379,6 +384,7 @@ void check(const Question& question)
   of_nothing.uncertainty.field.clear();
   of_nothing.obstacle_uncertainty.field.clear();
   of_nothing.sigmas = 1.0;
+  of_nothing.ignore_points = of_nothing.obstacle_ignore_points = {};
   of_nothing.seen = of_nothing.solid = of_nothing.input_solid = false;
   leaveOutWaiting(of_nothing);
   of_nothing.progress = nullptr;

@@ -84,6 +84,13 @@ std::vector<QuestionOption> table()
        "the same of an input with faces: what of the obstacle is inside collides, and so do the triangles of each body "
        "that holds it",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
+      {"ignore_points", &Q::ignore_points, Kind::any, "WHICH", "", std::nullopt,
+       "points of the input that do not count: FIELD=N,N by values, box=X,Y,Z,X,Y,Z from least to greatest, "
+       "plane=NX,NY,NZ,D,TOL up to TOL from n p = D, joined by ;, while their beams still do",
+       Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
+      {"obstacle_ignore_points", &Q::obstacle_ignore_points, Kind::any, "WHICH", "", std::nullopt,
+       "the same of the obstacle's points", Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes,
+       OfSites::none},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
        "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
        "input "

@@ -28,13 +28,13 @@ constexpr bool isOf(QuestionKind option, QuestionKind question) noexcept
 
 /// Of a type that is written as text: has parse() and text(). Empty text is its default, but of an accuracy.
 template <typename T>
-inline constexpr bool is_text_option =
-    std::is_same_v<T, Accuracy> || std::is_same_v<T, PoseUncertainty> || std::is_same_v<T, ScanOrigins>;
+inline constexpr bool is_text_option = std::is_same_v<T, Accuracy> || std::is_same_v<T, PoseUncertainty> ||
+                                       std::is_same_v<T, ScanOrigins> || std::is_same_v<T, IgnoredPoints>;
 
 /// The member that an option sets; its value in a new Question is the default.
-using OptionMember =
-    std::variant<double Question::*, std::optional<double> Question::*, bool Question::*, unsigned Question::*,
-                 Accuracy Question::*, Uncertainty Question::*, PoseUncertainty Question::*, ScanOrigins Question::*>;
+using OptionMember = std::variant<double Question::*, std::optional<double> Question::*, bool Question::*,
+                                  unsigned Question::*, Accuracy Question::*, Uncertainty Question::*,
+                                  PoseUncertainty Question::*, ScanOrigins Question::*, IgnoredPoints Question::*>;
 
 /// Which numbers an option accepts; counts go up to 1024.
 enum class OptionRange : std::uint8_t { from_zero, above_zero, from_zero_to_infinity };

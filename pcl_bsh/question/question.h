@@ -11,6 +11,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/query/effort.h>
+#include <pcl_bsh/question/ignored_points.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
 
@@ -79,8 +80,9 @@ struct Question : Effort {
   std::optional<double> seen_angle = {};   ///< SeenOptions::angle
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
-  bool solid = false;         ///< the obstacle counts with what its faces enclose: they must close
-  bool input_solid = false;   ///< the same of the input
+  bool solid = false;       ///< the obstacle counts with what its faces enclose: they must close
+  bool input_solid = false; ///< the same of the input
+  IgnoredPoints ignore_points = {}, obstacle_ignore_points = {}; ///< what of both does not count
   bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
   Wanted wanted = {};
 

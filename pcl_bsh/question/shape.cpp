@@ -31,6 +31,12 @@ struct Shape::Built {
 
 namespace {
 
+/// Points that count, and what keeps the others alive.
+struct Counted {
+  std::shared_ptr<const CountedPoints> points;
+  std::shared_ptr<const void> cloud;
+};
+
 /// What make() gives, or what another copy of a shape has made.
 template <class T, class Make>
 const T& madeOnce(MadeOnce<const T>& made, const Make& make)
@@ -83,16 +89,23 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
                        "give a length, or `vertices_only`");
   }
   const bool same = hierarchy_ && uncertainty == uncertainty_;
-  const PointsView view = view_();
-  const std::vector<RecordField> fields =
-      uncertainty.field.empty() || !fields_ ? std::vector<RecordField>() : fields_();
+  PointsView view = view_();
+  const bool reads_fields = !uncertainty.field.empty() || !ignored_.empty();
+  const std::vector<RecordField> fields = reads_fields && fields_ ? fields_() : std::vector<RecordField>();
   // The hierarchy points into the points' memory, its spheres hold them as they were, and so do the patches, which
   // outlive it.
   const Seen seen{view.data, view.count, watched_ ? checksumOf(view) : 0};
   const std::uint64_t uncertainties = watched_ ? checksumOf(view, fields, uncertainty.field) : 0;
   if ((first_seen_ && *first_seen_ != seen) || (same && uncertainties != uncertainties_))
     throw InvalidInput(Input::points, name_, "has changed since it was set", "set it again");
-  if (same) return *hierarchy_;
+  if (same && (ignored_.empty() || !watched_)) return *hierarchy_;
+  if (!ignored_.empty()) {
+    const auto counted = std::make_shared<const CountedPoints>(countedPoints(view, fields, name_, ignored_));
+    if (same && counted->records == counted_->records) return *hierarchy_;
+    counted_ = counted;
+    view.restrictTo(counted->records.data(), counted->records.size());
+    view.owner = std::make_shared<const Counted>(Counted{counted, view.owner});
+  }
   HierarchyOptions options;
   options.threads = threads;
   Uncertainty built_with = uncertainty;
@@ -104,11 +117,33 @@ const SphereHierarchy& Shape::hierarchy(const Uncertainty& uncertainty, unsigned
   return *hierarchy_;
 }
 
+void Shape::ignore(const IgnoredPoints& ignored)
+{
+  if (ignored == ignored_) return;
+  if (!view_)
+    throw InvalidInput(Input::points, name_, "is built already, of all its points", "build it of those that count");
+  if (is_surface_)
+    throw InvalidInput(Input::points, name_, "is a surface, which has no points to ignore", "give `vertices_only`");
+  ignored_ = ignored;
+  hierarchy_.reset();
+  counted_.reset();
+  patches_.reset();
+  looked_.reset();
+}
+
+PointsView Shape::wholeView(const Uncertainty& uncertainty) const
+{
+  return withUncertainty(view_(), fields_ ? fields_() : std::vector<RecordField>(), name_, uncertainty);
+}
+
 const Shape::Patches& Shape::patches(const std::optional<double>& gap, const Effort& effort)
 {
   if (patches_ && patches_->asked == gap) return *patches_;
-  Patches measured{gap, gap ? *gap : usualGap(*hierarchy_), {}};
-  if (measured.gap > 0.0) measured.spacings = patchSpacings(*hierarchy_, measured.gap, effort);
+  std::optional<SphereHierarchy> whole; // points that do not count are neighbours of those that do
+  if (counted_) whole.emplace(wholeView({}));
+  const SphereHierarchy& points = whole ? *whole : *hierarchy_;
+  Patches measured{gap, gap ? *gap : usualGap(points), {}};
+  if (measured.gap > 0.0) measured.spacings = patchSpacings(points, measured.gap, effort);
   patches_ = std::make_shared<const Patches>(std::move(measured));
   return *patches_;
 }
@@ -122,10 +157,10 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
   options.threads = threads;
   const std::vector<RecordField> fields = fields_ ? fields_() : std::vector<RecordField>();
   PointsView view = hierarchy_->view();
-  if (!uncertainty_.pose.isZero()) { // beams and their scanner move together: it makes none of them shorter
+  if (counted_ || !uncertainty_.pose.isZero()) {
     Uncertainty of_ends = uncertainty_;
-    of_ends.pose = {};
-    view = withUncertainty(view_(), fields, name_, of_ends);
+    of_ends.pose = {}; // beams and their scanner move together: it makes none of them shorter
+    view = wholeView(of_ends);
   }
   looked_ = std::make_shared<const Looked>(
       Looked{origins, angle, uncertainty_, SeenSpace(scansOf(view, fields, name_, origins), options)});

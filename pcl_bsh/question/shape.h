@@ -6,6 +6,7 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/query/effort.h>
+#include <pcl_bsh/question/ignored_points.h>
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/scan_origins.h>
 #include <pcl_bsh/question/uncertainty.h>
@@ -52,9 +53,17 @@ public:
   /// The same by another name.
   Shape named(std::string name) const;
 
+  /// Which of its points do not count from now on. Another choice than before builds all anew.
+  void ignore(const IgnoredPoints& ignored);
+
+  const IgnoredPoints& ignored() const noexcept { return ignored_; } ///< which do not
+
+  /// Which do, once hierarchy() was called.
+  const CountedPoints* counted() const noexcept { return counted_.get(); } ///< null where all count
+
   /// Built on the first use, and anew for another uncertainty. @param threads that build it
-  /// @throws InvalidInput when it is nothing, its points have changed, or its uncertainties are not what
-  ///   withUncertainty() asks for
+  /// @throws InvalidInput when it is nothing, its points have changed, its uncertainties are not what
+  ///   withUncertainty() asks for, or countedPoints() refuses what is to be ignored
   const SphereHierarchy& hierarchy(const Uncertainty& uncertainty, unsigned threads);
 
   /// That was built last. @pre there is one
@@ -113,10 +122,15 @@ private:
   bool watched_ = false;
   bool is_surface_ = false;
   std::shared_ptr<const SphereHierarchy> hierarchy_;
-  Uncertainty uncertainty_;                ///< that the hierarchy was built with
-  std::uint64_t uncertainties_ = 0;        ///< checksum of its field
-  std::optional<Seen> first_seen_;         ///< what was there at the first use
-  std::shared_ptr<const Patches> patches_; ///< once they are asked for
+  Uncertainty uncertainty_;         ///< that the hierarchy was built with
+  std::uint64_t uncertainties_ = 0; ///< checksum of its field
+  IgnoredPoints ignored_;
+  std::shared_ptr<const CountedPoints> counted_; ///< null where none are ignored
+  std::optional<Seen> first_seen_;               ///< what was there at the first use
+  std::shared_ptr<const Patches> patches_;       ///< once they are asked for
+  /// All of its points, also those that do not count. @param uncertainty of these
+  PointsView wholeView(const Uncertainty& uncertainty) const;
+
   struct Measured {
     std::mutex one_at_a_time;
     std::optional<Spacing> spacing;

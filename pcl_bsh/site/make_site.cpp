@@ -80,8 +80,10 @@ private:
   {
     const fs::path& file = clouds_[cloud];
     const bool may_have_scans = io::mayHaveScans(io::extensionOf(file));
-    const io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale,
-                                   may_have_scans ? options_.scan : std::nullopt);
+    io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale,
+                             may_have_scans ? options_.scan : std::nullopt);
+    if (!options_.unit.empty()) reading.unit = io::lengthUnitOf(options_.unit);
+    if (!options_.to_unit.empty()) reading.to_unit = io::lengthUnitOf(options_.to_unit);
     return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 

@@ -38,6 +38,10 @@ struct MakeOptions {
   std::optional<std::size_t> scan = {}; ///< of .ptx and .e57 files only that one, from 0
   /// Names of a cloud's columns, as readCloud() takes them; null: as the files say. A run that goes on needs the same.
   std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
+
+  /// The clouds' lengths, and then the site's, are in these: mm, cm, m, ft or us-ft. Empty: as files say, and as they
+  /// are.
+  std::string unit, to_unit;
   /// Called with a cloud and what users should know of how it is read; null: not told.
   std::function<void(const std::filesystem::path&, const std::vector<std::string>& remarks)> remark;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.

@@ -16,6 +16,7 @@
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
+#include <pcl_bsh/io/poses/pose_fit.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
@@ -179,7 +180,7 @@ std::string listClashes(const Options& options, const SphereHierarchy& a, std::v
     const Answer& answer = one.name.empty() ? report.answer : one.answer;
     io::ClashReport list = io::clashesOf(clashQuestion(options, one.question, one.file), a, *hierarchies[i], one.poses,
                                          answer, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
-    list.unit = options.unit;
+    list.unit = report.unit;
     list.coordinate_system = report.coordinate_system;
     list.name = one.name;
     if (!one.name.empty()) list.answer = &report.obstacles[i].found;
@@ -228,10 +229,14 @@ std::optional<io::DistanceReport> reportDistances(const Options& options, const 
   PointDistancesRequest request;
   request.max_distance = options.question.max_distance.value_or(request.max_distance);
   request.accuracy = options.question.accuracy;
-  const io::DistanceQuestion question = {options.input.string(), options.obstacle.string(),
-                                         options.unit,           request,
-                                         std::nullopt,           found.surface ? &*found.surface : nullptr,
-                                         options.question.solid, found.coordinate_system};
+  const io::DistanceQuestion question = {options.input.string(),
+                                         options.obstacle.string(),
+                                         found.unit,
+                                         request,
+                                         std::nullopt,
+                                         found.surface ? &*found.surface : nullptr,
+                                         options.question.solid,
+                                         found.coordinate_system};
   io::DistanceReport report = io::reportOf(question, {a}, {b, options.question.pose}, found.answer.distances);
   if (options.distance_page) io::writeDistances(*options.distance_page, report);
   return report;
@@ -246,6 +251,7 @@ void check(const Options& options, const Question& question)
   if (options.obstacle_out && (question.vertices_only || !io::mayHaveFaces(options.obstacle)))
     io::requireWritableCloud(*options.obstacle_out); // of what may be a surface, once that is known
   if (options.report) files::requireWritable(*options.report);
+  if (!options.poses_out.empty()) files::requireWritable(options.poses_out);
   for (const fs::path& list : options.clashes) {
     try {
       io::requireClashFormat(list);
@@ -305,10 +311,12 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
 {
   const Question& question = report.question;
   const bool several = !options.obstacles.empty();
+  scan.ignore(question.ignore_points);
   const SphereHierarchy& a = cli::build(scan, question.uncertaintyOfInput(), question.threads, report.seconds.build);
   std::vector<PlacedShape> shapes;
   std::vector<const SphereHierarchy*> hierarchies;
   report.input = {options.input.string(), a.view().count, a.size()};
+  if (scan.counted()) report.input.ignored = scan.counted()->all;
   report.input_is_surface = scan.isSurface();
   const cli::IgnoredPairs ignored = options.ignoredPairs();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -319,10 +327,12 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
     }
     shapes.back().ignores_input = several && ignored.holds("input", all[i].name);
     all[i].question = pcl_bsh::questionOf(question, shapes.back());
+    shapes.back().shape.ignore(question.obstacle_ignore_points);
     const SphereHierarchy& b = cli::build(shapes.back().shape, all[i].question.uncertaintyOfObstacle(),
                                           question.threads, report.seconds.build);
     hierarchies.push_back(&b);
     report.obstacle = {all[i].file.string(), b.view().count, b.size()};
+    if (const auto& counted = shapes.back().shape.counted()) report.obstacle.ignored = counted->all;
     if (b.size() == 0 && several)
       report.warnings.push_back(all[i].name + ": has nothing that is finite: it collides with nothing");
   }
@@ -359,7 +369,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
   return 0;
 }
 
-int collide(const Options& options)
+int collide(Options options)
 {
   options.files.requireApart();
   cli::CollisionReport report;
@@ -371,20 +381,38 @@ int collide(const Options& options)
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
+  report.unit = options.reading.unitOfReports(options.unit, input.facts.unit);
   if (question.seen && question.origin.empty()) question.origin = io::originsOf(input.cloud(), input.facts);
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
   std::vector<Compared> all;
-  const auto load = [&](const std::string& name, const fs::path& file) {
+  const auto load = [&](const std::string& name, const fs::path& file, const cli::ReadChoice& reading) {
     io::CloudFacts facts;
-    io::Obstacle loaded = cli::loadObstacle(file, {question.vertices_only}, report.seconds.load,
-                                            options.reading.of(file), &facts, question.threads);
+    io::Obstacle loaded = cli::loadObstacle(
+        file, {question.vertices_only}, report.seconds.load,
+        reading.ofObstacle(file, input.facts.unit, question.obstacle_uncertainty.field), &facts, question.threads);
+    if (!reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
+      const std::string unit = io::nameOf(*input.facts.unit);
+      report.warnings.push_back(file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
+                                options.input.string() + " in " + unit +
+                                ", by their coordinate systems: give --input-unit " + unit + " to convert it");
+    }
     all.push_back({name, file, std::move(loaded), std::move(facts)});
   };
-  if (options.obstacles.empty()) load("", options.obstacle);
-  for (const cli::ObstacleChoice& one : options.obstacles) load(one.name, one.file);
+  if (options.obstacles.empty()) load("", options.obstacle, options.reading);
+  for (const cli::ObstacleChoice& one : options.obstacles) {
+    cli::ReadChoice reading = options.reading;
+    if (one.unit) reading.obstacle_unit = one.unit;
+    load(one.name, one.file, reading);
+  }
   if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, all[0].loaded);
+  if (!options.pairs.empty()) {
+    const io::PoseFit fit = io::readPoseFit(options.pairs, all[0].facts.scale);
+    report.warnings.push_back("--pairs: " + options.pairs.string() + ": " + fit.text());
+    options.question.pose = question.pose = fit.pose;
+  }
+  if (!options.poses_out.empty()) io::writePoses(options.poses_out, question.poses());
   return cli::named([&] { return tell(options, input, scan, all, earlier, report); }, question, options.names_of_poses);
 }
 

@@ -121,6 +121,21 @@ def test_transforms_of_scans(tmp_path):
             read(scan("0.8 0.60002 0 0\n-0.6 0.8 0 0\n0 0 1 0"))
 
 
+def test_units(tmp_path):
+    (tmp_path / "a.pcd").write_text(
+        "VERSION 0.7\nFIELDS x y z sigma\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n"
+        "DATA ascii\n1500 1 -2 4\n")
+    with pytest.warns(UserWarning, match="a.pcd: its lengths are converted from mm to m"):
+        read, header = pcl_bsh.read_with_header(tmp_path / "a.pcd", unit="mm", to_unit="m", length_fields=["sigma"])
+    assert header.unit == "m"
+    assert read.dtype["x"] == np.float64 and read[0].tolist() == (1.5, 0.001, -0.002, 0.004)
+    assert pcl_bsh.read(tmp_path / "a.pcd", unit="mm")["x"] == [1500]
+    with pytest.raises(ValueError, match="to_unit: 'inch' is no unit: give mm, cm, m, ft or us-ft"):
+        pcl_bsh.read(tmp_path / "a.pcd", to_unit="inch")
+    with pytest.raises(pcl_bsh.FileError, match="a.pcd: does not say its unit, and is wanted in m"):
+        pcl_bsh.read_mesh(tmp_path / "a.pcd", to_unit="m")
+
+
 def test_meshes(tmp_path):
     (tmp_path / "square.off").write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
     vertices, triangles = pcl_bsh.read_mesh(tmp_path / "square.off")

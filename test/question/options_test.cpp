@@ -68,6 +68,7 @@ std::string exampleOf(const QuestionOption& row)
   if (std::holds_alternative<bool Question::*>(row.member)) return "true";
   if (std::holds_alternative<Accuracy Question::*>(row.member)) return "level=2";
   if (std::holds_alternative<ScanOrigins Question::*>(row.member)) return "1,2,3";
+  if (std::holds_alternative<IgnoredPoints Question::*>(row.member)) return "class=2,9;box=0,0,0,1,1,1";
   if (std::holds_alternative<PoseUncertainty Question::*>(row.member)) return "0.05,0.1,1.5,0,0";
   return "7";
 }

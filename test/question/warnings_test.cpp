@@ -207,9 +207,10 @@ TEST(Warnings, FramesThatNeverMeet)
   };
   EXPECT_THAT(
       told({at(5e6), at(5e6 + 10)}),
-      ElementsAre("the boxes of tunnel and of wagon, with all of its motion, are 4.99997e+06 apart, and neither "
-                  "is larger than 42.4264: check that both have one coordinate system and one unit, and that "
-                  "poses lead from the frame of wagon to that of tunnel"));
+      ElementsAre(
+          "the boxes of tunnel and of wagon, with all of its motion, are 4.99997e+06 apart, and neither "
+          "is larger than 42.4264: check that both have one coordinate system and one unit (--obstacle-unit converts), "
+          "and that poses lead from the frame of wagon to that of tunnel"));
   EXPECT_THAT(told({at(5e6), at(10)}), IsEmpty()) << "it comes from afar";
   EXPECT_THAT(told({at(-300), at(-400)}), IsEmpty()) << "within ten diagonals";
   EXPECT_THAT(told({at(-1000)}), testing::SizeIs(1));
@@ -281,7 +282,8 @@ TEST(Warnings, OfUnitsThatDiffer)
   EXPECT_THAT(told(scan, machine),
               ElementsAre("machine.off is 182 times as large as scan.pcd: their boxes have diagonals "
                           "of 2828.43 and 15.5564: if one is in millimetres "
-                          "and the other in metres, say, convert one of both"));
+                          "and the other in metres, say, name both units: --input-unit and --obstacle-unit, or `unit` "
+                          "and `to_unit` where a file is read"));
   EXPECT_THAT(told(machine, scan), ElementsAre(HasSubstr("scan.pcd is 182 times as large as machine.off: ")));
   EXPECT_THAT(told(scan, machine, std::nullopt), testing::SizeIs(1)) << "of distances, too";
   EXPECT_THAT(told(scan, small), ElementsAre(HasSubstr("scan.pcd is 110 times as large as machine.off: ")));

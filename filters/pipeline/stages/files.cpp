@@ -28,6 +28,7 @@ void requireExtension(const std::string& file, const std::vector<std::string>& e
 
 struct FileReader : Stage {
   InputFile filename;
+  std::string unit, to_unit, length_fields;
   std::vector<std::string> extensions;
 
   CloudHeader plan(const std::vector<CloudHeader>&) override
@@ -52,7 +53,20 @@ struct FileReader : Stage {
   }
 
 protected:
-  virtual io::ReadSettings settings() const { return {}; }
+  io::ReadSettings settings() const
+  {
+    io::ReadSettings settings = settingsOfFormat();
+    settings.unit = unitOf("unit", unit);
+    settings.to_unit = unitOf("to_unit", to_unit);
+    for (std::size_t at = 0; at < length_fields.size();) {
+      const std::size_t comma = std::min(length_fields.find(',', at), length_fields.size());
+      settings.length_fields.push_back(length_fields.substr(at, comma - at));
+      at = comma + 1;
+    }
+    return settings;
+  }
+
+  virtual io::ReadSettings settingsOfFormat() const { return {}; }
 
   void take(const io::CloudFacts& facts, StageCloud& cloud)
   {
@@ -62,6 +76,17 @@ protected:
     cloud.las_header = facts.las;
     cloud.coordinate_system = facts.coordinate_system;
   }
+
+private:
+  static std::optional<io::LengthUnit> unitOf(const char* option, const std::string& name)
+  {
+    try {
+      return name.empty() ? std::nullopt : std::optional(io::lengthUnitOf(name));
+    }
+    catch (const io::FormatError& error) {
+      throw OptionError(option, std::string(error.what()) + ": " + error.remedy());
+    }
+  }
 };
 
 /// Columns may have other names than the file says.
@@ -69,7 +94,7 @@ struct TextReader : FileReader {
   std::string columns;
 
 protected:
-  io::ReadSettings settings() const override
+  io::ReadSettings settingsOfFormat() const override
   {
     try {
       return columns.empty() ? io::ColumnNames() : io::columnNamesOf(columns);
@@ -85,7 +110,7 @@ struct ScanReader : FileReader {
   std::optional<int> scan;
 
 protected:
-  io::ReadSettings settings() const override { return {io::ColumnNames(), false, number()}; }
+  io::ReadSettings settingsOfFormat() const override { return {io::ColumnNames(), false, number()}; }
   std::optional<std::size_t> number() const
   {
     return scan ? std::optional<std::size_t>(static_cast<std::size_t>(*scan)) : std::nullopt;
@@ -96,7 +121,7 @@ struct PtxReader : ScanReader {
   bool allow_scale = false;
 
 protected:
-  io::ReadSettings settings() const override { return {io::ColumnNames(), allow_scale, number()}; }
+  io::ReadSettings settingsOfFormat() const override { return {io::ColumnNames(), allow_scale, number()}; }
 };
 
 struct FileWriter : Stage {
@@ -194,6 +219,16 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
               std::is_base_of_v<FileWriter, S> ? "the file to write; it appears complete or not at all"
                                                : "the file to read")
       .required();
+  if constexpr (std::is_base_of_v<FileReader, S>) {
+    const std::string units = io::length_units;
+    description
+        .option(&S::unit, "unit",
+                "the unit of the file's lengths: " + units + "; without it, that of a .las file's coordinate system")
+        .option(&S::to_unit, "to_unit",
+                "the unit that lengths are read in, as float64; without it, they stay as they are")
+        .option(&S::length_fields, "length_fields",
+                "with `to_unit`: more fields that are lengths, as \"sigma,radius\"");
+  }
   if constexpr (std::is_base_of_v<ScanReader, S>) {
     constexpr bool is_ptx = std::is_same_v<S, PtxReader>;
     description

@@ -74,8 +74,8 @@ StageDescription<S>& withQuestionOptions(StageDescription<S>& description, Quest
   if (isOf(QuestionKind::collisions, kind)) {
     description.option(
         &S::trajectory, "trajectory",
-        "instead of `pose`, a file of poses, one a line: a point collides if it does at any; 12 or 16 numbers of "
-        "a matrix, row by row, or time tx ty tz qx qy qz qw");
+        "instead of `pose`, a file of poses (12 or 16 numbers of a matrix a line, or time tx ty tz qx qy qz qw) or "
+        "of waypoints: colliding at any counts");
   }
   for (const QuestionOption& row : questionOptions()) {
     if (isOf(row.kind, kind))

@@ -45,6 +45,7 @@ Contents readAll(LasReader reader)
   Contents contents = {readLas(reader)};
   const auto header = std::make_shared<const LasHeader>(reader.header());
   contents.facts.coordinate_system = coordinateSystemOf(*header);
+  contents.facts.unit = unitOf(*header);
   contents.facts.remarks = reader.remarks();
   contents.facts.las = header;
   return contents;
@@ -189,29 +190,53 @@ bool isFileReadByPlace(const std::filesystem::path& path)
   return isReadByPlace(extensionOf(path)) && !isPipe(path);
 }
 
+/// Lengths in the unit that is wanted.
+void convert(Contents& contents, const ReadSettings& settings)
+{
+  CloudFacts& facts = contents.facts;
+  const LengthScale scale = scaleOf(settings, facts.unit, &facts.remarks);
+  if (settings.unit) facts.unit = settings.unit;
+  if (scale.isOne()) return;
+  facts.scale = scale;
+  scaleLengths(contents.cloud, scale, settings.length_fields);
+  const auto move = [&](Viewpoint& viewpoint) {
+    for (std::size_t k = 0; k < 3; ++k) viewpoint[k] = scale(viewpoint[k]);
+  };
+  move(facts.viewpoint);
+  for (Viewpoint& scanner : facts.scanners) move(scanner);
+  facts.unit = settings.to_unit;
+  facts.las = nullptr;
+  facts.coordinate_system.clear();
+}
+
 /// The cloud, once it is known to be usable.
-pcl::PCLPointCloud2 checked(Contents contents, CloudFacts* facts)
+pcl::PCLPointCloud2 checked(Contents contents, const ReadSettings& settings, CloudFacts* facts)
 {
   makeCoordinatesPlain(contents.cloud);
   requireCoordinates(contents.cloud);
+  convert(contents, settings);
   setDense(contents.cloud);
   if (facts != nullptr) *facts = std::move(contents.facts);
   return std::move(contents.cloud);
 }
 
-pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header)
+/// @param told unit that the file names
+pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header, const ReadSettings& settings,
+                                  std::optional<LengthUnit> told = {})
 {
   makeCoordinatesPlain(header);
   pcl::PCLPointCloud2 fields = header;
   fields.width = fields.height = fields.row_step = 0; // the records are not there
   requireCoordinates(fields);
+  scaleLengths(header, scaleOf(settings, told), settings.length_fields);
   return header;
 }
 
 pcl::PCLPointCloud2 headerOf(const std::filesystem::path& path, const FileBytes& file, const ReadSettings& settings)
 {
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), settings)); });
+  return naming(path,
+                [&] { return checkedHeader(parseHeader(extension, file.view(), file.isWhole(), settings), settings); });
 }
 
 pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, const ReadSettings& settings,
@@ -221,12 +246,13 @@ pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, c
     return naming(path, [&] {
       const std::string extension = extensionOf(path);
       requireSettings(extension, settings);
-      return checked(readByPlace(extension, openBytes(path), settings, threads), facts);
+      return checked(readByPlace(extension, openBytes(path), settings, threads), settings, facts);
     });
   }
   const FileBytes file(path);
   const std::string extension = readableExtension(path, file.view());
-  return naming(path, [&] { return checked(parse(extension, file.view(), settings, threads, faces), facts); });
+  return naming(path,
+                [&] { return checked(parse(extension, file.view(), settings, threads, faces), settings, facts); });
 }
 
 } // namespace
@@ -269,8 +295,10 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
     return naming(path, [&] {
       const std::string extension = extensionOf(path);
       requireSettings(extension, settings);
-      return checkedHeader(isE57Extension(extension) ? sizedHeader(E57Reader(openBytes(path), settings.scan))
-                                                     : sizedHeader(LasReader(openBytes(path))));
+      if (isE57Extension(extension))
+        return checkedHeader(sizedHeader(E57Reader(openBytes(path), settings.scan)), settings);
+      const LasReader reader(openBytes(path));
+      return checkedHeader(sizedHeader(reader), settings, unitOf(reader.header()));
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -42,6 +43,8 @@ struct CloudFacts {
   std::vector<Viewpoint> scanners = {};  ///< of .ptx and .e57, of each scan that was read; empty: not known
   LasHeaderPtr las = nullptr;            ///< of .las
   std::string coordinate_system = {};    ///< as a .las or .e57 names it; empty where it does not
+  std::optional<LengthUnit> unit = {};   ///< that lengths were read in, where the file or its user tells it
+  LengthScale scale = {};                ///< from the file's lengths to those that were read
   std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name
 };
 
@@ -72,8 +75,12 @@ struct CloudFacts {
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
 /// x y z (integers become float64), at most 2^31 - 1 points, and is_dense as PCL defines
 /// it. A file that says it holds no points is an empty cloud.
+///
+/// In another unit (ReadSettings::to_unit), x y z are float64. The cloud is then no longer what its LAS header says,
+/// and CloudFacts has none. A remark tells both units. It is refused where nobody tells the file's own.
 /// @param facts if not null, set to what the file says beside its points
-/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans (read_settings.h)
+/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans, units
+///   (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;
 ///   for settings of another format; for a matrix that is no rigid motion (rigid_pose.h), with the scan that

@@ -31,6 +31,7 @@ public:
   std::uint64_t size() const override { return reader_.size(); }
   std::vector<std::string> remarks() const override { return reader_.remarks(); }
   std::string coordinateSystem() const override { return coordinateSystemOf(reader_.header()); }
+  std::optional<LengthUnit> unit() const override { return unitOf(reader_.header()); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
     try {
@@ -138,12 +139,62 @@ public:
     return points;
   }
   std::vector<std::string> remarks() const override { return facts_.remarks; }
+  std::optional<LengthUnit> unit() const override { return facts_.unit; }
   void skip(std::uint64_t points) override { next_ += std::min(points, size() - next_); }
 
 private:
   CloudFacts facts_; // which reading cloud_ sets
   pcl::PCLPointCloud2 cloud_, header_;
   std::uint64_t next_ = 0;
+};
+
+/// Another stream in the unit that is wanted.
+class ScaledStream : public CloudStream {
+public:
+  ScaledStream(fs::path path, std::unique_ptr<CloudStream> given, const ReadSettings& settings)
+  : path_(std::move(path)),
+    given_(std::move(given)),
+    settings_(settings),
+    remarks_(given_->remarks()),
+    scale_(scaleOf(settings, given_->unit(), &remarks_)),
+    header_(given_->header())
+  {
+    scaleLengths(header_, scale_, settings_.length_fields);
+  }
+
+  const pcl::PCLPointCloud2& header() const override { return header_; }
+  std::uint64_t size() const override { return given_->size(); }
+  std::vector<std::string> remarks() const override { return remarks_; }
+  std::string coordinateSystem() const override { return scale_.isOne() ? given_->coordinateSystem() : std::string(); }
+  std::optional<LengthUnit> unit() const override
+  {
+    return settings_.to_unit ? settings_.to_unit : settings_.unit ? settings_.unit : given_->unit();
+  }
+  void skip(std::uint64_t points) override { given_->skip(points); }
+  std::size_t read(std::uint8_t* records, std::size_t most) override
+  {
+    if (scale_.isOne()) return given_->read(records, most);
+    pcl::PCLPointCloud2 batch = given_->header();
+    batch.data.resize(most * batch.point_step);
+    const std::size_t points = given_->read(batch.data.data(), most);
+    batch.data.resize(points * batch.point_step);
+    try {
+      scaleLengths(batch, scale_, settings_.length_fields);
+    }
+    catch (const FormatError& error) {
+      throw files::FileError(path_, error.what(), error.remedy());
+    }
+    std::copy(batch.data.begin(), batch.data.end(), records);
+    return points;
+  }
+
+private:
+  fs::path path_;
+  std::unique_ptr<CloudStream> given_;
+  ReadSettings settings_;
+  std::vector<std::string> remarks_;
+  LengthScale scale_;
+  pcl::PCLPointCloud2 header_;
 };
 
 /// Where the points of a binary PCD file are; none for other files, and where x y z are to be converted.
@@ -187,9 +238,14 @@ std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memor
                                        unsigned threads)
 {
   const pcl::PCLPointCloud2 header = readCloudHeader(path, settings); // which checks that it can be read
-  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path, threads);
-  if (isE57Extension(extensionOf(path))) return std::make_unique<E57Stream>(path, settings);
-  if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
+  const auto inUnit = [&](std::unique_ptr<CloudStream> stream) -> std::unique_ptr<CloudStream> {
+    if (!settings.unit && !settings.to_unit) return stream;
+    return std::make_unique<ScaledStream>(path, std::move(stream), settings);
+  };
+  if (isLasExtension(extensionOf(path))) return inUnit(std::make_unique<LasStream>(path, threads));
+  if (isE57Extension(extensionOf(path))) return inUnit(std::make_unique<E57Stream>(path, settings));
+  if (std::optional<PcdBody> body = binaryBody(path))
+    return inUnit(std::make_unique<PcdStream>(path, std::move(*body)));
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
                            "give more memory, or convert it to .las, .e57 or binary .pcd");

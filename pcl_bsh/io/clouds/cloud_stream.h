@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ public:
 
   /// As a .las or .e57 names it; empty where it does not.
   virtual std::string coordinateSystem() const { return {}; }
+
+  /// As CloudFacts::unit has it.
+  virtual std::optional<LengthUnit> unit() const { return std::nullopt; }
 
   /// Leaves out the next points. @throws files::FileError
   virtual void skip(std::uint64_t points);

@@ -29,7 +29,7 @@ std::optional<CoordinateFields> coordinateFields(const pcl::PCLPointCloud2& clou
   return places;
 }
 
-double coordinateOf(const pcl::PCLPointField& field, const std::uint8_t* record)
+double numberOf(const pcl::PCLPointField& field, const std::uint8_t* record)
 {
   return withFieldType(field.datatype, [&](auto value) {
     std::memcpy(&value, record + field.offset, sizeof value);
@@ -46,6 +46,63 @@ double coordinateOf(const pcl::PCLPointField& field, const std::uint8_t* record)
   });
 }
 
+/// Which of the fields are x y z. @pre there is one of each
+std::vector<bool> areCoordinates(const pcl::PCLPointCloud2& cloud)
+{
+  std::vector<bool> are(cloud.fields.size(), false);
+  const auto places = coordinateFields(cloud);
+  for (const std::size_t place : places.value()) are[place] = true;
+  return are;
+}
+
+/// Its fields, those that are chosen as float64; without records.
+pcl::PCLPointCloud2 laidOut(const pcl::PCLPointCloud2& cloud, const std::vector<bool>& chosen)
+{
+  pcl::PCLPointCloud2 plain;
+  plain.header = cloud.header;
+  plain.is_bigendian = cloud.is_bigendian;
+  for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
+    const pcl::PCLPointField& field = cloud.fields[f];
+    addField(plain, field.name, chosen[f] ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
+             std::max(field.count, 1U));
+  }
+  plain.width = cloud.width;
+  plain.height = cloud.height;
+  if (cloud.row_step > 0) plain.row_step = plain.width * plain.point_step;
+  return plain;
+}
+
+/// Makes float64 of fields, in place where they are.
+/// @param change what a number becomes
+template <typename Change>
+void makeDoubles(pcl::PCLPointCloud2& cloud, const std::vector<bool>& chosen, const Change& change)
+{
+  bool in_place = true;
+  for (std::size_t f = 0; f < chosen.size(); ++f)
+    if (chosen[f] && cloud.fields[f].datatype != pcl::PCLPointField::FLOAT64) in_place = false;
+  pcl::PCLPointCloud2 plain;
+  const std::size_t records = cloud.data.size() / std::max(cloud.point_step, 1U);
+  if (!in_place) {
+    plain = laidOut(cloud, chosen);
+    plain.data.resize(records * plain.point_step);
+  }
+  pcl::PCLPointCloud2& target = in_place ? cloud : plain;
+  for (std::size_t i = 0; i < records; ++i) {
+    const std::uint8_t* const from = cloud.data.data() + i * cloud.point_step;
+    std::uint8_t* const to = target.data.data() + i * target.point_step;
+    for (std::size_t f = 0; f < chosen.size(); ++f) {
+      if (chosen[f]) {
+        const double number = change(numberOf(cloud.fields[f], from));
+        std::memcpy(to + target.fields[f].offset, &number, sizeof number);
+      }
+      else if (!in_place) {
+        std::memcpy(to + target.fields[f].offset, from + cloud.fields[f].offset, sizeOf(cloud.fields[f]));
+      }
+    }
+  }
+  if (!in_place) cloud = std::move(plain);
+}
+
 } // namespace
 
 bool hasIntegerCoordinates(const pcl::PCLPointCloud2& cloud)
@@ -59,36 +116,26 @@ bool hasIntegerCoordinates(const pcl::PCLPointCloud2& cloud)
 
 void makeCoordinatesPlain(pcl::PCLPointCloud2& cloud)
 {
-  if (!hasIntegerCoordinates(cloud)) return;
-  const CoordinateFields places = *coordinateFields(cloud);
-  const auto is_coordinate = [&](std::size_t f) { return std::find(places.begin(), places.end(), f) != places.end(); };
-  pcl::PCLPointCloud2 plain;
-  plain.header = cloud.header;
-  plain.is_bigendian = cloud.is_bigendian;
+  if (hasIntegerCoordinates(cloud)) makeDoubles(cloud, areCoordinates(cloud), [](double value) { return value; });
+}
+
+void scaleLengths(pcl::PCLPointCloud2& cloud, const LengthScale& scale, const std::vector<std::string>& more)
+{
+  if (scale.isOne()) return;
+  std::vector<bool> lengths = areCoordinates(cloud);
   for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
     const pcl::PCLPointField& field = cloud.fields[f];
-    addField(plain, field.name, is_coordinate(f) ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
-             std::max(field.count, 1U));
+    if (std::find(more.begin(), more.end(), field.name) == more.end()) continue;
+    if (field.count > 1)
+      throw FormatError("has several numbers a point in '" + field.name + "'", "name fields of one length");
+    lengths[f] = true;
   }
-  plain.width = cloud.width;
-  plain.height = cloud.height;
-  const std::size_t records = cloud.data.size() / std::max(cloud.point_step, 1U);
-  if (cloud.row_step > 0) plain.row_step = plain.width * plain.point_step;
-  plain.data.resize(records * plain.point_step);
-  for (std::size_t i = 0; i < records; ++i) {
-    const std::uint8_t* const from = cloud.data.data() + i * cloud.point_step;
-    std::uint8_t* const to = plain.data.data() + i * plain.point_step;
-    for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
-      if (is_coordinate(f)) {
-        const double coordinate = coordinateOf(cloud.fields[f], from);
-        std::memcpy(to + plain.fields[f].offset, &coordinate, sizeof coordinate);
-      }
-      else {
-        std::memcpy(to + plain.fields[f].offset, from + cloud.fields[f].offset, sizeOf(cloud.fields[f]));
-      }
-    }
-  }
-  cloud = std::move(plain);
+  makeDoubles(cloud, lengths, [&](double length) {
+    const double scaled = scale(length);
+    if (std::isinf(scaled) && !std::isinf(length))
+      throw FormatError("has a length that float64 does not hold in the other unit", "check the units");
+    return scaled;
+  });
 }
 
 void requireCoordinates(const pcl::PCLPointCloud2& cloud)

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <pcl_bsh/io/text/column_names.h>
+#include <pcl_bsh/io/text/length_unit.h>
 
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace pcl_bsh::io {
 
@@ -24,7 +28,20 @@ struct ReadSettings {
   ColumnNames columns;                  ///< of .xyz, .txt and .csv; empty: as the file says
   bool allow_scale = false;             ///< transforms of a .ptx may scale uniformly (rigid_pose.h)
   std::optional<std::size_t> scan = {}; ///< of a .ptx or .e57 only that one, from 0; of a .ptx as an organised cloud
+
+  /// The file's lengths have it; none: the coordinate system of a .las tells.
+  std::optional<LengthUnit> unit = {};
+  /// Lengths are read in it: x y z and `length_fields`, which become float64, and places of scanners; none: they stay
+  /// as they are.
+  std::optional<LengthUnit> to_unit = {};
+  std::vector<std::string> length_fields = {}; ///< more fields that are lengths, such as radii and sigmas
 };
+
+/// How lengths become those that are wanted. @param told unit that the file itself names
+/// @param remarks gets a line where lengths change, and where the file names another unit than the settings
+/// @throws FormatError where a unit is wanted, and nobody tells the file's own
+LengthScale scaleOf(const ReadSettings& settings, std::optional<LengthUnit> told,
+                    std::vector<std::string>* remarks = nullptr);
 
 /// Whether files with this extension, in small letters, may have several scans.
 inline bool mayHaveScans(std::string_view extension)

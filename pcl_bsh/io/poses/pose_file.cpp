@@ -4,6 +4,7 @@
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/poses/waypoints.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/number_text.h>
@@ -165,6 +166,7 @@ std::vector<double> numbersByName(TextCursor& cursor, const PoseColumns& columns
 
 std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std::string>* warnings)
 {
+  if (areWaypoints(text)) return posesAlong(parseWaypoints(text));
   std::vector<Eigen::Isometry3d> poses;
   std::size_t columns = 0;
   std::size_t replaced = 0; // matrices that others took the place of
@@ -213,7 +215,7 @@ std::vector<Eigen::Isometry3d> readPoses(const std::filesystem::path& path, std:
     return poses;
   }
   catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), forms_of_a_pose);
+    throw files::FileError(path, error.what(), areWaypoints(file.view()) ? error.remedy() : forms_of_a_pose);
   }
 }
 

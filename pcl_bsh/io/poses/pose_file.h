@@ -21,6 +21,9 @@ namespace pcl_bsh::io {
 ///   16  all four rows
 ///    8  time tx ty tz qx qy qz qw (TUM); the time is not used, the quaternion is normalised
 ///
+/// A first line that begins with `waypoints` makes it a way of places and headings (waypoints.h), whose poses these
+/// are.
+///
 /// A matrix that few printed digits have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation.
 ///
 /// @param warnings if not null, gets a line that counts these

@@ -100,8 +100,8 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
   return Warning{WarningKind::apart,
                  plainText("the boxes of ", a, " and of ", b, ", with all of its motion, are ", apart,
                            " apart, and neither is larger than ", size,
-                           ": check that both have one coordinate system and one unit, and that poses lead from the "
-                           "frame of ",
+                           ": check that both have one coordinate system and one unit (--obstacle-unit converts), and "
+                           "that poses lead from the frame of ",
                            b, " to that of ", a)};
 }
 
@@ -116,7 +116,8 @@ std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b)
   return Warning{WarningKind::units,
                  plainText((is_a_larger ? a : b).name, " is ", std::round(large / small), " times as large as ",
                            (is_a_larger ? b : a).name, ": their boxes have diagonals of ", large, " and ", small,
-                           ": if one is in millimetres and the other in metres, say, convert one of both")};
+                           ": if one is in millimetres and the other in metres, say, name both units: --input-unit and "
+                           "--obstacle-unit, or `unit` and `to_unit` where a file is read")};
 }
 
 namespace {
@@ -161,6 +162,15 @@ std::vector<Warning> warningsOf(const Question& question, const NamedCloud& inpu
   if (!clearance) return warnings;
   if (auto sparse = warningOfDensity(input, obstacle, *clearance)) warnings.push_back(std::move(*sparse));
   return warnings;
+}
+
+Warning warningOfIgnored(const std::string& name, const IgnoredPoints& ignored, const CountedPoints& counted)
+{
+  std::string terms;
+  for (std::size_t t = 0; t < ignored.terms.size(); ++t)
+    terms += plainText(terms.empty() ? "" : ", ", counted.ignored[t], " of ", ignored.terms[t].text());
+  return {WarningKind::ignored, plainText(name, ": ", counted.all, " of ", counted.all + counted.records.size(),
+                                          " points do not count: ", terms)};
 }
 
 std::optional<std::string> warningOfAngles(double roll, double pitch, double yaw)

@@ -45,6 +45,7 @@ enum class WarningKind : std::uint8_t {
   unguarded,  ///< a density guard of a surface
   hollow,     ///< faces close round what counts as free
   units,      ///< one is hundreds of times as large as the other: millimetres and metres, perhaps
+  ignored,    ///< some points do not count, as was asked
 };
 
 /// One sentence for users, which names the cloud and says what to do.
@@ -72,6 +73,9 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
 
 /// Two things of which the one's box is a hundred times as large as the other's, by their diagonals, or more.
 std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b);
+
+/// How many points of a cloud do not count, by what was asked.
+Warning warningOfIgnored(const std::string& name, const IgnoredPoints& ignored, const CountedPoints& counted);
 
 /// Angles, in radians, of more than two turns: degrees, perhaps. Without a name before it.
 std::optional<std::string> warningOfAngles(double roll, double pitch, double yaw);

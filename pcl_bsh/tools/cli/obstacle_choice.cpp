@@ -4,6 +4,7 @@
 #include "command_line.h"
 #include "path.h"
 
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/options.h>
 
 #include <algorithm>
@@ -35,10 +36,19 @@ void set(ObstacleChoice& choice, const std::string& option, const std::string& v
     choice.pose = parsePose(label + ": pose", value, warnings);
     return;
   }
+  if (option == "unit") {
+    try {
+      choice.unit = io::lengthUnitOf(value);
+    }
+    catch (const io::FormatError& error) {
+      throw UsageError(label + ": unit: " + error.what() + ": " + error.remedy());
+    }
+    return;
+  }
   const std::string name = option == "uncertainty" ? "obstacle_uncertainty" : option;
   if (name != "clearance" && name != "solid" && name != "obstacle_uncertainty")
     throw UsageError(label + ": '" + option +
-                     "' is no option of an obstacle: give pose, clearance, solid or uncertainty");
+                     "' is no option of an obstacle: give pose, unit, clearance, solid or uncertainty");
   Question question;
   try {
     setOption(question, name, value);

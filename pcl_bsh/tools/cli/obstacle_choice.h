@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One of several obstacles, as a command line names it: NAME=FILE;pose=...;clearance=...;solid=...;uncertainty=...
+// One of several obstacles, as a command line names it:
+// NAME=FILE;pose=...;unit=...;clearance=...;solid=...;uncertainty=...
 #pragma once
 
+#include <pcl_bsh/io/text/length_unit.h>
 #include <pcl_bsh/question/uncertainty.h>
 
 #include <Eigen/Geometry>
@@ -18,7 +20,8 @@ struct ObstacleChoice {
   std::string name; ///< that lists and pages tell: the file's stem where none is given
   std::filesystem::path file;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  std::string pose_text; ///< as typed, which may name a file
+  std::optional<io::LengthUnit> unit = {}; ///< of the file's lengths, in place of --obstacle-unit
+  std::string pose_text;                   ///< as typed, which may name a file
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {};

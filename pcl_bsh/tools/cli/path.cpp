@@ -5,9 +5,11 @@
 
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/poses/waypoints.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -33,12 +35,50 @@ Eigen::Isometry3d parsePose(const std::string& option, const std::string& text, 
                    "' is neither six numbers nor a file: give x,y,z,roll,pitch,yaw or a file name");
 }
 
+void PoseOptions::addTo(CLI::App& app)
+{
+  app.add_option("--pose", pose,
+                 "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
+                 "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
+                 "numbers, the rows of its matrix (default: no motion)")
+      ->type_name("POSE");
+  app.add_option("--place", place,
+                 "instead: where OBSTACLE's origin stands, and its turn about z in\n"
+                 "degrees, counter-clockwise from above: from x towards y")
+      ->type_name("X,Y,Z,HEADING");
+  app.add_option("--pairs", pairs,
+                 "instead: three or more pairs of places, one a line: x y z in\n"
+                 "OBSTACLE's file, in its unit, and x y z in INPUT; the pose of least\n"
+                 "squares is taken, and its residuals are told")
+      ->type_name("FILE");
+}
+
+std::optional<Eigen::Isometry3d> PoseOptions::read(std::vector<std::string>& warnings) const
+{
+  if ((!pose.empty()) + (!place.empty()) + (!pairs.empty()) > 1)
+    throw UsageError((place.empty() ? "--pairs" : "--place") +
+                     std::string(": another pose is given, too: give one of --pose, --place and --pairs"));
+  if (!pose.empty()) return parsePose("--pose", pose, warnings);
+  if (place.empty()) return std::nullopt;
+  try {
+    const std::vector<double> n = io::numbersOf(place);
+    const bool finite = std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); });
+    if (n.size() == 4 && finite) return io::placeAt({n[0], n[1], n[2]}, n[3]);
+  }
+  catch (const io::FormatError&) {
+    // No numbers.
+  }
+  throw UsageError("--place: '" + place + "' is not four finite numbers: give x,y,z,heading, the heading in degrees");
+}
+
 void PathOptions::addTo(CLI::App& app)
 {
   app.add_option("--trajectory", file,
                  "poses of OBSTACLE, one a line: 12 or 16 numbers of a matrix, row by\n"
-                 "row, or time tx ty tz qx qy qz qw; instead of --pose. OUTPUT gets the\n"
-                 "fields distance, first_pose and closest_pose beside collision")
+                 "row, or time tx ty tz qx qy qz qw; or, after a line `waypoints LENGTH\n"
+                 "DEGREES` of the largest step, places and headings: x y z heading, and\n"
+                 "`turn` (in place, before it goes there) or `arc`; instead of --pose.\n"
+                 "OUTPUT gets the fields distance, first_pose and closest_pose beside\ncollision")
       ->type_name("FILE");
   app.add_option("--from", from, "a straight run instead: its first pose, as for --pose")->type_name("POSE");
   app.add_option("--to", to, "its last pose")->type_name("POSE");
@@ -52,11 +92,11 @@ void PathOptions::addTo(CLI::App& app)
       ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
 }
 
-void PathOptions::requireConsistent(bool has_pose) const
+void PathOptions::requireConsistent(const std::string& pose) const
 {
   const bool moves = !file.empty() || isStraight();
   if (!file.empty() && isStraight()) throw UsageError("--from: --trajectory is given too: give one of them");
-  if (has_pose && moves) throw UsageError("--pose: a path is given too: give one of them");
+  if (!pose.empty() && moves) throw UsageError(pose + ": a path is given too: give one of them");
   if (isStraight() && (from.empty() || to.empty() || !steps))
     throw UsageError("--from: a straight run is not complete: give --from, --to and --steps");
   if (swept && !moves) throw UsageError("--swept: nothing moves: give --trajectory, or --from, --to, --steps");

@@ -19,6 +19,20 @@ namespace pcl_bsh::cli {
 /// @throws UsageError when it is neither, files::FileError as readPose() does
 Eigen::Isometry3d parsePose(const std::string& option, const std::string& text, std::vector<std::string>& warnings);
 
+/// The values of --pose, --place and --pairs.
+struct PoseOptions {
+  std::string pose, place;     ///< as typed
+  std::filesystem::path pairs; ///< which pcl_bsh::io::readPoseFit() reads, once units are known
+
+  void addTo(CLI::App& app);
+
+  bool given() const { return !pose.empty() || !place.empty() || !pairs.empty(); }
+  std::string option() const { return !place.empty() ? "--place" : !pairs.empty() ? "--pairs" : "--pose"; }
+
+  /// The pose of --pose or --place; none without. @throws UsageError where two are given, and as parsePose() does
+  std::optional<Eigen::Isometry3d> read(std::vector<std::string>& warnings) const;
+};
+
 /// The values of --trajectory, --from, --to, --steps and --swept.
 struct PathOptions {
   std::filesystem::path file;
@@ -30,8 +44,8 @@ struct PathOptions {
 
   bool isStraight() const { return !from.empty() || !to.empty() || steps.has_value(); }
 
-  /// @param has_pose whether --pose is given. @throws UsageError for options that contradict each other
-  void requireConsistent(bool has_pose) const;
+  /// @param pose the option that gives a pose, or empty. @throws UsageError for options that contradict each other
+  void requireConsistent(const std::string& pose) const;
 
   /// The poses of the straight run: one more than steps, both ends among them. Translation is linear, rotation
   /// spherically so. @throws UsageError when the ends are half a turn apart: either way round is as short

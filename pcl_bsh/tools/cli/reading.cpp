@@ -29,6 +29,32 @@ io::ReadSettings ReadChoice::of(const std::filesystem::path& file) const
   return {columns.of(file), allow_scale, io::mayHaveScans(io::extensionOf(file)) ? scan : std::nullopt};
 }
 
+void addUnit(CLI::App& app, const std::string& option, std::optional<io::LengthUnit>& unit, const std::string& doc)
+{
+  app.add_option_function<std::string>(
+         option,
+         [option, &unit](const std::string& text) {
+           try {
+             unit = io::lengthUnitOf(text);
+           }
+           catch (const io::FormatError& error) {
+             throw UsageError(option + ": " + error.what() + ": " + error.remedy());
+           }
+         },
+         doc)
+      ->type_name("UNIT");
+}
+
+void ReadOptions::addUnitsTo(CLI::App& app)
+{
+  addUnit(app, "--input-unit", input_unit_,
+          "of INPUT's lengths, and so of all that are given and told: mm, cm, m,\nft or us-ft (default: as a .las "
+          "names it)");
+  addUnit(app, "--obstacle-unit", obstacle_unit_,
+          "of OBSTACLE's lengths, which are converted to INPUT's, the fields of\nits uncertainties, too (default: as "
+          "a .las names it; with neither of\nboth options nothing is converted)");
+}
+
 ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) const
 {
   io::ColumnChoice choice;
@@ -43,7 +69,43 @@ ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) co
   const auto may = [](const std::filesystem::path& file) { return io::mayHaveScans(io::extensionOf(file)); };
   if (scan_ && std::none_of(files.begin(), files.end(), may))
     throw UsageError("--scan: none of the clouds is a .ptx or .e57 file, which may have several scans: leave it out");
-  return {choice, allow_scale_, scan_};
+  return {choice, allow_scale_, scan_, input_unit_, obstacle_unit_};
+}
+
+io::ReadSettings ReadChoice::ofInput(const std::filesystem::path& file) const
+{
+  io::ReadSettings settings = of(file);
+  settings.unit = input_unit;
+  return settings;
+}
+
+io::ReadSettings ReadChoice::ofObstacle(const std::filesystem::path& file, std::optional<io::LengthUnit> unit_of_input,
+                                        const std::string& sigmas) const
+{
+  io::ReadSettings settings = of(file);
+  if (!namesUnits()) return settings;
+  if (!unit_of_input)
+    throw UsageError(std::string("--obstacle-unit: ") + io::nameOf(*obstacle_unit) +
+                     ": the unit of INPUT is not known: give --input-unit, too");
+  settings.unit = obstacle_unit;
+  settings.to_unit = unit_of_input;
+  if (!sigmas.empty()) settings.length_fields = {sigmas};
+  return settings;
+}
+
+std::string ReadChoice::unitOfReports(const std::string& name, std::optional<io::LengthUnit> unit_of_input) const
+{
+  if (!namesUnits() || !unit_of_input) return name;
+  const std::string unit = io::nameOf(*unit_of_input);
+  if (name.empty()) return unit;
+  try {
+    if (io::lengthUnitOf(name) != *unit_of_input)
+      throw UsageError("--unit: " + name + ": lengths are in INPUT's unit, " + unit + ": leave it out");
+  }
+  catch (const io::FormatError&) {
+    // Another word for it.
+  }
+  return name;
 }
 
 } // namespace pcl_bsh::cli

@@ -18,15 +18,36 @@ namespace pcl_bsh::cli {
 struct ReadChoice {
   io::ColumnChoice columns;
   bool allow_scale = false;
-  std::optional<std::size_t> scan = {}; ///< of files that may have several
+  std::optional<std::size_t> scan = {};                              ///< of files that may have several
+  std::optional<io::LengthUnit> input_unit = {}, obstacle_unit = {}; ///< as given
+
+  bool namesUnits() const { return input_unit || obstacle_unit; }
 
   io::ReadSettings of(const std::filesystem::path& file) const;
+
+  /// The input is read as it is: its unit is that of all lengths.
+  io::ReadSettings ofInput(const std::filesystem::path& file) const;
+
+  /// The obstacle is read in that unit, where any is given. @param input_unit as the input was read
+  /// @param sigmas the field of its uncertainties, or empty. @throws UsageError where the unit is not known
+  io::ReadSettings ofObstacle(const std::filesystem::path& file, std::optional<io::LengthUnit> input_unit,
+                              const std::string& sigmas) const;
+
+  /// The unit's name in reports: the given one or, where any unit is given, the input's. @throws UsageError where these
+  /// are different units
+  std::string unitOfReports(const std::string& name, std::optional<io::LengthUnit> input_unit) const;
 };
 
-/// --columns, --allow-scale and --scan as they are written.
+/// Adds an option whose value is a unit.
+void addUnit(CLI::App& app, const std::string& option, std::optional<io::LengthUnit>& unit, const std::string& doc);
+
+/// --columns, --allow-scale, --scan and units as they are written.
 class ReadOptions {
 public:
   void addTo(CLI::App& app);
+
+  /// --input-unit and --obstacle-unit.
+  void addUnitsTo(CLI::App& app);
 
   /// @param files that the program reads clouds from
   /// @throws UsageError for what is no list of names, for names that none of the files can have, and for a scan where
@@ -35,6 +56,7 @@ public:
 
 private:
   std::vector<std::string> given_;
+  std::optional<io::LengthUnit> input_unit_, obstacle_unit_;
   bool allow_scale_ = false;
   std::optional<std::size_t> scan_;
 };

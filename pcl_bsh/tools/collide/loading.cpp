@@ -36,7 +36,7 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   const io::SurfaceSettings settings{question.vertices_only};
   scan.shape = io::obstacleOf(
       options.input,
-      io::readMesh(options.input, settings, &scan.facts, options.reading.of(options.input), question.threads),
+      io::readMesh(options.input, settings, &scan.facts, options.reading.ofInput(options.input), question.threads),
       settings);
   if (scan.shape.isSurface()) requireForSurface(options);
   const std::string triangles =

@@ -31,6 +31,9 @@ Example: does a wagon keep 5 cm from a tunnel on its way, and where does it not?
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
 Example: the same as topics for a coordinator, with the comments that last week's topics got
   pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory poses.txt --clashes w48.bcf --previous w47.bcf
+Example: the same way as a few places and headings, and the poses that these stand for
+  printf 'waypoints 0.05 2\n0 0 0 0\n9 0 0 0\n12 3 0 90 arc\n' > way.txt
+  pcl_bsh_collide tunnel.ply wagon.ply marked.pcd --clearance 0.05 --trajectory way.txt --poses-out poses.txt
 Example: the same hall, whose scanner is off by up to 4 mm: what surely keeps 5 cm?
   pcl_bsh_collide hall.ply robot.pcd marked.pcd --clearance 0.05 --pose 1.5,2,0,0,0,1.5708 --uncertainty 0.004
 Example: where would a robot stand in what no scanner of the hall ever looked into?
@@ -40,8 +43,11 @@ Example: which of two machines stands too near to a hall's points or to the othe
       --between --clearance 0.05 --clashes clashes.html
 Example: how far has each point of a scan moved away from an earlier scan?
   pcl_bsh_collide after.ply before.ply distances.pcd --distances --unit m --distance-page distances.html
-Example: which points of a hall are within 5 cm of a machine's surface?
-  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05
+Example: which points of a hall are within 5 cm of a machine's surface, which CAD has in millimetres?
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --input-unit m --obstacle-unit mm
+Example: the same machine on its place, where the floor does not count
+  pcl_bsh_collide hall.las machine.stl marked.las --clearance 0.05 --input-unit m --obstacle-unit mm
+    --place 412004.5,5653210.25,98.1,30 --ignore-points "classification=2,9"
 Example: what of the third scan of an E57 file is within 5 cm of a robot?
   pcl_bsh_collide hall.e57 robot.pcd marked.pcd --scan 2 --clearance 0.05)";
 
@@ -68,6 +74,8 @@ void requireConsistent(const CollideOptions& options)
     refuse(options.between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
   if (!options.obstacles.empty() && options.obstacle_out)
     refuse("--obstacle-out", "is of one obstacle: leave it out, or give OBSTACLE alone");
+  if (!options.obstacles.empty() && !options.pairs.empty())
+    refuse("--pairs", "are of one obstacle: give each its pose: --obstacle \"NAME=FILE;pose=POSE\"");
   if (!options.obstacles.empty() && options.distance_page)
     refuse("--distance-page", "is of one obstacle: leave it out, or give OBSTACLE alone");
   if (!options.question.clearance && !options.distances)
@@ -106,9 +114,9 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   CollideOptions options;
   Question& question = options.question;
   question.threads = 0;
-  std::string pose;
   std::vector<std::string> obstacles;
   bool in_place = false;
+  PoseOptions pose;
   PathOptions path;
   CLI::App app("Flags, keeps or removes the points of a cloud that collide with an obstacle.", collide_program);
   app.footer(io::withFormats(collide_footer));
@@ -118,8 +126,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("--obstacle", obstacles,
                  "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
                  "again and again. Its own options follow after ';':\n"
-                 "\"NAME=FILE;pose=POSE;clearance=D;solid=true;uncertainty=U\". Without\n"
-                 "NAME= its name is the file's. A path moves all of them")
+                 "\"NAME=FILE;pose=POSE;unit=mm;clearance=D;solid=true;uncertainty=U\".\n"
+                 "Without NAME= its name is the file's. A path moves all of them")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
   app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
@@ -129,12 +137,10 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("FIRST:SECOND")
       ->allow_extra_args(false);
   addQuestionOptions(app, question, {"clearance"});
-  app.add_option("--pose", pose,
-                 "of OBSTACLE in INPUT's frame: x,y,z,roll,pitch,yaw, the angles in\n"
-                 "radians (R = Rz(yaw) Ry(pitch) Rx(roll)); or a file of 12 or 16\n"
-                 "numbers, the rows of its matrix (default: no motion)")
-      ->type_name("POSE");
+  pose.addTo(app);
   path.addTo(app);
+  app.add_option("--poses-out", options.poses_out, "file for the poses that are asked about, as --trajectory reads it")
+      ->type_name("FILE");
   app.add_option("--keep", options.keep,
                  "flagged: all points, with a field 'collision': 1 collides, 0 is free,\n"
                  "2 and 3 are undecided (default)\n"
@@ -156,6 +162,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("FILE");
   ReadOptions reading;
   reading.addTo(app);
+  reading.addUnitsTo(app);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,
@@ -173,7 +180,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "clashes are new, persisting, resolved, or not visited by the path or not\n"
                  "scanned any more; BCF brings comments and topics' states")
       ->type_name("FILE");
-  app.add_option("--unit", options.unit, "name of the clouds' unit, for reports of distances and clashes")
+  app.add_option("--unit", options.unit, "name of INPUT's unit, for reports of distances and clashes")
       ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
@@ -182,12 +189,13 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   if (options.obstacles.empty()) clouds.push_back(options.obstacle);
   for (const ObstacleChoice& one : options.obstacles) clouds.push_back(one.file);
   options.reading = reading.read(clouds);
-  path.requireConsistent(!pose.empty());
-  if (!pose.empty()) question.pose = parsePose("--pose", pose, options.warnings);
+  path.requireConsistent(pose.given() ? pose.option() : "");
+  if (const auto given = pose.read(options.warnings)) question.pose = *given;
+  options.pairs = pose.pairs;
   options.trajectory = path.file;
   if (path.isStraight()) question.path = path.straightRun(options.warnings);
   options.names_of_poses = path.isStraight() ? std::vector<std::string>{"--from", "--to"}
-                                             : std::vector<std::string>{pose.empty() ? "--trajectory" : "--pose"};
+                                             : std::vector<std::string>{pose.given() ? pose.option() : "--trajectory"};
   question.swept = path.swept.value_or(0.0);
   requireConsistent(options);
   question.wanted.flags = question.wanted.closest = true;
@@ -198,7 +206,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.wanted.both_ways = options.distances && options.obstacles.empty();
 
   CommandFiles& files = options.files;
-  files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose);
+  files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose.pose);
+  files.reads("--pairs", pose.pairs).writes("--poses-out", options.poses_out);
   for (const ObstacleChoice& one : options.obstacles)
     files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);

@@ -33,6 +33,8 @@ struct CollideOptions {
   Keep keep = Keep::flagged;
   Question question;                          ///< its path: a straight run, or that of the trajectory, once it is read
   std::filesystem::path trajectory;           ///< a file of poses, or empty
+  std::filesystem::path pairs;                ///< of places, which the pose is to fit, or empty
+  std::filesystem::path poses_out;            ///< for the poses that are asked about, or empty
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
   double cluster_distance = 0;                ///< 0: from clearance and spacing
   std::optional<std::filesystem::path> previous;

@@ -15,7 +15,7 @@ namespace {
 
 nlohmann::ordered_json toJson(const CloudReport& cloud)
 {
-  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
+  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}, {"ignored", cloud.ignored}};
 }
 
 nlohmann::ordered_json toJson(const Spacing& spacing)
@@ -67,6 +67,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
         io::obstacleJson(one.name, asked, one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
   }
   for (const io::BetweenObstacles& two : report.between) json["between"].push_back(io::betweenJson(two));
+  json["unit"] = report.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.unit);
   json["clearance"] = clearance;
   json["colliding"] = colliding;
   json["undecided"] = undecided;

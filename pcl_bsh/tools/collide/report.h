@@ -21,6 +21,7 @@ struct CloudReport {
   std::string file;
   std::size_t points = 0;
   std::size_t finite = 0;
+  std::size_t ignored = 0;
 };
 
 struct Seconds {
@@ -48,6 +49,7 @@ struct CollisionReport {
   std::vector<io::BetweenObstacles> between; ///< where several are compared with each other
   std::uint32_t closest_obstacle = kNothing; ///< of several, that of the closest pair
   bool input_is_surface = false;             ///< its numbers are those of triangles
+  std::string unit;                          ///< of all lengths, where it is known; else empty
   std::string coordinate_system;             ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;

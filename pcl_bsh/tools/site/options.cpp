@@ -235,6 +235,9 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
       ->required();
   ReadOptions reading;
   reading.addTo(*make);
+  addUnit(*make, "--input-unit", options.clouds_unit,
+          "of all clouds' lengths: mm, cm, m, ft or us-ft (default: as a .las\nnames it)");
+  addUnit(*make, "--to-unit", options.to_unit, "of the site's lengths (default: they stay as they are)");
   addMemory(*make, options);
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
@@ -264,6 +267,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   CollideTexts texts;
   texts.addTo(*collide, options);
   reading.addTo(*collide);
+  reading.addUnitsTo(*collide);
   addMemory(*collide, options);
 #endif
   if (!understood(app, site_program, argc, argv)) return std::nullopt;
@@ -273,6 +277,9 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   if (options.command == SiteCommand::collide) {
     texts.read(options);
     options.reading = reading.read({options.obstacle});
+    if (options.reading.namesUnits() && options.obstacleIsSite())
+      throw UsageError("--obstacle-unit: OBSTACLE is a site, too: make one of both with --to-unit");
+    options.unit = options.reading.unitOfReports(options.unit, options.reading.input_unit);
   }
 #endif
   return options;

@@ -46,8 +46,9 @@ struct SiteOptions {
   unsigned make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
-  ReadChoice reading; ///< of `make` and `collide`
-  CommandFiles files; ///< that `collide` reads and writes
+  ReadChoice reading;                                 ///< of `make` and `collide`
+  std::optional<io::LengthUnit> clouds_unit, to_unit; ///< of `make`
+  CommandFiles files;                                 ///< that `collide` reads and writes
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError

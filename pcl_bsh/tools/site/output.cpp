@@ -105,7 +105,8 @@ site::ResultField collisionField()
 ObstacleFile::ObstacleFile(const SiteOptions& options)
 {
   double seconds = 0.0;
-  const io::ReadSettings reading = options.reading.of(options.obstacle);
+  const io::ReadSettings reading = options.reading.ofObstacle(options.obstacle, options.reading.input_unit,
+                                                              options.question.obstacle_uncertainty.field);
   const Question& question = options.question;
   const io::SurfaceSettings surface = {question.vertices_only};
   if (site::rankHere() == 0)

@@ -141,11 +141,14 @@ TEST(ClashLists, OfOtherOptionsThatTellWhatCollidesAreNotCompared)
   const std::set<std::string> not_clashes = {"swept", "seen", "origin", "seen_angle", "max_distance", "threads"};
   for (const QuestionOption& option : questionOptions()) {
     const bool is_switch = std::holds_alternative<bool Question::*>(option.member);
+    const bool ignores = std::holds_alternative<IgnoredPoints Question::*>(option.member);
     const std::string before = is_switch                                ? "true"
+                               : ignores                                ? "classification=2"
                                : option.name == std::string("accuracy") ? "tolerance=0.01"
                                : option.name == std::string("origin")   ? "1,2,3"
                                                                         : "1";
     const std::string is = is_switch                                ? "false"
+                           : ignores                                ? "classification=2,9"
                            : option.name == std::string("accuracy") ? "exact"
                            : option.name == std::string("origin")   ? "3,2,1"
                                                                     : "2";
@@ -163,6 +166,8 @@ TEST(ClashLists, KeepAllOptions)
                                                     {"uncertainty", "sigma"},
                                                     {"pose_uncertainty", "0.01,0.002,1,2,3"},
                                                     {"origin", "source:0=1,2,3;1=4,5,6"},
+                                                    {"ignore_points", "classification=2,9;box=0,0,0,1,1,1"},
+                                                    {"obstacle_ignore_points", "plane=0,0,1,0.5,0.1"},
                                                     {"threads", "3"}};
   for (const QuestionOption& option : questionOptions()) {
     const auto text = texts.find(option.name);

@@ -143,6 +143,16 @@ TEST_F(CollideObstacles, AreComparedWithAnEarlierListByName)
               HasSubstr("lists clashes with solid not given, now it is true"));
 }
 
+TEST_F(CollideObstacles, HaveUnitsOfTheirOwn)
+{
+  folder.write("small.off", "OFF\n3 1 0\n0 0 0\n1000 0 0\n0 1000 0\n3 0 1 2\n");
+  refused("--input-unit m --obstacle \"plate=small.off;unit=mm\" --obstacle crate.off"); // nothing tells its unit
+  const Outcome both = collide("--input-unit m --obstacle \"plate=small.off;unit=mm\" --obstacle \"crate.off;unit=m\"");
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("plate: clash of 2 points, smallest distance 0"));
+  EXPECT_THAT(refused("--obstacle \"crate.off;unit=ell\""), HasSubstr("unit: "));
+}
+
 TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
 {
   EXPECT_THAT(refused("--obstacle a=crate.off --obstacle a=copy.off"),
@@ -150,7 +160,7 @@ TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
   EXPECT_THAT(refused("--obstacle =crate.off"), HasSubstr("names no obstacle: give NAME=FILE"));
   EXPECT_THAT(refused("--obstacle input=crate.off"), HasSubstr("'input' is the input's own name"));
   EXPECT_THAT(refused("--obstacle \"crate.off;size=3\""),
-              HasSubstr("'size' is no option of an obstacle: give pose, clearance, solid or uncertainty"));
+              HasSubstr("'size' is no option of an obstacle: give pose, unit, clearance, solid or uncertainty"));
   EXPECT_THAT(refused("--obstacle \"crate.off;solid\""), HasSubstr("'solid' has no value: give OPTION=VALUE"));
   EXPECT_THAT(refused("--obstacle \"crate.off;clearance=-1\""), HasSubstr("clearance: '-1': give a finite length"));
   EXPECT_THAT(refused("--obstacle none.off"), HasSubstr("none.off: no such file"));

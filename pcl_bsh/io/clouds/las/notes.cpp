@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/clouds/las/wkt_unit.h>
 #include <pcl_bsh/io/text/header_count.h>
 
 #include <algorithm>
@@ -117,6 +118,37 @@ std::string nameOfKeys(const GeoKeys& keys)
   return name.empty() || height.empty() ? name + height : name + " + " + height;
 }
 
+std::optional<LengthUnit> unitOfKeys(const GeoKeys& keys)
+{
+  constexpr std::uint16_t places = 3076, heights = 4099;
+  const auto unitOfCode = [&](std::uint16_t key) -> std::optional<LengthUnit> {
+    switch (keys.code(key).value_or(0)) { // of EPSG's units
+    case 1025:
+      return LengthUnit::mm;
+    case 1033:
+      return LengthUnit::cm;
+    case 9001:
+      return LengthUnit::m;
+    case 9002:
+      return LengthUnit::ft;
+    case 9003:
+      return LengthUnit::us_ft;
+    default:
+      return std::nullopt;
+    }
+  };
+  const auto unit = unitOfCode(places);
+  return !keys.code(heights) || unitOfCode(heights) == unit ? unit : std::nullopt;
+}
+
+/// The record that counts: as text, or none where that of the keys does.
+std::string wktOf(const LasHeader& header)
+{
+  std::string wkt = projectionRecord(header, wkt_id);
+  const bool wkt_first = (header.block.global_encoding & is_wkt) != 0 || nameOfKeys(GeoKeys(header)).empty();
+  return wkt_first && !wkt.empty() && !nameOfWkt(wkt).empty() ? wkt : std::string();
+}
+
 } // namespace
 
 /// The first name in quotes.
@@ -129,11 +161,14 @@ std::string nameOfWkt(std::string_view text)
 
 std::string coordinateSystemOf(const LasHeader& header)
 {
-  const std::string wkt = projectionRecord(header, wkt_id);
-  const std::string by_wkt = wkt.empty() ? std::string() : nameOfWkt(wkt);
-  const std::string by_keys = nameOfKeys(GeoKeys(header));
-  const bool wkt_first = (header.block.global_encoding & is_wkt) != 0 || by_keys.empty();
-  return wkt_first && !by_wkt.empty() ? by_wkt : by_keys;
+  const std::string wkt = wktOf(header);
+  return wkt.empty() ? nameOfKeys(GeoKeys(header)) : nameOfWkt(wkt);
+}
+
+std::optional<LengthUnit> unitOf(const LasHeader& header)
+{
+  const std::string wkt = wktOf(header);
+  return wkt.empty() ? unitOfKeys(GeoKeys(header)) : unitOfWkt(wkt);
 }
 
 std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes)

@@ -4,7 +4,10 @@
 
 #include <pcl_bsh/io/clouds/las/header.h>
 
+#include <pcl_bsh/io/text/length_unit.h>
+
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +25,10 @@ inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& he
 
 /// The name of the whole system in WKT, in ASCII, too; or empty.
 std::string nameOfWkt(std::string_view text);
+
+/// The unit of its x, y and z: of that same record. Not known without such a record, for angles, for a unit
+/// without a name in length_unit.h, and where heights have another one than places.
+std::optional<LengthUnit> unitOf(const LasHeader& header);
 
 /// How many records behind the points the header does not count, if any.
 std::vector<std::string> remarksOn(const LasBlock& block, std::uint64_t file_bytes);
