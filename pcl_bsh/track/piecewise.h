@@ -36,7 +36,7 @@ public:
   enum class Ends : bool { held, extended };
 
   Piecewise() = default;
-  /// Of parts in the order of their beginnings.
+  /// Takes parts in the order of their beginnings.
   explicit Piecewise(std::vector<Part> parts) : parts_(std::move(parts)) {}
 
   /// Straight between knots. @pre their distances do not fall
