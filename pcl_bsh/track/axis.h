@@ -38,10 +38,13 @@ struct PlanElement {
 
 /// Where two grades meet, and how long the vertical parabola is that rounds it.
 struct GradeChange {
-  double distance = 0.0, height = 0.0, curve_length = 0.0;
+  double distance = 0.0;     ///< along the axis
+  double height = 0.0;       ///< where the grades would meet
+  double curve_length = 0.0; ///< in plan; 0: a kink
 };
 
-enum class CantPivot : std::uint8_t { centre, low_rail }; ///< what cant turns about
+/// The line that cant turns about.
+enum class CantPivot : std::uint8_t { centre, low_rail };
 
 /// The parts of an axis. Distances are from its beginning, in plan.
 struct AxisDescription {
@@ -93,6 +96,7 @@ struct AxisReach {
   double above = 15.0;
 };
 
+/// Whether a point has a place at the axis, and why not.
 enum class PlaceState : std::uint8_t {
   found,
   two_places, ///< a second place of the axis is within reach, too, as in hairpins
@@ -125,7 +129,10 @@ public:
   /// @throws InvalidInput where chainages do not rise, or the polyline turns more
   static Axis through(const std::vector<AxisPoint>& points, AxisDescription rest = {}, double most_turn = 0.2);
 
+  /// In plan.
   double length() const;
+
+  /// The number that a distance along the axis has.
   double chainage(double distance) const;
 
   /// All distances with that chainage: none in a gap of the chainage, two where it repeats.

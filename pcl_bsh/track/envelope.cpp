@@ -98,8 +98,8 @@ Widening Envelope::wideningAt(const Axis& axis, double distance) const
   return more;
 }
 
-std::span<const SectionPoint> Envelope::outlineAt(const Axis& axis, double distance,
-                                                  std::vector<SectionPoint>& room) const
+const std::vector<SectionPoint>& Envelope::outlineAt(const Axis& axis, double distance,
+                                                     std::vector<SectionPoint>& room) const
 {
   if (!widens()) return corners();
   widen(corners(), wideningAt(axis, distance), room);

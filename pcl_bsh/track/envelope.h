@@ -7,7 +7,6 @@
 #include <pcl_bsh/track/section_polygon.h>
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +38,7 @@ struct Widening {
   double left = 0.0, right = 0.0;
 };
 
+/// All that an envelope is made of.
 struct EnvelopeDescription {
   std::string name;
   std::vector<SectionPoint> corners;
@@ -47,20 +47,27 @@ struct EnvelopeDescription {
   std::optional<Vehicle> vehicle = std::nullopt; ///< widens, too, by the axis' radius at each place
 };
 
+/// Room about an axis that must stay free. Never changes.
 class Envelope {
 public:
   /// @throws InvalidInput naming the envelope: its polygon as simplePolygon() has it, a widening below 0, a range that
   ///   ends before it begins, a vehicle without meaning
   explicit Envelope(EnvelopeDescription description);
 
+  /// As the description has it.
   const std::string& name() const { return description_.name; }
+  /// Its polygon before it widens.
   const std::vector<SectionPoint>& corners() const { return description_.corners; }
+  /// Whether a chainage is in one of its ranges.
   bool countsAt(double chainage) const;
+  /// Whether a table or a vehicle widens it.
   bool widens() const;
+
+  /// How much at a distance along the axis: by its tables, and by its vehicle.
   Widening wideningAt(const Axis& axis, double distance) const;
 
   /// The polygon at a distance, in `room` if it is another than corners().
-  std::span<const SectionPoint> outlineAt(const Axis& axis, double distance, std::vector<SectionPoint>& room) const;
+  const std::vector<SectionPoint>& outlineAt(const Axis& axis, double distance, std::vector<SectionPoint>& room) const;
 
   /// Where about the envelope a place is, going round its box from its lower left corner: [0, 1) at its left, [1, 2)
   /// above, [2, 3) at its right, [3, 4) below. Diagonals of the box divide the four.

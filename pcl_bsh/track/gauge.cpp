@@ -34,7 +34,7 @@ public:
     const double chainage = axis_.chainage(place.distance);
     for (std::size_t e = 0; e < envelopes_.size(); ++e) {
       if (!envelopes_[e].countsAt(chainage)) continue;
-      const auto outline = envelopes_[e].outlineAt(axis_, place.distance, room_);
+      const auto& outline = envelopes_[e].outlineAt(axis_, place.distance, room_);
       const double clearance = signedDistance(outline, {place.offset, place.height});
       judged.each[e] = clearance;
       if (judged.envelope >= 0 && !(clearance < judged.least)) continue;

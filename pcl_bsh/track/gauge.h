@@ -17,6 +17,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
+/// How far from the axis points count, and on how many threads.
 struct GaugeRequest {
   AxisReach reach;
   unsigned threads = 1; ///< 0: all of the machine's

@@ -5,20 +5,21 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/track/gauge.h>
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <string>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-enum class Sector : std::uint8_t { left, above, right, below }; ///< of an envelope, as Envelope::aroundOf() divides it
+/// The sides of an envelope, as Envelope::aroundOf() divides them.
+enum class Sector : std::uint8_t { left, above, right, below };
 
-/// Cells about an envelope, as many in each sector.
-inline constexpr std::size_t cells_of_sector = 12, cells_around = 4 * cells_of_sector;
+/// Cells of each sector of an envelope.
+inline constexpr std::size_t cells_of_sector = 12;
+/// Cells of all four.
+inline constexpr std::size_t cells_around = 4 * cells_of_sector;
 
 /// Smallest clearances in parts of an axis, gathered batch by batch. A part or a sector without points has no data, and
 /// is not clear.
@@ -31,10 +32,15 @@ public:
   /// Takes the answer of gauge() for some points. @param envelopes the same each time
   void add(const GaugedPoints& found, const std::vector<Envelope>& envelopes);
 
+  /// How many parts the axis has.
   std::size_t parts() const { return points_.size(); }
-  double from(std::size_t part) const { return step_ * static_cast<double>(part); } ///< distance along the axis
+  /// Distance along the axis where a part begins.
+  double from(std::size_t part) const { return step_ * static_cast<double>(part); }
+  /// Distance where it ends.
   double to(std::size_t part) const { return std::min(length_, step_ * static_cast<double>(part + 1)); }
+  /// Points that have their place in a part.
   std::size_t points(std::size_t part) const { return points_[part]; }
+  /// The part that a distance along the axis is in.
   std::size_t partOf(double distance) const;
 
   /// Infinity where there is no data.
@@ -42,7 +48,9 @@ public:
   {
     return cells_[(part * envelopes_ + envelope) * cells_around + around];
   }
+  /// The smallest clearance of a sector; infinity where there is no data.
   double smallest(std::size_t part, std::size_t envelope, Sector sector) const;
+  /// The smallest clearance of all sectors.
   double smallest(std::size_t part, std::size_t envelope) const;
 
 private:

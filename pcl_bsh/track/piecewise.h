@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -22,7 +23,12 @@ class Piecewise {
 public:
   /// From `begin` on: value + slope t + bend t^2 / 2, where t is the distance from there.
   struct Part {
-    double begin = 0.0, value = 0.0, slope = 0.0, bend = 0.0;
+    double begin = 0.0; ///< distance along the axis
+    double value = 0.0; ///< there
+    double slope = 0.0; ///< there
+    double bend = 0.0;  ///< change of the slope, per length
+
+    /// The value at a distance.
     double operator()(double at) const { return value + (at - begin) * (slope + 0.5 * bend * (at - begin)); }
   };
 
@@ -30,12 +36,15 @@ public:
   enum class Ends : bool { held, extended };
 
   Piecewise() = default;
+  /// Takes parts in the order of their beginnings.
   explicit Piecewise(std::vector<Part> parts) : parts_(std::move(parts)) {}
 
   /// Straight between knots. @pre their distances do not fall
   static Piecewise through(const std::vector<Knot>& knots, Ends ends);
 
+  /// Whether it has no part.
   bool empty() const { return parts_.empty(); }
+  /// In their order.
   const std::vector<Part>& parts() const { return parts_; }
 
   /// 0 where there are no parts.

@@ -47,7 +47,7 @@ std::string textOf(const SectionPoint& p)
 /// distance cross / length then errs by 16 v w, and by 4 v of itself for square, sum, division and root. At an edge's
 /// ends both formulas differ by less than the foot's own error, 4 v w. Squares neither overflow nor underflow for sizes
 /// between 1e-140 and 1e140.
-double signedDistance(std::span<const SectionPoint> outline, const SectionPoint& point, SectionPoint* nearest)
+double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point, SectionPoint* nearest)
 {
   constexpr double sure = 8 * kDoubleUnit;
   double least = std::numeric_limits<double>::infinity(), foot = 0.0;

@@ -4,7 +4,6 @@
 
 #include <pcl_bsh/export.h>
 
-#include <span>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -13,7 +12,9 @@ namespace pcl_bsh {
 /// A place in a section: offset to the right, height up.
 struct SectionPoint {
   double offset = 0.0, height = 0.0;
-  bool operator==(const SectionPoint&) const = default;
+
+  /// Whether both numbers are equal.
+  bool operator==(const SectionPoint& other) const { return offset == other.offset && height == other.height; }
 };
 
 /// How far a distance may be off: so often the unit of roundings, 2^-53, times the polygon's extent and the distance.
@@ -22,7 +23,7 @@ inline constexpr double section_distance_error = 64 * 0x1p-53;
 /// How far the point is from the outline: positive outside, negative inside, 0 exactly where it lies on the outline.
 /// The sign is that of exact arithmetic on the given numbers. @pre a simple polygon, all numbers finite
 /// @param nearest if not null, gets the outline's nearest place
-double signedDistance(std::span<const SectionPoint> outline, const SectionPoint& point,
+double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point,
                       SectionPoint* nearest = nullptr);
 
 /// @return the corners, without those that repeat the one before

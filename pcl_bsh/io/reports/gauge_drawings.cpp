@@ -148,8 +148,8 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
   for (std::size_t e = 0; e < report.envelopes.size(); ++e) {
     if (!report.envelopes[e].countsAt(chainage)) continue;
     std::vector<SectionPoint> room;
-    const auto outline = report.envelopes[e].outlineAt(report.axis, section.distance, room);
-    outlines.emplace_back(e, std::vector<SectionPoint>(outline.begin(), outline.end()));
+    const auto& outline = report.envelopes[e].outlineAt(report.axis, section.distance, room);
+    outlines.emplace_back(e, outline);
     for (const SectionPoint& corner : outline) extend(corner);
   }
   if (section.worst) extend({section.worst->place.offset, section.worst->place.height});
@@ -240,13 +240,9 @@ std::string clearanceMap(const GaugeReport& report, std::size_t envelope)
       while (++column < along.columns && colorOf(column) == color) {
       }
       const double end = column == along.columns ? along.left + along.width : along.x(column);
-      inside += "<rect" +
-                attributesOf({{"x", placeText(along.x(first))},
-                              {"y", placeText(y)},
-                              {"width", placeText(end - along.x(first))},
-                              {"height", placeText(row)},
-                              {"fill", color}}) +
-                "/>\n";
+      inside += "<path fill=\"" + color + "\" d=\"M" + placeText(along.x(first)) + ' ' + placeText(y) + 'H' +
+                placeText(end) + 'V' + placeText(y + row) + 'H' + placeText(along.x(first)) +
+                "z\"/>\n"; // edges are those of neighbours
     }
   }
   inside += "</g>\n";
