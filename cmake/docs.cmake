@@ -7,7 +7,8 @@ if(NOT DOXYGEN)
 endif()
 
 set(documented "")
-foreach(target IN ITEMS pcl_bsh_core pcl_bsh_search pcl_bsh_filters pcl_bsh_pipeline pcl_bsh_sites pcl_bsh_vtk pcl_bsh_certify)
+foreach(target IN ITEMS pcl_bsh_core pcl_bsh_search pcl_bsh_filters pcl_bsh_pipeline pcl_bsh_sites pcl_bsh_vtk pcl_bsh_certify
+                      pcl_bsh_physics)
   if(TARGET ${target})
     get_target_property(headers ${target} HEADER_SET)
     get_target_property(source_dir ${target} SOURCE_DIR)

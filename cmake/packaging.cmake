@@ -41,6 +41,8 @@ pcl_bsh_add_package(dev pcl_bsh_search libpcl-bsh-dev libdevel "Headers and CMak
 pcl_bsh_add_package(tools pcl_bsh_collide pcl-bsh-tools science "Programs for the command line." ${libraries_of_tools})
 pcl_bsh_add_package(certify pcl_bsh_certify pcl-bsh-certify science
                     "Exact certification of sphere hierarchies; under GPL-3.0-or-later, by CGAL." libs)
+pcl_bsh_add_package(physics pcl_bsh_physics libpcl-bsh-physics libs
+                    "Bodies that fall and rest on point clouds, by Bullet; library and headers." libs)
 pcl_bsh_add_package(vtk pcl_bsh_vtk libpcl-bsh-vtk libs
                     "Hierarchies and flags as VTK's data, pictures of them; library and headers." libs)
 pcl_bsh_add_package(self_filter pcl_bsh_self_filter pcl-bsh-self-filter science
@@ -76,7 +78,8 @@ endif()
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/pcl_bsh" "${PROJECT_BINARY_DIR}/pcl_bsh/io"
     "${PROJECT_BINARY_DIR}/pcl_bsh/io/files"
-    "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/pcl_bsh/site"
+    "${PROJECT_BINARY_DIR}/pcl_bsh/certify" "${PROJECT_BINARY_DIR}/pcl_bsh/physics"
+    "${PROJECT_BINARY_DIR}/pcl_bsh/vtk" "${PROJECT_BINARY_DIR}/pcl_bsh/site"
     "${PROJECT_BINARY_DIR}/filters")
 
 include(CPack)

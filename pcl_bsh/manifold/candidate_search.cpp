@@ -81,6 +81,10 @@ private:
     bool is_beyond = false;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
+  struct NearRecord {
+    PointPair pair;
+    double least_gap, most_gap;
+  };
   struct Turn {
     double bound;
     std::pair<std::size_t, bool> of; ///< which of the nodes or of the records
@@ -177,6 +181,7 @@ private:
           leaves.points, leaves.near, leaves.b, miss,
           [&](std::uint32_t i, std::uint32_t j, float squared) { return !(squared > miss) && found(i, j); });
     }
+    addNearestOfLeaf();
   }
 
   void add(PointPair pair)
@@ -184,11 +189,31 @@ private:
     if (!channel_.held.empty() && channel_.held[pair.a]) return;
     const RecordDistance::Pair posed = pairs_.posed(pair);
     const auto [low, high] = pairs_.distance.enclose(posed);
+    if (!std::isfinite(high)) {
+      const double gap = pairs_.distance.gap(posed) - thickness_;
+      if (gap <= most_gap_) records_.push_back({pair, probePlace(channel_, pair.a), gap, true});
+      return;
+    }
     const double radii = posed.radius_p + posed.radius_q, rounding = kFewDoubleRoundings * (high + radii);
-    const bool is_near = std::isfinite(high);
-    double least = is_near ? down(down(low - radii - rounding) - thickness_) : pairs_.distance.gap(posed) - thickness_;
-    if (!(least <= most_gap_)) return;
-    records_.push_back({pair, probePlace(channel_, pair.a), least, !is_near});
+    const double least = down(down(low - radii - rounding) - thickness_);
+    if (least <= most_gap_) of_leaf_.push_back({pair, least, high - radii + 2 * rounding - thickness_});
+  }
+
+  /// Keeps records that may be the nearest one of their probe in the leaf: no other is the best candidate.
+  void addNearestOfLeaf()
+  {
+    std::sort(of_leaf_.begin(), of_leaf_.end(), [](const NearRecord& l, const NearRecord& r) {
+      return l.pair.a != r.pair.a ? l.pair.a < r.pair.a : l.least_gap < r.least_gap;
+    });
+    for (std::size_t i = 0, end = 0; i < of_leaf_.size(); i = end) {
+      double most = kInfinity;
+      for (end = i; end < of_leaf_.size() && of_leaf_[end].pair.a == of_leaf_[i].pair.a; ++end)
+        most = std::min(most, of_leaf_[end].most_gap);
+      const Eigen::Vector3d place = probePlace(channel_, of_leaf_[i].pair.a);
+      for (std::size_t k = i; k < end && of_leaf_[k].least_gap <= most; ++k)
+        records_.push_back({of_leaf_[k].pair, place, of_leaf_[k].least_gap, false});
+    }
+    of_leaf_.clear();
   }
 
   void addEdges(PointPair pair)
@@ -228,6 +253,7 @@ private:
   PairWalk::Step step_;
   std::vector<WaitingNodes> nodes_;
   std::vector<WaitingRecords> records_;
+  std::vector<NearRecord> of_leaf_; ///< that is compared
   std::vector<Turn> order_;
 };
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A body of a world, and as Bullet has it.
+#pragma once
+
+#include <pcl_bsh/physics/world.h>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace pcl_bsh {
+
+inline btVector3 bullet(const Eigen::Vector3d& v)
+{
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+
+inline Eigen::Vector3d eigen(const btVector3& v)
+{
+  return {v.x(), v.y(), v.z()};
+}
+
+inline Eigen::Matrix3d turnBy(const Eigen::Vector3d& way)
+{
+  const double angle = way.norm();
+  return angle > 0.0 ? Eigen::AngleAxisd(angle, way / angle).toRotationMatrix() : Eigen::Matrix3d::Identity().eval();
+}
+
+struct Body {
+  const Collider* collider;
+  Material material;
+  Eigen::Isometry3d pose, own_axes; ///< T_world_collider, T_collider_axes: of the inertia, about the centre of mass
+  double reach = 0.0;               ///< of the collider from there
+  bool is_free = false;
+  Eigen::Isometry3d target; ///< of one that is not
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), spin = Eigen::Vector3d::Zero();
+  std::unique_ptr<btRigidBody> solved;
+
+  Eigen::Vector3d center() const { return pose * own_axes.translation(); }
+  bool isAsleep() const { return is_free && !solved->isActive(); }
+  bool moves() const { return !velocity.isZero(0.0) || !spin.isZero(0.0); }
+
+  /// After so many seconds at the present velocities.
+  Eigen::Isometry3d after(double seconds) const
+  {
+    const Eigen::Vector3d from = center();
+    Eigen::Isometry3d there = pose;
+    there.pretranslate(-from);
+    there.prerotate(turnBy(seconds * spin));
+    there.pretranslate(from + seconds * velocity);
+    there.linear() = Eigen::Quaterniond(there.linear()).normalized().toRotationMatrix();
+    return there;
+  }
+
+  /// Tells the solver where it is, from an origin, and how it moves.
+  void place(const Eigen::Vector3d& origin, double dt)
+  {
+    const btTransform there = transformOf(pose, origin);
+    solved->setCenterOfMassTransform(there);
+    // The solver takes velocities of what is not free from two poses.
+    solved->setInterpolationWorldTransform(is_free ? there : transformOf(after(-dt), origin));
+    solved->setLinearVelocity(bullet(velocity));
+    solved->setAngularVelocity(bullet(spin));
+    solved->setInterpolationLinearVelocity(bullet(velocity));
+    solved->setInterpolationAngularVelocity(bullet(spin));
+  }
+
+  btTransform transformOf(const Eigen::Isometry3d& at, const Eigen::Vector3d& origin) const
+  {
+    const Eigen::Isometry3d axes = at * own_axes;
+    const Eigen::Quaterniond turn(axes.linear());
+    return btTransform(btQuaternion(static_cast<btScalar>(turn.x()), static_cast<btScalar>(turn.y()),
+                                    static_cast<btScalar>(turn.z()), static_cast<btScalar>(turn.w())),
+                       bullet(axes.translation() - origin));
+  }
+
+  /// No place of it moves faster.
+  double mostSpeed() const { return velocity.norm() + spin.norm() * reach; }
+};
+
+inline double reachOf(const PointsView& view, const Eigen::Vector3d& from)
+{
+  double reach = 0.0;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const Point3 p = view.point(view.record(i)); // of triangles, a ball that holds each
+    if (isFinite(p))
+      reach = std::max(reach, (Eigen::Vector3d(p[0], p[1], p[2]) - from).norm() + view.radius(view.record(i)));
+  }
+  return reach;
+}
+
+} // namespace pcl_bsh
