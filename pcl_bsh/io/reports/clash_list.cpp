@@ -215,7 +215,7 @@ void addClashes(const JsonReader& reader, std::vector<ClashList>& lists)
       const std::string name = nameFrom(entry.at("obstacle_name"));
       list = std::find_if(lists.begin(), lists.end(), [&](const ClashList& one) { return one.name == name; });
       if (list == lists.end())
-        entry.at("obstacle_name").fail("is none of the obstacles", "give the name of one of them");
+        entry.at("obstacle_name").fail("names no obstacle of the list", "give the name of one of them");
       if (clash.id.rfind(name + '/', 0) != 0) entry.at("id").fail("is no id of this obstacle", "begin with its name");
       clash.id.erase(0, name.size() + 1);
     }

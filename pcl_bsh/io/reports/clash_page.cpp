@@ -49,7 +49,7 @@ private:
     return greatest;
   }
 
-  /// The smallest distance of all that are there now, infinity where there is none.
+  /// The smallest distance of all that are there now, infinity without clashes.
   static double closestOf(const ClashLists& lists)
   {
     double closest = std::numeric_limits<double>::infinity();
