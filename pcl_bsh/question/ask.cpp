@@ -386,6 +386,7 @@ void check(const Question& question)
   of_nothing.sigmas = 1.0;
   of_nothing.ignore_points = of_nothing.obstacle_ignore_points = {};
   of_nothing.seen = of_nothing.solid = of_nothing.input_solid = false;
+  of_nothing.limits = {}; // negative ones are of solids
   leaveOutWaiting(of_nothing);
   of_nothing.progress = nullptr;
   of_nothing.wanted.spacings = false;

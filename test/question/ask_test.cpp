@@ -644,5 +644,16 @@ TEST_F(Ask, CanBeCancelled)
   EXPECT_EQ(answer().distances.a.closest_point, pointDistances({a}, {b, question.pose}).closest_point);
 }
 
+TEST(CheckQuestion, AcceptsNegativeLimitsOfSolids)
+{
+  Question question;
+  question.solid = true;
+  question.wanted.within = true;
+  question.limits = {-0.5, 0.1};
+  EXPECT_NO_THROW(check(question));
+  question.solid = false;
+  EXPECT_THROW(check(question), InvalidOption);
+}
+
 } // namespace
 } // namespace pcl_bsh
