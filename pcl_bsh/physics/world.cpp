@@ -110,6 +110,7 @@ struct World::State {
     body.reach = reachOf(collider.thing().view(), body.own_axes.translation());
     btRigidBody::btRigidBodyConstructionInfo info(mass ? static_cast<btScalar>(mass->mass) : btScalar(0), nullptr,
                                                   &shape, inertia);
+    info.m_linearDamping = info.m_angularDamping = static_cast<btScalar>(options.damping);
     info.m_linearSleepingThreshold = info.m_angularSleepingThreshold = kAsleep;
     body.solved = std::make_unique<btRigidBody>(info);
     if (!mass)
@@ -279,6 +280,7 @@ World::World(const WorldOptions& options)
   checkNumber("margin", options.margin, 0.0, 1e30, true);
   checkNumber("thickness", options.thickness, 0.0, 1e30, true);
   checkNumber("speed of pushing apart", options.most_push, 0.0, 1e30, true);
+  checkNumber("damping", options.damping, 0.0, 1.0, false);
   if (options.contacts == 0) throw InvalidInput(Input::scene, "contacts", "0", "give at least 1");
   state_ = std::make_unique<State>(options);
 }

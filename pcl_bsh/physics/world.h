@@ -38,6 +38,8 @@ struct WorldOptions {
   double thickness = 0.001; ///< bodies rest so far apart; two clouds of points by half the larger spacing; finite, > 0
   std::size_t contacts = 8; ///< of a patch; >= 1
   double most_push = 1.0;   ///< speed at which bodies that are in each other are pushed apart; finite, > 0
+  double damping = 0.0;     ///< share of speed and spin that is lost in a second; in [0, 1]. Round stones rock for
+                            ///< long without: contacts have no rolling resistance
   bool sleeping = true;     ///< bodies that rest are left alone until something moves beside them
 };
 

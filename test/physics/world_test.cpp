@@ -79,6 +79,20 @@ TEST(World, BodiesFallAsTheFormulaSays)
   EXPECT_NEAR(100 - world.pose(body).translation().z(), 0.5 * kGravity * (1.0 + kStep), 1e-3);
 }
 
+TEST(World, DampingTakesItsShareInASecond)
+{
+  const Ball ball(0.1f);
+  WorldOptions options;
+  options.gravity.setZero();
+  options.damping = 0.75;
+  World world(options);
+  const BodyId body = world.add(ball.collider, at(0, 0, 0), ball.mass(1000));
+  world.setVelocity(body, {8, 0, 0}, {0, 4, 0});
+  for (int i = 0; i < 240; ++i) world.step(kStep);
+  EXPECT_NEAR(world.velocity(body).x(), 2.0, 1e-3);
+  EXPECT_NEAR(world.spin(body).y(), 1.0, 1e-3);
+}
+
 TEST(World, SpinningBodiesKeepTheirMomentum)
 {
   const Shape top = box(1, 0.5, 0.25);
@@ -279,9 +293,11 @@ TEST(World, RefusesWhatHasNoMeaning)
 {
   const Ball ball(1.0f);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  WorldOptions gravity, margin, thickness, contacts;
+  WorldOptions gravity, margin, thickness, contacts, damping;
   gravity.gravity.x() = nan, margin.margin = 0, thickness.thickness = -1, contacts.contacts = 0;
-  for (const WorldOptions& options : {gravity, margin, thickness, contacts}) EXPECT_THROW(World{options}, InvalidInput);
+  damping.damping = 1.5;
+  for (const WorldOptions& options : {gravity, margin, thickness, contacts, damping})
+    EXPECT_THROW(World{options}, InvalidInput);
   World world;
   MassProperties weightless = ball.mass(1);
   weightless.mass = 0;
