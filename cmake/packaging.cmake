@@ -47,6 +47,8 @@ pcl_bsh_add_package(vtk pcl_bsh_vtk libpcl-bsh-vtk libs
                     "Hierarchies and flags as VTK's data, pictures of them; library and headers." libs)
 pcl_bsh_add_package(self_filter pcl_bsh_self_filter pcl-bsh-self-filter science
                     "Cuts a robot, as its URDF has it, out of what its own sensors see." libs)
+pcl_bsh_add_package(arm pcl_bsh_arm pcl-bsh-arm science
+                    "Where a robot with joints collides with point clouds; certified motions." libs)
 pcl_bsh_add_package(python pcl_bsh_python python3-pcl-bsh python "Where point clouds collide, for NumPy's arrays." libs)
 pcl_bsh_add_package(python_vtk pcl_bsh_python_vtk python3-pcl-bsh-vtk python
                     "Filters for point clouds in the pipelines of VTK's Python." python vtk)

@@ -21,7 +21,7 @@ case "${targets[*]}" in
   demonstration) sections="$shown" ;;
   programs) sections="$shown certify" ;;
   python | self_filter | docs) sections="$shown ${targets[*]}" ;;
-  *) sections="$shown certify physics tests docs self_filter python" ;;
+  *) sections="$shown certify physics tests docs self_filter ompl python" ;;
 esac
 case "$preset" in
   library) sections="core library" ;;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "made_robot.h"
 
-#include <pcl_bsh/tools/self_filter/surface.h>
+#include <pcl_bsh/io/robots/surface.h>
 
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
@@ -190,7 +190,7 @@ JointValues madeJointValues(std::size_t frame, std::size_t frames)
 
 DepthImage seenBy(const Robot& robot, const JointValues& values, std::size_t width)
 {
-  const std::vector<Eigen::Isometry3d> poses = robot.poses(values);
+  const std::vector<Eigen::Isometry3d> poses = linkPoses(robot, values);
   const Eigen::Isometry3d T_root_camera = poses[robot.linkNamed("camera")];
   Image image(width);
   image.drawRoom([&](const Eigen::Vector3d& ray) {

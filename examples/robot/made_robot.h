@@ -2,7 +2,7 @@
 // An arm with a gripper and a camera on a mast, to try the filter on: a URDF, meshes, and what the camera sees.
 #pragma once
 
-#include <pcl_bsh/tools/self_filter/robot.h>
+#include <pcl_bsh/tools/self_filter/link_body.h>
 
 #include <cstddef>
 #include <cstdint>

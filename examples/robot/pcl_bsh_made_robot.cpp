@@ -9,6 +9,7 @@
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/io/text/number_text.h>
 
 #include <cstdio>
@@ -45,7 +46,7 @@ int makeRobot(const fs::path& folder, std::size_t frames)
   const files::OutputFolder made(folder);
   cli::Step step("Making robot and frames");
   self_filter::writeMadeRobot(folder);
-  const self_filter::Robot robot = self_filter::readRobot(folder / "robot.urdf");
+  const self_filter::Robot robot = io::readRobot(folder / "robot.urdf");
   std::string names, lines;
   for (std::size_t i = 0; i < frames; ++i) {
     const self_filter::JointValues values = self_filter::madeJointValues(i, frames);

@@ -41,7 +41,8 @@ void measure(const self_filter::Robot& robot, const std::vector<Frame>& frames, 
     for (const Frame& frame : frames) {
       const PointsView view = viewOf(frame.image.xyz.data(), frame.image.is_robot.size());
       const Stopwatch watch;
-      const std::vector<Verdict>& flags = filter.flags(view, robot.poses(frame.values)[camera].inverse(), frame.values);
+      const std::vector<Verdict>& flags =
+          filter.flags(view, linkPoses(robot, frame.values)[camera].inverse(), frame.values);
       times.push_back(1e3 * watch.seconds());
       points += static_cast<double>(flags.size());
       cut += static_cast<double>(std::count(flags.begin(), flags.end(), Verdict::colliding));
@@ -70,7 +71,7 @@ int main(int argc, char** argv)
         std::filesystem::temp_directory_path() / ("bench_self_filter_" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
     self_filter::writeMadeRobot(folder);
-    const self_filter::Robot robot = self_filter::readRobot(folder / "robot.urdf");
+    const self_filter::Robot robot = io::readRobot(folder / "robot.urdf");
     progress("making " + std::to_string(options.frames) + " images");
     std::vector<Frame> frames;
     for (std::size_t i = 0; i < options.frames; ++i) {

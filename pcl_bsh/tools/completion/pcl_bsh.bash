@@ -15,5 +15,5 @@ _pcl_bsh() {
   [[ "${#COMPREPLY[@]}" != 1 || "${COMPREPLY[0]}" != *. ]] || compopt -o nospace
 }
 
-complete -o bashdefault -o default -F _pcl_bsh pcl_bsh_accuracy pcl_bsh_certify pcl_bsh_collide pcl_bsh_gauge pcl_bsh_made_robot \
+complete -o bashdefault -o default -F _pcl_bsh pcl_bsh_accuracy pcl_bsh_arm pcl_bsh_certify pcl_bsh_collide pcl_bsh_gauge pcl_bsh_made_robot \
   pcl_bsh_pipeline pcl_bsh_scene pcl_bsh_self_filter pcl_bsh_site pcl_bsh_tunnel pcl_bsh_view

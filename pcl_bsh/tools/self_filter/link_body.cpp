@@ -70,7 +70,7 @@ bool LinkBody::hasWithin(double padding, const Eigen::Vector3d& point) const
   return std::any_of(solids.begin(), solids.end(), [&](const PlacedSolid& placed) {
     constexpr double roundings = 0x1p-48; // of the numbers that a distance is made of
     const double size = point.lpNorm<1>() + placed.T_solid_link.translation().lpNorm<1>() + padding;
-    return distanceTo(placed.solid, placed.T_solid_link * point) <= padding + roundings * size;
+    return signedDistance(placed.solid, placed.T_solid_link * point) <= padding + roundings * size;
   });
 }
 

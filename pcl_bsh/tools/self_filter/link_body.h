@@ -2,10 +2,11 @@
 // The bodies of a link: solids, and the surfaces of meshes.
 #pragma once
 
-#include "robot.h"
-#include "surface.h"
-
 #include <pcl_bsh/hierarchy/points_view.h>
+#include <pcl_bsh/io/robots/surface.h>
+#include <pcl_bsh/robot/kinematics.h>
+#include <pcl_bsh/robot/robot.h>
+#include <pcl_bsh/robot/shapes/shape.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -14,11 +15,17 @@
 
 namespace pcl_bsh::self_filter {
 
-/// A body that is solid.
-using Solid = std::variant<Box, Cylinder, Sphere>;
-
-/// How far a point in the solid's frame lies from it, m; 0 inside. But for a few roundings of double.
-double distanceTo(const Solid& solid, const Eigen::Vector3d& point);
+using io::Surface;
+using io::surfaceOf;
+using robots::Box;
+using robots::Capsule;
+using robots::Cylinder;
+using robots::JointValues;
+using robots::Link;
+using robots::Robot;
+using robots::Shape;
+using robots::Solid;
+using robots::Sphere;
 
 /// A cylinder about an axis of the solid's frame, centred, that encloses a box or a cylinder. Of a sphere, which lies
 /// within the radius of its centre, the length is 0.

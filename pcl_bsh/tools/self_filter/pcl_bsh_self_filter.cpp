@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts the robot that scans out of its scans: links from a URDF, where the joints' values put them.
-#include "joint_values.h"
 #include "self_filter.h"
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/named_folders.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
@@ -15,6 +15,8 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/robots/joint_values.h>
+#include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/text_numbers.h>
 #include <pcl_bsh/question/warnings/warnings.h>
@@ -66,18 +68,6 @@ struct Options {
   cli::CommandFiles files;
 };
 
-std::map<std::string, fs::path> packagesOf(const Options& options)
-{
-  std::map<std::string, fs::path> packages;
-  for (const std::string& package : options.packages) {
-    const std::size_t equals = package.find('=');
-    if (equals == 0 || equals == std::string::npos)
-      throw cli::UsageError("--package: '" + package + "' is no package with a folder: give NAME=FOLDER");
-    packages[package.substr(0, equals)] = package.substr(equals + 1);
-  }
-  return packages;
-}
-
 /// Sets the padding of all links, and those of links that have their own.
 void takePaddings(const std::vector<std::string>& texts, self_filter::Settings& settings)
 {
@@ -105,7 +95,7 @@ void requireLinks(const self_filter::Settings& settings, const self_filter::Robo
   try {
     for (const auto& [link, padding] : settings.paddings) robot.linkNamed(link);
   }
-  catch (const std::runtime_error& error) {
+  catch (const std::invalid_argument& error) {
     throw std::runtime_error(std::string("--padding: ") + error.what());
   }
 }
@@ -115,8 +105,8 @@ std::vector<JointValues> statesOf(const Options& options)
 {
   std::vector<JointValues> states;
   try {
-    states = options.states.empty() ? std::vector{self_filter::parseJointValues(options.joints)}
-                                    : self_filter::readJointStates(options.states);
+    states = options.states.empty() ? std::vector{io::parseJointValues(options.joints)}
+                                    : io::readJointStates(options.states);
   }
   catch (const io::FormatError& error) {
     throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
@@ -164,7 +154,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
   std::vector<std::string> warnings;
   for (const std::string& remark : facts.remarks) warnings.push_back(name + ": " + remark);
   const PointsView view = viewOf(cloud);
-  const Eigen::Isometry3d T_scan_root = filter.robot().poses(values)[frame].inverse();
+  const Eigen::Isometry3d T_scan_root = linkPoses(filter.robot(), values)[frame].inverse();
   const auto start = std::chrono::steady_clock::now();
   std::vector<Verdict> flags = filter.flags(view, T_scan_root, values);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -195,7 +185,7 @@ void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot
 {
   for (const self_filter::Link& link : robot.links)
     for (const self_filter::Shape& shape : link.shapes)
-      if (const auto* const mesh = std::get_if<self_filter::MeshFile>(&shape.form))
+      if (const auto* const mesh = std::get_if<robots::Mesh>(&shape.form))
         files.reads("mesh of link '" + link.name + "'", mesh->path);
   files.requireApart();
 }
@@ -205,7 +195,7 @@ int run(const Options& options)
   const std::vector<JointValues> states = statesOf(options);
   const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
   const self_filter::Robot robot =
-      self_filter::readRobot(options.urdf, packagesOf(options), package_path ? package_path : "");
+      io::readRobot(options.urdf, cli::namedFolders("--package", options.packages), package_path ? package_path : "");
   requireLinks(options.settings, robot);
   requireMeshesApart(options.files, robot);
   for (const JointValues& values : states) robot.requireValues(values);

@@ -87,8 +87,7 @@ void SelfFilter::flagEnclosed(const SphereHierarchy& points, const Part& part, c
 const std::vector<Verdict>& SelfFilter::flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
                                               const JointValues& values)
 {
-  robot_.requireValues(values);
-  const std::vector<Eigen::Isometry3d> poses = robot_.poses(values);
+  const std::vector<Eigen::Isometry3d> poses = linkPoses(robot_, values);
   const SphereHierarchy points(scan);
   flags_.assign(scan.count, Verdict::free);
   for (std::size_t link = 0; link < parts_.size(); ++link) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a scan are the robot that scans?
 //
-//   SelfFilter filter(readRobot("arm.urdf"), {});
+//   SelfFilter filter(io::readRobot("arm.urdf"), {});
 //   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
 // A point is flagged where it is within the padding of a link, or inside of it. Boxes, cylinders, spheres and meshes
@@ -9,7 +9,6 @@
 #pragma once
 
 #include "link_body.h"
-#include "robot.h"
 
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -34,8 +33,9 @@ struct Settings {
 /// Reads all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
 class SelfFilter {
 public:
-  /// @throws as bodyOf() does; std::runtime_error for a robot without a body, and for the padding of a link that is not
-  ///   there, naming it
+  /// @throws as bodyOf() does; std::runtime_error for a robot without a body; std::invalid_argument for the padding of
+  /// a
+  ///   link that is not there, naming it
   SelfFilter(Robot robot, const Settings& settings);
 
   const Robot& robot() const { return robot_; }
@@ -48,7 +48,7 @@ public:
 
   /// One per record of the scan: colliding where it is the robot, else free. Valid until the next call.
   /// @param T_scan_root where the robot's root is in the scan's frame
-  /// @throws std::runtime_error as Robot::requireValues() does; std::invalid_argument as SphereHierarchy does
+  /// @throws std::invalid_argument as Robot::requireValues(), Kinematics and SphereHierarchy do
   const std::vector<Verdict>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
                                     const JointValues& values);
 

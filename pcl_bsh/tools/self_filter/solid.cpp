@@ -9,22 +9,6 @@
 namespace pcl_bsh::self_filter {
 namespace {
 
-double distance(const Box& box, const Eigen::Vector3d& p)
-{
-  return (p.cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
-}
-
-double distance(const Cylinder& tube, const Eigen::Vector3d& p)
-{
-  const double out = p.head<2>().norm() - tube.radius, over = std::abs(p.z()) - tube.length / 2;
-  return std::hypot(std::max(out, 0.0), std::max(over, 0.0));
-}
-
-double distance(const Sphere& ball, const Eigen::Vector3d& p)
-{
-  return std::max(p.norm() - ball.radius, 0.0);
-}
-
 Rod around(const Box& box)
 {
   Rod rod;
@@ -43,35 +27,12 @@ Rod around(const Sphere& ball)
   return {2, ball.radius, 0.0};
 }
 
-void require(double size, const char* what)
+Rod around(const Capsule& pill)
 {
-  constexpr double most = 1e30;
-  if (!(size > 0.0 && size <= most))
-    throw std::runtime_error(std::string(what) + " of size " + std::to_string(size) + ": give one above 0" +
-                             (size > most ? ", and at most 1e30 m" : ""));
-}
-
-void requireSizes(const Box& box)
-{
-  for (int k = 0; k < 3; ++k) require(box.size[k], "a box");
-}
-
-void requireSizes(const Cylinder& tube)
-{
-  for (const double size : {tube.radius, tube.length}) require(size, "a cylinder");
-}
-
-void requireSizes(const Sphere& ball)
-{
-  require(ball.radius, "a sphere");
+  return {2, pill.radius, enclosingRadius(pill)};
 }
 
 } // namespace
-
-double distanceTo(const Solid& solid, const Eigen::Vector3d& point)
-{
-  return std::visit([&](const auto& form) { return distance(form, point); }, solid);
-}
 
 Rod rodAround(const Solid& solid)
 {
@@ -80,7 +41,12 @@ Rod rodAround(const Solid& solid)
 
 void requireSize(const Solid& solid)
 {
-  std::visit([](const auto& form) { requireSizes(form); }, solid);
+  constexpr double most = 1e30;
+  constexpr const char* names[] = {"a box", "a cylinder", "a sphere", "a capsule"};
+  for (const double size : sizesOf(solid))
+    if (!(size > 0.0 && size <= most))
+      throw std::runtime_error(std::string(names[solid.index()]) + " of size " + std::to_string(size) +
+                               ": give one above 0" + (size > most ? ", and at most 1e30 m" : ""));
 }
 
 } // namespace pcl_bsh::self_filter

@@ -4,7 +4,7 @@
 #include "io/clouds/samples.h"
 #include "support/verdicts.h"
 #include <examples/robot/made_robot.h>
-#include <pcl_bsh/tools/self_filter/surface.h>
+#include <pcl_bsh/io/robots/read_robot.h>
 
 #include <gmock/gmock.h>
 
@@ -69,7 +69,7 @@ public:
     }
     if (const auto* box = std::get_if<Box>(&shape_.form))
       if ((2 * p.array().abs() <= box->size.array()).all()) return 0.0;
-    if (std::holds_alternative<MeshFile>(shape_.form) && windingOf(surface_, p) != 0) return 0.0;
+    if (std::holds_alternative<robots::Mesh>(shape_.form) && windingOf(surface_, p) != 0) return 0.0;
     double least = std::numeric_limits<double>::infinity();
     const auto corner = [&](std::uint32_t i) { return Vector3d(surface_.vertices[i].data()); };
     for (const Triangle& t : surface_.triangles)
@@ -87,7 +87,7 @@ protected:
   SelfFilterTest()
   {
     writeMadeRobot(folder.path());
-    robot = readRobot(folder / "robot.urdf");
+    robot = io::readRobot(folder / "robot.urdf");
   }
 
   /// Holds flags of points about the robot against distances to its true shapes.
@@ -114,7 +114,7 @@ TEST_F(SelfFilterTest, LinksMayHaveAPaddingOfTheirOwn)
     SelfFilter(robot, {0.03, 1, {{"nose", 0.1}}});
     ADD_FAILURE() << "there is none";
   }
-  catch (const std::runtime_error& error) {
+  catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), testing::StartsWith("link 'nose': is not one of "));
   }
 }
@@ -132,7 +132,7 @@ void SelfFilterTest::expectFlagged(const Settings& settings) const
   std::size_t flagged = 0, near = 0;
   for (std::size_t frame = 0; frame < 3; ++frame) {
     const JointValues values = madeJointValues(frame, 3);
-    const std::vector<Eigen::Isometry3d> poses = robot.poses(values);
+    const std::vector<Eigen::Isometry3d> poses = linkPoses(robot, values);
     // Half of the points about the links' bodies, half anywhere near.
     std::vector<Vector3d> points;
     for (std::size_t i = 0; i < 200; ++i) {
@@ -187,7 +187,8 @@ TEST(SelfFilterOfMeshes, TheInsideIsTheRobotWhereAMeshCloses)
     robot.name = "robot";
     Link link;
     link.name = "shoulder";
-    link.shapes.push_back({MeshFile{folder / file, {scale, 1, 1}}, Eigen::Isometry3d(Eigen::Translation3d(0, 5, 0))});
+    link.shapes.push_back(
+        {robots::Mesh{folder / file, {scale, 1, 1}}, Eigen::Isometry3d(Eigen::Translation3d(0, 5, 0))});
     robot.links.push_back(link);
     return robot;
   };
@@ -213,7 +214,7 @@ TEST_F(SelfFilterTest, CutsOutWhatTheCameraSeesOfTheRobot)
   SelfFilter filter(robot, {0.02, 1});
   const JointValues values = madeJointValues(1, 3);
   const DepthImage image = seenBy(robot, values, 160);
-  const Eigen::Isometry3d T_camera_root = robot.poses(values)[robot.linkNamed("camera")].inverse();
+  const Eigen::Isometry3d T_camera_root = linkPoses(robot, values)[robot.linkNamed("camera")].inverse();
   const std::vector<Verdict>& flags =
       filter.flags(viewOf(image.xyz.data(), image.xyz.size() / 3), T_camera_root, values);
   const auto seen = std::count(image.is_robot.begin(), image.is_robot.end(), 1);
@@ -235,7 +236,7 @@ TEST_F(SelfFilterTest, AnswersAlikeForAnyNumberOfThreadsAndFrameBefore)
   SelfFilter one(robot, {0.02, 1}), all(robot, {0.02, 0});
   all.flags(view, pose, madeJointValues(2, 3));
   EXPECT_EQ(one.flags(view, pose, madeJointValues(1, 3)), all.flags(view, pose, madeJointValues(1, 3)));
-  EXPECT_THROW(one.flags(view, pose, {{"nose", 1}}), std::runtime_error);
+  EXPECT_THROW(one.flags(view, pose, {{"nose", 1}}), std::invalid_argument);
 }
 
 class SelfFilterOfOneBody : public testing::Test {
@@ -294,7 +295,7 @@ TEST_F(SelfFilterOfOneBody, CutsOutWhatLiesInsideOfAMesh)
   const io::TemporaryFolder folder;
   writeMadeRobot(folder.path());
   const std::vector<Vector3d> points = {pose * Vector3d(0, 0, 0.1), pose * Vector3d(0.12, 0, 0.1)};
-  EXPECT_EQ(flags({MeshFile{folder / "meshes/turret.stl"}, pose}, {0.02, 1}, points),
+  EXPECT_EQ(flags({robots::Mesh{folder / "meshes/turret.stl"}, pose}, {0.02, 1}, points),
             pcl_bsh::test::verdictsOf({1, 1}));
 }
 

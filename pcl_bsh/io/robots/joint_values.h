@@ -2,13 +2,15 @@
 // Values of joints as users write them.
 #pragma once
 
-#include "robot.h"
+#include <pcl_bsh/robot/robot.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
+
+using robots::JointValues;
 
 /// `name=value,...`; may be empty.
 /// @throws io::FormatError naming the word that is none of that
@@ -19,4 +21,4 @@ JointValues parseJointValues(const std::string& text);
 /// @throws files::FileError naming the line
 std::vector<JointValues> readJointStates(const std::filesystem::path& path);
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // URDF by urdfdom. What that lets pass and forward kinematics cannot bear is refused here.
-#include "robot.h"
-#include "ros_packages.h"
-
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/robots/read_robot.h>
+#include <pcl_bsh/io/robots/ros_packages.h>
+#include <pcl_bsh/io/robots/surface.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <cmath>
-#include <functional>
+#include <memory>
 #include <set>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 namespace {
 
@@ -51,6 +51,10 @@ Eigen::Isometry3d poseOf(const urdf::Pose& pose)
 }
 
 class Reader {
+  using Joint = robots::Joint;
+  using Link = robots::Link;
+  using Robot = robots::Robot;
+
 public:
   Reader(const fs::path& path, const Packages& packages, const std::string& package_path)
   : path_(path),
@@ -61,7 +65,7 @@ public:
 
   Robot read()
   {
-    const io::FileBytes bytes(path_);
+    const FileBytes bytes(path_);
     FirstComplaint complaint;
     model_ = urdf::parseURDF(std::string(bytes.view()));
     // urdfdom leaves out a body that it cannot read, and goes on: the robot would not be where that is
@@ -116,11 +120,13 @@ private:
     case urdf::Joint::FIXED:
       return joint;
     case urdf::Joint::REVOLUTE:
+      joint.kind = Joint::Kind::revolute;
+      break;
     case urdf::Joint::CONTINUOUS:
-      joint.kind = Joint::Kind::turning;
+      joint.kind = Joint::Kind::continuous;
       break;
     case urdf::Joint::PRISMATIC:
-      joint.kind = Joint::Kind::sliding;
+      joint.kind = Joint::Kind::prismatic;
       break;
     default:
       fail("joint '" + from.name + "' is neither fixed, revolute, continuous nor prismatic",
@@ -129,24 +135,28 @@ private:
     joint.axis = vectorOf(from.axis);
     if (!(joint.axis.norm() > 0.0)) fail("joint '" + from.name + "' has the axis 0 0 0", "give it a direction");
     joint.axis.normalize();
-    if (from.mimic) joint.mimic = Mimic{from.mimic->joint_name, from.mimic->multiplier, from.mimic->offset};
+    if (from.limits && joint.kind != Joint::Kind::continuous) {
+      joint.lower = from.limits->lower;
+      joint.upper = from.limits->upper;
+    }
+    if (from.mimic) joint.mimic = robots::Mimic{from.mimic->joint_name, from.mimic->multiplier, from.mimic->offset};
     return joint;
   }
 
   void addShape(Link& link, const urdf::Geometry* geometry, const urdf::Pose& origin) const
   {
     if (!geometry) fail("link '" + link.name + "' has a body without a geometry", "mend the URDF");
-    Shape shape;
+    robots::Shape shape;
     shape.pose = poseOf(origin);
-    if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) shape.form = Box{vectorOf(box->dim)};
+    if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) shape.form = robots::Box{vectorOf(box->dim)};
     if (const auto* tube = dynamic_cast<const urdf::Cylinder*>(geometry))
-      shape.form = Cylinder{tube->radius, tube->length};
-    if (const auto* ball = dynamic_cast<const urdf::Sphere*>(geometry)) shape.form = Sphere{ball->radius};
+      shape.form = robots::Cylinder{tube->radius, tube->length};
+    if (const auto* ball = dynamic_cast<const urdf::Sphere*>(geometry)) shape.form = robots::Sphere{ball->radius};
     if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
       const fs::path file = fileOf(mesh->filename, link.name);
       if (!fs::exists(file))
         fail("link '" + link.name + "' has the mesh " + file.string() + ", which is not there", "check the name");
-      shape.form = MeshFile{file, vectorOf(mesh->scale)};
+      shape.form = robots::Mesh{file.string(), vectorOf(mesh->scale)};
     }
     link.shapes.push_back(std::move(shape));
   }
@@ -206,9 +216,23 @@ private:
 
 } // namespace
 
-Robot readRobot(const fs::path& urdf, const Packages& packages, const std::string& package_path)
+robots::Robot readRobot(const fs::path& urdf, const Packages& packages, const std::string& package_path)
 {
   return Reader(urdf, packages, package_path).read();
 }
 
-} // namespace pcl_bsh::self_filter
+void readMeshes(robots::Robot& robot)
+{
+  for (robots::Link& link : robot.links)
+    for (robots::Shape& shape : link.shapes) {
+      auto* const mesh = std::get_if<robots::Mesh>(&shape.form);
+      if (!mesh) continue;
+      const auto surface = std::make_shared<const Surface>(surfaceOf({*mesh}, 1.0));
+      PointsView vertices = viewOf(surface->vertices.front().data(), surface->vertices.size());
+      vertices.owner = surface;
+      const TrianglesView triangles{vertices, surface->triangles.front().data(), surface->triangles.size()};
+      mesh->surface = std::make_shared<const SphereHierarchy>(viewOf(triangles));
+    }
+}
+
+} // namespace pcl_bsh::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/tools/self_filter/joint_values.h>
+#include <pcl_bsh/io/robots/joint_values.h>
 
 #include "io/clouds/samples.h"
 
@@ -10,7 +10,7 @@
 
 #include <fstream>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 namespace {
 
 using testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST_F(JointStates, NameTheLineThatIsWrong)
 }
 
 } // namespace
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface.h"
+#include <pcl_bsh/io/robots/surface.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
@@ -21,7 +21,7 @@
 #include <assimp/Importer.hpp>
 #endif
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,7 +56,7 @@ void addNode(Surface& surface, const aiScene& scene, const aiNode& node, const E
 
 Surface readCollada(const fs::path& path)
 {
-  const io::FileBytes bytes(path);
+  const FileBytes bytes(path);
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1); // else all is turned until y is up
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);          // where there is no mesh
@@ -87,11 +87,11 @@ Surface readCollada(const fs::path& path)
 
 Surface readSurface(const fs::path& path)
 {
-  if (io::extensionOf(path) == ".dae") return readCollada(path);
-  if (!io::mayHaveFaces(path))
+  if (extensionOf(path) == ".dae") return readCollada(path);
+  if (!mayHaveFaces(path))
     throw files::FileError(path, "is no file of a mesh that is read",
                            std::string("save it as ") + readable + ", in metres");
-  io::Mesh read = io::readMesh(path);
+  Mesh read = readMesh(path);
   const PointsView view = viewOf(read.vertices);
   Surface surface;
   surface.triangles = std::move(read.triangles);
@@ -99,4 +99,4 @@ Surface readSurface(const fs::path& path)
   return surface;
 }
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

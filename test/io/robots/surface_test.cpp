@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/tools/self_filter/surface.h>
+#include <pcl_bsh/io/robots/surface.h>
 
 #include "io/clouds/samples.h"
 
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <string>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 namespace {
 
 using testing::AllOf;
@@ -153,4 +153,4 @@ TEST_F(ReadSurface, OfColladaSaysWhatToDo)
 #endif
 
 } // namespace
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 /// The folder of a package in or below one of these folders, the first that has it. A package is a folder with a
 /// package.xml that names it, or with a manifest.xml and its name. Nothing is looked for in a package, in a hidden
@@ -16,4 +16,4 @@ namespace pcl_bsh::self_filter {
 /// @param folders with colons between them, as ROS_PACKAGE_PATH has them
 std::optional<std::filesystem::path> packageIn(std::string_view folders, const std::string& name);
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

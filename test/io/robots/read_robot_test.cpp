@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/tools/self_filter/robot.h>
+#include <pcl_bsh/io/robots/read_robot.h>
 
 #include "io/clouds/samples.h"
 
@@ -11,12 +11,16 @@
 #include <fstream>
 #include <numbers>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+
+using robots::Box;
+using robots::Robot;
+using robots::Sphere;
 
 constexpr double pi = std::numbers::pi;
 
@@ -56,7 +60,7 @@ protected:
   static Eigen::Vector3d originOf(const Robot& robot, const std::string& link_name, const JointValues& values)
   {
     robot.requireValues(values);
-    return robot.poses(values)[robot.linkNamed(link_name)].translation();
+    return linkPoses(robot, values)[robot.linkNamed(link_name)].translation();
   }
 
   const io::TemporaryFolder folder;
@@ -111,7 +115,7 @@ TEST_F(RobotTest, FindsMeshesBesideTheUrdfAndInPackages)
   const auto mesh = [](const std::string& name) {
     return link("a", "<collision><geometry><mesh filename=\"" + name + "\"/></geometry></collision>");
   };
-  const auto path = [](const Robot& robot) { return std::get<MeshFile>(robot.links[0].shapes[0].form).path; };
+  const auto path = [](const Robot& robot) { return std::get<robots::Mesh>(robot.links[0].shapes[0].form).path; };
   const std::filesystem::path there = folder / "m/a.stl";
   expectRefused(mesh("m/a.stl"), "link 'a' has the mesh " + there.string() + ", which is not there");
   std::filesystem::create_directory(folder / "m");
@@ -155,7 +159,7 @@ TEST_F(RobotTest, FindsPackagesInRosPackagePath)
                         << link("a", "<collision><geometry><mesh filename=\"package://" + package +
                                          "/m/a.stl\"/></geometry></collision>")
                         << "</robot>";
-    return fs::canonical(std::get<MeshFile>(readRobot(urdf, packages, path).links[0].shapes[0].form).path);
+    return fs::canonical(std::get<robots::Mesh>(readRobot(urdf, packages, path).links[0].shapes[0].form).path);
   };
   EXPECT_EQ(meshOf("arm"), fs::canonical(folder / "ws/src/group/folder_of_arm/m/a.stl")) << "the first that has it";
   EXPECT_EQ(meshOf("hand"), fs::canonical(folder / "old/hand/m/a.stl"));
@@ -220,7 +224,7 @@ TEST_F(RobotTest, RefusesValuesOfJointsThatTakeNone)
     try {
       robot.requireValues(values);
     }
-    catch (const std::runtime_error& error) {
+    catch (const std::exception& error) {
       return std::string(error.what());
     }
     return std::string();
@@ -229,8 +233,8 @@ TEST_F(RobotTest, RefusesValuesOfJointsThatTakeNone)
   EXPECT_THAT(refused({{"seat", 1}}), HasSubstr("joint 'seat': is fixed"));
   EXPECT_THAT(refused({{"too", 1}}), HasSubstr("joint 'too': mimics 'turn'"));
   EXPECT_THAT(refused({{"trun", 1}}), HasSubstr("joint 'trun': is not one of r"));
-  EXPECT_THROW(robot.linkNamed("e"), std::runtime_error);
+  EXPECT_THROW(robot.linkNamed("e"), std::exception);
 }
 
 } // namespace
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros_packages.h"
+#include <pcl_bsh/io/robots/ros_packages.h>
 
 #include <algorithm>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <system_error>
 #include <vector>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 namespace {
 
@@ -95,4 +95,4 @@ std::optional<fs::path> packageIn(std::string_view folders, const std::string& n
   return std::nullopt;
 }
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "joint_values.h"
+#include <pcl_bsh/io/robots/joint_values.h>
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
@@ -8,26 +8,26 @@
 #include <cmath>
 #include <string_view>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 namespace {
 
 double finiteNumber(std::string_view word)
 {
-  const double value = io::parseNumber<double>(word);
-  if (!std::isfinite(value)) throw io::FormatError("'" + std::string(word) + "' is not finite", "give a number");
+  const double value = parseNumber<double>(word);
+  if (!std::isfinite(value)) throw FormatError("'" + std::string(word) + "' is not finite", "give a number");
   return value;
 }
 
 std::vector<JointValues> parseStates(std::string_view text)
 {
-  io::TextCursor lines(text, '#');
-  if (!lines.nextLine()) throw io::FormatError("has no line of names", "begin with the names of the joints");
-  lines.separateBy(io::separatorOf(lines.line()));
+  TextCursor lines(text, '#');
+  if (!lines.nextLine()) throw FormatError("has no line of names", "begin with the names of the joints");
+  lines.separateBy(separatorOf(lines.line()));
   std::vector<std::string> names;
   while (!lines.line().empty()) {
     names.emplace_back(lines.word());
-    if (io::looksLikeNumber(names.back()) || names.back().empty())
+    if (looksLikeNumber(names.back()) || names.back().empty())
       lines.fail("has '" + names.back() + "' where a name should be", "begin with the names of the joints");
   }
   std::vector<JointValues> states;
@@ -35,12 +35,12 @@ std::vector<JointValues> parseStates(std::string_view text)
     JointValues values;
     for (const std::string& name : names) {
       if (!values.emplace(name, lines.parseWord(finiteNumber)).second)
-        throw io::FormatError("names joint '" + name + "' twice", "let each have one column");
+        throw FormatError("names joint '" + name + "' twice", "let each have one column");
     }
     lines.requireEndOfLine();
     states.push_back(std::move(values));
   }
-  if (states.empty()) throw io::FormatError("has no line of values", "give one for each frame");
+  if (states.empty()) throw FormatError("has no line of values", "give one for each frame");
   return states;
 }
 
@@ -54,9 +54,9 @@ JointValues parseJointValues(const std::string& text)
     const std::string word = text.substr(begin, end - begin);
     const std::size_t equals = word.find('=');
     if (equals == 0 || equals == std::string::npos)
-      throw io::FormatError("'" + word + "' is no joint with a value", "give name=value,name=value");
+      throw FormatError("'" + word + "' is no joint with a value", "give name=value,name=value");
     if (!values.emplace(word.substr(0, equals), finiteNumber(std::string_view(word).substr(equals + 1))).second)
-      throw io::FormatError("names joint '" + word.substr(0, equals) + "' twice", "give each once");
+      throw FormatError("names joint '" + word.substr(0, equals) + "' twice", "give each once");
     begin = end + 1;
   }
   return values;
@@ -64,13 +64,13 @@ JointValues parseJointValues(const std::string& text)
 
 std::vector<JointValues> readJointStates(const std::filesystem::path& path)
 {
-  const io::FileBytes bytes(path);
+  const FileBytes bytes(path);
   try {
     return parseStates(bytes.view());
   }
-  catch (const io::FormatError& error) {
+  catch (const FormatError& error) {
     throw files::FileError(path, error.what(), error.remedy());
   }
 }
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

@@ -2,7 +2,7 @@
 // The surfaces of bodies as triangles, and the files of meshes that a URDF names.
 #pragma once
 
-#include "robot.h"
+#include <pcl_bsh/robot/robot.h>
 
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 struct Surface {
   std::vector<Point3> vertices;
@@ -29,9 +29,9 @@ Surface readSurface(const std::filesystem::path& path);
 
 /// In the link's frame. What is round is a polyhedron within it.
 /// @param sagitta how far that may be from what is round, m; > 0
-/// @pre requireSize() of what is no mesh
+/// @pre sizes above 0
 /// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error for a size that is too
 ///   large for the sagitta
-Surface surfaceOf(const Shape& shape, double sagitta);
+Surface surfaceOf(const robots::Shape& shape, double sagitta);
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

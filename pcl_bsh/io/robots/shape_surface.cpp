@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface.h"
+#include <pcl_bsh/io/robots/surface.h>
 
 #include <pcl_bsh/io/files/file_error.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-namespace pcl_bsh::self_filter {
+namespace pcl_bsh::io {
 
 namespace {
 
@@ -25,7 +25,7 @@ std::uint32_t sidesOf(double radius, double sagitta)
   return static_cast<std::uint32_t>(sides);
 }
 
-Surface triangulated(const Box& box, double)
+Surface triangulated(const robots::Box& box, double)
 {
   Surface surface;
   for (int corner = 0; corner < 8; ++corner) {
@@ -37,7 +37,7 @@ Surface triangulated(const Box& box, double)
   return surface;
 }
 
-Surface triangulated(const Cylinder& tube, double sagitta)
+Surface triangulated(const robots::Cylinder& tube, double sagitta)
 {
   const std::uint32_t sides = sidesOf(tube.radius, sagitta);
   Surface surface;
@@ -53,7 +53,7 @@ Surface triangulated(const Cylinder& tube, double sagitta)
   return surface;
 }
 
-Surface triangulated(const Sphere& ball, double sagitta)
+Surface triangulated(const robots::Sphere& ball, double sagitta)
 {
   const std::uint32_t sides = sidesOf(ball.radius, sagitta / 2), rows = (sides + 1) / 2; // two circles' sagittas
   Surface surface;
@@ -72,7 +72,15 @@ Surface triangulated(const Sphere& ball, double sagitta)
   return surface;
 }
 
-Surface triangulated(const MeshFile& mesh, double)
+/// Two halves of a ball and a tube between them: the ball's rows, and of these the lower ones moved down.
+Surface triangulated(const robots::Capsule& pill, double sagitta)
+{
+  Surface surface = triangulated(robots::Sphere{pill.radius}, sagitta);
+  for (Point3& p : surface.vertices) p[2] += std::copysign(pill.length / 2, p[2]);
+  return surface;
+}
+
+Surface triangulated(const robots::Mesh& mesh, double)
 {
   Surface surface = readSurface(mesh.path);
   if (surface.triangles.empty()) throw files::FileError(mesh.path, "has no faces", "give a mesh");
@@ -96,7 +104,7 @@ PointsView Surface::view() const
   return viewOf(TrianglesView{corners, triangles.empty() ? nullptr : triangles[0].data(), triangles.size()});
 }
 
-Surface surfaceOf(const Shape& shape, double sagitta)
+Surface surfaceOf(const robots::Shape& shape, double sagitta)
 {
   Surface surface = std::visit([&](const auto& form) { return triangulated(form, sagitta); }, shape.form);
   for (Point3& p : surface.vertices) {
@@ -106,4 +114,4 @@ Surface surfaceOf(const Shape& shape, double sagitta)
   return surface;
 }
 
-} // namespace pcl_bsh::self_filter
+} // namespace pcl_bsh::io

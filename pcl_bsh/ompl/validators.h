@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Validators for planners of OMPL: states and motions of a robot among clouds, certified.
+//
+//   information->setStateValidityChecker(std::make_shared<pcl_bsh::ompl::StateValidity>(information, world));
+//   information->setMotionValidator(std::make_shared<pcl_bsh::ompl::MotionValidity>(information, world));
+//
+// The space is a RealVectorStateSpace with a dimension for each value of a state. States out of the joints' limits are
+// not valid, and nothing undecided is. Both may run in several threads at once, while nobody changes the world.
+#pragma once
+
+#include <pcl_bsh/robot/robot_world.h>
+
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/StateValidityChecker.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+namespace pcl_bsh::ompl {
+
+using World = std::shared_ptr<const robots::RobotWorld>;
+
+/// The values of a state of a RealVectorStateSpace.
+inline robots::RobotState valuesOf(const ::ompl::base::State* state, std::size_t count)
+{
+  const double* const values = state->as<::ompl::base::RealVectorStateSpace::StateType>()->values;
+  return {values, values + count};
+}
+
+class StateValidity : public ::ompl::base::StateValidityChecker {
+public:
+  StateValidity(const ::ompl::base::SpaceInformationPtr& information, World world)
+  : StateValidityChecker(information),
+    world_(std::move(world))
+  {
+    specs_.clearanceComputationType = ::ompl::base::StateValidityCheckerSpecs::EXACT;
+  }
+
+  bool isValid(const ::ompl::base::State* state) const override
+  {
+    if (!si_->satisfiesBounds(state)) return false;
+    return world_->checkState(valuesOf(state, si_->getStateDimension())).verdict == Verdict::free;
+  }
+
+  /// At most so far from obstacles and from itself, less the clearance: 0 or less where it collides.
+  double clearance(const ::ompl::base::State* state) const override
+  {
+    return world_->clearance(valuesOf(state, si_->getStateDimension())).gap.lower - world_->options().clearance;
+  }
+
+private:
+  World world_;
+};
+
+class MotionValidity : public ::ompl::base::MotionValidator {
+public:
+  MotionValidity(const ::ompl::base::SpaceInformationPtr& information, World world)
+  : MotionValidator(information),
+    world_(std::move(world))
+  {
+  }
+
+  bool checkMotion(const ::ompl::base::State* from, const ::ompl::base::State* to) const override
+  {
+    return counted(check(from, to, false).verdict == Verdict::free);
+  }
+
+  /// @param last the last state that is certainly free, and its fraction of the motion
+  bool checkMotion(const ::ompl::base::State* from, const ::ompl::base::State* to,
+                   std::pair<::ompl::base::State*, double>& last) const override
+  {
+    const robots::MotionCheck found = check(from, to, true);
+    if (counted(found.verdict == Verdict::free)) return true;
+    last.second = found.last_valid;
+    if (last.first) si_->getStateSpace()->interpolate(from, to, found.last_valid, last.first);
+    return false;
+  }
+
+private:
+  robots::MotionCheck check(const ::ompl::base::State* from, const ::ompl::base::State* to, bool with_last) const
+  {
+    if (!si_->satisfiesBounds(from)) return {Verdict::colliding, 0.0, {}, 0.0};
+    if (!si_->satisfiesBounds(to)) return {Verdict::colliding, 1.0, {}, 0.0};
+    const std::size_t count = si_->getStateDimension();
+    return world_->checkMotion(valuesOf(from, count), valuesOf(to, count), with_last);
+  }
+
+  bool counted(bool valid) const
+  {
+    ++(valid ? valid_ : invalid_);
+    return valid;
+  }
+
+  World world_;
+};
+
+} // namespace pcl_bsh::ompl

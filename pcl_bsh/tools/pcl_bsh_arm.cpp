@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Says where a robot with joints collides, at states and along motions between them.
+#include <pcl_bsh/tools/cli/command_line.h>
+#include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/named_folders.h>
+#include <pcl_bsh/tools/cli/path.h>
+#include <pcl_bsh/tools/cli/reading.h>
+#include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/cli/used_files.h>
+
+#include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/robots/joint_values.h>
+#include <pcl_bsh/io/robots/read_robot.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/question/named_cloud.h>
+#include <pcl_bsh/question/warnings/warnings.h>
+#include <pcl_bsh/robot/robot_world.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pcl_bsh;
+using Json = nlohmann::ordered_json;
+using robots::JointValues;
+using robots::Meeting;
+using robots::RobotState;
+
+constexpr auto program = "pcl_bsh_arm";
+constexpr auto footer =
+    R"(A state is free where each link is farther than the clearance from all points and triangles, and from links that it is held
+against. A motion is a line between two states in joint space, free where each of its instants is. Both are certain: nothing
+is sampled. A motion is undecided only where it comes within the tolerance of the clearance. Lengths are in metres. Boxes,
+cylinders and spheres of the URDF are solid, meshes are surfaces. A link is not held against its parent, nor against links
+that --srdf disables.
+Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: hold the made robot against what its camera sees, and against itself
+  pcl_bsh_made_robot robot --frames 3
+  pcl_bsh_arm robot/robot.urdf --states robot/states.csv --motions --report robot/report.json)";
+
+struct Options {
+  fs::path urdf, srdf, states;
+  std::vector<fs::path> obstacles;
+  std::string joints, state, base;
+  std::vector<std::string> packages;
+  robots::WorldOptions world;
+  double radius = 0.0;
+  bool motions = false, no_self = false;
+  unsigned threads = 1;
+  std::optional<fs::path> report;
+  cli::ReadChoice reading;
+  cli::CommandFiles files;
+};
+
+struct ReadObstacle {
+  fs::path path;
+  io::Obstacle read;
+  std::vector<float> radii;
+  std::unique_ptr<const SphereHierarchy> hierarchy;
+};
+
+constexpr const char* words[] = {"free", "colliding", "undecided"};
+
+const char* wordOf(Verdict verdict)
+{
+  return words[static_cast<std::size_t>(verdict)];
+}
+
+ReadObstacle readObstacle(const Options& options, const fs::path& path, std::vector<std::string>& warnings)
+{
+  ReadObstacle obstacle{path, io::readObstacle(path, {}, options.reading.of(path), nullptr, options.threads), {}, {}};
+  for (const std::string& remark : obstacle.read.remarks()) warnings.push_back(path.string() + ": " + remark);
+  PointsView view = obstacle.read.view();
+  if (options.radius > 0.0 && !view.triangles) {
+    obstacle.radii.assign(view.count, static_cast<float>(options.radius));
+    view.radii = obstacle.radii.data();
+  }
+  obstacle.hierarchy = std::make_unique<const SphereHierarchy>(view);
+  return obstacle;
+}
+
+/// States by the names of joints; those that are not named are at that of --state, or at 0.
+std::vector<JointValues> valuesOf(const Options& options, const io::RobotGroups& groups)
+{
+  JointValues rest;
+  if (!options.state.empty()) {
+    const auto found = groups.states.find(options.state);
+    if (found == groups.states.end())
+      throw cli::UsageError("--state: " + options.srdf.string() + " has no state '" + options.state +
+                            "': give the name of one");
+    rest = found->second;
+  }
+  std::vector<JointValues> states;
+  try {
+    states = options.states.empty() ? std::vector{io::parseJointValues(options.joints)}
+                                    : io::readJointStates(options.states);
+  }
+  catch (const io::FormatError& error) {
+    throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
+  }
+  for (JointValues& values : states) values.insert(rest.begin(), rest.end());
+  return states;
+}
+
+class Arm {
+public:
+  Arm(const robots::RobotWorld& world, const std::vector<ReadObstacle>& obstacles)
+  : world_(world),
+    obstacles_(obstacles)
+  {
+  }
+
+  /// "hand with point 17 of scan.pcd"
+  std::string told(const Meeting& meeting) const
+  {
+    const std::string link = nameOf(meeting.link);
+    if (meeting.other_link) return link + " with " + nameOf(*meeting.other_link);
+    const ReadObstacle& obstacle = obstacles_[meeting.obstacle];
+    return link + " with " + obstacle.read.partName() + " " + std::to_string(meeting.record) + " of " +
+           obstacle.path.string();
+  }
+
+  void add(const Meeting& meeting, Json& json) const
+  {
+    json["link"] = nameOf(meeting.link);
+    if (meeting.other_link) {
+      json["other_link"] = nameOf(*meeting.other_link);
+      return;
+    }
+    const ReadObstacle& obstacle = obstacles_[meeting.obstacle];
+    json["obstacle"] = obstacle.path.string();
+    json[obstacle.read.partName()] = meeting.record;
+    json["place"] = obstacle.hierarchy->view().point(meeting.record);
+  }
+
+  Json state(const RobotState& state, std::string& line) const
+  {
+    const robots::StateCheck check = world_.checkState(state);
+    const robots::ClearanceResult nearest = world_.clearance(state);
+    Json json = {{"verdict", wordOf(check.verdict)}};
+    if (nearest.meeting) json["gap"] = {nearest.gap.lower, nearest.gap.upper};
+    const std::optional<Meeting>& meeting = check.meeting ? check.meeting : nearest.meeting;
+    if (meeting) add(*meeting, json);
+    line = wordOf(check.verdict) + (meeting ? (check.meeting ? ": " : "; nearest is ") + told(*meeting) : "");
+    return json;
+  }
+
+  Json motion(const RobotState& from, const RobotState& to, std::string& line) const
+  {
+    const robots::MotionCheck check = world_.checkMotion(from, to, true);
+    Json json = {{"verdict", wordOf(check.verdict)}, {"last_valid", check.last_valid}};
+    line = wordOf(check.verdict);
+    if (!check.meeting) return json;
+    json["fraction"] = check.fraction;
+    add(*check.meeting, json);
+    line += " at " + std::to_string(check.fraction) + ": " + told(*check.meeting) + "; free until " +
+            std::to_string(check.last_valid);
+    return json;
+  }
+
+private:
+  const std::string& nameOf(std::size_t link) const { return world_.robot().links[link].name; }
+
+  const robots::RobotWorld& world_;
+  const std::vector<ReadObstacle>& obstacles_;
+};
+
+void takeBase(Options& options, std::vector<std::string>& warnings)
+{
+  if (options.base.empty()) return;
+  options.world.base = cli::parsePose("--base", options.base, warnings);
+  options.world.base.linear() = Eigen::Quaterniond(options.world.base.linear()).normalized().toRotationMatrix();
+}
+
+/// Samples that a link may slip between.
+void warnOfHoles(const Options& options, const robots::Robot& robot, const std::vector<ReadObstacle>& obstacles,
+                 std::vector<std::string>& warnings)
+{
+  NamedCloud links;
+  links.name = robot.name;
+  links.is_surface = true;
+  links.box.extend(Eigen::Vector3d::Zero());
+  for (const ReadObstacle& obstacle : obstacles)
+    if (const auto warning = warningOfDensity(measuredCloud(obstacle.path.string(), *obstacle.hierarchy), links,
+                                              options.world.clearance + options.radius))
+      warnings.push_back(warning->text);
+}
+
+int run(Options& options)
+{
+  std::vector<std::string> warnings;
+  takeBase(options, warnings);
+  const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
+  robots::Robot robot =
+      io::readRobot(options.urdf, cli::namedFolders("--package", options.packages), package_path ? package_path : "");
+  io::RobotGroups groups;
+  if (!options.srdf.empty()) groups = io::readGroups(options.srdf, robot);
+  cli::Step loading("Loading the robot and obstacles");
+  io::readMeshes(robot);
+  std::vector<ReadObstacle> obstacles;
+  std::vector<const SphereHierarchy*> hierarchies;
+  for (const fs::path& path : options.obstacles) {
+    obstacles.push_back(readObstacle(options, path, warnings));
+    hierarchies.push_back(obstacles.back().hierarchy.get());
+  }
+  loading.done(counted(robot.links.size(), "link") + ", " + counted(obstacles.size(), "obstacle"));
+  std::vector<RobotState> states;
+  for (const JointValues& values : valuesOf(options, groups)) states.push_back(stateOf(robot, values));
+
+  options.world.with_self = !options.no_self;
+  const robots::RobotWorld world(robot, hierarchies, options.world);
+  const Arm arm(world, obstacles);
+  Json report = {{"robot", robot.name},
+                 {"links", robot.links.size()},
+                 {"clearance", options.world.clearance},
+                 {"tolerance", options.world.tolerance},
+                 {"states", Json::array()}};
+  std::string line;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    report["states"].push_back(arm.state(states[i], line));
+    options.files.summary() << "state " << i << ": " << line << '\n';
+  }
+  if (options.motions) report["motions"] = Json::array();
+  for (std::size_t i = 0; options.motions && i + 1 < states.size(); ++i) {
+    report["motions"].push_back(arm.motion(states[i], states[i + 1], line));
+    options.files.summary() << "motion " << i << " to " << i + 1 << ": " << line << '\n';
+  }
+  warnOfHoles(options, robot, obstacles, warnings);
+  cli::warn(program, warnings);
+  report["warnings"] = warnings;
+  if (options.report) cli::writeJson(*options.report, report);
+  return 0;
+}
+
+void check(Options& options)
+{
+  if (!options.state.empty() && options.srdf.empty())
+    throw cli::UsageError("--state: is a state of an SRDF: give --srdf, too");
+  cli::CommandFiles& files = options.files;
+  files.reads("ROBOT.urdf", options.urdf).reads("--srdf", options.srdf).reads("--states", options.states);
+  for (const fs::path& obstacle : options.obstacles) files.reads("OBSTACLE", obstacle);
+  files.readsPose("--base", options.base).writes("--report", options.report.value_or(""));
+  files.requireApart();
+  if (options.report) files::requireWritable(*options.report);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return cli::runProgram(program, [&] {
+    Options options;
+    CLI::App app("Where a robot with joints collides with clouds, surfaces and itself, and which motions are free.",
+                 program);
+    app.footer(footer);
+    app.add_option("ROBOT.urdf", options.urdf, "the robot")->type_name("")->required();
+    app.add_option("OBSTACLE", options.obstacles, "clouds and surfaces, in one frame")->type_name("");
+    app.add_option("--srdf", options.srdf, "pairs of links that are never held against each other, and named states")
+        ->type_name("FILE");
+    auto* joints = app.add_option("--joints", options.joints, "values of joints, in radians or metres")
+                       ->type_name("NAME=VALUE,...");
+    app.add_option("--states", options.states,
+                   "file of such values: names in its first line, then a line for each state")
+        ->type_name("FILE")
+        ->excludes(joints);
+    app.add_option("--state", options.state, "state of the SRDF: values of joints that are not given (default: 0)")
+        ->type_name("NAME");
+    app.add_flag("--motions", options.motions, "also check the motion from each state to the next");
+    const auto length = [&](const char* name, double& value, const char* description) {
+      app.add_option(name, value, description)
+          ->type_name("M")
+          ->transform(cli::number<double>("give a length in metres, >= 0", [](double given) { return given >= 0.0; }))
+          ->capture_default_str();
+    };
+    length("--clearance", options.world.clearance, "links this near to an obstacle collide");
+    length("--self-clearance", options.world.self_clearance, "links this near to each other collide");
+    length("--tolerance", options.world.tolerance, "motions this near to the clearance may be undecided");
+    length("--radius", options.radius, "points are balls of this radius");
+    app.add_flag("--no-self", options.no_self, "do not hold links against each other");
+    app.add_option("--base", options.base,
+                   "pose of the robot's root among the obstacles:\nx,y,z,roll,pitch,yaw or a file")
+        ->type_name("POSE");
+    app.add_option("--package", options.packages,
+                   "folder that package://NAME/ stands for; may be given several times;\nothers are looked for in "
+                   "ROS_PACKAGE_PATH")
+        ->type_name("NAME=DIR")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--threads", options.threads, "0: all of the machine's; any number gives the same result")
+        ->type_name("N")
+        ->transform(cli::number<unsigned>(cli::give_threads))
+        ->capture_default_str();
+    app.add_option("--report", options.report, "JSON file for the results; - is standard output")->type_name("FILE");
+    cli::ReadOptions reading;
+    reading.addTo(app);
+    if (!cli::understood(app, program, argc, argv)) return 0;
+    options.reading = reading.read({options.obstacles.begin(), options.obstacles.end()});
+    check(options);
+    return run(options);
+  });
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/programs/program_run.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+namespace pcl_bsh {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using Json = nlohmann::json;
+
+/// A ball of radius 0.1, 1 m from the axis that it turns about, and two points beside its way.
+class ArmProgram : public testing::Test {
+protected:
+  ArmProgram()
+  {
+    folder.write("arm.urdf", R"(<robot name="arm"><link name="base"/><link name="bob"><collision>
+      <origin xyz="1 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link>
+      <joint name="turn" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 0 1"/></joint></robot>)");
+    folder.write("arm.srdf",
+                 R"(<robot name="arm"><group_state name="up"><joint name="turn" value="1"/></group_state></robot>)");
+    folder.write("points.csv", "x,y,z\n0,0,9\n0,1.15,0\n");
+    folder.write("states.csv", "turn\n0\n1\n2\n");
+  }
+
+  Outcome arm(const std::string& arguments) const { return run("pcl_bsh_arm", arguments, folder.path()); }
+
+  void expectFailure(const std::string& arguments, int exit_code, const std::string& message) const
+  {
+    const Outcome failed = arm(arguments);
+    EXPECT_EQ(failed.exit_code, exit_code) << arguments;
+    EXPECT_THAT(failed.err, StartsWith("pcl_bsh_arm: ")) << arguments;
+    EXPECT_THAT(failed.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+  }
+
+  const io::TemporaryFolder folder;
+};
+
+TEST_F(ArmProgram, TellsWhatCollidesWhereAndWhen)
+{
+  const Outcome done = arm("arm.urdf points.csv --states states.csv --motions --clearance 0.06 --report report.json");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("motion 0 to 1: free\n"));
+  EXPECT_THAT(done.out, HasSubstr("bob with point 1 of points.csv; free until 0."));
+  const Json report = Json::parse(io::contentOf(folder / "report.json"));
+  ASSERT_EQ(report["motions"].size(), 2u);
+  EXPECT_EQ(report["motions"][1]["verdict"], "colliding");
+  EXPECT_EQ(report["motions"][1]["link"], "bob");
+  EXPECT_EQ(report["motions"][1]["point"], 1);
+  EXPECT_NEAR(report["motions"][1]["fraction"].get<double>(), 0.57, 0.05);
+  EXPECT_EQ(report["states"][0]["verdict"], "free");
+  EXPECT_EQ(arm("arm.urdf points.csv --states states.csv --motions --clearance 0.04").out.find("colliding"),
+            std::string::npos);
+  EXPECT_THAT(arm("arm.urdf points.csv --states states.csv --motions --radius 0.06").out, HasSubstr("colliding"));
+}
+
+TEST_F(ArmProgram, TakesStatesOfAnSrdfAndABase)
+{
+  EXPECT_THAT(arm("arm.urdf points.csv --srdf arm.srdf --state up --base=0,0.31,0,0,0,0").out, HasSubstr("free"));
+  EXPECT_THAT(arm("arm.urdf points.csv --srdf arm.srdf --state up --base=-0.54,0.31,0,0,0,0").out,
+              HasSubstr("state 0: colliding: bob with point 1"));
+}
+
+TEST_F(ArmProgram, RefusesWhatIsWrong)
+{
+  expectFailure("arm.urdf --joints trun=1", 1, "joint 'trun': is not one of arm");
+  expectFailure("arm.urdf --joints turn", 2, "'turn' is no joint with a value");
+  expectFailure("arm.urdf --state up", 2, "give --srdf");
+  expectFailure("arm.urdf --srdf arm.srdf --state down", 2, "has no state 'down'");
+  expectFailure("arm.urdf --clearance -1", 2, "--clearance");
+  expectFailure("none.urdf", 1, "none.urdf");
+  expectFailure("arm.urdf none.pcd", 1, "none.pcd");
+}
+
+} // namespace
+} // namespace pcl_bsh
