@@ -49,7 +49,7 @@ T numberOr(std::string_view text, T otherwise)
   constexpr auto blanks = " \t\r\n";
   const std::size_t from = text.find_first_not_of(blanks);
   if (from == std::string_view::npos) return otherwise;
-  const auto number = numberOf<T>(text.substr(from, text.find_last_not_of(blanks) + 1 - from));
+  const auto number = io::numberOf<T>(text.substr(from, text.find_last_not_of(blanks) + 1 - from));
   if (!number) throw FormatError("has XML with '" + std::string(text.substr(0, 40)) + "' in place of a number");
   return *number;
 }
