@@ -35,8 +35,8 @@ public:
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  const SphereHierarchy& thing() const noexcept;
-  double spacing() const noexcept; ///< median distance of neighbours; 0 of balls and triangles
+  const SphereHierarchy& thing() const noexcept; ///< its records
+  double spacing() const noexcept;               ///< median distance of neighbours; 0 of balls and triangles
 
   struct Parts;
   const Parts& parts() const noexcept { return *parts_; } ///< for the queries (pcl_bsh/manifold/collider_parts.h)

@@ -69,11 +69,11 @@ public:
   BodyId add(const Collider& collider, const Eigen::Isometry3d& T_world_collider, const MassProperties& mass,
              const Material& material = {});
 
-  std::size_t size() const noexcept;
+  std::size_t size() const noexcept;                ///< bodies
   const Eigen::Isometry3d& pose(BodyId body) const; ///< T_world_collider
   Eigen::Vector3d velocity(BodyId body) const;      ///< of the centre of mass
   Eigen::Vector3d spin(BodyId body) const;          ///< radians in a second
-  bool isAsleep(BodyId body) const;
+  bool isAsleep(BodyId body) const;                 ///< it rests, until something moves it
 
   void setVelocity(BodyId body, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
 

@@ -18,8 +18,8 @@ namespace pcl_bsh {
 
 /// Points that meet any of these terms. Coordinates are in the cloud's frame and unit.
 struct IgnoredPoints {
-  enum class Kind : std::uint8_t { values, box, plane };
-
+  enum class Kind : std::uint8_t { values, box, plane }; ///< chosen by a field, or by place
+  /// Points of some values, in a box, or near a plane.
   struct Term {
     Kind kind = Kind::values;
     std::string field; ///< of values
@@ -28,7 +28,7 @@ struct IgnoredPoints {
     std::vector<double> numbers;
 
     std::string text() const; ///< as parse() reads it
-    bool operator==(const Term& other) const
+    /** All members. */ bool operator==(const Term& other) const
     {
       return kind == other.kind && field == other.field && numbers == other.numbers;
     }
@@ -36,8 +36,8 @@ struct IgnoredPoints {
 
   std::vector<Term> terms;
 
-  bool empty() const noexcept { return terms.empty(); }
-  bool operator==(const IgnoredPoints& other) const { return terms == other.terms; }
+  bool empty() const noexcept { return terms.empty(); } ///< all points count
+  /** All terms. */ bool operator==(const IgnoredPoints& other) const { return terms == other.terms; }
 
   /// `FIELD=N,N;box=X,Y,Z,X,Y,Z;plane=NX,NY,NZ,D,T`, in any order and number; empty: none.
   /// @throws InvalidInput quoting the text

@@ -41,14 +41,17 @@ struct ObstacleAnswer {
   bool asked = true; ///< false: it ignores the input, and the rest says nothing
   /// The gravest of the input's records as to this obstacle, and of its own that are unseen.
   Verdict verdict = Verdict::free;
-  std::size_t colliding = 0, undecided = 0, sparse = 0; ///< records of the input
-  std::size_t unseen = 0;                               ///< records of the obstacle
+  std::size_t colliding = 0; ///< records of the input
+  std::size_t undecided = 0; ///< records of the input
+  std::size_t sparse = 0;    ///< records of the input
+  std::size_t unseen = 0;    ///< records of the obstacle
   /// With Wanted::closest: the smallest distance. Along a path it is that of what collides; of an obstacle that nothing
   /// collides with, that at the poses, however far.
   DistanceResult closest;
   std::int32_t closest_pose = -1; ///< of the path, at which that is; -1: there is no path
 };
 
+/// The answer about all obstacles, together and one by one.
 struct ObstaclesAnswer {
   /// The answer about all obstacles together. Flags are the gravest; distances, poses and intervals those of the
   /// nearest obstacle, of several the first. Counts at the poses of a path add up: a record that collides with two

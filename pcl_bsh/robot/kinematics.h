@@ -49,13 +49,13 @@ public:
   /// How a body moves in an instant: a point at x by turn * x + shift, each second of a line that takes one.
   struct Twist {
     Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
-    Eigen::Vector3d at(const Eigen::Vector3d& x) const { return turn.cross(x) + shift; }
+    Eigen::Vector3d at(const Eigen::Vector3d& x) const { return turn.cross(x) + shift; } ///< of a point at x
   };
-
+  /// A rotation, then a translation.
   struct Pose {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-    Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return rotation * x + translation; }
+    /** A point. */ Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return rotation * x + translation; }
   };
 
   /// A joint that moves, and what hangs on it up to the next ones. Body 0 is what stands still.
@@ -77,11 +77,11 @@ public:
   ///   cycle. Paddings are finite and >= 0, sizes of shapes above 0
   explicit Kinematics(const Robot& robot);
 
-  const std::vector<Body>& bodies() const noexcept { return bodies_; } ///< parents first
-  std::size_t variables() const noexcept { return links_of_variables_.size(); }
+  const std::vector<Body>& bodies() const noexcept { return bodies_; }          ///< parents first
+  std::size_t variables() const noexcept { return links_of_variables_.size(); } ///< values of a state
+  /// The link that a value of a state moves.
   std::size_t linkOfVariable(std::size_t variable) const { return links_of_variables_[variable]; }
-
-  std::size_t bodyOf(std::size_t link) const { return body_of_link_[link]; }
+  std::size_t bodyOf(std::size_t link) const { return body_of_link_[link]; }             ///< that a link is part of
   const Eigen::Isometry3d& inBody(std::size_t link) const { return T_body_link_[link]; } ///< T_body_link
 
   /// Poses of the bodies [0, count), from that of body 0.
@@ -116,7 +116,7 @@ private:
 
 /// T_root_link of every link. @throws InvalidInput as Kinematics and Robot::requireValues() do
 std::vector<Eigen::Isometry3d> linkPoses(const Robot& robot, const JointValues& values);
-
+/// Roundings of each joint of a chain that Kinematics::error() counts.
 inline constexpr double kForwardRoundings = 128.0;
 
 } // namespace pcl_bsh::robots

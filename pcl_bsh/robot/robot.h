@@ -25,19 +25,19 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::robots {
-
+/// A ball about the origin.
 struct Sphere {
   double radius = 0.0; ///< m, > 0
 };
-
+/// All within a radius of a segment.
 struct Capsule {
   double radius = 0.0, length = 0.0; ///< m, > 0; about z, centred; the length is that between the ends' centres
 };
-
+/// A cylinder with flat ends.
 struct Cylinder {
   double radius = 0.0, length = 0.0; ///< m, > 0; about z, centred
 };
-
+/// A box along the axes.
 struct Box {
   Eigen::Vector3d size = Eigen::Vector3d::Zero(); ///< m; all three > 0; centred
 };
@@ -63,8 +63,8 @@ struct Mimic {
 
 /// How a link hangs on its parent. A continuous joint goes the shorter way.
 struct Joint {
-  enum class Kind : std::uint8_t { fixed, revolute, continuous, prismatic };
-
+  enum class Kind : std::uint8_t { fixed, revolute, continuous, prismatic }; ///< as URDF has them
+  /// Whether it turns about its axis.
   bool turns() const noexcept { return kind == Kind::revolute || kind == Kind::continuous; }
 
   std::string name;
@@ -76,7 +76,7 @@ struct Joint {
   double lower = -std::numeric_limits<double>::infinity(); ///< rad or m; of a continuous joint no matter
   double upper = std::numeric_limits<double>::infinity();
 };
-
+/// A rigid part of a robot, with the joint that moves it.
 struct Link {
   std::string name;
   std::vector<Shape> shapes;
@@ -89,7 +89,7 @@ using JointValues = std::map<std::string, double>;
 
 /// One value for each of variablesOf().
 using RobotState = std::vector<double>;
-
+/// Links and joints, as files have them.
 struct Robot {
   std::string name;
   std::vector<Link> links; ///< parents before their children; the first is the root

@@ -31,7 +31,7 @@
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::robots {
-
+/// Lengths that a world is asked with.
 struct WorldOptions {
   double clearance = 0.0;      ///< from obstacles, m, finite and >= 0: what is no farther collides
   double self_clearance = 0.0; ///< of links from each other, m, finite and >= 0
@@ -47,19 +47,19 @@ struct Meeting {
   std::size_t other_shape = 0, obstacle = 0;  ///< else one of the obstacles, and
   std::uint32_t record = kNothing;            ///< the record of its view
 };
-
+/// The verdict of a state.
 struct StateCheck {
   Verdict verdict = Verdict::free;
   std::optional<Meeting> meeting; ///< what collides, or is undecided
 };
-
+/// The verdict of a motion.
 struct MotionCheck {
   Verdict verdict = Verdict::free;
   double fraction = 1.0;          ///< where it collides, or is undecided; 1 where it is free
   std::optional<Meeting> meeting; ///< what collides there, or is undecided
   double last_valid = 1.0; ///< the motion is certainly free up to here; 0 unless that was asked for, or it is free
 };
-
+/// How far a state is from all that it may meet.
 struct ClearanceResult {
   Interval gap;                   ///< the least one, less all radii and paddings; negative inside of solids. Two
                                   ///< solids that meet are at most at its upper end
@@ -76,13 +76,13 @@ public:
   RobotWorld(RobotWorld&&) noexcept;
   RobotWorld& operator=(RobotWorld&&) noexcept;
 
-  const Robot& robot() const noexcept; ///< with what is attached
-  const Kinematics& kinematics() const noexcept;
-  const WorldOptions& options() const noexcept;
+  const Robot& robot() const noexcept;           ///< with what is attached
+  const Kinematics& kinematics() const noexcept; ///< of the robot with what is attached
+  const WorldOptions& options() const noexcept;  ///< as given, with the base of now
 
   /// Other obstacles; or the same, after a HierarchyUpdate or a refit has changed them.
   void setObstacles(const std::vector<const SphereHierarchy*>& obstacles);
-
+  /// Moves the whole robot.
   void setBase(const Eigen::Isometry3d& T_world_root);
 
   /// A link of its own that moves with another and is not held against that nor against `ignored`. Its name is new.
@@ -104,10 +104,11 @@ public:
 
   /// All at once. @param threads 0: all of the machine's
   std::vector<Verdict> checkStates(const std::vector<RobotState>& states, unsigned threads = 1) const;
-
+  /// A line in joint space.
   struct Motion {
     RobotState from, to;
   };
+  /// The same of motions.
   std::vector<Verdict> checkMotions(const std::vector<Motion>& motions, unsigned threads = 1) const;
 
 private:

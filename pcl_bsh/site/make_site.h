@@ -41,7 +41,8 @@ struct MakeOptions {
 
   /// The clouds' lengths, and then the site's, are in these: mm, cm, m, ft or us-ft. Empty: as files say, and as they
   /// are.
-  std::string unit, to_unit;
+  std::string unit;
+  std::string to_unit; ///< see unit
   /// Called with a cloud and what users should know of how it is read; null: not told.
   std::function<void(const std::filesystem::path&, const std::vector<std::string>& remarks)> remark;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.

@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "program.h"
 #include <examples/robot/made_robot.h>
+#include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/tools/self_filter/self_filter.h>
 
 #include <algorithm>

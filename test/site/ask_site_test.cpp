@@ -123,8 +123,13 @@ TEST_F(AskSite, RefusesOptionsOfOthersByTheirNames)
     given.wanted.flags = true;
     for (const char* const name : {row.with, row.name}) {
       if (!name) continue;
-      const bool is_switch = std::holds_alternative<bool Question::*>(questionOption(name)->member);
-      setOption(given, name, is_switch ? "true" : std::string(name) == "origin" ? "0,0,9" : "0.01");
+      const std::string option = name;
+      const bool is_switch = std::holds_alternative<bool Question::*>(questionOption(option)->member);
+      setOption(given, option,
+                is_switch                           ? "true"
+                : option == "origin"                ? "0,0,9"
+                : option.ends_with("ignore_points") ? "box=0,0,0,1,1,1"
+                                                    : "0.01");
     }
     // A switch is told of first.
     const std::string name = row.with ? row.with : row.name;

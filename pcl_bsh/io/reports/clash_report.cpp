@@ -145,8 +145,10 @@ std::vector<std::pair<const ClashReport*, const Clash*>> ClashLists::bySeverity(
   for (const ClashReport& report : obstacles)
     for (const Clash& clash : report.clashes) all.emplace_back(&report, &clash);
   if (obstacles.size() > 1)
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return isMoreSevere(*a.second, *b.second); });
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+      const bool gone_a = !isPresent(a.second->status), gone_b = !isPresent(b.second->status);
+      return gone_a != gone_b ? gone_b : isMoreSevere(*a.second, *b.second);
+    });
   return all;
 }
 

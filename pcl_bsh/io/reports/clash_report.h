@@ -110,7 +110,7 @@ struct ClashLists {
   /// Whether obstacles have names, and clashes tell these.
   bool haveNames() const { return !obstacles.front().name.empty(); }
 
-  /// Each clash with its obstacle; of several obstacles the most severe first.
+  /// Each clash with its obstacle; of several obstacles the most severe first, then those that are gone.
   std::vector<std::pair<const ClashReport*, const Clash*>> bySeverity() const;
 
   std::size_t present() const { return sum(&ClashReport::present); } ///< clashes that are there now

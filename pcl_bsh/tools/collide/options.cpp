@@ -126,13 +126,14 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("--obstacle", obstacles,
                  "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
                  "again and again. Its own options follow after ';':\n"
-                 "\"NAME=FILE;pose=POSE;unit=mm;clearance=D;solid=true;uncertainty=U\".\n"
+                 "\"NAME=FILE;pose=POSE;unit=mm\", and clearance=D, solid=true and\n"
+                 "uncertainty=U alike.\n"
                  "Without NAME= its name is the file's. A path moves all of them")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
   app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
   app.add_option("--ignore", options.ignored,
-                 "two names that are not compared, of obstacles or `input`; * is any\n"
+                 "two names that are not compared, of obstacles or 'input'; * is any\n"
                  "letters; may be given again and again")
       ->type_name("FIRST:SECOND")
       ->allow_extra_args(false);

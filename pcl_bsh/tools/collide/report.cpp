@@ -15,7 +15,9 @@ namespace {
 
 nlohmann::ordered_json toJson(const CloudReport& cloud)
 {
-  return {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}, {"ignored", cloud.ignored}};
+  nlohmann::ordered_json json = {{"file", cloud.file}, {"points", cloud.points}, {"finite", cloud.finite}};
+  if (cloud.ignored > 0) json["ignored"] = cloud.ignored;
+  return json;
 }
 
 nlohmann::ordered_json toJson(const Spacing& spacing)

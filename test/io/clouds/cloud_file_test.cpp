@@ -162,7 +162,8 @@ TEST(CloudFile, SaysWhatCannotBeRead)
   EXPECT_EQ(failureOf(folder / "sub.pcd"), "is a folder: name a file in it");
   EXPECT_EQ(failureOf("/dev/null"), "is neither a file nor a pipe: save the cloud to a file first");
   EXPECT_EQ(failureOf(folder.write("a.pcd", "")), "is empty: export or copy the file again");
-  const std::string readable = "give a .pcd, .ply, .las, .laz, .e57, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt file";
+  const std::string readable =
+      "give a .pcd, .ply, .las, .laz, .e57, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt file";
   EXPECT_EQ(failureOf(folder.write("a.rcp", "x")), "unknown extension '.rcp': " + readable);
   EXPECT_EQ(failureOf(folder.write("a", "x")), "has no extension: " + readable);
   EXPECT_EQ(failureOf(folder.write("a.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n")),

@@ -113,7 +113,7 @@ TEST_F(CollideObstacles, AreClearWithTheirSmallestDistance)
 {
   const Outcome done = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --clashes list.json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("crane: clear, smallest distance 2.7"));
+  EXPECT_THAT(done.out, HasSubstr("crane: clear, smallest distance 3\n"));
   EXPECT_EQ(json("list.json")["obstacles"][0]["state"], "clear");
   EXPECT_EQ(json("list.json")["clashes"].size(), 0U);
   const Outcome path = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --from 0,0,0,0,0,0 --to 0,0,2,0,0,0 "
@@ -130,7 +130,7 @@ TEST_F(CollideObstacles, AreComparedWithAnEarlierListByName)
   const SeveralJson now = json("now.json");
   ASSERT_EQ(now["clashes"].size(), 2U) << now;
   for (const SeveralJson& clash : now["clashes"])
-    EXPECT_EQ(clash["status"], clash["obstacle_name"] == "press" ? "persisting" : "not_scanned") << clash;
+    EXPECT_EQ(clash["status"], clash["obstacle_name"] == "press" ? "persisting" : "resolved") << clash;
   EXPECT_EQ(now["clashes"][0]["id"], json("list.json")["clashes"][1]["id"]);
   EXPECT_THAT(collide("--obstacle press=crate.off --clashes one.json --previous list.json").err,
               HasSubstr("lists clashes of 'mill', which is no obstacle now: its clashes are left out"));

@@ -908,7 +908,7 @@ TEST_F(Collide, RefusesClouds)
   folder.write("flat.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n");
   folder.write("many.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2147483648\nDATA binary\n");
   folder.write("image.ply", "\x89PNG\r\n");
-  folder.write("scan.e57", "LASF");
+  folder.write("scan.fls", "LASF");
   folder.write("collision.pcd",
                "FIELDS x y z collision\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 0.5\n");
   const std::string rest = " {out.pcd} --clearance 1";
@@ -919,7 +919,7 @@ TEST_F(Collide, RefusesClouds)
         {"{flat.pcd}", "flat.pcd: field 'z' is missing"},
         {"{many.pcd}", "many.pcd: it has 2147483648 points, more than the 2147483647 that an index can name: split"},
         {"{image.ply}", "image.ply: is not a PLY file"},
-        {"{scan.e57}", "scan.e57: unknown extension '.e57': "}}) {
+        {"{scan.fls}", "scan.fls: unknown extension '.fls': "}}) {
     expectFailure(file + " {obstacle.xyz}" + rest, 1, message);
     expectFailure("{input.ply} " + file + rest, 1, message);
   }

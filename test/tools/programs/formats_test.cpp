@@ -143,7 +143,7 @@ TEST_F(EveryFormat, IsTakenBySite)
   std::string all;
   for (const std::string& name : names) all += " " + name;
   expectDone("pcl_bsh_site", "make" + all + " --vertices-only --out site");
-  EXPECT_THAT(expectDone("pcl_bsh_site", "validate site"), HasSubstr("360"));
+  EXPECT_THAT(expectDone("pcl_bsh_site", "validate site"), HasSubstr("390"));
   for (const std::string& name : names)
     expectDone("pcl_bsh_site", "collide site " + name + " --clearance 0.05 --report report.json");
 }
@@ -159,14 +159,15 @@ TEST_F(EveryFormat, IsTakenByScene)
   folder.write("scene.json", "{\"clouds\": {" + clouds + "}, \"objects\": [" + objects +
                                  R"(], "clearance": 0.05, "tolerance": 0.01, "steps": 1, "dt": 0.1,
                                  "effects": {"any": true}})");
-  EXPECT_THAT(expectDone("pcl_bsh_scene", "scene.json"), HasSubstr("12 objects"));
+  EXPECT_THAT(expectDone("pcl_bsh_scene", "scene.json"), HasSubstr("13 objects"));
 }
 
 /// Written, too, where the format can be.
 TEST_F(EveryFormat, IsTakenByPipeline)
 {
   const auto output = [](const std::string& input) {
-    return "out_" + input + (input.ends_with(".off") || input.ends_with(".stl") ? ".pcd" : "");
+    return "out_" + input +
+           (input.ends_with(".off") || input.ends_with(".stl") || input.ends_with(".e57") ? ".pcd" : "");
   };
   const auto writer = [](const std::string& file) {
     const std::string extension = file.substr(file.rfind('.') + 1);
