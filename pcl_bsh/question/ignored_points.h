@@ -18,7 +18,7 @@ namespace pcl_bsh {
 
 /// Points that meet any of these terms. Coordinates are in the cloud's frame and unit.
 struct IgnoredPoints {
-  enum class Kind : std::uint8_t { values, box, plane }; ///< chosen by a field, or by place
+  /** By a field, or by place. */ enum class Kind : std::uint8_t { values, box, plane };
   /// Points of some values, in a box, or near a plane.
   struct Term {
     Kind kind = Kind::values;

@@ -63,7 +63,7 @@ struct Mimic {
 
 /// How a link hangs on its parent. A continuous joint goes the shorter way.
 struct Joint {
-  enum class Kind : std::uint8_t { fixed, revolute, continuous, prismatic }; ///< as URDF has them
+  /** As URDF has them. */ enum class Kind : std::uint8_t { fixed, revolute, continuous, prismatic };
   /// Whether it turns about its axis.
   bool turns() const noexcept { return kind == Kind::revolute || kind == Kind::continuous; }
 

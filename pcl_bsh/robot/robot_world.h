@@ -108,7 +108,7 @@ public:
   struct Motion {
     RobotState from, to;
   };
-  /// The same of motions.
+  /// Many motions at once.
   std::vector<Verdict> checkMotions(const std::vector<Motion>& motions, unsigned threads = 1) const;
 
 private:

@@ -140,7 +140,7 @@ TEST_F(AskSite, RefusesOptionsOfOthersByTheirNames)
     }
     ++refused;
   }
-  EXPECT_EQ(refused, 7);
+  EXPECT_EQ(refused, 9);
 }
 
 TEST_F(AskSite, RefusesAnswersThatItDoesNotHave)

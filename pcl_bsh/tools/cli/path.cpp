@@ -75,9 +75,9 @@ void PathOptions::addTo(CLI::App& app)
 {
   app.add_option("--trajectory", file,
                  "poses of OBSTACLE, one a line: 12 or 16 numbers of a matrix, row by\n"
-                 "row, or time tx ty tz qx qy qz qw; or, after a line `waypoints LENGTH\n"
-                 "DEGREES` of the largest step, places and headings: x y z heading, and\n"
-                 "`turn` (in place, before it goes there) or `arc`; instead of --pose.\n"
+                 "row, or time tx ty tz qx qy qz qw; or, after a line 'waypoints LENGTH\n"
+                 "DEGREES' of the largest step, places and headings: x y z heading, and\n"
+                 "'turn' (in place, before it goes there) or 'arc'; instead of --pose.\n"
                  "OUTPUT gets the fields distance, first_pose and closest_pose beside\ncollision")
       ->type_name("FILE");
   app.add_option("--from", from, "a straight run instead: its first pose, as for --pose")->type_name("POSE");

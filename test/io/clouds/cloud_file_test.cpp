@@ -343,7 +343,7 @@ TEST(CloudFile, PipesMayBeginInAnyWayOfTheirFormat)
                                       {"pipe.1", "# .PCD v0.7\n" + rest},
                                       {"pipe.2", "VERSION .7\n" + rest}}) {
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
-    std::thread writer([&, text = content] { std::ofstream(folder / name, std::ios::binary) << text; });
+    std::thread writer([&, file = name, text = content] { std::ofstream(folder / file, std::ios::binary) << text; });
     CloudFacts facts;
     EXPECT_NO_THROW(EXPECT_EQ(readCloud(folder / name, &facts).width, 3U) << name);
     EXPECT_EQ(facts.las != nullptr, content == sample.text()) << name;

@@ -93,8 +93,8 @@ TEST(FileBytes, AreRefusedWithReasons)
                                                        {"empty", "is empty: export or copy the file again"},
                                                        {"", "is a folder: name a file in it"}};
   for (const auto& [name, wrong] : cases) {
-    EXPECT_THAT(fault([&] { FileBytes(folder / name); }), testing::EndsWith(wrong)) << name;
-    EXPECT_THAT(fault([&] { openBytes(folder / name); }), testing::EndsWith(wrong)) << name;
+    EXPECT_THAT(fault([&, file = name] { FileBytes(folder / file); }), testing::EndsWith(wrong)) << name;
+    EXPECT_THAT(fault([&, file = name] { openBytes(folder / file); }), testing::EndsWith(wrong)) << name;
   }
   EXPECT_THAT(fault([] { FileBytes("/dev/null"); }), testing::HasSubstr("is neither a file nor a pipe"));
   EXPECT_THAT(fault([] { FileBytes("/proc/self/mem"); }), testing::HasSubstr("cannot be read")) << "nothing lies at 0";
