@@ -2,24 +2,21 @@
 // Says where a robot with joints collides, at states and along motions between them.
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
-#include <pcl_bsh/tools/cli/named_folders.h>
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/reading.h>
+#include <pcl_bsh/tools/cli/robot_options.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/io/robots/joint_values.h>
 #include <pcl_bsh/io/robots/read_robot.h>
-#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/robot/robot_world.h>
 
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -49,10 +46,10 @@ Example: hold the made robot against what its camera sees, and against itself
   pcl_bsh_arm robot/robot.urdf --states robot/states.csv --motions --report robot/report.json)";
 
 struct Options {
-  fs::path urdf, srdf, states;
+  cli::RobotOptions robot;
+  fs::path srdf;
   std::vector<fs::path> obstacles;
-  std::string joints, state, base;
-  std::vector<std::string> packages;
+  std::string state, base;
   robots::WorldOptions world;
   double radius = 0.0;
   bool motions = false, no_self = false;
@@ -100,14 +97,7 @@ std::vector<JointValues> valuesOf(const Options& options, const io::RobotGroups&
                             "': give the name of one");
     rest = found->second;
   }
-  std::vector<JointValues> states;
-  try {
-    states = options.states.empty() ? std::vector{io::parseJointValues(options.joints)}
-                                    : io::readJointStates(options.states);
-  }
-  catch (const io::FormatError& error) {
-    throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
-  }
+  std::vector<JointValues> states = options.robot.values();
   for (JointValues& values : states) values.insert(rest.begin(), rest.end());
   return states;
 }
@@ -200,9 +190,7 @@ int run(Options& options)
 {
   std::vector<std::string> warnings;
   takeBase(options, warnings);
-  const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
-  robots::Robot robot =
-      io::readRobot(options.urdf, cli::namedFolders("--package", options.packages), package_path ? package_path : "");
+  robots::Robot robot = options.robot.read();
   io::RobotGroups groups;
   if (!options.srdf.empty()) groups = io::readGroups(options.srdf, robot);
   cli::Step loading("Loading the robot and obstacles");
@@ -247,7 +235,8 @@ void check(Options& options)
   if (!options.state.empty() && options.srdf.empty())
     throw cli::UsageError("--state: is a state of an SRDF: give --srdf, too");
   cli::CommandFiles& files = options.files;
-  files.reads("ROBOT.urdf", options.urdf).reads("--srdf", options.srdf).reads("--states", options.states);
+  files.reads("ROBOT.urdf", options.robot.urdf).reads("--srdf", options.srdf);
+  files.reads("--states", options.robot.states);
   for (const fs::path& obstacle : options.obstacles) files.reads("OBSTACLE", obstacle);
   files.readsPose("--base", options.base).writes("--report", options.report.value_or(""));
   files.requireApart();
@@ -263,16 +252,11 @@ int main(int argc, char** argv)
     CLI::App app("Where a robot with joints collides with clouds, surfaces and itself, and which motions are free.",
                  program);
     app.footer(footer);
-    app.add_option("ROBOT.urdf", options.urdf, "the robot")->type_name("")->required();
+    app.add_option("ROBOT.urdf", options.robot.urdf, "the robot")->type_name("")->required();
     app.add_option("OBSTACLE", options.obstacles, "clouds and surfaces, in one frame")->type_name("");
     app.add_option("--srdf", options.srdf, "pairs of links that are never held against each other, and named states")
         ->type_name("FILE");
-    auto* joints = app.add_option("--joints", options.joints, "values of joints, in radians or metres")
-                       ->type_name("NAME=VALUE,...");
-    app.add_option("--states", options.states,
-                   "file of such values: names in its first line, then a line for each state")
-        ->type_name("FILE")
-        ->excludes(joints);
+    options.robot.addJointsTo(app, "values of joints, in radians or metres", "state");
     app.add_option("--state", options.state, "state of the SRDF: values of joints that are not given (default: 0)")
         ->type_name("NAME");
     app.add_flag("--motions", options.motions, "also check the motion from each state to the next");
@@ -290,12 +274,7 @@ int main(int argc, char** argv)
     app.add_option("--base", options.base,
                    "pose of the robot's root among the obstacles:\nx,y,z,roll,pitch,yaw or a file")
         ->type_name("POSE");
-    app.add_option("--package", options.packages,
-                   "folder that package://NAME/ stands for; may be given several times;\nothers are looked for in "
-                   "ROS_PACKAGE_PATH")
-        ->type_name("NAME=DIR")
-        ->expected(1)
-        ->take_all();
+    options.robot.addPackagesTo(app);
     app.add_option("--threads", options.threads, "0: all of the machine's; any number gives the same result")
         ->type_name("N")
         ->transform(cli::number<unsigned>(cli::give_threads))

@@ -3,8 +3,8 @@
 #include "self_filter.h"
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
-#include <pcl_bsh/tools/cli/named_folders.h>
 #include <pcl_bsh/tools/cli/reading.h>
+#include <pcl_bsh/tools/cli/robot_options.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
@@ -15,9 +15,6 @@
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
-#include <pcl_bsh/io/robots/joint_values.h>
-#include <pcl_bsh/io/robots/read_robot.h>
-#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/text_numbers.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -25,7 +22,6 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -54,13 +50,11 @@ Example: cut the made robot out of what its camera sees
   pcl_bsh_self_filter robot/robot.urdf robot/frame_*.pcd --states robot/states.csv --frame camera --out robot/free)";
 
 struct Options {
-  fs::path urdf;
+  cli::RobotOptions robot;
   std::vector<std::string> clouds;
   fs::path out;
-  std::string joints;
-  fs::path states;
   std::string frame;
-  std::vector<std::string> packages, paddings;
+  std::vector<std::string> paddings;
   self_filter::Settings settings;
   bool flag = false;
   std::optional<fs::path> report;
@@ -103,17 +97,10 @@ void requireLinks(const self_filter::Settings& settings, const self_filter::Robo
 /// One for each cloud.
 std::vector<JointValues> statesOf(const Options& options)
 {
-  std::vector<JointValues> states;
-  try {
-    states = options.states.empty() ? std::vector{io::parseJointValues(options.joints)}
-                                    : io::readJointStates(options.states);
-  }
-  catch (const io::FormatError& error) {
-    throw cli::UsageError(std::string("--joints: ") + error.what() + ": " + error.remedy());
-  }
+  std::vector<JointValues> states = options.robot.values();
   if (states.size() == 1) states.resize(options.clouds.size(), states[0]);
   if (states.size() != options.clouds.size())
-    throw cli::UsageError("--states: " + options.states.string() + " has " + counted(states.size(), "line") +
+    throw cli::UsageError("--states: " + options.robot.states.string() + " has " + counted(states.size(), "line") +
                           " of values for " + counted(options.clouds.size(), "cloud") +
                           ": give one line for each cloud, or one for all");
   return states;
@@ -127,7 +114,7 @@ fs::path outputOf(const Options& options, const std::string& cloud)
 void check(Options& options)
 {
   cli::CommandFiles& files = options.files;
-  files.reads("ROBOT.urdf", options.urdf).reads("--states", options.states);
+  files.reads("ROBOT.urdf", options.robot.urdf).reads("--states", options.robot.states);
   for (const std::string& cloud : options.clouds) files.reads("CLOUD", cloud);
   for (const std::string& cloud : options.clouds) files.writesFile("--out", outputOf(options, cloud));
   files.writes("--report", options.report.value_or(""));
@@ -193,9 +180,7 @@ void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot
 int run(const Options& options)
 {
   const std::vector<JointValues> states = statesOf(options);
-  const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
-  const self_filter::Robot robot =
-      io::readRobot(options.urdf, cli::namedFolders("--package", options.packages), package_path ? package_path : "");
+  const self_filter::Robot robot = options.robot.read();
   requireLinks(options.settings, robot);
   requireMeshesApart(options.files, robot);
   for (const JointValues& values : states) robot.requireValues(values);
@@ -232,17 +217,12 @@ int main(int argc, char** argv)
     Options options;
     CLI::App app("Cuts a robot out of what its own sensors see.", program);
     app.footer(footer);
-    app.add_option("ROBOT.urdf", options.urdf, "the robot")->type_name("")->required();
+    app.add_option("ROBOT.urdf", options.robot.urdf, "the robot")->type_name("")->required();
     app.add_option("CLOUD", options.clouds, "what its sensor saw: a cloud for each frame")->type_name("")->required();
     app.add_option("--out", options.out, "folder for the results; made if it is not there")
         ->type_name("DIR")
         ->required();
-    auto* joints = app.add_option("--joints", options.joints, "values of joints, in radians or metres; others are at 0")
-                       ->type_name("NAME=VALUE,...");
-    app.add_option("--states", options.states,
-                   "file of such values: names in its first line, then a line for each cloud")
-        ->type_name("FILE")
-        ->excludes(joints);
+    options.robot.addJointsTo(app, "values of joints, in radians or metres; others are at 0", "cloud");
     app.add_option("--frame", options.frame, "link in whose frame the clouds are (default: the root)")
         ->type_name("LINK");
     app.add_option(
@@ -255,12 +235,7 @@ int main(int argc, char** argv)
         ->take_all();
     app.add_flag("--flag", options.flag,
                  "keep all points, with a field 'collision' that is 1 where the robot or no return is");
-    app.add_option("--package", options.packages,
-                   "folder that package://NAME/ stands for; may be given several times;\nothers are looked for in "
-                   "ROS_PACKAGE_PATH")
-        ->type_name("NAME=DIR")
-        ->expected(1)
-        ->take_all();
+    options.robot.addPackagesTo(app);
     app.add_option("--threads", options.settings.threads, "0: all of the machine's; any number gives the same result")
         ->type_name("N")
         ->transform(cli::number<unsigned>(cli::give_threads))
