@@ -56,7 +56,7 @@ struct DistanceObstacle {
     is_plain = ratio == 1.0 && frame.error < std::numeric_limits<double>::infinity();
   }
 
-  /// What a sphere of the voxel holds, between its slabs. @pre it has slabs
+  /// The slabs of a sphere of the voxel, which hold its records. @pre it has slabs
   CrossedSlabs heldBy(const ObstacleSphere& sphere) const
   {
     return sphere.between(*voxel, slabs, cross_slabs, frame.stretch_b);
@@ -157,7 +157,7 @@ HWY_INLINE void raise(const DistanceObstacle& obstacle, LaneVector length, LaneV
   hn::StoreU(hn::IfThenElse(hn::Gt(scaled, before), scaled, before), d, lower);
 }
 
-/// The same by what the slabs of the other sphere say.
+/// Raises such bounds by the slabs of the other sphere.
 HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle& obstacle, const CrossedSlabs& slabs,
                              float* lower)
 {
@@ -175,7 +175,8 @@ inline bool isFar(const float* lower, std::uint32_t count, float radius)
   return *std::max_element(lower, lower + count) > 8.0f * radius;
 }
 
-/// The same by the slabs of both: of surfaces that face each other from far away, only what is opposite is near.
+/// Raises such bounds by the slabs of both. Surfaces that face each other from far away are near only where they are
+/// opposite.
 HWY_INLINE void raiseByBothSlabs(const CarriedNode& own, const DistanceObstacle& obstacle, const Slab& other,
                                  float* lower)
 {

@@ -50,7 +50,7 @@ public:
 
   // As visitPairs() asks.
 
-  /// What spheres are tested with.
+  /// The reach of sphere tests, never below 0.
   double reach() const { return std::max(sink_.reach(), 0.0); }
 
   Next visit(const LanePair& pair)

@@ -53,7 +53,7 @@ void requireAnswers(const Question& question, bool obstacle_is_site)
                         "give exact or tolerance=LENGTH");
 }
 
-/// What site.json says of it; no tile is read.
+/// The facts that site.json states; no tile is read.
 NamedCloud namedSite(const Site& site)
 {
   NamedCloud cloud;

@@ -92,7 +92,7 @@ public:
     return readOf(tiles.size());
   }
 
-  /// What is left of the memory beside the largest tile.
+  /// The memory that the largest tile leaves.
   std::uint64_t bytesLeft() const noexcept { return asked_.means.memory - visitor_.bytesForLargest(); }
 
   /// How hierarchies of tiles are built.

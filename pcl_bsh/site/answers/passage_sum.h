@@ -11,7 +11,7 @@
 
 namespace pcl_bsh::site {
 
-/// What each tile is asked: flags, and where any is wanted, of points that collide distances and poses.
+/// The request for each tile: flags and, where they are wanted, distances and poses of points that collide.
 TrajectoryRequest alongPath(const Asked& asked);
 
 /// What comes so near may collide.
@@ -39,7 +39,7 @@ public:
 
   void add(const std::vector<double>& numbers);
 
-  /// What all tiles of all ranks have, on each of them. To be called once.
+  /// The sum over all tiles of all ranks, on each rank. To be called once.
   void tell(SiteAnswer& answer);
 
 private:
