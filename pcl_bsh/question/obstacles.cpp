@@ -97,18 +97,15 @@ public:
   void skip() { joined_.each.emplace_back().asked = false; }
 
   /// The answer has an entry for each record also where nothing was asked about the obstacles one by one.
-  void fill(bool contacts, bool first_poses, std::size_t poses)
+  void fill(std::size_t poses)
   {
     TrajectoryResult& found = joined_.all.collisions;
     if (wanted_.poses) found.poses.resize(poses);
-    if (wanted_.flags || wanted_.contacts || wanted_.poses) found.flags.resize(records_, Verdict::free);
-    if (contacts) {
-      found.distance.resize(records_, std::numeric_limits<float>::quiet_NaN());
-      found.closest_pose.resize(records_, -1);
-      found.closest_point.resize(records_, kNothing);
-      joined_.closest_obstacle.resize(records_, kNothing);
-    }
-    if (first_poses) found.first_pose.resize(records_, -1);
+    if (wanted_.flags || wanted_.poses) found.flags.resize(records_, Verdict::free);
+    if (wanted_.first_poses) found.first_pose.resize(records_, -1);
+    if (!wanted_.contacts) return;
+    addFree(found, records_);
+    joined_.closest_obstacle.resize(records_, kNothing);
   }
 
 private:
@@ -302,6 +299,15 @@ Question questionOf(const Question& question, const PlacedShape& obstacle)
   return one;
 }
 
+void addFree(TrajectoryResult& found, std::size_t records)
+{
+  found.flags.resize(records, Verdict::free);
+  found.distance.resize(records, std::numeric_limits<float>::quiet_NaN());
+  found.first_pose.resize(records, -1);
+  found.closest_pose.resize(records, -1);
+  found.closest_point.resize(records, kNothing);
+}
+
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles, const AnswerOf& told)
 {
   if (obstacles.empty()) throw InvalidInput(Input::points, "obstacles", "there are none", "give one at least");
@@ -328,7 +334,7 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
     }
     if (told) told(i, one, answer);
   }
-  joined.fill(wanted.contacts, wanted.contacts || wanted.first_poses, question.poses().size());
+  joined.fill(question.poses().size());
   return joined.finish(question.path.has_value());
 }
 
@@ -352,7 +358,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, std::vector<Place
       between.solid = second.solid;
       between.wanted.any = between.wanted.closest = true;
       const Answer answer = ask(between, obstacles[i].shape, obstacles[k].shape);
-      pairs.push_back({i, k, answer.any.verdict, answer.closest});
+      pairs.push_back({i, k, *between.clearance, answer.any.verdict, answer.closest});
       if (question.progress && !question.progress(1.0)) throw Cancelled();
     }
   }

@@ -64,7 +64,7 @@ struct ObstaclesAnswer {
 };
 
 /// Called for each obstacle in turn, with the question about it and its answer. Flags, contacts and poses may be empty
-/// where nothing collides with the obstacle.
+/// where nothing collides with the obstacle (addFree()).
 using AnswerOf = std::function<void(std::size_t obstacle, const Question& question, Answer& answer)>;
 
 /// Asks about each obstacle. All obstacles share the hierarchy of the input. Where poses alone are asked about, an
@@ -73,11 +73,15 @@ using AnswerOf = std::function<void(std::size_t obstacle, const Question& questi
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
                     const AnswerOf& told = nullptr);
 
+/// Gives contacts of nothing to each record that `found` has no entry of: it is free.
+void addFree(TrajectoryResult& found, std::size_t records);
+
 /// Two obstacles as they stand to each other, by their numbers.
 struct ObstaclePair {
   std::uint32_t first = 0, second = 0;
-  Verdict verdict = Verdict::free; ///< up to the greater of the two clearances
-  DistanceResult closest;          ///< records of the first and of the second
+  double clearance = 0.0; ///< the greater of theirs
+  Verdict verdict = Verdict::free;
+  DistanceResult closest; ///< records of the first and of the second
 };
 
 /// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not

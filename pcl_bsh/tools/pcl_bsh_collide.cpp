@@ -4,6 +4,7 @@
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/collide/listing.h>
 #include <pcl_bsh/tools/collide/loading.h>
 #include <pcl_bsh/tools/collide/options.h>
 #include <pcl_bsh/tools/collide/report.h>
@@ -23,8 +24,6 @@
 #include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/search/cloud_view.h>
 
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -96,17 +95,6 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
   seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
 
-/// An obstacle, and what was asked about it and found.
-struct Compared {
-  std::string name; ///< empty: it is alone
-  fs::path file;
-  io::Obstacle loaded;
-  io::CloudFacts facts;
-  Question question = {};
-  Answer answer = {}; ///< where it is one of several; else the report has it
-  std::vector<Eigen::Isometry3d> poses = {};
-};
-
 /// Asks as a step of the program. @param ask of a question. @param done of the answer, for the step's end
 template <typename Ask, typename Done>
 auto askInStep(const std::string& what, Question question, double& seconds, const Ask& ask, const Done& done)
@@ -149,77 +137,6 @@ void answer(const Ask& ask, bool lists_clashes, cli::CollisionReport& report)
   report.answer.density = measured.density;
   for (Warning& warning : measured.warnings) report.answer.warnings.push_back(std::move(warning));
   report.answer.work += measured.work;
-}
-
-io::ClashQuestion clashQuestion(const Options& options, const Question& question, const fs::path& obstacle)
-{
-  return {question, options.input.string(), obstacle.string()};
-}
-
-/// The clearance of all obstacles, the greatest where they have their own.
-double greatestClearance(const Options& options)
-{
-  double greatest = options.question.clearance.value_or(0.0);
-  for (const cli::ObstacleChoice& one : options.obstacles) greatest = std::max(greatest, one.clearance.value_or(0.0));
-  return greatest;
-}
-
-/// @return how many there are
-std::string listClashes(const Options& options, const SphereHierarchy& a, std::vector<Compared>& all,
-                        const std::vector<const SphereHierarchy*>& hierarchies,
-                        const std::vector<io::ClashList>& earlier, cli::CollisionReport& report)
-{
-  cli::Step step("Listing clashes");
-  const double distance = options.cluster_distance > 0
-                              ? options.cluster_distance
-                              : io::clusterDistanceFor(greatestClearance(options), *report.answer.density.input);
-  io::ClashLists lists;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    Compared& one = all[i];
-    one.poses = one.question.poses();
-    const Answer& answer = one.name.empty() ? report.answer : one.answer;
-    io::ClashReport list = io::clashesOf(clashQuestion(options, one.question, one.file), a, *hierarchies[i], one.poses,
-                                         answer, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
-    list.unit = report.unit;
-    list.coordinate_system = report.coordinate_system;
-    list.name = one.name;
-    if (!one.name.empty()) list.answer = &report.obstacles[i].found;
-    if (const io::ClashList* const before = io::findList(earlier, one.name, list.question))
-      for (std::string& warning : io::compareWithList(list, *options.previous, *before, a, *hierarchies[i]))
-        addOnce(std::move(warning), report.warnings);
-    else if (options.previous)
-      list.previous = options.previous->string();
-    lists.obstacles.push_back(std::move(list));
-  }
-  lists.between = report.between;
-  if (lists.haveNames() && options.previous)
-    for (std::string& warning : io::warningsOfGone(lists, *options.previous, earlier))
-      report.warnings.push_back(std::move(warning));
-  for (const fs::path& file : options.clashes) io::writeClashes(file, lists);
-  report.seconds.clashes = step.done(io::clashCounts(lists));
-  return io::clashCounts(lists);
-}
-
-/// The question about an obstacle, as far as it is known before files are read.
-Question questionOf(const Question& question, const cli::ObstacleChoice& choice)
-{
-  return pcl_bsh::questionOf(question, {Shape(), choice.pose, choice.clearance, choice.solid, choice.uncertainty});
-}
-
-std::vector<io::ClashList> readEarlier(const Options& options, const Question& question,
-                                       std::vector<std::string>& warnings)
-{
-  if (!options.previous) return {};
-  std::vector<io::ClashList> lists = io::readClashLists(*options.previous);
-  const auto compare = [&](const std::string& name, const Question& now, const fs::path& file) {
-    const io::ClashQuestion asked = clashQuestion(options, now, file);
-    if (const io::ClashList* const list = io::findList(lists, name, asked))
-      for (std::string& warning : io::requireComparable(*options.previous, *list, asked))
-        addOnce(std::move(warning), warnings);
-  };
-  if (options.obstacles.empty()) compare("", question, options.obstacle);
-  for (const cli::ObstacleChoice& one : options.obstacles) compare(one.name, questionOf(question, one), one.file);
-  return lists;
 }
 
 std::optional<io::DistanceReport> reportDistances(const Options& options, const SphereHierarchy& a,
@@ -271,9 +188,10 @@ void check(const Options& options, const Question& question)
 
 /// Asks about several obstacles, against the input and against each other.
 Answer askSeveral(const Options& options, const Question& question, Shape& scan, std::vector<PlacedShape>& obstacles,
-                  std::vector<Compared>& all, cli::CollisionReport& report)
+                  cli::CollisionReport& report)
 {
-  const bool first = report.obstacles.empty(); // distances come later
+  std::vector<cli::ComparedObstacle>& all = report.obstacles;
+  const bool first = !question.wanted.distances; // these come later
   ObstaclesAnswer found = ask(question, scan, obstacles, [&](std::size_t i, const Question& asked, Answer& answer) {
     if (!first) return;
     all[i].question = asked;
@@ -282,35 +200,26 @@ Answer askSeveral(const Options& options, const Question& question, Shape& scan,
   });
   if (!first) return std::move(found.all);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    TrajectoryResult& told = all[i].answer.collisions;
-    if (told.flags.empty() && !options.clashes.empty()) { // nothing collides with it
-      told = {};
-      told.flags.assign(scan.hierarchy().view().count, Verdict::free);
-      told.distance.assign(told.flags.size(), std::numeric_limits<float>::quiet_NaN());
-      told.first_pose.assign(told.flags.size(), -1);
-      told.closest_pose = told.first_pose;
-      told.closest_point.assign(told.flags.size(), kNothing);
-    }
-    report.obstacles.push_back({all[i].name, all[i].file.string(), all[i].question, all[i].loaded, found.each[i]});
+    all[i].found = found.each[i];
+    if (!options.clashes.empty()) addFree(all[i].answer.collisions, scan.hierarchy().view().count);
   }
   report.closest_obstacle = found.closest;
+  if (!options.between) return std::move(found.all);
   const cli::IgnoredPairs ignored = options.ignoredPairs();
-  if (options.between)
-    for (const ObstaclePair& pair : askBetween(question, obstacles, [&](std::uint32_t i, std::uint32_t k) {
-           return !ignored.holds(all[i].name, all[k].name);
-         }))
-      report.between.push_back({all[pair.first].name, all[pair.second].name,
-                                std::max(*all[pair.first].question.clearance, *all[pair.second].question.clearance),
-                                pair});
+  for (const ObstaclePair& pair : askBetween(question, obstacles, [&](std::uint32_t i, std::uint32_t k) {
+         return !ignored.holds(all[i].name, all[k].name);
+       }))
+    report.between.push_back({all[pair.first].name, all[pair.second].name, pair});
   return std::move(found.all);
 }
 
 /// From the input and its obstacles to all that is told of them.
-int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Compared>& all,
-         const std::vector<io::ClashList>& earlier, cli::CollisionReport& report)
+int tell(const Options& options, const Scan& input, Shape& scan, const std::vector<io::ClashList>& earlier,
+         cli::CollisionReport& report)
 {
   const Question& question = report.question;
-  const bool several = !options.obstacles.empty();
+  std::vector<cli::ComparedObstacle>& all = report.obstacles;
+  const bool several = report.haveNames();
   scan.ignore(question.ignore_points);
   const SphereHierarchy& a = cli::build(scan, question.uncertaintyOfInput(), question.threads, report.seconds.build);
   std::vector<PlacedShape> shapes;
@@ -343,7 +252,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
   const auto ask_all = [&](const Question& asked) {
-    return several ? askSeveral(options, asked, scan, shapes, all, report) : ask(asked, scan, shapes[0].shape);
+    return several ? askSeveral(options, asked, scan, shapes, report) : ask(asked, scan, shapes[0].shape);
   };
   answer(ask_all, !options.clashes.empty(), report);
   report.voxels_total = a.statistics().voxels;
@@ -351,7 +260,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
   for (const std::string& remark : input.facts.remarks)
     addOnce(options.input.string() + ": " + remark, report.warnings);
   addTexts(report.answer.warnings, report.warnings);
-  for (const Compared& one : all)
+  for (const cli::ComparedObstacle& one : all)
     for (std::string& remark : cli::warningsOf(one.loaded, one.file)) addOnce(std::move(remark), report.warnings);
 
   write(options, input, report.answer, report.seconds.write);
@@ -360,7 +269,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, std::vector<Com
     cli::writeFlags(*options.obstacle_out, all[0].loaded, report.answer.obstacle_flags, all[0].facts);
     report.seconds.write += step.done(counted(all[0].loaded.view().count, all[0].loaded.partName()));
   }
-  const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, all, hierarchies, earlier, report);
+  const std::string clashes = options.clashes.empty() ? "" : cli::listClashes(options, a, hierarchies, earlier, report);
   const std::optional<io::DistanceReport> measured =
       several ? std::nullopt : reportDistances(options, a, *hierarchies[0], report);
   if (measured) report.distances = io::distanceJson(*measured);
@@ -377,7 +286,7 @@ int collide(Options options)
   Question& question = report.question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &report.warnings);
   check(options, question);
-  const std::vector<io::ClashList> earlier = readEarlier(options, question, report.warnings);
+  const std::vector<io::ClashList> earlier = cli::readEarlier(options, question, report.warnings);
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
@@ -386,34 +295,34 @@ int collide(Options options)
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
-  std::vector<Compared> all;
-  const auto load = [&](const std::string& name, const fs::path& file, const cli::ReadChoice& reading) {
+  const auto load = [&](const std::string& name, const fs::path& file, const cli::ReadChoice& reading,
+                        const Uncertainty& uncertainty) {
     io::CloudFacts facts;
-    io::Obstacle loaded = cli::loadObstacle(
-        file, {question.vertices_only}, report.seconds.load,
-        reading.ofObstacle(file, input.facts.unit, question.obstacle_uncertainty.field), &facts, question.threads);
+    io::Obstacle loaded =
+        cli::loadObstacle(file, {question.vertices_only}, report.seconds.load,
+                          reading.ofObstacle(file, input.facts.unit, uncertainty.field), &facts, question.threads);
     if (!reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
       const std::string unit = io::nameOf(*input.facts.unit);
       report.warnings.push_back(file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
                                 options.input.string() + " in " + unit +
                                 ", by their coordinate systems: give --input-unit " + unit + " to convert it");
     }
-    all.push_back({name, file, std::move(loaded), std::move(facts)});
+    report.obstacles.push_back({name, file, std::move(loaded), std::move(facts)});
   };
-  if (options.obstacles.empty()) load("", options.obstacle, options.reading);
+  if (options.obstacles.empty()) load("", options.obstacle, options.reading, question.obstacle_uncertainty);
   for (const cli::ObstacleChoice& one : options.obstacles) {
     cli::ReadChoice reading = options.reading;
     if (one.unit) reading.obstacle_unit = one.unit;
-    load(one.name, one.file, reading);
+    load(one.name, one.file, reading, one.uncertainty.value_or(question.obstacle_uncertainty));
   }
-  if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, all[0].loaded);
+  if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, report.obstacles[0].loaded);
   if (!options.pairs.empty()) {
-    const io::PoseFit fit = io::readPoseFit(options.pairs, all[0].facts.scale);
+    const io::PoseFit fit = io::readPoseFit(options.pairs, report.obstacles[0].facts.scale);
     report.warnings.push_back("--pairs: " + options.pairs.string() + ": " + fit.text());
     options.question.pose = question.pose = fit.pose;
   }
   if (!options.poses_out.empty()) io::writePoses(options.poses_out, question.poses());
-  return cli::named([&] { return tell(options, input, scan, all, earlier, report); }, question, options.names_of_poses);
+  return cli::named([&] { return tell(options, input, scan, earlier, report); }, question, options.names_of_poses);
 }
 
 } // namespace

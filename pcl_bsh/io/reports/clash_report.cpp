@@ -208,7 +208,7 @@ Json betweenJson(const BetweenObstacles& two)
 {
   return {{"first", two.first},
           {"second", two.second},
-          {"clearance", two.clearance},
+          {"clearance", two.pair.clearance},
           {"state", nameOfState(two.pair.verdict)},
           {"distance", closestJson(two.pair.closest)},
           {"closest_pair", pairJson(two.pair.closest)}};

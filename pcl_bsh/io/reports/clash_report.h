@@ -95,7 +95,6 @@ private:
 /// How two obstacles stand to each other.
 struct BetweenObstacles {
   std::string first, second; ///< names
-  double clearance = 0.0;    ///< the greater of theirs
   ObstaclePair pair;
 };
 

@@ -38,7 +38,7 @@ Data obstacleTable(const ClashLists& lists)
     between.push_back(Object{{"first", plain(two.first)},
                              {"second", plain(two.second)},
                              {"state", nameOfState(two.pair.verdict)},
-                             {"clearance", number(two.clearance)},
+                             {"clearance", number(two.pair.clearance)},
                              {"distance", distanceOf(two.pair.closest)}});
   const Data pairs = between.empty() ? Data(false) : Data(Object{{"rows", between}});
   return Object{{"rows", rows}, {"between", pairs}};

@@ -58,17 +58,17 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   const double clearance = question.clearance.value_or(0.0);
   nlohmann::ordered_json json;
   json["input"] = toJson(report.input);
-  if (report.obstacles.empty()) json["obstacle"] = toJson(report.obstacle);
+  if (!report.haveNames()) json["obstacle"] = toJson(report.obstacle);
   json["input_surface"] =
       report.input_is_surface ? nlohmann::ordered_json{{"triangles", report.input.points}} : nullptr;
   json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, question.solid);
-  if (!report.obstacles.empty()) json["obstacles"] = json["between"] = nlohmann::ordered_json::array();
-  for (const ObstacleReport& one : report.obstacles) {
-    const io::ClashQuestion asked{one.question, report.input.file, one.file};
-    json["obstacles"].push_back(
-        io::obstacleJson(one.name, asked, one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
+  if (report.haveNames()) {
+    json["obstacles"] = json["between"] = nlohmann::ordered_json::array();
+    for (const ComparedObstacle& one : report.obstacles)
+      json["obstacles"].push_back(io::obstacleJson(one.name, {one.question, report.input.file, one.file.string()},
+                                                   one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
+    for (const io::BetweenObstacles& two : report.between) json["between"].push_back(io::betweenJson(two));
   }
-  for (const io::BetweenObstacles& two : report.between) json["between"].push_back(io::betweenJson(two));
   json["unit"] = report.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.unit);
   json["clearance"] = clearance;
   json["colliding"] = colliding;
@@ -89,7 +89,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   if (closest.pair) {
     json["distance"] = closest.distance;
     json["closest_pair"] = {closest.pair->a, closest.pair->b};
-    if (!report.obstacles.empty()) json["closest_obstacle"] = report.obstacles[report.closest_obstacle].name;
+    if (report.haveNames()) json["closest_obstacle"] = report.obstacles[report.closest_obstacle].name;
   }
   json["distance_interval"] = nullptr;
   if (!question.path || std::isfinite(closest.interval.lower))

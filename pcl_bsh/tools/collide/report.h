@@ -33,19 +33,23 @@ struct Seconds {
   double write = 0;
 };
 
-/// One of several obstacles.
-struct ObstacleReport {
-  std::string name, file;
-  Question question; ///< as it was asked about it
+/// An obstacle, the question about it, and its answer.
+struct ComparedObstacle {
+  std::string name; ///< empty: it is alone
+  std::filesystem::path file;
   io::Obstacle loaded;
-  ObstacleAnswer found;
+  io::CloudFacts facts;
+  Question question = {};
+  Answer answer = {}; ///< where it is one of several; else the report has it
+  ObstacleAnswer found = {};
+  std::vector<Eigen::Isometry3d> poses = {};
 };
 
 struct CollisionReport {
   CloudReport input;
   CloudReport obstacle;                      ///< of a surface, its vertices
   std::optional<io::Obstacle> surface;       ///< the obstacle, where it is one
-  std::vector<ObstacleReport> obstacles;     ///< where several are given, in place of the two above
+  std::vector<ComparedObstacle> obstacles;   ///< that alone, or several that have names
   std::vector<io::BetweenObstacles> between; ///< where several are compared with each other
   std::uint32_t closest_obstacle = kNothing; ///< of several, that of the closest pair
   bool input_is_surface = false;             ///< its numbers are those of triangles
@@ -58,6 +62,7 @@ struct CollisionReport {
   Seconds seconds;
   std::vector<std::string> warnings;
 
+  bool haveNames() const { return !obstacles.front().name.empty(); }
   bool mayLeaveUndecided() const { return question.accuracy.stopsEarly() || question.isUncertain(); }
 };
 

@@ -48,7 +48,8 @@ void tellObstacles(const CollisionReport& report, std::ostream& out)
     if (closest.distance < 0.0) text << " (" << -closest.distance << " deep)";
     return text.str();
   };
-  for (const ObstacleReport& one : report.obstacles) {
+  if (!report.haveNames()) return;
+  for (const ComparedObstacle& one : report.obstacles) {
     out << one.name << ": " << io::nameOfState(one.found);
     if (one.found.colliding > 0)
       out << " of " << counted(one.found.colliding, report.input_is_surface ? "triangle" : "point");
@@ -86,13 +87,13 @@ std::string distanceSummary(const io::DistanceReport& report)
 /// The obstacle of the closest pair: a record of it, and its name.
 const char* partOf(const CollisionReport& report)
 {
-  if (!report.obstacles.empty()) return report.obstacles[report.closest_obstacle].loaded.partName();
+  if (report.haveNames()) return report.obstacles[report.closest_obstacle].loaded.partName();
   return report.surface ? report.surface->partName() : "point";
 }
 
 std::string nameOf(const CollisionReport& report)
 {
-  return report.obstacles.empty() ? "the obstacle" : report.obstacles[report.closest_obstacle].name;
+  return report.haveNames() ? report.obstacles[report.closest_obstacle].name : "the obstacle";
 }
 
 } // namespace
@@ -109,7 +110,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
       << (report.input.points == 1 ? " collides" : " collide");
   if (report.mayLeaveUndecided()) out << ", " << answer.collisions.undecided << " are undecided";
   if (answer.widest_gap > 0) out << ", " << answer.sparse << " are not scanned densely enough";
-  if (report.question.seen && report.obstacles.empty()) {
+  if (report.question.seen && !report.haveNames()) {
     out << "; of the obstacle, "
         << counted(answer.unseen.count, report.surface ? "triangle is" : "point is",
                    report.surface ? "triangles are" : "points are")

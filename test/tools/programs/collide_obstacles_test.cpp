@@ -153,6 +153,30 @@ TEST_F(CollideObstacles, HaveUnitsOfTheirOwn)
   EXPECT_THAT(refused("--obstacle \"crate.off;unit=ell\""), HasSubstr("unit: "));
 }
 
+TEST_F(CollideObstacles, ConvertUncertaintiesOfTheirOwn)
+{
+  folder.write("dots.csv", "x,y,z,sigma\n500,500,150,1\n900,900,5000,1\n");
+  const Outcome done = collide("--input-unit m --obstacle \"dots=dots.csv;unit=mm;uncertainty=sigma\"");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("dots: clear")); // 15 cm away, off by 1 mm
+}
+
+TEST_F(CollideObstacles, MayAllIgnoreTheInput)
+{
+  const Outcome done = collide(two + "--ignore \"input:*\" --between --clashes list.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("press: ignored\nmill: ignored\npress and mill: clear, smallest distance 4\n"));
+  EXPECT_EQ(json("list.json")["obstacles"][0]["state"], "ignored");
+}
+
+TEST_F(CollideObstacles, StandAgainstEachOtherWithoutAClearance)
+{
+  const Outcome done =
+      run("pcl_bsh_collide", "scan.xyz out.pcd --distances --between --report report.json " + two, folder.path());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(json("report.json")["between"][0]["clearance"], 0.0);
+}
+
 TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
 {
   EXPECT_THAT(refused("--obstacle a=crate.off --obstacle a=copy.off"),
