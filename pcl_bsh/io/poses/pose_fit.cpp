@@ -9,7 +9,7 @@
 
 #include <pcl_bsh/base/counted.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,12 @@ std::string shown(double length)
 /// How far places reach along their three main directions, as root mean squares.
 Eigen::Vector3d extentsOf(const Eigen::Matrix3Xd& centred)
 {
-  return Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues().head<3>() /
-         std::sqrt(static_cast<double>(centred.cols()));
+  const Eigen::Matrix3d spread = centred * centred.transpose() / static_cast<double>(centred.cols());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .reverse()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
 }
 
 double rmsOf(const std::vector<double>& residuals)
