@@ -47,8 +47,8 @@ std::uint32_t checksumOf(const std::vector<Value>& values)
   return checksum.checksum();
 }
 
-/// What tells one obstacle from another: the points of a cloud, and its faces; of a site, which is too
-/// large for that, how it is made and when its tiles were written.
+/// Returns a text that tells one obstacle from another: checksums of the points of a cloud, and of its faces. A site is
+/// too large for that: its text says how it is made, and the sizes and times of its tiles.
 nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
 {
   nlohmann::json text = nlohmann::json::array();
