@@ -94,7 +94,7 @@ struct SitePair {
 /// The answer. Vectors about points of a site stay empty: sinks get them. Distances are counted in `distances.a`;
 /// `work`, the pair of `any`, `pose_pairs` and `unseen.inside` are not told.
 struct SiteAnswer : Answer {
-  /// The pair of `closest`. Of several pairs, it has the smallest (source, record) and, for this point, the smallest
+  /// The pair of `closest`. Among equal pairs, it has the smallest (source, record) and, for this point, the smallest
   /// point of the obstacle. Along a path, `closest` is the distance of points that collide or are undecided, and has no
   /// pair.
   std::optional<SitePair> pair;
