@@ -35,7 +35,7 @@ struct Wanted {
   bool poses = false;         ///< of each pose: how many points collide, the smallest distance and its pair; swept, of
                               ///< the motion from each pose to the next
   bool first_poses = false;   ///< of each that collides: the first pose alone
-  bool closest = false;       ///< the smallest distance and its pair: with contacts, and along a path, of what collides
+  bool closest = false;       ///< the smallest distance and its pair; with contacts, or on a path, of colliding points
   bool distances = false;     ///< of each point of the input to the obstacle; along a path the smallest
   bool both_ways = false;     ///< distances also of the obstacle's points, at one pose
   bool within = false;        ///< which points of the input have a distance within the limits, at one pose

@@ -81,7 +81,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
-  question["numbers"] = 4; // what of a tile is kept
+  question["numbers"] = 4; // the version of the numbers that are kept of a tile
   for (const Eigen::Isometry3d& pose : asked.poses())
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
   const auto bytes = nlohmann::json::to_cbor(question);
