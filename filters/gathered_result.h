@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From what is found of triangles to what is said of their polygons, or of their vertices.
+// Gathers results about triangles into results about their polygons, or their vertices.
 #pragma once
 
 #include <pcl_bsh/query/result.h>

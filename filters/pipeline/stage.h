@@ -38,8 +38,8 @@ class Stage {
 public:
   virtual ~Stage() = default;
 
-  /// The fields of what run() will return, from those of its inputs; no points are there yet. To be refused here:
-  /// whatever is known to fail before the first point is read.
+  /// Returns the fields of the cloud that run() will return, from those of its inputs; no points are there yet. Refuses
+  /// all that is known to fail before the first point is read.
   virtual CloudHeader plan(const std::vector<CloudHeader>& inputs)
   {
     return inputs.empty() ? CloudHeader() : inputs[0];

@@ -25,8 +25,8 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Compares what was measured with lengths. A record without a distance is farther than all that was asked for. A
-/// distance that equals the length was rounded: the coordinates decide.
+/// Compares measured distances with lengths. A record without a distance is farther than any length. A distance that
+/// equals the length was rounded: the coordinates decide.
 class MeasuredDistances {
 public:
   MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
@@ -58,7 +58,7 @@ private:
   const RecordDistance depth_;
 };
 
-/// Of all points that collide, that of the smallest distance.
+/// Returns the smallest distance of the points that collide, with its pair.
 DistanceResult closestOf(const TrajectoryResult& found)
 {
   DistanceResult closest;
@@ -169,7 +169,7 @@ private:
     answer_.indices.work = found.work;
   }
 
-  /// Whether the answer is that of a path, if only of one pose.
+  /// Whether a query along a path answers, if only along one pose.
   bool alongPath() const { return question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses; }
 
   /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
@@ -183,7 +183,7 @@ private:
            (wanted_.measures() && !question_.path);
   }
 
-  /// Of the next query: how the question wants it, and its share of the progress.
+  /// Returns the effort of the next query: that of the question, with the query's share of the progress.
   Effort nextEffort()
   {
     const double begun = begun_++, all = queries();
@@ -277,7 +277,7 @@ private:
     }
   }
 
-  /// However large it is.
+  /// Finds the smallest distance, however large it is.
   void findClosest()
   {
     Effort effort = nextEffort();
@@ -288,7 +288,7 @@ private:
     solids_->turn(answer_.closest);
   }
 
-  /// How far to look.
+  /// Returns the greatest distance that has to be measured.
   double reach() const
   {
     const double told = question_.max_distance.value_or(unlimited);
@@ -314,7 +314,7 @@ private:
     if (wanted_.within) compare(request.max_distance);
   }
 
-  /// With the limits, then with the greatest distance that is told.
+  /// Compares distances with the limits, then with the greatest distance that is told.
   void compare(double reach)
   {
     PointDistances& found = answer_.distances.a;
@@ -346,7 +346,7 @@ private:
   }
 
   const Question& question_;
-  Progress progress_{question_.progress}; ///< of what is no query, too: building, and what solids hold
+  Progress progress_{question_.progress}; ///< also of work outside queries: building, and contents of solids
   const Wanted& wanted_;
   Shape& input_;
   Shape& obstacle_;
@@ -357,7 +357,7 @@ private:
   Answer answer_;
 };
 
-/// What is about points cannot be asked of surfaces.
+/// Refuses options about points where the input is a surface.
 void requireAnswerable(const Question& question, const Shape& input)
 {
   if (!input.isSurface()) return;

@@ -21,10 +21,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What was wanted; the rest is as a new Answer has it. Vectors have an entry for each record of the input: a point or,
-/// where it is a surface, a triangle. What a closed surface encloses is no part of it, unless it is asked as a solid:
-/// then records that are held collide, at a distance that is negative, and so do the triangles of the body that holds
-/// them.
+/// The answer to a question. Members that are not wanted keep their defaults. Vectors have one entry for each record of
+/// the input: a point or, where the input is a surface, a triangle. The inside of a closed surface counts only where
+/// the surface is asked as a solid. Then records inside collide, at a negative distance, and so do the triangles of the
+/// body that holds them.
 struct Answer {
   /// Flags, contacts (distance, first_pose, closest_pose, closest_point: a record of the obstacle), poses, and how many
   /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
@@ -43,15 +43,15 @@ struct Answer {
 
   /// With `seen`: points of the obstacle, or triangles where it is a surface, that are unseen.
   struct Unseen {
-    std::size_t count = 0;                 ///< at some pose, and at none worse
+    std::size_t count = 0;                 ///< unseen at some pose, and of no graver verdict at any
     std::vector<std::size_t> at_poses;     ///< at each
     std::optional<std::size_t> first_pose; ///< with any
-    std::vector<double> angles;            ///< of each scan: what its beams speak for, in radians
+    std::vector<double> angles;            ///< of each scan: the angle within which its beams count, in radians
     std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, which; empty where none are
     std::vector<UnseenKinds> kinds;        ///< kinds of these
 
     // In shadow no beam passed the place itself; all else is in the skin, where beams passed but not by the margin.
-    std::size_t in_shadow = 0;                ///< of `count`: those that are at some pose
+    std::size_t in_shadow = 0;                ///< of `count`: in shadow at some pose
     std::vector<std::size_t> shadow_at_poses; ///< of `at_poses`
     std::vector<bool> shadow;                 ///< per record: whether it is in shadow at some pose
 
@@ -79,7 +79,7 @@ struct Answer {
 ///   guard of an input that is a surface. Cancelled
 Answer ask(const Question& question, Shape& input, Shape& obstacle);
 
-/// Refuses what ask() would refuse whatever the two things are, before they are there. Throws likewise.
+/// Refuses the question where ask() would refuse it for any input and any obstacle. @throws InvalidInput
 void check(const Question& question);
 
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solids hold, for who runs queries that no question has: added to what these found of the surfaces.
+// Adds the records that solids hold to results of queries about surfaces, for callers that run queries besides ask().
 #pragma once
 
 #include <pcl_bsh/distances/point_distances.h>
@@ -18,23 +18,26 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// As ask() adds it along the question's path, to all that is there; nothing where neither thing is asked as a solid.
-/// Distances of what is held are depths, less than 0: at the pose where it is deepest.
+/// Adds held records to the members of `found` that are there, along the question's path, as ask() does. Does nothing
+/// where neither thing is asked as a solid. Distances of held records are negative: the depth at the pose where the
+/// record is deepest.
 /// @param pivot of swept motion, as the query had it. @throws as ask() does of solids
 void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found,
              const Point3& pivot = {0, 0, 0});
 
-/// Of the obstacle at each of these poses, or on motions that begin there.
-/// @param verdicts of the surfaces, one for each pose: what is held collides
+/// Turns verdicts at poses of the obstacle, or of motions that begin there, into colliding where a solid holds a
+/// record.
+/// @param verdicts of the surfaces, one for each pose
 void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
              std::vector<Verdict>& verdicts);
 
-/// @param distances of the surfaces, one for each pose, and where there are any, @param pairs that realise them: those
-///   of what is held become negative
+/// Turns distances at poses where a solid holds a record into negative depths, and pairs into those of the deepest
+/// record.
+/// @param distances of the surfaces, one for each pose @param pairs that have these distances; empty: nothing is done
 void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
              std::vector<double>& distances, std::vector<PointPair>& pairs);
 
-/// Of the two as they stand.
+/// Adds held records at the question's poses of the two.
 void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest);
 void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances); ///< of the input
 void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult& found);
@@ -49,8 +52,9 @@ struct SolidDistanceRequest : DistanceRequest {
   bool input_solid = false; ///< a does
 };
 
-/// The smallest distance, which is less than 0 where a solid holds anything: the depth of the deepest, of triangles
-/// with an interval. The pair is the deepest record and the triangle of the solid nearest to its deepest place.
+/// Returns the smallest distance. Where a solid holds anything, it is the depth of the deepest record, less than 0;
+/// triangles have an interval, too. The pair is the deepest record and the triangle of the solid nearest to its deepest
+/// place.
 /// @throws as closestPair() does of surfaces; InvalidOption for a solid without faces, InvalidInput where these do not
 ///   close
 DistanceResult closestPair(const Placed& a, const Placed& b, const SolidDistanceRequest& request);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a cloud matters to those who ask about it, wherever its points are: in memory, or in files of a site.
+// Facts about a cloud that warnings depend on. The points may be in memory or in files of a site.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -21,20 +21,21 @@ struct NamedCloud {
   std::string name;                ///< of a file, or such as "the input"
   bool is_surface = false;         ///< its records are triangles
   std::uint64_t points = 0;        ///< records
-  std::uint64_t finite = 0;        ///< of these; as many as there are where nobody knows
+  std::uint64_t finite = 0;        ///< of these; `points` where nobody has counted them
   Eigen::AlignedBox3d box;         ///< holds the finite points, in the cloud's frame; empty: there are none
   double coordinate_spacing = 0.0; ///< as SphereHierarchy::coordinateSpacing() has it
   std::uint64_t loose = 0;         ///< of a surface, vertices that no triangle names
-  std::optional<Spacing> spacing;  ///< of the points; none of a surface, and where nobody has measured it
+  std::optional<Spacing> spacing;  ///< of the points; none of a surface, nor where nobody has measured it
 };
 
-/// Facts that cost little, so not the spacing.
+/// Returns the facts without the spacing, which costs more than the others.
 NamedCloud namedCloud(std::string name, const SphereHierarchy& points);
 
-/// With the spacing, unless it is a surface. Better after a query than before: it builds a few voxels.
+/// Returns the facts with the spacing, unless it is a surface. Better after a query than before: it builds a few
+/// voxels.
 NamedCloud measuredCloud(std::string name, const SphereHierarchy& points);
 
-/// Holds a box at each of these poses. @param poses where it is, in the frame of the answer
+/// Returns a box that holds the box at each of these poses. @param poses where it is, in the frame of the answer
 Eigen::AlignedBox3d boxAlong(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Isometry3d>& poses);
 
 } // namespace pcl_bsh

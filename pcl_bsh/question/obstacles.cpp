@@ -229,7 +229,7 @@ void requireSeveral(const Question& question, std::size_t obstacles)
                         "give no less than the limits");
 }
 
-/// Nothing of what collides is asked for any more.
+/// Returns the wanted answers without those about collisions.
 Wanted withoutCollisions(Wanted wanted)
 {
   wanted.flags = wanted.obstacle_flags = wanted.any = wanted.indices = wanted.obstacle_indices = false;

@@ -31,66 +31,62 @@ std::vector<QuestionOption> table()
        "collides, what stays beyond clearance + tolerance does not; 0: the poses alone",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers},
       {"accuracy", &Q::accuracy, Kind::any, "HOW", "", Input::accuracy,
-       "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, clearance + "
-       "LENGTH] may count, too, and distances are that much too great at most; of collisions also `level=N`, "
-       "`pairs=N`, "
-       "`time=SECONDS`: stops early, and what stays undecided is not free; with swept motion `exact`"},
+       "how sure the answer is; less sure is faster: `exact`; `tolerance=LENGTH`: distances in (clearance, clearance "
+       "+ LENGTH] may count, too, and distances are too great by LENGTH at most; `level=N`, `pairs=N` or "
+       "`time=SECONDS`, of collisions alone, stop early: what stays undecided is not free; with swept motion `exact`"},
       {"uncertainty", &Q::uncertainty, Kind::collisions, "U", "m", Input::uncertainty,
-       "how far the input's points may truly be from where they were measured: a length, or the field that holds each "
-       "point's sigma; a point then collides only if it does wherever the points truly are, it is free if it cannot, "
-       "and else undecided, which is not free; distances are those of the measured places"},
+       "greatest error of the input's points: a length, or the field of each point's sigma; a point that may collide, "
+       "but need not, is undecided, not free; distances are those of the measured places"},
       {"obstacle_uncertainty", &Q::obstacle_uncertainty, Kind::collisions, "U", "m", Input::uncertainty,
-       "the same for the obstacle's points"},
+       "greatest error of the obstacle's points, as `uncertainty` of the input's"},
       {"sigmas", &Q::sigmas, Kind::collisions, "K", "", Input::uncertainty,
        "by how many sigmas a point may be off, where an uncertainty is a field"},
       {"pose_uncertainty", &Q::pose_uncertainty, Kind::collisions, "T,W,X,Y,Z", "m", Input::uncertainty,
-       "how far the obstacle's pose, or each of its path, may truly be from what is given: a length, and an angle in "
-       "radians about a place in the obstacle's frame, its origin without one; or `covariance=SIGMAS:` and the 36 "
-       "numbers of a registration's; a point then moves by at most T + 2 sin(W / 2) times its distance from the place, "
-       "and verdicts are those of uncertain points"},
+       "greatest error of the obstacle's pose, or of each pose of its path: a length, and an angle in radians about a "
+       "place in the obstacle's frame, its origin without one; `covariance=SIGMAS:` and 36 numbers take it from a "
+       "registration; a point moves by at most T + 2 sin(W / 2) times its distance from the place, and verdicts are "
+       "those of uncertain points"},
       {"input_pose_uncertainty", &Q::input_pose_uncertainty, Kind::collisions, "T,W,X,Y,Z", "m", Input::uncertainty,
-       "the same for the input's own pose, all of whose points move together, about a place in its frame"},
+       "greatest error of the input's own pose, as `pose_uncertainty`: all of its points move together, about a place "
+       "in its frame"},
       {"density", &Q::density, Kind::collisions, "", "", Input::density,
        "a point that is free, but no farther from a point of the obstacle than the clearance and half the spacing of "
        "the obstacle's points there, is undecided: not scanned densely enough; at one pose",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"widest_gap", &Q::widest_gap, Kind::collisions, "L", "m", Input::density,
-       "with `density`: what gapes wider in the obstacle is an opening, not a surface; without it, eight times the "
-       "median distance between its neighbouring points, too little where lines of a scan are farther apart",
+       "with `density`: a wider gap in the obstacle is an opening, not a surface; without it, eight times the median "
+       "distance between its neighbouring points, too little where lines of a scan are farther apart",
        Range::above_zero, false, nullptr, "density", OptionEffect::clashes, OfSites::none},
       {"seen", &Q::seen, Kind::collisions, "", "", std::nullopt,
-       "what of the obstacle is free is unseen where no scanner of the input saw that the space within the clearance "
-       "about it is empty; blind to what is thinner than the angle between beams, to glass, and to mixed pixels at "
-       "edges; not with swept motion",
+       "free parts of the obstacle are unseen where no scanner saw that the clearance about them is empty; blind to "
+       "glass, mixed pixels, and things thinner than the angle between beams; not with swept motion",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::other_answers, OfSites::in_memory},
       {"origin", &Q::origin, Kind::collisions, "X,Y,Z", "m", std::nullopt,
        "with `seen`: where the scanner stood, in the input's frame, or FIELD:N=X,Y,Z;N=X,Y,Z of several scans by "
        "the field that numbers them; without it, what the input's file says",
        Range::from_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::in_memory},
       {"seen_angle", &Q::seen_angle, Kind::collisions, "A", "rad", Input::seen,
-       "with `seen`: a direction counts only if beams within this angle lie on all sides of it: none beyond the "
-       "outermost beam, none in a gap; from 0.0001 to 0.25; without it, one and a half times the angle between the "
-       "scan's beams as measured",
+       "with `seen`: a direction counts only between beams within this angle on all sides, never in a gap or beyond "
+       "the outermost beam; from 0.0001 to 0.25; default: 1.5 times the measured angle between beams",
        Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::in_memory},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity, false, nullptr, nullptr, OptionEffect::other_answers},
       {"solid", &Q::solid, Kind::any, "", "", std::nullopt,
-       "an obstacle with faces counts with what they enclose, and they must close: what is inside collides at any "
-       "clearance, and its distance is negative, the depth to the surface; without it, the obstacle is its surface "
-       "alone, hollow as a tunnel that a wagon passes",
+       "the obstacle is a solid, whose faces must close: what is inside collides at any clearance, at a negative "
+       "distance, the depth to the surface; without it, the obstacle is its surface alone, hollow",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::in_memory},
       {"input_solid", &Q::input_solid, Kind::not_one_way, "", "", std::nullopt,
-       "the same of an input with faces: what of the obstacle is inside collides, and so do the triangles of each body "
-       "that holds it",
+       "the input is a solid, whose faces must close: parts of the obstacle inside it collide, and so do the "
+       "triangles of each body that holds them",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"ignore_points", &Q::ignore_points, Kind::any, "WHICH", "", std::nullopt,
        "points of the input that do not count: FIELD=N,N by values, box=X,Y,Z,X,Y,Z from least to greatest, "
        "plane=NX,NY,NZ,D,TOL up to TOL from n p = D, joined by ;, while their beams still do",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"obstacle_ignore_points", &Q::obstacle_ignore_points, Kind::any, "WHICH", "", std::nullopt,
-       "the same of the obstacle's points", Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes,
-       OfSites::none},
+       "points of the obstacle that do not count, as `ignore_points` of the input", Range::from_zero, false, nullptr,
+       nullptr, OptionEffect::clashes, OfSites::none},
       {"vertices_only", &Q::vertices_only, Kind::any, "", "", std::nullopt,
        "a mesh is its vertices alone; without it, an obstacle with faces is a surface, its triangles, and so is an "
        "input "

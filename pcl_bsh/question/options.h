@@ -16,8 +16,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Which questions have an option. Distances in both directions have those of distances, and `not_one_way`: what is
-/// about the obstacle's own.
+/// Which questions have an option. Distances in both directions have the options of `distances`, and those of
+/// `not_one_way`, which are about the obstacle's own distances.
 enum class QuestionKind : std::uint8_t { collisions = 1, distances = 2, any = 3, not_one_way = 5, both_ways = 6 };
 
 /// Whether an option is one of a question.
@@ -26,7 +26,7 @@ constexpr bool isOf(QuestionKind option, QuestionKind question) noexcept
   return (static_cast<unsigned>(option) & static_cast<unsigned>(question)) != 0;
 }
 
-/// Of a type that is written as text: has parse() and text(). Empty text is its default, but of an accuracy.
+/// Whether parse() and text() of an option's type read and write it. Empty text is the default, except of an accuracy.
 template <typename T>
 inline constexpr bool is_text_option = std::is_same_v<T, Accuracy> || std::is_same_v<T, PoseUncertainty> ||
                                        std::is_same_v<T, ScanOrigins> || std::is_same_v<T, IgnoredPoints>;
@@ -39,8 +39,8 @@ using OptionMember = std::variant<double Question::*, std::optional<double> Ques
 /// Which numbers an option accepts; counts go up to 1024.
 enum class OptionRange : std::uint8_t { from_zero, above_zero, from_zero_to_infinity };
 
-/// What another value of an option changes: which points collide at a pose, and so which clashes there are; other
-/// answers alone; or none.
+/// Which answers an option changes: the points that collide at a pose, and so the clashes; other answers alone; or
+/// none.
 enum class OptionEffect : std::uint8_t { clashes, other_answers, none };
 
 /// Which questions about a site (pcl_bsh/site) have an option: all, those whose obstacle is in memory, or none.
@@ -63,14 +63,14 @@ struct QuestionOption {
   OptionOfSites of_sites = OptionOfSites::all;
 
   bool accepts(double number) const; ///< whether it is in range
-  double most() const;               ///< that is accepted
+  double most() const;               ///< the greatest number that is accepted
   std::string remedy() const; ///< what to give instead of a number that is not accepted: "give a finite length >= 0"
 };
 
-/// In the order in which they are told.
+/// All rows, in the order of help texts and documents.
 const std::vector<QuestionOption>& questionOptions();
 
-/// By its name; null when there is none.
+/// Returns the option of this name, or null.
 const QuestionOption* questionOption(const std::string& name);
 
 /// An error about an option of a question, by the table's name. Options that its text names are in `backticks`.
@@ -88,17 +88,17 @@ std::string optionOf(const InvalidInput& error, const Question& question);
 
 /// Sets an option as text has it: numbers, true or false, or what the option's type parses. Faces whose users name
 /// options have them all by this, and no word of their own.
-/// @throws InvalidInput for a name that is none, InvalidOption for a text that is no value of the option
+/// @throws InvalidInput for an unknown name and for a text that is no value of the option
 void setOption(Question& question, const std::string& name, const std::string& text);
 
-/// What setOption() reads, empty where it is the default: reports state by it what was asked.
+/// Returns the text that setOption() reads, empty for the default. Reports state a question by it.
 std::string textOf(const QuestionOption& option, const Question& question);
 
-/// The options that were given and change answers, in the table's order, as text: what reports state, and what kept
-/// answers are answers to.
+/// The options that were given and change answers, in the table's order, as text. Reports state them, and kept answers
+/// are answers to them.
 std::vector<std::pair<std::string, std::string>> givenOptions(const Question& question);
 
-/// Sets options whose switch is off to their defaults: for who keeps them until it is on.
+/// Sets options whose switch is off to their defaults, for callers that keep their values until it is on.
 void leaveOutWaiting(Question& question);
 
 /// Refuses numbers that their options do not accept, and options that do not go together. Poses are for queries to

@@ -31,12 +31,13 @@ struct PoseUncertainty {
     return length == other.length && angle == other.angle && about == other.about;
   }
 
-  /// By how much a ball about a point moves for the angle's sake, at most; rounded upward.
+  /// Returns the greatest way of a place in the ball about a point when the body turns by the angle; rounded upward.
   double turned(const Point3& point, double radius) const;
 
-  /// Of normal errors. @param covariance of x y z and of a rotation vector about them, in that order, the rotation in
-  ///   radians: symmetric, positive semidefinite. @param sigmas that the pose is sure to be within: the greatest
-  ///   deviation in any direction, of the shift and of the rotation each. @param about that it is told of
+  /// Returns the uncertainty of normal errors.
+  /// @param covariance of x y z and of a rotation vector about them, in that order, the rotation in radians: symmetric,
+  ///   positive semidefinite. @param sigmas that the pose is sure to be within: the greatest deviation in any
+  ///   direction, of the shift and of the rotation each. @param about the place that the covariance is about
   /// @throws InvalidInput naming the value
   static PoseUncertainty of(const Eigen::Matrix<double, 6, 6>& covariance, double sigmas,
                             const Point3& about = {0, 0, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user asks of two things, an input and an obstacle, as plain data. ask.h answers it; options.h names its
+// A user's question about two things, an input and an obstacle, as plain data. ask.h answers it; options.h names its
 // members as users write them.
 //
 //   Question question;
@@ -24,18 +24,18 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Which answers are computed. Of an input that is a surface, all that is said of points is said of its triangles.
+/// Which answers are computed. Where the input is a surface, its triangles take the place of points.
 struct Wanted {
   bool flags = false;            ///< which points of the input collide
   bool obstacle_flags = false;   ///< which points of the obstacle do, at one pose
   bool any = false;              ///< whether anything collides, at one pose
   bool indices = false;          ///< which points of the input collide, as a list, at one pose
-  bool obstacle_indices = false; ///< the same of the obstacle
+  bool obstacle_indices = false; ///< which points of the obstacle collide, as a list, at one pose
   bool contacts = false;         ///< of each that collides: its smallest distance, the first pose and the closest
   bool poses = false;         ///< of each pose: how many points collide, the smallest distance and its pair; swept, of
                               ///< the motion from each pose to the next
   bool first_poses = false;   ///< of each that collides: the first pose alone
-  bool closest = false;       ///< the smallest distance and its pair: with contacts, and along a path, of what collides
+  bool closest = false;       ///< the smallest distance and its pair; with contacts, or on a path, of colliding points
   bool distances = false;     ///< of each point of the input to the obstacle; along a path the smallest
   bool both_ways = false;     ///< distances also of the obstacle's points, at one pose
   bool within = false;        ///< which points of the input have a distance within the limits, at one pose
@@ -81,18 +81,19 @@ struct Question : Effort {
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
   bool solid = false;       ///< the obstacle counts with what its faces enclose: they must close
-  bool input_solid = false; ///< the same of the input
-  IgnoredPoints ignore_points = {}, obstacle_ignore_points = {}; ///< what of both does not count
-  bool vertices_only = false; ///< for who makes shapes of meshes: they are their vertices alone
+  bool input_solid = false; ///< the input counts with what its faces enclose: they must close
+  IgnoredPoints ignore_points = {}, obstacle_ignore_points = {}; ///< points of the two that do not count
+  bool vertices_only = false; ///< for callers that make shapes of meshes: a mesh is its vertices alone
   Wanted wanted = {};
 
-  /// Of the path, or the only one.
+  /// Returns the poses of the path, or the only pose.
   std::vector<Eigen::Isometry3d> poses() const { return path ? *path : std::vector{pose}; }
-  /// None: the poses alone.
+  /// Returns the tolerance of swept motion, or nothing where the poses alone count.
   std::optional<double> sweptTolerance() const { return swept > 0.0 ? std::optional(swept) : std::nullopt; }
-  /// With `sigmas`, and that of its pose.
+  /// Returns `uncertainty` with `sigmas` and with the uncertainty of the input's pose.
   Uncertainty uncertaintyOfInput() const { return scaled(uncertainty, input_pose_uncertainty); }
-  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty, pose_uncertainty); } ///< likewise
+  /// Returns `obstacle_uncertainty` with `sigmas` and with the uncertainty of the obstacle's pose.
+  Uncertainty uncertaintyOfObstacle() const { return scaled(obstacle_uncertainty, pose_uncertainty); }
 
   /// Whether a point may be elsewhere than it is given.
   bool isUncertain() const { return !uncertaintyOfInput().isZero() || !uncertaintyOfObstacle().isZero(); }

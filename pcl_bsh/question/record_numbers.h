@@ -9,13 +9,13 @@
 
 namespace pcl_bsh {
 
-/// Bytes of a field's number; 0 of a type that nobody knows.
+/// Bytes of a field's number; 0 for an unknown type.
 std::size_t bytesOf(const RecordField& field);
 
 /// The numbers of a field, one a record.
 class RecordNumbers {
 public:
-  /// What is told of a field that is not there.
+  /// The texts of an error about a field that is missing.
   struct Purpose {
     Input code;
     const char* of;     ///< such as "of its points' sigmas"
@@ -27,7 +27,7 @@ public:
   RecordNumbers(const PointsView& view, const std::vector<RecordField>& fields, const std::string& name,
                 const std::string& cloud, const Purpose& purpose);
 
-  /// NaN of a type that nobody knows.
+  /// Returns the number of a record; NaN for an unknown type.
   double operator[](std::size_t record) const { return value_(first_ + stride_ * record); }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the scanners stood that an input is of.
+// The places where the scanners of an input stood.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -15,7 +15,7 @@ struct ScanBeams;
 
 /// One origin for all points, or a table of them by a number that each point has in a field. In the input's frame.
 struct ScanOrigins {
-  /// Of one scan.
+  /// The origin of one scan.
   struct Entry {
     double scan = 0.0;         ///< the number; of no meaning without a field
     Point3 origin = {0, 0, 0}; ///< where its scanner stood

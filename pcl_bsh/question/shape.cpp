@@ -37,7 +37,7 @@ struct Counted {
   std::shared_ptr<const void> cloud;
 };
 
-/// What make() gives, or what another copy of a shape has made.
+/// Returns the object that another copy of a shape has made, or else makes it.
 template <class T, class Make>
 const T& madeOnce(MadeOnce<const T>& made, const Make& make)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One of the two things of a question: points or a surface, by the name that its user knows it by, and what is kept of
-// it from one question to the next.
+// One of the two things of a question: points or a surface, by the name that its user knows it by, and the structures
+// that it keeps from one question to the next.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -35,14 +35,15 @@ public:
   /// Points, or triangles, that do not change. @param fields of the points' records, for uncertainties
   Shape(std::string name, const PointsView& points, std::vector<RecordField> fields = {});
 
-  /// What its owner may change, though it must not: every question compares a checksum of coordinates, corners and
-  /// uncertainties, which takes some 20 instructions a point, a tenth or less of what building takes.
+  /// Points or triangles that their owner could change, but must not. Every question compares a checksum of
+  /// coordinates, corners and uncertainties. It takes some 20 instructions a point, a tenth or less of the cost of
+  /// building.
   /// @param points and @param fields are called for each question, and keep alive what they tell of; a view of
   ///   triangles is the same each time
   /// @throws what `points` does
   Shape(std::string name, std::function<PointsView()> points, std::function<std::vector<RecordField>()> fields);
 
-  /// What is built already: uncertainties are those of its points.
+  /// A hierarchy that is built already. Uncertainties are those of its points.
   Shape(std::string name, std::shared_ptr<const SphereHierarchy> hierarchy);
 
   explicit operator bool() const noexcept { return view_ || hierarchy_; } ///< whether it is something
@@ -50,7 +51,7 @@ public:
 
   bool isSurface() const noexcept { return is_surface_; } ///< whether its records are triangles
 
-  /// The same by another name.
+  /// Returns a copy with another name.
   Shape named(std::string name) const;
 
   /// Which of its points do not count from now on. Another choice than before builds all anew.
@@ -58,7 +59,7 @@ public:
 
   const IgnoredPoints& ignored() const noexcept { return ignored_; } ///< which do not
 
-  /// Which do, once hierarchy() was called.
+  /// The points that count, once hierarchy() was called.
   const CountedPoints* counted() const noexcept { return counted_.get(); } ///< null where all count
 
   /// Built on the first use, and anew for another uncertainty. @param threads that build it
@@ -66,10 +67,10 @@ public:
   ///   withUncertainty() asks for, or countedPoints() refuses what is to be ignored
   const SphereHierarchy& hierarchy(const Uncertainty& uncertainty, unsigned threads);
 
-  /// That was built last. @pre there is one
+  /// Returns the hierarchy that was built last. @pre there is one
   const SphereHierarchy& hierarchy() const { return *hierarchy_; }
 
-  /// How wide the holes beside each record are taken to be, and what gapes wider.
+  /// The width of the holes beside each record, and the gap beyond which a hole is an opening.
   struct Patches {
     std::optional<double> asked; ///< none: usualGap()
     double gap = 0.0;            ///< > 0, or 0 where there are no two places
@@ -79,29 +80,31 @@ public:
   /// Measured once for points and a gap. @pre hierarchy() was called. @param gap > 0; none: usualGap()
   const Patches& patches(const std::optional<double>& gap, const Effort& effort);
 
-  /// Patches that its owner has measured, for question without a gap. @param spacings one per record
+  /// Patches that its owner has measured, for questions without a gap. @param spacings one per record
   void setPatches(std::vector<float> spacings);
 
-  /// What its scanners saw to be empty. Made once for origins and an angle. @pre hierarchy() was called
+  /// Returns the space that its scanners saw to be empty. Made once for origins and an angle.
+  /// @pre hierarchy() was called
   /// @throws InvalidInput as scansOf() and SeenSpace do
   const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads);
 
-  /// What its faces enclose. Made once for all copies. @pre isSurface(), and hierarchy() was called
+  /// Returns the bodies that its faces enclose. Made once for all copies. @pre isSurface(), and hierarchy() was called
   /// @throws InvalidInput naming it, as Solid does
   const SolidBodies& solid();
 
   /// Whether its faces close: found out once, for a few hundred instructions a triangle. @pre as of solid()
   bool isClosed();
 
-  /// The same for who asks at each question about it: nothing at the first, whose user may never ask again.
+  /// Whether its faces close. Returns nothing on the first call, to spare a caller that asks only once the cost.
   std::optional<bool> isKnownToClose();
 
-  /// What of it solids are asked about. Made once. @pre hierarchy() was called
+  /// Returns the places that solids are asked about: its points, or the corners of its triangles. Made once.
+  /// @pre hierarchy() was called
   const Content& content();
 
-  /// What is to be known of it beside an answer. @pre hierarchy() was called
-  /// @param spacing how far its points are apart, too: measured once, for all copies; not of balls, which are taken for
-  ///   those of a surface
+  /// Returns the facts that warnings depend on. @pre hierarchy() was called
+  /// @param spacing whether to measure the spacing of its points, once for all copies; never of triangles, nor of
+  ///   balls, which are taken for a surface's
   NamedCloud facts(bool spacing) const;
 
 private:
@@ -137,12 +140,12 @@ private:
   };
   std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
 
-  struct Faces; ///< what is known of them, for all copies
+  struct Faces; ///< facts about the faces, for all copies
   std::shared_ptr<Faces> surface_;
-  struct Built; ///< what is known of the hierarchy, likewise
+  struct Built; ///< facts about the hierarchy, for all copies
   std::shared_ptr<Built> built_;
 
-  /// What SeenSpace is of.
+  /// The space that was seen, and the arguments that it was made with.
   struct Looked {
     ScanOrigins origins;
     std::optional<double> angle;

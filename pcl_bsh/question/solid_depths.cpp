@@ -14,7 +14,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// As a distance.
+/// Returns the interval of the distance.
 Interval turned(const Interval& depth)
 {
   return {-depth.upper, 0.0 - depth.lower};
@@ -99,8 +99,8 @@ Solids::Records Solids::mayBeDeep(const Pairing& pair, const FirstPoses& first, 
   return records;
 }
 
-/// A triangle of the input that is a solid gets the depth of what is deepest nearest to it. Where nothing is, and its
-/// body holds something, it is at a distance of 0.
+/// Adds depths. Where the input is the solid, the depth of a record goes to the triangle nearest to its deepest place.
+/// Other triangles whose body holds something get a distance of 0.
 void Solids::addDepths(const Pairing& pair, const FirstPoses& first, const std::vector<Eigen::Isometry3d>& poses,
                        const Point3& pivot, TrajectoryResult& found, std::vector<double>& at_poses, Work& work) const
 {

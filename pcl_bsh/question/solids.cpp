@@ -20,7 +20,7 @@ const SolidBodies& solidOf(Shape& shape, const char* option)
   return shape.solid();
 }
 
-/// What is inside at a pose touches there, no later.
+/// A record that is inside at a pose touches there at the latest: takes the pose, unless an earlier contact is known.
 void takeContact(std::optional<FirstContact>& contact, std::size_t pose)
 {
   if (!contact || contact->pose >= pose) contact = FirstContact{pose, 0.0};
@@ -34,7 +34,7 @@ void count(FlagsResult& found)
   found.undecided_b = countOf(found.b, Verdict::undecided);
 }
 
-/// The gravest of each.
+/// Takes the graver verdict of each record.
 void merge(std::vector<Verdict>& verdicts, const std::vector<Verdict>& others)
 {
   for (std::size_t i = 0; i < others.size(); ++i) verdicts[i] = graver(verdicts[i], others[i]);
@@ -64,7 +64,7 @@ const Solids::Records& Solids::held(Pairing& pair, Work& work)
   return *pair.held;
 }
 
-/// What one solid holds. @param found has the verdicts of the surfaces
+/// Adds the records that one solid holds. @param found has the verdicts of the surfaces
 void Solids::add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const
 {
   addHeld(pair.solid, poseOfSolid(pair, pose), pair.content, poseOfContent(pair, pose), held, uncertain_,
@@ -116,7 +116,7 @@ void Solids::addTo(AnyResult& found, const Eigen::Isometry3d& pose)
   }
 }
 
-/// Verdicts of the surfaces, of what may be held.
+/// Returns the verdicts of the content against the surface of the solid.
 FlagsResult Solids::flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const
 {
   return collisionFlags(a_, {b_.hierarchy(), pose},
@@ -153,8 +153,9 @@ Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
   return first;
 }
 
-/// For records of the input that are held at their poses, or whose bodies hold something there: a triangle of the body
-/// that holds it, or the first of the obstacle that its body holds. What a pose holds is found once.
+/// Finds the other record of a pair, for records of the input. For a record that is held at its pose, it is a triangle
+/// of the body that holds it. For a triangle whose body holds something there, it is the first record of the obstacle
+/// that the body holds. Held records of a pose are found once.
 /// @param at poses and records @param others of the records: set
 void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const std::vector<Eigen::Isometry3d>& poses,
                         std::vector<std::uint32_t>& others, Work& work) const
@@ -212,7 +213,7 @@ void Solids::addToPath(TrajectoryResult& found, Work& work, const Point3& pivot)
   for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], at_poses[k], work);
 }
 
-/// Of the union of what is near the surface and what is held, which only all flags tell.
+/// Counts the union of records near the surface and records that are held. Only the flags of all records tell it.
 void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const
 {
   if (depth > 0.0) summary.distance = std::min(summary.distance, -depth);
@@ -240,7 +241,7 @@ void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, d
 
 namespace {
 
-/// Calls add(solids) of both things as they are placed, where anything is solid.
+/// Calls add(solids) with both things as they are placed. Does nothing where neither is solid.
 template <class Add>
 void withSolids(const Question& question, Shape& input, Shape& obstacle, const Add& add)
 {

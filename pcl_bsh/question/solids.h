@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solids enclose collides, and its distance is negative: added to what is found of surfaces.
+// Adds the contents of solids to answers about surfaces: records inside collide, and their distances are negative.
 #pragma once
 
 #include <pcl_bsh/depths/depths.h>
@@ -15,34 +15,36 @@
 
 namespace pcl_bsh {
 
-/// What ask() adds where the obstacle, or the input, is a solid; both as they are placed. Of what a solid holds,
-/// records collide that have a place inside: a point, or a corner of a triangle; on the surface counts. Of the solid
-/// those triangles do whose body holds such a place in its inside (solid/bodies.h).
+/// The part of ask() about an obstacle or an input that is a solid, both as they are placed. A record collides with a
+/// solid if one of its places is inside or on the surface: a point, or a corner of a triangle. A triangle of the solid
+/// collides if its body holds such a place in its inside (solid/bodies.h).
 class Solids {
 public:
-  /// @throws InvalidOption where what is to be solid has no faces, InvalidInput where these do not close
+  /// @throws InvalidOption where a solid has no faces, InvalidInput where these do not close
   Solids(const Question& question, Shape& input, Shape& obstacle, const Placed& a, const Placed& b);
 
   bool none() const { return pairings_.empty(); } ///< nothing is solid
 
-  /// What addTo() needs of the surfaces beside what is asked for: where places are uncertain, the flags of both.
+  /// Returns the request about the surfaces that addTo() needs: where places are uncertain, it asks for the flags of
+  /// both.
   FlagsRequest request(FlagsRequest request) const;
 
-  /// At one pose. What is undecided for want of certain places stays so. @param found by such a request
+  /// Adds held records at one pose. Records that are undecided because places are uncertain stay so.
+  /// @param found the result of such a request
   void addTo(FlagsResult& found);
   void addTo(AnyResult& found) { addTo(found, b_.pose); }
 
   /// With the obstacle at some pose.
   void addTo(AnyResult& found, const Eigen::Isometry3d& pose);
 
-  /// Along the path: what is inside at a pose collides there, and is as deep as where it is deepest; swept, also on the
-  /// motion between poses. @param pivot of that motion
+  /// Adds held records along the path. A record that is inside at a pose collides there. Its distance is the depth
+  /// where it is deepest: at a pose or, swept, on the motion between poses. @param pivot of that motion
   void addToPath(TrajectoryResult& found, Work& work, const Point3& pivot = {0, 0, 0}) const;
 
-  /// Distances of what is inside become negative, and are measured however deep. Triangles get intervals.
+  /// Turns the distances of records inside into negative ones, however deep they are. Triangles get intervals.
   void turn(SymmetricDistances& found, bool both_ways) const;
 
-  /// The deepest, where anything is inside.
+  /// Turns the smallest distance into that of the deepest record, where anything is inside.
   void turn(DistanceResult& closest) const { turn(closest, b_.pose); }
 
   /// With the obstacle at some pose.
@@ -51,9 +53,9 @@ public:
 private:
   using Records = std::vector<std::uint32_t>;
 
-  /// One of the two that is solid, and the other.
+  /// A thing that is solid, and the other thing, its content.
   struct Pairing {
-    bool of_obstacle; ///< it is the solid
+    bool of_obstacle; ///< the obstacle is the solid
     const SolidBodies& solid;
     const Content& content;
     std::optional<Records> held; ///< at the one pose, once asked for
@@ -64,7 +66,7 @@ private:
     std::vector<std::uint32_t> possible, certain; ///< certain: wherever places truly are
   };
 
-  /// A path moves the obstacle.
+  /// Returns the pose of the solid. A path moves the obstacle alone.
   Eigen::Isometry3d poseOfSolid(const Pairing& pair, const Eigen::Isometry3d& pose) const
   {
     return pair.of_obstacle ? pose : a_.pose;

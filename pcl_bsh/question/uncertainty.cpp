@@ -36,7 +36,7 @@ double movedBy(double x, double y)
   return y == 0.0 ? x : std::nextafter(x + y, std::numeric_limits<double>::infinity());
 }
 
-/// What a view of uncertain points keeps alive.
+/// The memory that a view of uncertain points keeps alive.
 struct Owned {
   std::vector<float> lengths;
   std::shared_ptr<const void> points;

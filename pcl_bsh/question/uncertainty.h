@@ -4,10 +4,10 @@
 //   filter.setInputUncertainty({0.004});                      // k sigma of the scanner, in the clouds' unit
 //   filter.setObstacleUncertainty(Uncertainty("sigma", 3.0)); // three times each point's field `sigma`
 //
-// A verdict is as sure as this length is: a point whose error exceeds it is misjudged. It is the radius of a ball, so
-// add what may be wrong: k sigma of the range, the angles' error times the range, and the registration's, which moves
-// all points of a scan together (PoseUncertainty; Lague, Brodu, Leroux, Accurate 3D comparison of complex topography
-// with terrestrial laser scanner, 2013, add it to the noise likewise). Of normal errors, alike in all directions, 2.9 %
+// A verdict is as sure as this length is: a point whose error exceeds it is misjudged. It is the radius of a ball. Add
+// all errors: k sigma of the range, the angles' error times the range, and the registration's error. This one moves all
+// points of a scan together (PoseUncertainty). Lague, Brodu, Leroux (Accurate 3D comparison of complex topography with
+// terrestrial laser scanner, 2013) add it to the noise, too. If errors are normal and alike in all directions, 2.9 %
 // exceed 3 sigma and 0.1 % exceed 4. Bias, mixed pixels at edges, glass and water are no noise: no sigma covers them.
 //
 // Phase-based terrestrial scanner: ranging noise in the data sheet, a sigma by distance and reflectance, mostly below
@@ -16,15 +16,15 @@
 // than one length (Schmitz et al., How to Efficiently Determine the Range Precision of 3D Terrestrial Laser Scanners,
 // Sensors 19, 1466, 2019). The thickness of a scanned flat wall shows whether the number is right.
 //
-// Spinning lidar: centimetres, by signal. Ouster's OS1 has named 1.5 cm (1 sigma) for strong returns, 3 cm for weaker
-// and 10 cm for the weakest, and 0.01 degrees for its angles: see the data sheet of your sensor and year. A vehicle's
-// own motion and its estimate come on top and are often larger.
+// Spinning lidar: centimetres, by signal. The data sheet of Ouster's OS1 has named 1.5 cm (1 sigma) for strong returns,
+// 3 cm for weaker and 10 cm for the weakest, and 0.01 degrees for its angles. Use the data sheet of your sensor and
+// year. A vehicle's own motion and its estimate come on top and are often larger.
 //
-// Photogrammetry: no sensor's number. The error differs from place to place, with overlap, angles and texture: take
-// precision maps where the software makes them (James, Robson, Smith, 3-D uncertainty-based topographic change
-// detection with structure-from-motion photogrammetry: precision maps, 2017), else the error at independent check
-// points. Control points that took part in the adjustment say too little (Sanz-Ablanedo et al., Remote Sensing 10,
-// 1606, 2018).
+// Photogrammetry: no sensor's number. The error differs from place to place, with overlap, angles and texture. Take
+// precision maps where the software makes them, else the error at independent check points. James, Robson, Smith
+// describe these maps (3-D uncertainty-based topographic change detection with structure-from-motion photogrammetry:
+// precision maps, 2017). Control points that took part in the adjustment say too little (Sanz-Ablanedo et al., Remote
+// Sensing 10, 1606, 2018).
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -82,7 +82,7 @@ void checkUncertainty(const std::string& cloud, const Uncertainty& uncertainty);
 PointsView withUncertainty(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
                            const Uncertainty& uncertainty);
 
-/// Of a field's numbers as they are written; bytes beside them may change. @param name empty, or of no field: 0
+/// Returns a checksum of a field's numbers; bytes beside them do not count. @param name empty, or of no field: 0
 std::uint64_t checksumOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& name);
 
 } // namespace pcl_bsh

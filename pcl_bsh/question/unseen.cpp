@@ -42,7 +42,7 @@ void Answer::Unseen::addPose(const std::vector<Verdict>& found, bool with_places
 
 namespace {
 
-/// What a solid encloses, in cubes, each in a ball.
+/// The inside of a solid, in cubes, each in a ball.
 class Enclosed {
 public:
   Enclosed(Shape& obstacle, const CornerBox& bounds, const Question& question)

@@ -6,7 +6,7 @@
 
 namespace pcl_bsh {
 
-/// Looks at each pose of the question: what of the obstacle collides there is not unseen.
+/// Finds the unseen records of the obstacle at each pose of the question. A record that collides there is not unseen.
 /// @param answer gets `unseen`, `obstacle_flags`, and the work
 /// @throws InvalidInput as scansOf() and SeenSpace do. Cancelled
 void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer& answer);

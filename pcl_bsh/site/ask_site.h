@@ -10,18 +10,18 @@
 //   site::SiteAnswer answer = site::ask(question, valley, robot, {.sink = sink}); // robot: a Shape
 //   site::SiteAnswer changes = site::ask(question, valley, site::readSite("before"));
 //
-// Only tiles that can matter are read, one at a time. Which, their boxes tell: compared with boxes about parts of the
-// obstacle, along its path if it moves. Of two sites a tile of the input is read once. The tiles of the obstacle that
-// come near it are read after one another and cut to what is near, so that memory holds a tile of each; a tile that
-// several of the input come near to is read for each of them.
+// Only tiles that can matter are read, one at a time. Their boxes are compared with boxes about parts of the obstacle,
+// along its path if it moves. Where the obstacle is a site, each tile of the input is read once. The tiles of the
+// obstacle that come near it are read after one another, and cut to the points that are near. So memory holds a tile of
+// each. A tile of the obstacle may be read once for each tile of the input that it comes near to.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks ask the same: the tiles are dealt to them, and each gets the whole answer.
-// Sinks are called on the rank that has the tile. What an accuracy promises of one cloud holds of the site: a level, a
-// number of pairs or a time is that of each tile. Threads are those of each process.
+// Sinks are called on the rank that has the tile. An accuracy promises for the site what it promises for one cloud. A
+// level, a number of pairs or a time is that of each tile. Threads are those of each process.
 //
 // Unseen points of an obstacle (`seen`) are those of one SeenSpace over all points of the site. All tiles that have
-// beams near the directions of the obstacle are read once, and these beams are kept in memory: as many as look at the
-// obstacle on its way, but all of a scan where a ball of the obstacle holds the place of its scanner.
+// beams near the directions of the obstacle are read once. Memory keeps the beams that look at the obstacle on its way.
+// It keeps all beams of a scan whose scanner stands inside a ball of the obstacle.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -36,13 +36,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// What a question has found of tiles, by their numbers, so that it can be asked again after it was ended: numbers that
-/// only the query understands.
+/// The answers about tiles, by their numbers, from which a question goes on after it was ended. Only the query
+/// understands their numbers.
 class TileAnswers {
 public:
   virtual ~TileAnswers() = default;
 
-  /// Null where the tile has to be asked about. The same on all ranks.
+  /// Returns the answer about a tile, or null where the tile has to be asked about. All ranks return equal answers.
   virtual const std::vector<double>* known(std::size_t tile) const = 0;
 
   /// Called by the rank that has the tile, after the sink.
@@ -51,22 +51,23 @@ public:
 
 class ClashFinder;
 
-/// Called for each tile that was read, with its points and what was found of them: vectors of the answer have an entry
-/// per point. A question that needs several visits calls it in each, with what that has found. Of distances to another
-/// site, the distances alone.
+/// Called for each tile that was read, with its points and the answer about them: vectors of the answer have an entry
+/// per point. A question that needs several visits calls it in each visit, with the answer of that visit. For distances
+/// to another site, the answer has the distances alone.
 using TileSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const Answer&)>;
 
-/// With which means a question about a site is answered.
+/// The means to answer a question about a site.
 struct SiteMeans {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
-  /// Of collisions or of distances: tiles that are known are not read, and their sinks not called. ResultSite has some.
+  /// Answers of an earlier run about collisions or distances. Tiles with such an answer are not read, and the sink is
+  /// not called. ResultSite::answers() returns some.
   TileAnswers* answers = nullptr;
-  ClashFinder* clashes = nullptr; ///< gets what collides along the path, or at the one pose
+  ClashFinder* clashes = nullptr; ///< gets the points that collide along the path, or at the one pose
   TileSink sink = nullptr;
   TileSink obstacle_sink = nullptr; ///< with Wanted::obstacle_flags, of the tiles of an obstacle that is a site
 };
 
-/// What a tile has cost, in seconds of the clock on the wall.
+/// The cost of a tile, in seconds of the clock on the wall.
 struct TileCost {
   std::uint32_t tile = 0;  ///< its number among the site's
   std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks
@@ -74,7 +75,7 @@ struct TileCost {
   double asking = 0.0; ///< its hierarchy, the question and the sink
 };
 
-/// What a question has read of a site, in one visit or in several.
+/// The tiles that a question has read of a site, in one visit or in several.
 struct TilesRead {
   std::uint64_t tiles = 0;     ///< of the site
   std::uint64_t needed = 0;    ///< those that could matter before any was read: of the visit that needed most
@@ -90,11 +91,12 @@ struct SitePair {
   SitePoint a, b;
 };
 
-/// What was wanted. Vectors about points of a site stay empty: sinks get them. Distances are counted in `distances.a`;
+/// The answer. Vectors about points of a site stay empty: sinks get them. Distances are counted in `distances.a`;
 /// `work`, the pair of `any`, `pose_pairs` and `unseen.inside` are not told.
 struct SiteAnswer : Answer {
-  /// Of `closest`: of several the smallest (source, record), and for it the smallest point of the obstacle. Along a
-  /// path `closest` is of what collides or is undecided, and has no pair.
+  /// The pair of `closest`. Among equal pairs, it has the smallest (source, record) and, for this point, the smallest
+  /// point of the obstacle. Along a path, `closest` is the distance of points that collide or are undecided, and has no
+  /// pair.
   std::optional<SitePair> pair;
   std::optional<std::size_t> first_pose; ///< along a path, at which anything may collide
   std::uint64_t obstacle_colliding = 0;  ///< points, or triangles, of the obstacle
@@ -120,11 +122,12 @@ int ranks();
 ///   uncertainty that site.json does not tell of; Cancelled
 SiteAnswer ask(const Question& question, const Site& site, Shape& obstacle, const SiteMeans& means = {});
 
-/// The same of another site, in a frame that the question poses in the first one's.
+/// The answer where the obstacle is a site. The question's poses place its frame in that of the first site.
 SiteAnswer ask(const Question& question, const Site& site, const Site& obstacle, const SiteMeans& means = {});
 
-/// Refuses what ask() would refuse of any two things. @throws InvalidInput naming the option: also one that sites do
-///   not obey (QuestionOption::of_sites), or an answer that they do not have
+/// Refuses the question where ask() would refuse it for any two things.
+/// @throws InvalidInput naming the option, also one that sites do not obey (QuestionOption::of_sites), or an answer
+///   that they do not have
 void check(const Question& question, bool obstacle_is_site);
 
 } // namespace pcl_bsh::site

@@ -37,7 +37,7 @@ public:
     checkRecords(cloud_);
   }
 
-  /// Of the site, as the union of what its tiles have.
+  /// Compares the bounds of the site with the union of those of its tiles.
   void checkAll() const
   {
     if (!isSame(all_, site_.bounds))

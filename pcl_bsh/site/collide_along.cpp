@@ -18,7 +18,7 @@ namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
 
-/// What several models that move together meet of a scan.
+/// The joined results of several models that move together, about the points of a scan.
 class JoinedResults {
 public:
   JoinedResults(const PointsView& scan, const Poses& poses, const TrajectoryRequest& request)
@@ -33,7 +33,7 @@ public:
     joined_.closest_pose.assign(scan.count, -1);
   }
 
-  /// What one of them meets.
+  /// Adds the result of one model.
   void add(const TrajectoryResult& found, const PointsView& model, const pcl::PCLPointCloud2& cloud)
   {
     join(joined_.flags, found.flags);
@@ -68,7 +68,8 @@ public:
 
 private:
   /// Whether point i is nearer to this model, or as near at an earlier pose, or there to a smaller point. Distances
-  /// that are one float may differ: exact arithmetic decides. Those of swept motion are not exact.
+  /// that are equal as floats may differ: exact arithmetic decides. Distances of swept motion are not exact, and are
+  /// not compared again.
   bool isNearer(std::uint32_t i, const TrajectoryResult& found, const MetPoint& nearest) const
   {
     const float before = joined_.distance[i], now = found.distance[i];
@@ -97,7 +98,7 @@ private:
   std::map<std::uint32_t, MetPoint> nearest_; ///< of the points that meet something
 };
 
-/// Asks about tiles of the site, whose answers are added up, and tells what it reads of them.
+/// Asks about tiles of the site, adds up the answers, and returns the tiles read.
 template <typename Find>
 TilesRead visitTiles(const Asked& asked, Inquiry& inquiry, const std::vector<std::uint32_t>& tiles, PassageSum& sum,
                      const Find& find)
@@ -130,7 +131,7 @@ void followPathOfCloud(const Asked& asked, const Poses& poses, PassageSum& sum, 
   answer.tiles += visitTiles(asked, inquiry, tiles, sum, find);
 }
 
-/// Of its tiles those are read that come near a tile of the input on their way.
+/// Follows the path of a site. Reads the tiles of it that come near a tile of the input on their way.
 void followPathOfSite(const Asked& asked, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
 {
   const PlacedSite site = asked.input();

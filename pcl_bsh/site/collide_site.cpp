@@ -22,7 +22,8 @@ struct Candidate {
   double distance;
 };
 
-/// Those of all ranks that have a distance, of which exact arithmetic chooses, in the order of their names.
+/// The candidates of all ranks that have the given distance, in the order of their names. Exact arithmetic chooses
+/// among them.
 struct Candidates {
   Candidates(const std::vector<Candidate>& own, double distance)
   {

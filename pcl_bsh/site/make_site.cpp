@@ -87,7 +87,7 @@ private:
     return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 
-  /// Of all clouds the fields and the numbers of points, before anything is written.
+  /// Reads the fields and the numbers of points of all clouds, before anything is written.
   void describe()
   {
     std::vector<Fields> fields;
@@ -115,8 +115,8 @@ private:
     }
   }
 
-  /// Calls use(source, record, its bytes, the point) for all records of all clouds, but for the first `done`, the last
-  /// of which stands before (first, record).
+  /// Calls use(source, record, its bytes, the point) for all records of all clouds from (first, record) on.
+  /// @param done records before that
   template <typename Use, typename AfterBatch>
   void forEachRecord(MakeStep step, std::uint32_t first, std::uint32_t record, std::uint64_t done, const Use& use,
                      const AfterBatch& after_batch)
@@ -172,7 +172,7 @@ private:
     save();
   }
 
-  /// What the site is made of: a run that is continued must have the same.
+  /// Returns the clouds and options that the site is made of. A run that is continued must have equal ones.
   io::Json question() const
   {
     io::Json question = {{"version", 2},
@@ -186,7 +186,7 @@ private:
     return question;
   }
 
-  /// Notes on the disk what is done.
+  /// Notes on the disk how much is done.
   void save()
   {
     for (TileFile& file : files_) file.flush();
@@ -198,7 +198,7 @@ private:
     saved_ = true;
   }
 
-  /// Takes up what an earlier run has saved.
+  /// Reads the state that an earlier run has saved.
   void goOn()
   {
     state_ = readState(unfinished_->stateFile(), question());

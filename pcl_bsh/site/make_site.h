@@ -27,8 +27,8 @@ enum class MakeStep : std::uint8_t { count, deal, measure };
 struct MakeOptions {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< bytes that may be held at once; at least 64 MiB
   std::uint64_t tile_points = 4'000'000;         ///< no tile has more; from 1 to 2^31 - 1
-  std::uint64_t overview_points = 1'000'000;     ///< overview.pcd has so many, or fewer, drawn evenly; 0: there is none
-  /// After so many points what is done is noted in the folder, so that a run that ends there can be continued; sites of
+  std::uint64_t overview_points = 1'000'000;     ///< most in overview.pcd, drawn evenly; 0: it is not written
+  /// After each so many points, the state is noted in the folder, so that a later run can go on from there. Sites of
   /// fewer points begin again. At least 1.
   std::uint64_t save_points = 50'000'000;
   /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
@@ -43,16 +43,16 @@ struct MakeOptions {
   /// are.
   std::string unit;
   std::string to_unit; ///< see unit
-  /// Called with a cloud and what users should know of how it is read; null: not told.
+  /// Called with a cloud and remarks for users about how it is read; null: not told.
   std::function<void(const std::filesystem::path&, const std::vector<std::string>& remarks)> remark;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.
   std::function<bool(MakeStep, std::uint64_t done, std::uint64_t all)> progress;
 };
 
-/// Reads clouds (all formats of readCloud(), from files) and makes a folder of tiles: each holds the points in some
-/// neighbouring voxels of one grid, at most `tile_points`; points that are not finite have tiles of their own. The
-/// folder is made, or is empty, or holds what an earlier run has left: of the same clouds and options, what is done is
-/// not done again. When anything is thrown before something was noted, nothing new is left in it.
+/// Reads clouds (all formats of readCloud(), from files) and makes a folder of tiles. A tile holds the points in some
+/// neighbouring voxels of one grid, at most `tile_points`. Points that are not finite have tiles of their own. The
+/// folder is made, or is empty, or holds the state of an earlier run: with equal clouds and options, it goes on from
+/// there. When anything is thrown before a state was noted, nothing new is left in the folder.
 /// @throws files::FileError: clouds that cannot be read, have faces, or change meanwhile; fields of one name and
 ///   different types; formats that must be held in memory, and do not fit; a folder that holds anything else, or cannot
 ///   be written; a disk that has no room for the site;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a question has found of each point, as a site of the same tiles with more fields.
+// A question's answers about each point, as a site of the same tiles with more fields.
 //
 //   site::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
 //   site::ask(question, valley, machine, {.sink = [&](const auto& tile, const auto& cloud, const Answer& found) {
@@ -21,42 +21,42 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// A field of one number, which the points of tiles that no question has read have, too.
+/// A field of one number. The points of all tiles have it, also of tiles that the question has not read.
 struct ResultField {
   std::string name;
   std::uint8_t datatype = 0; ///< of pcl::PCLPointField
-  double none = 0.0;         ///< the value of points of which nothing was found
+  double none = 0.0;         ///< the value of points without an answer
 };
 
-/// The site's fields of an earlier question that its clouds had been asked before it was made: `collision`, `distance`,
-/// `first_pose` and `closest_pose` of a source with a field `collision`, but for those that this question answers.
+/// Returns the site's fields with answers to an earlier question, which was asked of its clouds before the site was
+/// made. These are `collision`, `distance`, `first_pose` and `closest_pose`, of each source with a field `collision`.
 /// Beside this question's answers they would pass for its own: ResultSite leaves them out.
-/// @param fields that this question answers
+/// @param fields that this question answers: they are not returned
 std::vector<std::string> staleFields(const Site& site, const std::vector<ResultField>& fields);
 
-/// What a site of results takes on the disk, in bytes, beside what an earlier run has left in its folder.
+/// Returns the bytes that a site of results takes on the disk, besides the files of an earlier run in its folder.
 std::uint64_t spaceWanted(const Site& site, const std::filesystem::path& folder,
                           const std::vector<ResultField>& fields);
 
-/// Lets a run of the same question use what an earlier one has found that was killed.
+/// Lets a run use the answers that an earlier run of its question has kept.
 struct Continuation {
   std::string question; ///< all that was asked; empty: nothing is kept for another run
   bool goes_on = false; ///< whether to use what there is, which must be of the same question; else it is cleared
 };
 
 /// Made and finished by all ranks of an MPI job together; each writes the tiles that it has. Until finish() has
-/// returned the folder is marked as not complete. With a question, each tile is in place as soon as it is written, and
-/// what was found of it is beside it, so that the same question can go on where finish() is not reached. Without, or
-/// before any tile, one process removes what it made; of an MPI job, or of a process that was killed, a marked folder
-/// may be left, which the next ResultSite, or makeSite(), clears.
+/// returned, the folder is marked as not complete. With a question, each tile is in place as soon as it is written,
+/// with its answer in a file beside it. So a run of that question can go on where finish() is not reached. Without a
+/// question, or before any tile, one process removes the files that it made. An MPI job, or a process that was killed,
+/// may leave a marked folder. The next ResultSite, or makeSite(), clears it.
 class ResultSite {
 public:
   /// @param folder a new or empty one, or one that was left not complete
-  /// @param fields of the results. Those that the site has already are written anew, and are no longer fields of its
-  ///   sources; but for staleFields() the others stay as they are
+  /// @param fields of the results. Fields of these names that the site has already are written anew, and are no longer
+  ///   fields of its sources. The others stay as they are, except staleFields()
   /// @throws files::FileError for a folder that holds anything, or cannot be written, or whose disk has no room; for a
-  ///   field of the site that has the name of one of these and another type; where it shall go on with what another
-  ///   question has found
+  ///   field of the site that has the name of one of these and another type; where it shall go on with answers to
+  ///   another question
   ResultSite(const Site& site, const std::filesystem::path& folder, const std::vector<ResultField>& fields,
              const Continuation& continuation = {});
   ~ResultSite();
@@ -66,14 +66,14 @@ public:
   /// Writes the points of a tile, once.
   /// @param tile one of the site's
   /// @param cloud its points
-  /// @param columns for each field a value of its type per point; null: nothing was found
+  /// @param columns for each field a value of its type per point; null: there is no answer
   void write(const Tile& tile, const pcl::PCLPointCloud2& cloud, const std::vector<const void*>& columns);
 
-  /// What the continuation's question has found, for SiteMeans::answers. Null where nothing is kept.
+  /// Returns the answers to the continuation's question, for SiteMeans::answers. Null where nothing is kept.
   TileAnswers* answers();
 
-  /// Of how many tiles an earlier run had found something that this one has removed, for it was not to go on. On the
-  /// first rank; 0 on the others.
+  /// Returns how many answers of an earlier run this one has removed, where it was not to go on. On the first rank; 0
+  /// on the others.
   std::uint64_t thrownAway() const;
 
   /// Copies the tiles that no rank has written, and makes the folder a site. To be called once.
@@ -84,7 +84,7 @@ private:
   std::unique_ptr<Writer> writer_;
 };
 
-/// Of how many tiles a folder that is no site yet holds answers of a question that can go on.
+/// Returns the number of tiles with answers in a folder that is no site yet: their question can go on.
 std::uint64_t answersIn(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::site

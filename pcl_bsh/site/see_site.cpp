@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of a question about a site that tells what of the obstacle is unseen.
+// The part of a question about a site that finds the unseen records of the obstacle.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/collision_flags.h>
@@ -21,7 +21,7 @@ namespace {
 using Poses = std::vector<Eigen::Isometry3d>;
 using VerdictsAtPoses = std::vector<std::vector<Verdict>>;
 
-/// Of a record of the model, at a pose.
+/// The verdict of a record of the model at a pose.
 struct Found {
   std::uint32_t pose, record;
   Verdict verdict;

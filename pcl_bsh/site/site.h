@@ -24,13 +24,14 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// What lies in a site's folder, and the two fields that each of its points has.
+/// The names in a site's folder, and of the two fields that each of its points has.
 inline constexpr const char* site_file_name = "site.json";
 inline constexpr const char* overview_file_name = "overview.pcd";
 inline constexpr const char* tiles_folder_name = "tiles";
 inline constexpr const char* source_field_name = "source";
 inline constexpr const char* record_field_name = "record";
-/// Of the folder's format. Versions 1 and 2 are read, too: they know no `coordinate_system`, 1 no `greatest`.
+/// The version of the folder's format. Versions 1 and 2 are read, too: they know no `coordinate_system`, and 1 knows no
+/// `greatest`.
 inline constexpr int site_version = 3;
 
 /// Both corners inclusive, in the clouds' unit.
@@ -69,7 +70,7 @@ struct SitePoint {
 struct Source {
   std::string file;
   std::uint64_t points = 0;
-  /// That it had, side by side, without padding; but for those that hold what a question has found (result_site.h).
+  /// Its fields, side by side, without padding. Fields with a question's answers are left out (result_site.h).
   std::vector<pcl::PCLPointField> fields;
   std::string coordinate_system = {}; ///< as the file named it; empty: it did not
 };
@@ -81,12 +82,12 @@ struct Tile {
   std::optional<Bounds> bounds; ///< of its finite points
   double spacing = 0.0;         ///< median distance of a sample of its points to the nearest other
   std::uint32_t crc32 = 0;      ///< of its records
-  /// Of each field of one floating-point number but coordinates, the greatest value of finite points, where any has
-  /// one.
+  /// The greatest value of finite points, where any has one, of each field of one floating-point number except
+  /// coordinates.
   std::map<std::string, double> greatest;
 };
 
-/// What site.json says.
+/// The contents of site.json.
 struct Site {
   std::filesystem::path folder;
   std::uint64_t points = 0;

@@ -6,8 +6,8 @@
 //   site::ask(question, valley, wagon, {.clashes = &finder});
 //   site::SiteClashes list = finder.finish();
 //
-// Of a tile's clashes that come near other tiles the points near these are kept until all tiles have been visited: a
-// step of the cluster distance from one tile to another joins two clashes.
+// The points of a tile's clashes that come near other tiles are kept until all tiles have been visited. A step of the
+// cluster distance from one tile to another joins two clashes.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -26,20 +26,20 @@ struct MetPoint {
   Point3 place = {0, 0, 0}; ///< in its own site
 };
 
-/// What ClashFinder found.
+/// The clashes that ClashFinder found.
 struct SiteClashes {
-  /// As findClashes() has them. What they call records are numbers of the points below: of each clash at most
-  /// ClashFinder::most_points and the one of the closest pair, the same for any tiles.
+  /// As findClashes() has them. Their records are numbers of `points`. Each clash has at most ClashFinder::most_points
+  /// and the point of its closest pair. These do not depend on tiles.
   std::vector<Clash> clashes;
   std::vector<SitePoint> points; ///< some points of all clashes
   std::vector<Point3> places;    ///< where they are
-  std::vector<float> distance;   ///< what was found of them
+  std::vector<float> distance;   ///< their smallest distances
   std::vector<std::int32_t> closest_pose;
   /// Where the model is a site: its points of the closest pairs. The clashes' model_point are their numbers.
   std::vector<MetPoint> met;
 };
 
-/// Gathers what collides along a path from the tiles of a site, and makes clashes of it.
+/// Gathers the points of a site's tiles that collide along a path, and makes clashes of them.
 class ClashFinder {
 public:
   static constexpr std::size_t most_points = 500; ///< of a clash that are listed
@@ -51,12 +51,12 @@ public:
   ClashFinder(const ClashFinder&) = delete;
   ClashFinder& operator=(const ClashFinder&) = delete;
 
-  /// For ask(): what a tile has of clashes, as numbers that may be kept for a finder of the same distance.
-  /// @param met where the model is a site: what closest_point are numbers of; else null
+  /// For ask(): returns the clashes in a tile as numbers, which may be kept for a finder of the same distance.
+  /// @param met where the model is a site, the points that closest_point numbers; else null
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
                                 const std::vector<MetPoint>* met) const;
 
-  /// For ask(): adds those from the given one on.
+  /// For ask(): adds the numbers from the given one on.
   void add(const std::vector<double>& numbers, std::size_t begin);
 
   /// All clashes, on all ranks of an MPI job. To be called once, by all of them.

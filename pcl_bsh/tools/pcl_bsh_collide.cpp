@@ -166,7 +166,7 @@ void check(const Options& options, const Question& question)
   cli::requireAccepted(question, options.names_of_poses);
   io::requireWritableCloud(options.output);
   if (options.obstacle_out && (question.vertices_only || !io::mayHaveFaces(options.obstacle)))
-    io::requireWritableCloud(*options.obstacle_out); // of what may be a surface, once that is known
+    io::requireWritableCloud(*options.obstacle_out); // a surface's file is checked once its format is known
   if (options.report) files::requireWritable(*options.report);
   if (!options.poses_out.empty()) files::requireWritable(options.poses_out);
   for (const fs::path& list : options.clashes) {
@@ -178,7 +178,7 @@ void check(const Options& options, const Question& question)
     }
     files::requireWritable(list);
   }
-  if (options.distances) io::reportDate(); // refuses one that is none before anything is done
+  if (options.distances) io::reportDate(); // refuses a wrong SOURCE_DATE_EPOCH before anything is done
   if (!options.distance_page) return;
   if (options.distance_page->extension() != ".html")
     throw cli::UsageError("--distance-page: " + options.distance_page->string() +

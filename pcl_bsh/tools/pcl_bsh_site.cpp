@@ -113,7 +113,7 @@ std::string texted(const Point3& point)
   return text;
 }
 
-/// What the tiles of a site have, from the least to the most.
+/// The smallest and the greatest numbers of points and spacings of a site's tiles.
 struct TileRange {
   std::uint64_t least = 0, most = 0;   ///< points
   double finest = 0.0, coarsest = 0.0; ///< spacings, of tiles that have one

@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// What lies below a node. @param voxel that it is of; null above the voxels
+  /// Compares the point with all that lies below a node. @param voxel that it is of; null above the voxels
   void all(const Voxel* voxel, const Node& node)
   {
     struct Near {
@@ -44,7 +44,7 @@ public:
       if (!areApart(distance_.ofPoints(), sphere_, children[i].sphere, reach_)) open(voxel, node, children[i].child);
   }
 
-  /// What lies below one of its children.
+  /// Compares the point with all that lies below one of its children.
   void open(const Voxel* voxel, const Node& node, std::uint32_t child)
   {
     if (voxel && node.isLeaf(child)) return compare(*voxel, node, child);
@@ -89,7 +89,7 @@ private:
   const SphereHierarchy::Storage& model_;
   const RecordDistance distance_;
   const GivenSphere sphere_; ///< the point
-  double reach_;             ///< what is farther, less radii, does not collide, or is not the nearest
+  double reach_;             ///< pairs beyond, less radii, do not collide, or are not the nearest
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One point of the scan at one pose against the model's spheres, in double: where many points of the model lie closer
-// together than floats of the path tell places apart, boxes and leaves in floats would leave every pair to be compared.
+// Compares one point of the scan at one pose with the model's spheres, in double. It is for places where many points of
+// the model lie closer together than floats of the path tell apart. There, boxes and leaves in floats would leave every
+// pair to be compared.
 #pragma once
 
 #include <pcl_bsh/trajectory/voxel_results.h>
@@ -10,15 +11,15 @@
 
 namespace pcl_bsh {
 
-/// What is asked about a point.
+/// A point at a pose, and the answers that are wanted about it.
 struct PointAtPose {
   std::uint32_t record; ///< of the scan
   std::uint32_t pose;
-  NearestPoint* best; ///< its nearest point, to be kept; null: that is not asked for
+  NearestPoint* best; ///< gets its nearest point; null: not wanted
   bool for_pose;      ///< whether its nearest point counts for the pose
 };
 
-/// What is known of it then.
+/// The answer about it.
 struct PointMet {
   bool collides = false;
   double gap = std::numeric_limits<double>::infinity(); ///< where a nearest point is asked for: its distance, rounded
@@ -28,7 +29,7 @@ struct PointMet {
 /// that collides.
 PointMet meetVoxel(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel);
 
-/// The same with those below a child of a node above the voxels.
+/// Compares a point with the points below a child of a node above the voxels, as meetVoxel() does.
 PointMet meetBelow(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t node,
                    std::uint32_t child);
 

@@ -25,7 +25,7 @@ struct NodeVisit : ListVisit<Siblings> {
   Segments<kLanes, 3> children;
   Segment around;
   float radius[kLanes];
-  std::vector<Siblings> candidates; ///< what all of them together may meet
+  std::vector<Siblings> candidates; ///< boxes that any of them may meet
   // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
   alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The poses of a trajectory, and a binary tree over them: how far from straight do the scan's points move, seen by the
-// model?
+// The poses of a trajectory, and a binary tree over them. It bounds how far from straight the scan's points move, seen
+// by the model.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
@@ -16,19 +16,19 @@
 
 namespace pcl_bsh {
 
-/// What these parts of a query along a path take its progress to; the walks do the rest.
+/// The progress of a query along a path at the end of these parts; the walks do the rest.
 inline constexpr double kPathDone = 0.05, kBroadPhaseDone = 0.1;
 
-/// What the C library's sine and cosine of an angle up to a turn are taken to err by: four units in the last place
-/// of 1. test/trajectory/sine_test.cpp holds the library against an enclosure in rational numbers.
+/// Bounds the error of the C library's sine and cosine of an angle up to a turn: four units in the last place of 1. The
+/// library is held against an enclosure in rational numbers (test/trajectory/sine_test.cpp).
 inline constexpr double kSineError = 0x1p-51;
 
-/// Of bounds of motion, and of turns between the ends of a motion: a few dozen operations in double, and what sine and
-/// cosine err by (test/proof/turns.g).
+/// Bounds the rounding of bounds of motion, and of turns between the ends of a motion: a few dozen operations in
+/// double, and the errors of sine and cosine (test/proof/turns.g).
 inline constexpr double kMotionRounding = 0x1p-45;
 
-/// Seen by the model at this pose, point x of the world is at R' (x - center), from the model's centre. Of a swept path
-/// R is the rotation nearest to the pose's linear part.
+/// Seen by the model at this pose, point x of the world is at R' (x - center), from the model's centre. On a swept
+/// path, R is the rotation nearest to the pose's linear part.
 struct PathPose {
   std::array<double, 9> back; ///< R', row-major
   Point3 center;              ///< of the model, in the world
@@ -44,15 +44,15 @@ struct PathPose {
   }
 };
 
-/// Poses first..last of the path. A point of the world, seen by the model, strays from the straight line between where
-/// it is seen at the first and at the last pose by at most drift + turn * (its distance from the pivot): at pose k from
-/// the line's point at (k - first) / (last - first).
+/// Poses first..last of the path. Take the straight line between the places where the model sees a point of the world
+/// at the first and at the last pose. At pose k, the point is seen at most drift + turn * (its distance from the pivot)
+/// away from the line's point at (k - first) / (last - first).
 struct PathInterval {
   std::uint32_t first = 0, last = 0;
   std::uint32_t left = 0, right = 0; ///< its halves, as indices of intervals; 0: not divided further
   double drift = 0.0, turn = 0.0;
-  double bend_drift = 0.0, bend_turn = 0.0; ///< likewise, from the parabola through where it is seen at the first, at
-                                            ///< the middle and at the last
+  double bend_drift = 0.0, bend_turn = 0.0; ///< such bounds of the distance from the parabola through the places at the
+                                            ///< first, the middle and the last pose
   Point3 pivot = {0, 0, 0};
 
   bool divided() const { return left != 0; }
@@ -65,8 +65,8 @@ public:
   PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses, const Point3& center,
            Progress& progress);
 
-  /// What the motion between poses is cut into: between two poses of the path no point of the model, nor one within
-  /// `reach` of it, strays farther than `stray`.
+  /// The model, and the bounds for cutting the motion between poses. Between two poses of the path, no point of the
+  /// model, nor a point within `reach` of it, strays farther than `stray` from a straight line.
   struct Sweep {
     Point3 pivot;  ///< of the motion, in the model's frame
     double radius; ///< of the model around it
@@ -96,8 +96,8 @@ public:
   double stray = 0.0; ///< swept: how far a point's motion between two consecutive poses strays from straight at most,
                       ///< near the model
 
-  /// Where the model has a point at pose k of a swept path, seen by itself, from its centre: a pose that is not quite
-  /// rigid stretches the model.
+  /// Returns the place of a model's point at pose k of a swept path, seen by the model, from its centre. A pose that is
+  /// not quite rigid stretches the model.
   Point3 stretched(std::uint32_t k, const Point3& p) const
   {
     if (stretches_.empty()) return p;

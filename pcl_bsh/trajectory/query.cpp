@@ -12,13 +12,14 @@
 namespace pcl_bsh {
 namespace {
 
-// Of places seen by the model, relative to all coordinates that go into one: `carried` rounds a place by 2 v per axis,
-// `see` sums three products of differences, 5 v; on three axes, of two clouds: less than 64 v.
+// Bounds the rounding of places seen by the model, relative to all coordinates that go into one. `carried` rounds a
+// place by 2 v per axis, and `see` sums three products of differences, 5 v. On three axes, for two clouds, this is less
+// than 64 v.
 constexpr double kPlacing = 64 * kDoubleUnit;
 constexpr double kLargest = 0x1p100; ///< floats beyond may overflow when they are divided by a motion
 
-/// Of the tolerance: three eighths for the bow of a motion taken as straight, an eighth for rounding, half as margin
-/// that the reported clearance has.
+/// The share of the tolerance for the bow of a motion taken as straight, three eighths. An eighth is for rounding. Half
+/// is the margin that the reported clearance has.
 constexpr double kStrayShare = 0.375;
 
 double farthest(const BoxTree& boxes, const Point3& from)

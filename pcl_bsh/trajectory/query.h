@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all voxels of the scan share on a trajectory, and where their answers go.
+// The data that all voxels of the scan share along a trajectory, with the result that they write to.
 #pragma once
 
 #include <pcl_bsh/geometry/relative_frame.h>
@@ -26,13 +26,13 @@ struct NearVoxel {
   std::uint32_t voxel, interval;
 };
 
-/// What a walk has to find.
+/// The answer that a walk looks for.
 enum class Wanted : std::uint8_t {
-  points,  ///< what the request asks for, of each point
+  points,  ///< the answers of the request about each point
   witness, ///< swept: one pair that collides, and nothing else
 };
 
-/// The question, and what its answer takes that no voxel changes.
+/// The question, and the data for its answer that no voxel changes.
 struct TrajectoryQuery {
   /// @param model_boxes of the model. @param where the points are
   TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
@@ -52,28 +52,29 @@ struct TrajectoryQuery {
   const bool of_points;     ///< of both clouds: neither balls nor triangles
   const double reach;       ///< of records: the clearance, half of the tolerance; the greatest of all
   const PosePath path;
-  const bool certain;        ///< uncertain points are asked about for what collides wherever they are
+  const bool certain;        ///< looks for points that collide wherever uncertain points truly are
   const bool witness;        ///< the walk ends at the first pair that collides
-  const bool closest, first; ///< what has to be known of each point, beside whether it collides
-  /// Whether the best so far bounds the search for a point, with all of a path that begins at `from`: what is farther
-  /// changes nothing then. Not where it may collide earlier than is known, nor where it counts for a pose.
+  const bool closest, first; ///< answers about each point, besides whether it collides
+  /// Whether the nearest pair so far bounds the search for a point on a path that begins at `from`: farther pairs
+  /// change no answer then. False where the point may collide earlier than is known, or where pairs count for their
+  /// poses.
   bool bestBounds(double first_contact, double from) const
   {
     return closest && !request.pose_summaries && (!first || first_contact <= from);
   }
-  /// Whether of the pairs of a point the nearest one collides where any does.
+  /// Whether the nearest pair of a point collides where any pair of it does.
   bool nearestDecides() const { return of_pairs.isOne(); }
 
   /// Swept: how near a pair of points counts as a contact; below 0 where it does at no distance.
   double nearEnough(PointPair pair) const;
 
-  /// That the path's pose k is.
+  /// Returns the caller's pose for path index k.
   const Eigen::Isometry3d& poseAt(std::uint32_t k) const { return given[path.poses[k].given]; }
 
   bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
 
-  /// Bounds what double arithmetic gets wrong about the place of a scan's point seen by the model, for a voxel whose
-  /// origin is there in the world.
+  /// Bounds the rounding of double arithmetic in the place of a scan's point seen by the model.
+  /// @param origin of its voxel, in the world
   double error(const Point3& origin) const;
 
   /// Whether floats can hold the places and lengths that a walk compares. Where not, every pair is compared.
@@ -106,30 +107,30 @@ Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& cente
 /// The largest coordinate of the model's middle and of the pivot at a pose.
 double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const Point3& pivot);
 
-/// Swept: what double arithmetic may get wrong has to fit into a sixteenth of the tolerance. Every length that it
-/// handles counts: where the scan is, the model at its poses and in its own frame, and the pivot.
+/// Swept: requires that the rounding of double arithmetic fits into a sixteenth of the tolerance. Every length counts:
+/// where the scan is, the model at its poses and in its own frame, and the pivot.
 /// @param reach as TrajectoryQuery has it. @param far the largest farthestPlace() of the poses
 /// @throws InvalidInput
 void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
                     double far);
 
-/// How far from a record of the scan a record of the model matters.
+/// Returns the distance within which a record of the model matters to a record of the scan.
 double reachOf(const TrajectoryRequest& request, const Reach& between);
 
-/// Of a request with `swept`. @param reach as TrajectoryQuery has it
+/// Returns the sweep of a request with `swept`. @param reach as TrajectoryQuery has it
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);
 
 /// Cuts those of the first voxel off a list that nearVoxels() gave.
 std::span<const NearVoxel> takeVoxel(std::span<const NearVoxel>& near_voxels);
 
-/// What a voxel's walk returns.
+/// The result of a voxel's walk.
 struct VoxelResult {
   Work work;
   bool undecided = false;           ///< whether points were left so
   std::optional<PointPair> witness; ///< where one is wanted
 };
 
-/// Takes one voxel of the scan along its intervals. Writes what it finds of the voxel's points to the query's result.
+/// Takes one voxel of the scan along its intervals. Writes the answers about the voxel's points to the query's result.
 /// Different voxels may be walked at the same time.
 VoxelResult walkVoxel(const TrajectoryQuery& query, const StopRule& rule, std::span<const NearVoxel> near_voxel);
 

@@ -11,13 +11,13 @@
 
 namespace pcl_bsh {
 
-/// Records of a scan and of a model; of strays possibly none. No stray comes within reach of an ordinary point of the
-/// other, at any pose.
+/// Records of a scan and of a model, divided into strays and others. There may be no strays of one. No stray comes
+/// within reach of an ordinary point of the other, at any pose.
 struct Strays {
   std::vector<std::int32_t> ordinary_scan, stray_scan, ordinary_model, stray_model;
 };
 
-/// None where no point is so far out, or where too much is.
+/// Returns nothing where no point is so far out, or where strays might meet ordinary points.
 std::optional<Strays> findStrays(const Placed& scan, const SphereHierarchy& model,
                                  const std::vector<Eigen::Isometry3d>& model_poses, double clearance);
 

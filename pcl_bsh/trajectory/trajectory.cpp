@@ -115,7 +115,7 @@ std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierar
   return result;
 }
 
-/// Of each pose, what surely collides, and what else may.
+/// Divides the points that may collide at each pose into those that surely collide and those that are undecided.
 void withholdPoses(std::vector<PoseSummary>& possible, const std::vector<PoseSummary>& certain)
 {
   for (std::size_t k = 0; k < possible.size(); ++k) {
@@ -127,7 +127,7 @@ void withholdPoses(std::vector<PoseSummary>& possible, const std::vector<PoseSum
   }
 }
 
-/// One walk for what may collide, one for what does for certain.
+/// Walks once for points that may collide, and once for points that collide for certain.
 TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
                                const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
                                TrajectoryResult&& memory)

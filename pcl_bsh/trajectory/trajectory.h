@@ -6,10 +6,10 @@
 //   request.clearance = 0.05;                                            // in the clouds' unit; touching counts
 //   TrajectoryResult run = collideAlong({tunnel}, wagon, wagon_poses, request);
 //
-// Point p of the scan collides at pose k iff |T_scan p - T_k q| <= clearance (+ radii) for a point q of the model,
-// decided as exact arithmetic on the given numbers decides it. Records may be triangles (triangles_view.h), on either
-// side: then p and q are any of their places. The same input gives the same answer, bit for bit, for any number of
-// threads and any processor.
+// Point p of the scan collides at pose k iff |T_scan p - T_k q| <= clearance (+ radii) for a point q of the model. The
+// decision is that of exact arithmetic on the given numbers. Records may be triangles (triangles_view.h), on either
+// side: then p and q are any of their places. Equal input gives equal answers, bit for bit, for any number of threads
+// and any processor.
 //
 // Swept: the motion between consecutive poses counts, too, to a tolerance. The model's pivot moves in a straight line
 // while the model turns at constant speed about a fixed axis: poseBetween(). A point reported free stays farther than
@@ -18,9 +18,9 @@
 // Half a turn is refused: both directions are as short. More than half a turn needs poses between.
 //
 // Where points have uncertainties (PointsView), a point collides if at some pose it is within the clearance of a point
-// of the model wherever both truly are; it is free if at no pose it can be; else it is undecided. Swept likewise: free
-// is what cannot come within the clearance during the motion, colliding what surely comes within clearance + tolerance.
-// That costs about two queries; a budget is divided between them.
+// of the model wherever both truly are. It is free if this is possible at no pose. Else it is undecided. Swept, a point
+// is free if it cannot come within the clearance during the motion. It collides if it surely comes within clearance +
+// tolerance. Uncertain points cost about two queries; a budget is divided between them.
 //
 // An answer does not depend on what else is asked for. (Where the accuracy is a tolerance, pairs that may count or not
 // may do so for one question and not for another.)
@@ -42,10 +42,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What collideAlong() reads. With a tolerance, pairs at distances in (clearance, clearance + tolerance] may count or
-/// not, at each pose anew; of points that nothing else comes near to, the distance is within the tolerance of the
-/// smallest. Accuracies that stop early (level, pairs, time) decide flags only, and leave the others undecided. Swept
-/// motion has a tolerance of its own: exact only. Progress is reported also while nothing is near.
+/// The request of collideAlong(). With a tolerance, pairs at distances in (clearance, clearance + tolerance] may count
+/// or not, at each pose anew. A point that has no other pairs has a distance within the tolerance of the smallest.
+/// Accuracies that stop early (level, pairs, time) decide flags only, and leave the others undecided. Swept motion has
+/// a tolerance of its own: exact only. Progress is reported also while nothing is near.
 struct TrajectoryRequest : Effort {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
   bool flags = true;           ///< per scan point: does it collide at any pose?
@@ -61,11 +61,11 @@ struct TrajectoryRequest : Effort {
 struct PoseSummary {
   bool colliding = false;
   std::size_t colliding_points = 0; ///< points of the scan
-  std::size_t undecided_points = 0; ///< those that may collide, but do not for certain: their places are uncertain
-  /// Smallest distance of any pair that may collide, as measured; infinity when there is none.
+  std::size_t undecided_points = 0; ///< points that may collide, but not for certain: places are uncertain
+  /// Smallest distance of any pair that may collide, as measured; infinity when there is no such pair.
   double distance = std::numeric_limits<double>::infinity();
 
-  /// Becomes that of its points and of `more`'s, which are others at the same pose.
+  /// Adds the summary of other points at the same pose.
   PoseSummary& operator+=(const PoseSummary& more)
   {
     colliding = colliding || more.colliding;
@@ -84,9 +84,9 @@ struct FirstContact {
 
 /// Vectors have one entry per record of the scan's view, and are empty unless asked for.
 ///
-/// Where points are uncertain, distances, first and closest poses and the first contact are those of what may collide:
-/// of points that collide or are undecided, and of pairs that may be within the clearance; distances between the
-/// measured places.
+/// Where points are uncertain, distances, first and closest poses and the first contact are those of all that may
+/// collide: points that collide or are undecided, and pairs that may be within the clearance. Distances are those
+/// between measured places.
 ///
 /// When swept, a distance is within half the tolerance of the smallest during the motion, and a pose's number k stands
 /// for the motion from pose k to pose k + 1.
@@ -97,19 +97,19 @@ struct TrajectoryResult {
   std::size_t undecided = 0;                ///< points that are
   std::vector<float> distance;              ///< less the radii; the float nearest to the distance in double; NaN: free
   std::vector<std::int32_t> first_pose;     ///< kNothing (-1) where free
-  std::vector<std::int32_t> closest_pose;   ///< likewise
+  std::vector<std::int32_t> closest_pose;   ///< kNothing (-1) where free
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< kNothing where free
-  /// With distances, where a solid was added that holds anything (question/held.h): holds the distance of each record
-  /// for certain that a solid makes negative, or may; NaN of others. Else empty.
+  /// With distances, where a solid was added that holds anything (question/held.h). An interval certainly holds the
+  /// distance of a record that a solid makes negative, or may; NaN for other records. Else empty.
   std::vector<Interval> interval;
   std::vector<std::int32_t> certain_pose; ///< with first_poses, where points are uncertain: the first pose at which a
                                           ///< point collides for certain; kNothing where at none
   std::vector<PoseSummary> poses;         ///< one per pose
   /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
   std::optional<FirstContact> first_contact;
-  std::optional<FirstContact> certain_contact; ///< the same of what collides for certain, where points are uncertain
+  std::optional<FirstContact> certain_contact; ///< the first one for certain, where points are uncertain
   Work work;                                   ///< leaf pairs count once per pose they were compared at
 };
 
@@ -121,13 +121,13 @@ struct TrajectoryResult {
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Writes into a result whose memory is used again. The result is empty if anything is thrown.
 void collideAlong(const Placed& scan, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& model_poses,
                   const TrajectoryRequest& request, TrajectoryResult& result);
 
-/// The pose at `fraction` in [0, 1] of the motion from one pose to the next: the pivot, a point in the frame that the
-/// poses place, moves in a straight line at constant speed, and the rotation turns at constant speed about a fixed
-/// axis, in the shorter direction. At 0 and 1 exactly the poses given; what they lack to rigid ones (1e-6 at most)
+/// Returns the pose at `fraction` in [0, 1] of the motion from one pose to the next. The pivot, a point in the frame
+/// that the poses place, moves in a straight line at constant speed. The rotation turns at constant speed about a fixed
+/// axis, in the shorter direction. At 0 and 1 exactly the poses given; their deviation from rigid poses (1e-6 at most)
 /// changes linearly between them.
 /// @throws std::invalid_argument between poses that are half a turn apart: both directions are as short.
 Eigen::Isometry3d poseBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double fraction,

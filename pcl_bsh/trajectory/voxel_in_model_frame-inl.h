@@ -32,8 +32,8 @@ struct VoxelMotion {
   double stray;            ///< of any point of the voxel from its parabola
   double line_stray;       ///< from its straight line
   float steps;             ///< poses after the first; 0 where all instants count
-  float reach;             ///< of points: within this of a parabola, in floats, is all that collides
-  float near;              ///< farther from a box than this, in floats at one pose, nothing in it collides
+  float reach;             ///< a point that collides is within this of a parabola, in floats
+  float near;              ///< records in a box farther than this, in floats at one pose, do not collide
   float near_squared;      ///< of that
   float smallest;          ///< motion that floats distinguish from rest
   float rounding;          ///< of places in floats
@@ -99,7 +99,8 @@ public:
     return kept.motion;
   }
 
-  /// Of one pose of a path that is not swept. @param interval becomes that pose, and has to outlive the motion.
+  /// Returns the motion at one pose of a path that is not swept.
+  /// @param interval becomes that pose, and has to outlive the motion.
   VoxelMotion motionAt(std::uint32_t k, PathInterval& interval) const
   {
     interval = PathInterval{};
@@ -263,8 +264,9 @@ public:
                    (1.0 + kDoubleMargin));
   }
 
-  /// Squared: farther from a box than the root of this, in floats at one pose, nothing in it collides, or is as near as
-  /// the best one. @param best no less than that distance. @param own radius of what is compared with the box
+  /// Returns a squared distance, in floats at one pose. Records in a box farther than its root do not collide, or are
+  /// not as near as the best one.
+  /// @param best no less than the best one's distance. @param own radius of the record that is compared with the box
   float nearSquared(const VoxelMotion& motion, float best, float own = 0.0f) const
   {
     const auto reach = static_cast<float>(query_.reach);
@@ -273,7 +275,8 @@ public:
     return near * near * (1.0f + kReachRounding) + kVanishingSquare;
   }
 
-  /// How far from a line a point may be that is as near as the best one. @param own radius of what is on the line
+  /// Returns how far from a line a point may be that is as near as the best one.
+  /// @param own radius of the record on the line
   float reachOf(const VoxelMotion& motion, float best, float own = 0.0f) const
   {
     const float reach = best < motion.reach
@@ -313,7 +316,7 @@ private:
 
   const TrajectoryQuery& query_;
   mutable std::array<KeptMotion, kKeptMotions> kept_; // by one thread: a voxel is one task
-  double placing_ = 0.0; // what places of points err by, stored as floats and carried in double
+  double placing_ = 0.0; // error of places of points, stored as floats and carried in double
 };
 
 } // namespace HWY_NAMESPACE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known so far of the points of one of the scan's voxels, and of the poses it was looked at.
+// The answers so far about the points of one of the scan's voxels, and about the poses at which it was looked at.
 #pragma once
 
 #include <pcl_bsh/trajectory/query.h>
@@ -14,8 +14,8 @@ struct NearestPoint {
   double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of triangles: no less than that
   bool meets = false;                                   ///< it is 0, swept up to rounding: nothing is nearer
   std::uint32_t record = kNothing;
-  float limit = std::numeric_limits<float>::infinity(); ///< a larger squared distance is none better
-  float reach = std::numeric_limits<float>::infinity(); ///< the same, as a distance
+  float limit = std::numeric_limits<float>::infinity(); ///< a pair at a larger squared distance is not nearer
+  float reach = std::numeric_limits<float>::infinity(); ///< a pair at a larger distance is not nearer
 };
 
 /// Leaves of the voxel are named by slots: 8 * the node + the child. Points by their place in the voxel, poses by their
@@ -38,7 +38,7 @@ public:
   bool decide(const Voxel& voxel, bool unsure);
 
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
-  std::vector<std::uint16_t> undecided;    ///< per slot: likewise, of a child that is no leaf any bit stands for all
+  std::vector<std::uint16_t> undecided;    ///< per slot: such bits; of a child that is no leaf any bit stands for all
   std::vector<double> first;               ///< per point: when it collides first, if that is asked for; see firstOf()
   double earliest = std::numeric_limits<double>::infinity(); ///< swept: the least of `first`
   std::vector<NearestPoint> best;                            ///< per point, if that is asked for
@@ -54,7 +54,7 @@ public:
   /// Keeps the nearest for a point; of several the first pose, and there the smallest record.
   void consider(NearestPoint& nearest, PointPair pair, std::uint32_t k);
 
-  /// The same where it is known. @param order sign of the pair's gap less that of the nearest
+  /// Keeps the nearest where the order is known. @param order sign of the pair's gap less that of the nearest
   static void take(NearestPoint& nearest, PointPair pair, std::uint32_t k, int order)
   {
     const auto best_pose = static_cast<std::uint32_t>(nearest.time);
@@ -63,8 +63,9 @@ public:
     nearest.record = pair.b;
   }
 
-  /// Of a point that collides: what collides later than this changes no answer. Where swept motion is not asked for
-  /// each point's first contact, the first of all is enough, and `first` of a point is any of its contacts.
+  /// Returns the time, for a point that collides, after which contacts change no answer. Where the first contact of
+  /// each point of a swept motion is not asked for, the first of all points is enough, and `first` of a point is any of
+  /// its contacts.
   double firstOf(std::uint32_t point) const
   {
     return query_.path.is_swept && !query_.request.first_poses ? earliest : first[point];
@@ -81,14 +82,14 @@ public:
 
   /// A larger squared distance, in floats, is not the smallest at the pose.
   float poseLimit(std::uint32_t k) const { return pose_bounds_[k - first_pose_].limit; }
-  /// The same, as a distance.
+  /// A larger distance is not the smallest at the pose.
   float poseReach(std::uint32_t k) const { return pose_bounds_[k - first_pose_].reach; }
   void lowerPoseLimit(std::uint32_t k, float limit, float reach);
 
   void countPose(std::uint32_t k, std::size_t points) { pose_counts_[k - first_pose_] += points; }
 
 private:
-  /// What is nearest at a pose is not farther: a squared distance in floats, and a distance.
+  /// Bounds the smallest distance at a pose: a squared distance in floats, and a distance.
   struct PoseBound {
     float limit = std::numeric_limits<float>::infinity();
     float reach = std::numeric_limits<float>::infinity();

@@ -223,8 +223,9 @@ private:
            (leaves_.hasPlane() || query_.reach > 2 * static_cast<double>(voxel_frame_.seenRadius(largest)));
   }
 
-  /// At one pose: every box holds a point of the model, or of a part of it, so that no point of a child is farther from
-  /// the model than from the farthest corner of any box. What is farther than that is none's nearest.
+  /// Bounds the distances of children at one pose. Every box holds a point of the model. So no point of a child is
+  /// farther from the model than from the farthest corner of any box. Points of the model beyond that are not the
+  /// nearest of any of its points.
   void boundDistances(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const std::uint32_t count = voxel_->nodes[index].count;
@@ -340,10 +341,10 @@ private:
   ModelBoxes model_;
   LeafWalk leaves_;
   PointProbing probing_;
-  const float settled_reach_;             // a pair nearer than this, in floats, collides; but for lengths of its own
+  const float settled_reach_;             // pairs nearer in floats collide; probeOf() has own uncertainties
   const bool settling_;                   // whether one pose and one point of the model answer the request
   const Voxel* voxel_ = nullptr;          // once it was entered
-  const OwnUncertainties* own_ = nullptr; // of its points, likewise
+  const OwnUncertainties* own_ = nullptr; // of its points, once it was entered
   std::vector<std::uint8_t> open_lanes_;  // per node: children that are not settled
 };
 

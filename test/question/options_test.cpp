@@ -265,7 +265,7 @@ std::string wordsOf(const std::string& file)
   return inSmallLetters(text);
 }
 
-/// But for the tolerance of a surface: VTK's cloud is points, whatever its cells.
+/// Except the tolerance of a surface: VTK's cloud is points, whatever its cells.
 TEST(QuestionOptions, HaveTheSameWordsInVtkAndParaView)
 {
   const std::string panels = wordsOf("paraview/BoundingSphereHierarchies/bounding_sphere_hierarchies.xml");

@@ -252,7 +252,7 @@ TEST_F(SolidsTest, AlongAPathWhatIsInsideAtAPoseCollidesThere)
   EXPECT_EQ(answer().collisions.first_contact->pose, 1u);
 }
 
-/// For who asks a query for less than a question does: what is not there is left alone.
+/// A caller may ask a query for less than a question does. Members that are not there stay empty.
 TEST_F(SolidsTest, OnlyWhatAQueryToldIsAddedTo)
 {
   points = {{0, 0, 0}, {9, 0, 0}, {20, 0, 0}};
@@ -611,7 +611,7 @@ void expectGreatest(const PointDistances& found)
   EXPECT_EQ(*found.greatest_pair, (PointPair{*greatest, found.closest_point[*greatest]}));
 }
 
-/// For who asks the queries: what is added to each makes it what ask() answers, whichever is solid, or neither.
+/// A caller of the queries gets the answers of ask() with addHeld(), whichever of the two is solid, or neither.
 TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
 {
   test::Random random(9);

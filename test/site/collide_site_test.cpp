@@ -65,7 +65,7 @@ Scene latticeScene(double shift)
   return scene;
 }
 
-/// The same of distances that differ by less than a double tells.
+/// Everything is nearly a tie: distances differ by less than a double tells.
 Scene nearTieScene()
 {
   Scene scene;
@@ -345,7 +345,7 @@ TEST_F(CollideSite, APathReadsOnlyTilesBesideIt)
   const TilesRead along = collideAlong(site, other, poses, request).tiles;
   EXPECT_GT(along.needed, 0U);
   EXPECT_LT(along.needed, along.tiles / 3);
-  // What no tile is asked about is refused all the same.
+  // Wrong paths are refused although no tile is asked about.
   poses = {poses[0], poses[0]};
   for (Eigen::Isometry3d& pose : poses) pose.translation().z() = 1000;
   EXPECT_EQ(collideAlong(site, other, poses, request).tiles.needed, 0U);

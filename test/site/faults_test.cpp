@@ -331,9 +331,9 @@ TEST_F(SiteFaults, DisksWithoutRoom)
 #ifdef PCL_BSH_SITE_QUERIES
   const std::string asked = "collide site scan.xyz --clearance 1 --out out";
   expectRefusal(run("pcl_bsh_site", asked, folder.path()), "out");
-  // Of two outputs each is said to be too large.
+  // The output of the obstacle is refused by its own name.
   expectRefusal(run("pcl_bsh_site", "collide site site --clearance 1 --obstacle-out marked", folder.path()), "marked");
-  // What an earlier run has left is still there.
+  // The refusal leaves the answers of an earlier run.
   fs::create_directories(folder / "out/tiles");
   folder.write("out/unfinished_site", "left");
   folder.write("out/tiles/tile_000000.answer", "left");

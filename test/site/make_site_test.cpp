@@ -200,7 +200,7 @@ TEST(MakeSite, OfNothing)
   EXPECT_NO_THROW(checkSite(readSite(folder / "site")));
 }
 
-/// That a call is refused with these words, and leaves the folder as it was.
+/// Expects that a call is refused with these words, and leaves the folder as it was.
 template <typename Call>
 void expectRefused(const fs::path& folder, const std::string& words, const Call& call)
 {
@@ -391,7 +391,7 @@ TEST(MakeSite, ClearsNothingButWhatIsItsOwn)
 
   begin(); // a folder of the user's in the place of a tile
   fs::create_directories(place / "tiles/tile_000003.pcd/letters");
-  for (int again = 0; again < 2; ++again) // which is free again for who goes on
+  for (int again = 0; again < 2; ++again) // the folder is not locked after the first refusal
     expectRefused(folder.path(), "cannot be cleared (Directory not empty): name a new folder",
                   [&] { makeSite({folder / "a.pcd"}, place); });
 

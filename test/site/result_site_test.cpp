@@ -127,7 +127,7 @@ TEST_F(SiteResults, AreThoseOfMemory)
   ASSERT_EQ(collide("--clearance 0.3 --trajectory " + in("poses.txt") + " --out " + in("way")), 0) << err;
   io::expectSame(resultOf("way"), withFields(scan, fieldsOf(way)));
 
-  // Of results, with the field that is there already.
+  // A site of results may be asked again: its field `collision` is written anew.
   fs::rename(folder / "site", folder / "first");
   fs::rename(folder / "way", folder / "site");
   ASSERT_EQ(collide("--clearance 0.3 --out " + in("again")), 0) << err;
@@ -141,7 +141,7 @@ TEST_F(SiteResults, AreThoseOfMemory)
   io::expectSame(resultOf("distances"), withFields(again = withFields(scan, fieldsOf(way)), {{"distance", &distance}}));
 }
 
-/// Of two sources, one of which was asked before it became a part of the site.
+/// The site has two sources. One has fields of answers to an earlier question.
 TEST_F(SiteResults, AreExportedToEachSource)
 {
   Cloud asked = scan, other = scan;
@@ -170,7 +170,7 @@ TEST_F(SiteResults, AreExportedToEachSource)
   ASSERT_EQ(run("pcl_bsh_site", "export flags sources", folder.path()).exit_code, 0);
   for (const char* name : {"asked.pcd", "plain.pcd"}) io::expectSame(io::readCloud(folder / "sources" / name), flagged);
 
-  // All that a path tells, in place of what was there.
+  // Fields of a path replace the fields that were there.
   ASSERT_EQ(collide("--clearance 0.3 --trajectory " + in("poses.txt") + " --out " + in("way")), 0);
   EXPECT_THAT(err, Not(HasSubstr("leaves out")));
   EXPECT_NO_THROW(checkSite(readSite(folder / "way")));
@@ -189,7 +189,7 @@ TEST_F(SiteResults, AreExportedToEachSource)
     }
   }
 
-  // What no question has written stays.
+  // A field `distance` without a field `collision` is no answer, and stays.
   fs::remove_all(folder / "site");
   makeSite({folder / "other.pcd", folder / "plain.pcd"}, folder / "site", options);
   ASSERT_EQ(collide("--clearance 0.3 --out " + in("ranges")), 0);

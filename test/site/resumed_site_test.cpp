@@ -79,7 +79,7 @@ protected:
     site = makeSite({folder / "scan.pcd"}, folder / "site", options);
   }
 
-  /// What a path met.
+  /// The answer about a path, with its clashes as lines.
   struct Asked : SiteAnswer {
     std::vector<std::string> clashes;
   };

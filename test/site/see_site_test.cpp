@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is unseen in a site is unseen in one SeenSpace over all of its points, whatever the tiles.
+// Unseen records in a site are those of one SeenSpace over all of its points, whatever the tiles.
 #include "float64_cloud.h"
 #include "site_questions.h"
 #include "support/made_scans.h"
@@ -78,7 +78,7 @@ protected:
                     options);
   }
 
-  /// Of all points at once.
+  /// Returns the unseen records among all points at once.
   Answer::Unseen expected(std::vector<Verdict>& gravest) const
   {
     std::vector<ScanBeams> beams;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an accuracy promises of one cloud holds of a site, whatever its tiles; and what the program tells and writes.
+// An accuracy promises for a site what it promises for one cloud, whatever the tiles. The program tells and writes it.
 #include "float64_cloud.h"
 #include "io/clouds/samples.h"
 #include "support/verdicts.h"

@@ -59,8 +59,8 @@ Scene floorScene()
   return scene;
 }
 
-/// A lattice of steps of exactly the cluster distance, at the coordinates of maps, with a gap that is wider by one unit
-/// in the last place: all points are one clash on either side of it. All are as near, so the smallest counts.
+/// A lattice of steps of exactly the cluster distance, at the coordinates of maps. One gap is wider by one unit in the
+/// last place: the points on either side of it are one clash. All points are as near, so the smallest counts.
 Scene latticeScene(double x, double y)
 {
   Scene scene;
@@ -108,7 +108,7 @@ Scene sameBoxScene(bool other_first)
 
 class SiteClashList : public testing::Test {
 protected:
-  /// Of several tilings, and a site of two clouds.
+  /// Expects the clashes of memory from several tilings of a site of two clouds.
   void expectSame(const Scene& scene, std::size_t least)
   {
     const auto half = static_cast<std::ptrdiff_t>(scene.points.size() / 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a loss of power leaves of a site: all of its files are on the disk before the document that tells of them.
+// A loss of power leaves a whole site or none: all of its files are on the disk before the document that tells of them.
 #include "io/clouds/samples.h"
 #include "support/disk_calls.h"
 #include "support/temporary_folder.h"
@@ -34,7 +34,8 @@ protected:
     return makeSite({folder / "cloud.pcd"}, folder / "site", options);
   }
 
-  /// That the file of this name appears after what was written before is on the disk, and is there before more is done.
+  /// Expects that the file of this name appears after all earlier writes are on the disk, and is there before later
+  /// calls.
   /// @return how often
   static int appearancesAfterAll(const std::vector<std::string>& calls, const std::string& name)
   {

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::site {
 
-/// What is asked, and with which means.
+/// A question and its means.
 struct SiteQuestion : Question, SiteMeans {};
 
 /// Another site as the obstacle.

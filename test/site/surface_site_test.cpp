@@ -82,7 +82,7 @@ protected:
     return values;
   }
 
-  /// That the site of results holds what pcl_bsh_collide has written.
+  /// Expects that a field of the site of results equals that of a file that pcl_bsh_collide has written.
   void expectSame(const std::string& out, const std::string& cloud_file, const std::string& field) const
   {
     const pcl::PCLPointCloud2 cloud = io::readCloud(folder / cloud_file);
@@ -286,7 +286,7 @@ TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
   }
 }
 
-/// Of a tile in the middle of a solid, no box about parts of its surface knows.
+/// A tile in the middle of a solid meets no box about parts of its surface.
 TEST_F(SurfaceSite, TilesInTheMiddleOfALargeSolidAreAskedAbout)
 {
   std::string large = crate_text;
@@ -426,7 +426,7 @@ TEST_F(SurfaceSite, MarksTheObstaclesTriangles)
   ASSERT_EQ(marked.triangles.size(), 12U);
   ASSERT_EQ(marked.face_values.size(), 1U);
   EXPECT_EQ(marked.face_values[0].name, "collision");
-  // Of the scan as the input of the question the other way round.
+  // The flags are those of the crate as the input, with the scan as the obstacle.
   ASSERT_EQ(
       run("pcl_bsh_collide", "crate.off scan.pcd expected.ply --clearance 0.2 --pose 0,0,-0.03,0,0,0", folder.path())
           .exit_code,
@@ -438,7 +438,7 @@ TEST_F(SurfaceSite, MarksTheObstaclesTriangles)
   EXPECT_GE(json("r.json")["colliding"].get<int>(), 5000);
 }
 
-/// What was found of another surface is no answer: of other faces between the same corners.
+/// Answers about another surface are not taken over: one with other faces between the same corners, say.
 TEST_F(SurfaceSite, GoesOnWithTheSameSurfaceAlone)
 {
   const std::vector<std::string> asked = {"collide",   "site",     "crate.off", "--clearance", "0.2", "--trajectory",

@@ -200,8 +200,8 @@ TEST_F(UncertainSite, PathsAreThoseOfMemory)
   }
 }
 
-/// Of a site as obstacle points are compared that lie beyond the clearance, but within their uncertainty of it,
-/// although all others of their tile are far away.
+/// Points of an obstacle that is a site are compared where they lie beyond the clearance, but within their uncertainty
+/// of it. All other points of their tile are far away.
 TEST_F(UncertainSite, AsObstacleIsCutToWhereItsPointsMayBe)
 {
   const auto write = [&](const char* name, const std::vector<std::array<double, 4>>& points) {
@@ -210,7 +210,7 @@ TEST_F(UncertainSite, AsObstacleIsCutToWhereItsPointsMayBe)
     return makeSite({folder / name}, folder / (std::string(name) + "_site"), {});
   };
   const Site one = write("one.pcd", {{0, 0, 0, 0}});
-  // The candidate, and what keeps the tile's box wide.
+  // The candidate, and two points that keep the tile's box wide.
   const Site other = write("other.pcd", {{1.04, 0, 0, 0.05}, {50, 0, 0, 0.05}, {-60, 30, 9, 0.05}});
   ASSERT_EQ(other.tiles.size(), 1U);
   SiteQuestion request;
@@ -370,7 +370,7 @@ TEST_F(UncertainSite, OfThePrograms)
     for (std::uint32_t i = 0; i < cloud.width; ++i)
       EXPECT_EQ(io::valueOf(cloud, i, "collision"), io::valueOf(marked, recordOf(cloud, i), "collision"));
   }
-  // What is found again may be asked of the sigmas, which are as they were, but not of what was written.
+  // The site of results knows the greatest sigma, as the site does.
   EXPECT_EQ(out.tiles[0].greatest.count("sigma"), 1U);
   const std::string refused = " --clearance 0.3 --report 3.json --uncertainty ";
   EXPECT_EQ(run("pcl_bsh_site", "collide site80 machine.pcd --report 3.json --closest --uncertainty 0.1", folder.path())

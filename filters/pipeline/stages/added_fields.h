@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Room for what a stage computes per point.
+// Fields for the results of a stage, one value per point.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>

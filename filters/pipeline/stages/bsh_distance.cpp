@@ -44,7 +44,7 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& /*cloud*/) override { return std::move(within_); }
 
 private:
-  /// The distances of triangles become a property of theirs; vertices get the smallest of what their triangles have.
+  /// The distances of triangles become a property of theirs; vertices get the smallest distance of their triangles.
   StageCloudPtr measuredFaces(StageCloudPtr&& input, Answer answer) const
   {
     const std::vector<Triangle>& triangles = *input->triangles;

@@ -43,7 +43,7 @@ protected:
     }
   };
 
-  /// For run(): asks, until the stage is cancelled, and warns of what the user should know.
+  /// For run(): asks, until the stage is cancelled, and adds the warnings of the answer.
   AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage) const;
 
   /// Whether the triangles of the input are asked about, not its points.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The question of a list of clashes, and where its run looked: so that lists of two runs can be compared.
+// The question of a list of clashes, and the places where its run looked. They make lists of two runs comparable.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -43,7 +43,7 @@ struct Survey {
 struct ClashList {
   std::string name; ///< of the obstacle, where the file lists several
   ClashQuestion question;
-  bool states_options = true;   ///< false of lists of earlier versions: what was asked beside clearance is not known
+  bool states_options = true;   ///< false of lists of earlier versions, which state the clearance alone
   std::optional<Survey> survey; ///< none of lists of earlier versions
   std::vector<Clash> clashes;
   BcfTopics topics = {}; ///< of a BCF file
@@ -55,7 +55,7 @@ struct ClashList {
 /// would have written
 std::vector<ClashList> readClashLists(const std::filesystem::path& path);
 
-/// The same, of a text. @throws JsonError whose message begins with `name`
+/// Parses such a list in JSON. @throws JsonError, whose message begins with `name`
 std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name);
 
 /// Finds the list of an obstacle by its name or, where one of the two has no name, by its file. Returns null where
@@ -68,11 +68,10 @@ ClashList readClashes(const std::filesystem::path& path);
 ClashList parseClashes(std::string_view text, const std::string& name);
 
 /// Whether the earlier list, read from `path`, can tell what is new now.
-/// @return warnings, a line each: names of other clouds, but of inputs that differ in numbers or months alone, as from
-///   week to week; motion between poses tested in one run only, a list of an
-///   earlier version
-/// @throws files::FileError when options differ by which points collide, so that clashes would seem new or resolved
-///   that are not: all but swept motion, and what is unseen, which is listed apart
+/// @return warnings, a line each: names of other clouds, except of inputs that differ in numbers or months alone, as
+///   from week to week; motion between poses tested in one run only, a list of an earlier version
+/// @throws files::FileError when options differ that decide which points collide: clashes would seem new or resolved
+///   that are not. These are all options except swept motion and `seen`, whose places are listed apart
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
                                            const ClashQuestion& now);
 

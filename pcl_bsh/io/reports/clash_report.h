@@ -24,7 +24,7 @@
 
 namespace pcl_bsh::io {
 
-/// Where a point of an input stood that is made of several files.
+/// The source of a point of an input that is made of several files.
 struct SourcePoint {
   std::string file;
   std::uint32_t record = 0;
@@ -43,20 +43,20 @@ struct ClashReport {
   std::string unit = {};                    ///< of the clouds' lengths; empty: not known
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
   std::optional<std::string> previous = {}; ///< file name
-  BcfTopics topics = {};                    ///< what people said of its clashes
+  BcfTopics topics = {};                    ///< comments and states that people gave its clashes
   const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
   const Answer::Unseen* unseen = nullptr;   ///< of a question with `seen` and `unseen_places`
   /// The source of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
-  /// The same of a point of `model`.
+  /// The source of a point of `model`, where the obstacle is several files.
   std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
   std::string name = {};                  ///< of the obstacle, where it is one of several
   const ObstacleAnswer* answer = nullptr; ///< set where the obstacle is one of several
 
-  /// As lists and pages tell it: of several obstacles, ids begin with their names.
+  /// Returns the id in lists and pages: of several obstacles, it begins with the obstacle's name.
   std::string idOf(const Clash& clash) const { return name.empty() ? clash.id : name + '/' + clash.id; }
 
-  /// A record of the obstacle: a point, or a triangle.
+  /// Returns the name of a record of the obstacle: "point" or "triangle".
   const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
 
   std::size_t count(ClashStatus status) const
@@ -70,7 +70,7 @@ struct ClashReport {
     return countIf([](const Clash& clash) { return isPresent(clash.status); });
   }
 
-  /// Of these, those that collide only perhaps.
+  /// Present clashes that collide only perhaps.
   std::size_t perhaps() const
   {
     return countIf([](const Clash& clash) { return isPresent(clash.status) && !clash.isCertain(); });
@@ -78,8 +78,8 @@ struct ClashReport {
 
   Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
 
-  /// Where the obstacle's point of the closest pair is at the closest pose (swept: when the motion from there begins).
-  /// Of a surface, the point of the triangle that is nearest to the scan's, rounded.
+  /// Returns the obstacle's point of the closest pair at the closest pose (swept: when the motion from there begins).
+  /// Where the obstacle is a surface, it is the triangle's point that is nearest to the scan's, rounded.
   Eigen::Vector3d modelPoint(const Clash& clash) const;
 
   static Eigen::Vector3d vectorOf(const Point3& p) { return {p[0], p[1], p[2]}; }
@@ -98,7 +98,7 @@ struct BetweenObstacles {
   ObstaclePair pair;
 };
 
-/// All that a list of clashes tells: of one obstacle, or of several that have names. Borrows as its reports do.
+/// The contents of a list of clashes, of one obstacle or of several with names. Borrows as its reports do.
 struct ClashLists {
   std::vector<ClashReport> obstacles; ///< one at least
   std::vector<BetweenObstacles> between = {};
@@ -123,7 +123,7 @@ private:
 /// certain, perhaps or unseen.
 const char* certaintyOf(const Clash& clash);
 
-/// clash, perhaps, sparse, unseen or clear: what was found of an obstacle.
+/// Returns the state of an obstacle: clash, perhaps, sparse, unseen or clear.
 const char* nameOfState(Verdict verdict);
 const char* nameOfState(const ObstacleAnswer& found); ///< or ignored
 
@@ -152,28 +152,28 @@ std::string clashCsv(const ClashLists& lists);
 std::string clashPage(const ClashLists& lists);
 
 /// A topic for each clash, with a viewpoint, as an archive of BCF 3.0 or 2.1. The GUID of a topic follows from the id
-/// of its clash. Status, comments and who is to act are those of `topics`; what is resolved is closed, what is new
-/// open. With the list of clashJson() as a document. Coordinates of viewpoints are in metres where the unit is known.
+/// of its clash. Status, comments and assignees are those of `topics`. Resolved clashes are closed, new ones are open.
+/// With the list of clashJson() as a document. Coordinates of viewpoints are in metres where the unit is known.
 std::string clashBcf(const ClashLists& lists, bool is_version_3);
 
-/// Writes what the extension says: .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1). The file appears complete or not at
-/// all.
+/// Writes the format that the extension names: .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1). The file appears
+/// complete or not at all.
 /// @throws files::FileError
 void writeClashes(const std::filesystem::path& path, const ClashLists& lists);
 
 /// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
 void requireClashFormat(const std::filesystem::path& path);
 
-/// How many there are, as programs tell it in a line: "3 clashes, 140 perhaps, 2 resolved".
+/// Counts the clashes in a line, as programs print it: "3 clashes, 140 perhaps, 2 resolved".
 std::string clashCounts(const ClashLists& lists);
 
-/// The clashes of two clouds in memory, and what of the obstacle is unseen. All but the question is borrowed.
+/// The clashes of two clouds in memory, and the unseen records of the obstacle. All except the question is borrowed.
 ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const SphereHierarchy& model,
                       const std::vector<Eigen::Isometry3d>& poses, const Answer& answer, double cluster_distance,
                       const Obstacle* surface);
 
-/// Appends what of the obstacle is unseen along the path (findUnseenPlaces()), where that was asked. Before lists are
-/// compared.
+/// Appends the unseen places of the obstacle along the path (findUnseenPlaces()), where they were asked for. To be
+/// called before lists are compared.
 void listUnseen(ClashReport& report);
 
 /// Tells which of the report's clashes were in the earlier list, and appends those that are not found again: resolved,
@@ -193,8 +193,8 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
                                          const ClashList& earlier, const SphereHierarchy& scan,
                                          const SphereHierarchy& model);
 
-/// The distance within which colliding points are one clash where the user says none: a power of two of at least the
-/// clearance and four times the scan's spacing, so that it stays the same from run to run.
+/// Returns the default distance within which colliding points are one clash. It is a power of two, and at least the
+/// clearance and four times the scan's spacing. So scans of similar spacing have equal distances.
 double clusterDistanceFor(double clearance, const Spacing& scan);
 
 } // namespace pcl_bsh::io

@@ -226,7 +226,7 @@ private:
                   {"scale_length", number(seen.bar)}};
   }
 
-  /// Of a place, which may have none.
+  /// Returns the text of the distance of a place. Infinity: there is no point within the greatest distance.
   std::string distanceText(double distance) const
   {
     if (!std::isinf(distance)) return number(distance);

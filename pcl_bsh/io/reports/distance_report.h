@@ -16,7 +16,7 @@
 
 namespace pcl_bsh::io {
 
-/// What is asked, and how the answer is called.
+/// The question, and the names that the report gives the two clouds.
 struct DistanceQuestion {
   std::string input, obstacle; ///< file names
   std::string unit;            ///< of the clouds' lengths; empty: not known
@@ -26,20 +26,20 @@ struct DistanceQuestion {
   bool solid = false;                 ///< it counts with what it encloses
   std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
 
-  /// What the numbers mean where the obstacle is a surface: null unless it is one.
+  /// Tells that distances are those to a surface; null unless the obstacle is one.
   Json surfaceToTell() const;
 };
 
-/// From each record of one cloud to the nearest of the other. Cloud and distances are borrowed.
+/// Distances from each record of one cloud to the nearest of the other. Cloud and distances are borrowed.
 struct DistanceSide {
   std::string name;       ///< file name of the cloud
   PointsView cloud;       ///< its points; of triangles, their middles
-  const char* part;       ///< what a record is: a point or a triangle
+  const char* part;       ///< the name of a record: "point" or "triangle"
   Eigen::Isometry3d pose; ///< of the cloud in the input's frame
   const PointDistances& found;
   std::size_t points = 0; ///< finite ones
   DistanceStatistics statistics;
-  double beyond = 0.0;          ///< which distance places are far; NaN when there is no distance at all
+  double beyond = 0.0;          ///< places beyond this distance are far; NaN when there is no distance at all
   std::vector<FarPlace> places; ///< in the cloud's own frame
 
   std::size_t farther() const { return points - statistics.count; } ///< than the greatest distance asked for
@@ -47,7 +47,7 @@ struct DistanceSide {
   /// Meaning of each of the numbers that statistics summarize.
   const char* meaning() const;
 
-  /// Of a record, in the input's frame.
+  /// Returns the place of a record in the input's frame.
   Eigen::Vector3d placeOf(std::uint32_t record) const
   {
     const Point3 p = cloud.point(record);
@@ -71,7 +71,7 @@ struct DistanceReport {
 DistanceReport reportOf(const DistanceQuestion& question, const Placed& input, const Placed& obstacle,
                         const SymmetricDistances& found);
 
-/// Lengths as numbers, null where there is none. At most as many places of each cloud as the page lists.
+/// Returns lengths as numbers, and null for a missing one. Lists as many places of each cloud as the page, at most.
 Json distanceJson(const DistanceReport& report);
 
 /// A page that opens alone in a browser: statistics, histograms, and the farthest places in pictures and tables.
@@ -80,7 +80,8 @@ std::string distancePage(const DistanceReport& report);
 /// Places of one cloud that are told one by one.
 inline constexpr std::size_t most_far_places = 20;
 
-/// Writes what the extension says: .json or .html. The file appears complete or not at all. @throws files::FileError
+/// Writes the format that the extension names: .json or .html. The file appears complete or not at all.
+/// @throws files::FileError
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report);
 
 /// @throws files::FileError when writeDistances() knows no such extension. As reportDate()

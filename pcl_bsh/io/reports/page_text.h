@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all pages have: how they begin, texts and numbers, and clouds seen from above.
+// The parts that all pages share: their head, texts and numbers, and clouds seen from above.
 #pragma once
 
 #include <pcl_bsh/io/json/json_document.h>
@@ -35,7 +35,7 @@ inline std::string plain(const std::string& text)
   return safe;
 }
 
-/// So many significant digits, and no exponent where that is readable.
+/// Writes so many significant digits, without an exponent where that is readable.
 inline std::string number(double value, int digits = 4)
 {
   return numberText(value, std::chars_format::general, digits);
@@ -60,19 +60,19 @@ inline double roundLength(double wish)
   return decade * (wish / decade >= 5 ? 5 : wish / decade >= 2 ? 2 : 1);
 }
 
-/// False, which leaves a section of the template out, for none.
+/// Returns the text, or false for an empty one: the template then leaves its section out.
 inline Data textOrNone(const std::string& text)
 {
   return text.empty() ? Data(false) : Data(plain(text));
 }
 
-/// The same of a number that is not finite.
+/// Returns the number as text, or false where it is not finite.
 inline Data numberOrNone(double value)
 {
   return std::isfinite(value) ? Data(number(value)) : Data(false);
 }
 
-/// What a page says of two clouds and an answer about them, whatever was asked.
+/// Returns the facts that each page states about two clouds and an answer about them.
 template <typename Question>
 Object pageAbout(const Question& question, const std::string& coordinate_system, const std::string& accuracy,
                  const std::string& promise)

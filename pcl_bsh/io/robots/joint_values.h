@@ -13,7 +13,7 @@ namespace pcl_bsh::io {
 using robots::JointValues;
 
 /// `name=value,...`; may be empty.
-/// @throws io::FormatError naming the word that is none of that
+/// @throws io::FormatError naming a word of another form
 JointValues parseJointValues(const std::string& text);
 
 /// A table: the names of joints in its first line, then a line for each frame. Semicolons, commas, tabs or blanks

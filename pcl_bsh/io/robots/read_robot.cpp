@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// URDF by urdfdom. What that lets pass and forward kinematics cannot bear is refused here.
+// URDF by urdfdom. Refuses robots that urdfdom accepts and forward kinematics does not.
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/io/robots/ros_packages.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Packages = std::map<std::string, fs::path>;
 
-/// What urdfdom would print; while it lives.
+/// Takes the errors that urdfdom would print, while it lives, and keeps the first.
 class FirstComplaint : public console_bridge::OutputHandler {
 public:
   FirstComplaint() { console_bridge::useOutputHandler(this); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robots from files: a URDF has links, joints and shapes; an SRDF which links are never held against each other.
+// Robots from files. A URDF has links, joints and shapes. An SRDF has pairs of links that are never compared.
 #pragma once
 
 #include <pcl_bsh/robot/robot.h>

@@ -22,13 +22,13 @@ struct Surface {
   PointsView view() const;
 };
 
-/// Reads .stl, .obj, .ply and .off, whose unit is taken for metres, and .dae where this is compiled with assimp. Of
-/// COLLADA the file's <unit> counts, and its <up_axis> does not: coordinates are those of the link, as RViz shows them.
+/// Reads .stl, .obj, .ply and .off, whose unit is taken for metres, and .dae where this is compiled with assimp. A
+/// COLLADA file's <unit> counts; its <up_axis> does not: coordinates are those of the link, as RViz shows them.
 /// @throws files::FileError
 Surface readSurface(const std::filesystem::path& path);
 
-/// In the link's frame. What is round is a polyhedron within it.
-/// @param sagitta how far that may be from what is round, m; > 0
+/// Returns a shape's surface in the link's frame. A polyhedron inside stands for a round shape.
+/// @param sagitta greatest distance of the polyhedron from the round shape, m; > 0
 /// @pre sizes above 0
 /// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error for a size that is too
 ///   large for the sagitta

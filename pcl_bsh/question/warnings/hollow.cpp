@@ -23,7 +23,7 @@ constexpr std::size_t most_records = 256; // of a pose
 constexpr std::size_t most_samples = 8;   // of all poses that are looked at, or one of each
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Spread over a list: `most` of its places at most.
+/// Returns numbers of places spread over a list, `most` at most.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most)
 {
   std::vector<std::size_t> places;
@@ -89,7 +89,7 @@ void windRound(std::vector<Sample>& samples, const TrianglesView& triangles)
   }
 }
 
-/// The first that is inside.
+/// Returns the first sample that is inside a surface that closes.
 std::optional<Point3> enclosed(std::vector<Sample>& samples, Shape& surface, std::optional<bool> closes)
 {
   if (!closes) windRound(samples, *surface.hierarchy().view().triangles);

@@ -22,27 +22,28 @@ namespace pcl_bsh {
 std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& content,
                                   const std::vector<Eigen::Isometry3d>& T_surface_content);
 
-/// What is so near to a surface that its user surely looks at it: a hundredth of its size. @pre likewise
+/// Returns the distance below which a user surely looks at the surface: a hundredth of its size. @pre as placeWithin()
 double nearTo(const Shape& surface);
 
-/// The sentence about such a place. @param option by which the surface counts with what it encloses
+/// Returns the warning about such a place. @param option by which the surface counts with what it encloses
 Warning warningOfHollow(const std::string& surface, const char* option, const std::string& content,
                         const Point3& place);
 
-/// How near an answer says that the one thing is to the other's surface: a distance, 0 where anything collides or the
-/// answer does not tell, infinite where nothing does.
+/// Returns the smallest distance between the two things that an answer tells: 0 where anything collides or the answer
+/// tells no distance, infinity where nothing collides.
 double nearestOf(const Question& question, const Answer& answer);
 
-/// The same of queries that no question has: of verdicts, of distances, and along a path.
+/// Returns the smallest distance that results of other queries tell: verdicts, distances, results along a path.
 double nearestOf(const std::vector<Verdict>& verdicts);
 double nearestOf(const std::vector<double>& distances); ///< NaN: none
 double nearestOf(const TrajectoryResult& found);
 
-/// Of either thing that is a surface, and no solid, unless something is near it. @pre hierarchy() of both was called
+/// Returns warnings about surfaces among the two that are not asked as solids, unless the other thing is near.
+/// @pre hierarchy() of both was called
 /// @param nearest as nearestOf() has it
 std::vector<Warning> warningsOfHollow(const Question& question, double nearest, Shape& input, Shape& obstacle);
 
-/// Of a question whose answer its asker has: as of two clouds (warnings.h), and of what is hollow.
+/// Returns all warnings of a question that the caller has answered: those of warnings.h, and those of hollow surfaces.
 std::vector<Warning> warningsOf(const Question& question, double nearest, Shape& input, Shape& obstacle);
 
 } // namespace pcl_bsh

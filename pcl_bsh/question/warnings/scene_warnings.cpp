@@ -93,7 +93,7 @@ void warnOfUnits(const Objects& objects, const Clouds& clouds, std::vector<std::
   if (found) addOnce(found->text, told);
 }
 
-/// Of each object that moves, and is nowhere near any of the others.
+/// Warns of each object that moves and is nowhere near any other.
 void warnOfFrames(const Objects& objects, const Clouds& clouds, double clearance, std::optional<double> duration,
                   std::vector<std::string>& told)
 {
@@ -118,7 +118,7 @@ void warnOfFrames(const Objects& objects, const Clouds& clouds, double clearance
   }
 }
 
-/// Of objects that may be hollow by mistake.
+/// Warns of objects that may be hollow by mistake.
 class Hollows {
 public:
   Hollows(const Objects& objects, std::map<std::string, Shape>& shapes, const Clouds& clouds, double clearance,
@@ -162,7 +162,7 @@ private:
     return std::nullopt;
   }
 
-  /// Of a part of object i round object j.
+  /// Returns the warning that a part of object i closes round places of object j.
   std::optional<Warning> warningOf(std::size_t i, const NamedObject::Part& part, std::size_t j)
   {
     std::vector<std::size_t> meeting; // instants

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users should know of a scene, whoever has made it: as warnings.h has it of two clouds.
+// Warnings about a scene, however it was made. warnings.h has those about two clouds.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -39,13 +39,13 @@ std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,
                                     const std::map<std::string, NamedCloud>& clouds, double clearance,
                                     std::optional<double> duration);
 
-/// The same with spacings, and of meshes that are no solids and close round places of another object, at up to 16
-/// instants of the motion, where no surface is near.
+/// Returns these warnings, with those of spacings, and of meshes that are no solids and close round places of another
+/// object while no surface is near. Up to 16 instants of the motion are looked at.
 /// @param shapes of the clouds. Their hierarchy() was called
 std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects, std::map<std::string, Shape>& shapes,
                                     double clearance, std::optional<double> duration);
 
-/// Where effects are about pairs of objects, and none is tested: all are fixed, say.
+/// Returns a warning where effects are about pairs of objects and no pair is tested: all objects are fixed, say.
 std::optional<std::string> warningOfNoPairs(const Scene& scene);
 
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a question's answer does not say by itself, as each program, filter and package tells it: the conditions and the
+// Warnings that go with a question's answer, as each program, filter and package tells them. Their conditions and
 // sentences stand here alone.
 //
 //   for (const Warning& warning : warningsOf(question, measuredCloud("hall.ply", hall), namedCloud("robot", robot)))
@@ -34,7 +34,7 @@ struct Density {
   bool couldHide(double clearance) const;
 };
 
-/// What a warning is about.
+/// The subject of a warning.
 enum class WarningKind : std::uint8_t {
   empty,      ///< no finite point
   not_finite, ///< some points are not
@@ -54,42 +54,42 @@ struct Warning {
   std::string text;
 };
 
-/// All that is to be told of a question, of clouds wherever they are. A sentence about two clouds of one name that
+/// Returns all warnings of a question about two clouds, in memory or not. A sentence about two clouds of one name that
 /// would be told twice is told once.
 std::vector<Warning> warningsOf(const Question& question, const NamedCloud& input, const NamedCloud& obstacle);
 
-/// Of one cloud by itself: empty, not finite, loose vertices, coarse.
-/// @param least_length without a clearance, that distances are compared with
+/// Returns the warnings of one cloud by itself: empty, not finite, loose vertices, coarse.
+/// @param least_length without a clearance, the least length that distances are compared with
 std::vector<Warning> warningsOf(const NamedCloud& cloud, std::optional<double> clearance,
                                 double least_length = std::numeric_limits<double>::infinity());
 
-/// Of two clouds, where their spacings are known.
+/// Warns where holes between points may hide a collision within the clearance. Needs the spacing of one cloud at least.
 std::optional<Warning> warningOfDensity(const NamedCloud& a, const NamedCloud& b, double clearance);
 
-/// The boxes, in one frame, of two things and all of their motion: farther apart than the clearance and ten times the
-/// diagonal of either.
+/// Warns of boxes, in one frame, that are farther apart than the clearance and ten times the diagonal of either. Each
+/// box holds all of the motion of its thing.
 std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::AlignedBox3d& box_a, const std::string& b,
                                        const Eigen::AlignedBox3d& box_b, double clearance);
 
-/// Two things of which the one's box is a hundred times as large as the other's, by their diagonals, or more.
+/// Warns where one box is a hundred times as large as the other, or more, by their diagonals.
 std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b);
 
-/// How many points of a cloud do not count, by what was asked.
+/// Tells how many points of a cloud do not count, by each term.
 Warning warningOfIgnored(const std::string& name, const IgnoredPoints& ignored, const CountedPoints& counted);
 
-/// Angles, in radians, of more than two turns: degrees, perhaps. Without a name before it.
+/// Warns of angles, in radians, of more than two turns: degrees, perhaps. The text begins without a name.
 std::optional<std::string> warningOfAngles(double roll, double pitch, double yaw);
 
 /// Appends a sentence, unless it is there.
 void addOnce(std::string text, std::vector<std::string>& texts);
 
-/// The same of each.
+/// Appends the sentence of each warning, unless it is there.
 void addTexts(const std::vector<Warning>& warnings, std::vector<std::string>& texts);
 
-/// For who is asked again and again, about a stream of clouds: tells each kind of warning in one question only.
+/// For callers that ask about a stream of clouds: tells each kind of warning in one question only.
 class WarningsOnce {
 public:
-  /// Those of a kind that no earlier call had.
+  /// Returns the warnings of kinds that no earlier call had.
   std::vector<Warning> unheard(std::vector<Warning> warnings);
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of a question about a site: each visits tiles once, and adds what it finds to the answer.
+// The parts of a question about a site. Each visits tiles once, and adds its results to the answer.
 #pragma once
 
 #include <pcl_bsh/site/ask_site.h>
@@ -45,13 +45,14 @@ void flagObstacle(const Asked& asked, SiteAnswer& answer); ///< of another site
 void findClosest(const Asked& asked, SiteAnswer& answer);
 void measure(const Asked& asked, SiteAnswer& answer);
 void followPath(const Asked& asked, SiteAnswer& answer);
-void lookAround(const Asked& asked, SiteAnswer& answer); ///< what is unseen
+void lookAround(const Asked& asked, SiteAnswer& answer); ///< the unseen records of the obstacle
 
-/// The warning of question/warnings/hollow.h, where faces of the obstacle in memory close, and it is no solid: a place
-/// of the site inside of it, unless something of the site is near its surface. Of tiles that meet its box at some pose,
-/// up to four are read.
-/// @param name of the site. @param nearest how near the answer says that anything is; none: it does not tell, and if
-///   there is such a place, the smallest distance is asked for
+/// Returns the warning of question/warnings/hollow.h about an obstacle in memory that is no solid, and whose faces
+/// close round a place of the site while no point of the site is near them. Reads up to four of the tiles that meet its
+/// box at some pose.
+/// @param name of the site.
+/// @param nearest the smallest distance that the answer tells; none: it tells none, and where there is such a place,
+///   the smallest distance is computed
 std::optional<Warning> warningOfHollow(const Asked& asked, const std::string& name, std::optional<double> nearest);
 
 } // namespace pcl_bsh::site

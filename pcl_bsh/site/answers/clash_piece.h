@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a clash has in one tile: pieces of several tiles are joined to clashes of the site.
+// The pieces of clashes, one for each tile and clash. Pieces of several tiles are joined to clashes of the site.
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::site {
 
-/// A colliding point of a piece, which is known by its smallest point.
+/// A colliding point of a piece. The smallest point of a piece is the piece's name.
 struct Member {
   Point3 place;
   SitePoint point, piece;
@@ -23,25 +23,27 @@ struct Piece {
   MetPoint met;   ///< the model's
 };
 
-/// What tiles have of clashes.
+/// The pieces of some tiles.
 struct Pieces {
-  bool of_site = false; ///< whether the model is a site: the met points tell theirs
+  bool of_site = false; ///< whether the model is a site: met points are then points of it
   std::vector<Piece> pieces;
   std::vector<Member> border; ///< points that a step of the cluster distance may lead to another tile
   std::vector<Member> some;   ///< of each piece
 };
 
-/// As numbers, one sequence after another of which add() understands.
+/// Returns them as numbers. add() reads one such sequence after another.
 std::vector<double> numbersOf(const Pieces& pieces);
 void add(Pieces& pieces, const double* begin, const double* end);
 
-/// Those of all ranks of an MPI job, on all of them.
+/// Returns the pieces of all ranks of an MPI job, on all of them.
 Pieces gathered(const Pieces& own);
 
-/// Two pieces of one clash. Of pairs of one distance that of the smaller point of the site counts, as in memory.
+/// Joins another piece of one clash. Where their closest pairs have equal distances, the pair of the smaller point of
+/// the site counts, as in memory.
 void join(Piece& piece, const Piece& other);
 
-/// Leaves so many at most, drawn by lots: of all points of a clash the same, in whatever parts they are drawn.
+/// Leaves so many at most, drawn by lots. The points of a clash that are left do not depend on the parts in which they
+/// are drawn.
 void drawSome(std::vector<Member>& members, std::size_t most);
 
 } // namespace pcl_bsh::site

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A site and what it is compared with, tile by tile: a cloud in memory, or another site.
+// Compares a site, tile by tile, with a cloud in memory or with another site.
 #pragma once
 
 #include <pcl_bsh/site/answers/inquiry.h>
@@ -13,10 +13,10 @@
 
 namespace pcl_bsh::site {
 
-/// A cloud that a site is compared with: all of it is near, where any is.
+/// A cloud that a site is compared with, always as a whole.
 class ObstacleCloud {
 public:
-  /// @param solid it counts with what it encloses, far from all of its parts, perhaps
+  /// @param solid it counts with the inside, which may be far from all of its parts
   ObstacleCloud(const Placed& standing, bool solid)
   : cloud(standing),
     boxes_(boxesOf(cloud.hierarchy().view(), solid)),
@@ -40,7 +40,7 @@ private:
   std::vector<Bounds> parts_;
 };
 
-/// Each tile of a site, and what of the other cloud or site comes near it.
+/// Compares each tile of a site with the parts of the other cloud or site that come near it.
 class Comparison {
 public:
   /// @param visited whose tiles are visited, with its uncertainty. @param other none: the obstacle in memory
@@ -60,7 +60,8 @@ public:
   /// Some points of the other site where they stand, or the cloud, of which there is one.
   Placed standing(const SphereHierarchy& some) const { return cloud_ ? cloud_->cloud : Placed(some, pose_of_other_); }
 
-  /// Calls query(a, b) with nothing in place of sites: what it refuses is refused although no tile may be asked about.
+  /// Calls query(a, b) with empty clouds in place of sites, so that it refuses wrong arguments where no tile is asked
+  /// about.
   template <typename Query>
   void refuse(const Query& query) const
   {
@@ -68,8 +69,8 @@ public:
     query(Placed(nothing, visited_.pose), standing(nothing));
   }
 
-  /// Calls ask(tile, cloud, its points where they stand), those first that may be nearest, while their lower bounds are
-  /// at most what least() says, which is asked whenever all ranks have had a tile more.
+  /// Calls ask(tile, cloud, its points where they stand) for tiles by ascending lower bounds, while these are at most
+  /// least(). All ranks call least() whenever each has had a tile more.
   template <typename Ask, typename Least>
   TilesRead visit(double distance, const Ask& ask, const Least& least)
   {
@@ -80,7 +81,7 @@ public:
     });
   }
 
-  /// As Inquiry has it, with points where they stand, in the order of the site's tiles.
+  /// As Inquiry::visitAndAdd(), with points where they stand, in the order of the site's tiles.
   template <typename Find, typename Add>
   TilesRead visitAndAdd(double distance, const Find& find, const Add& add)
   {
@@ -89,8 +90,8 @@ public:
     return inquiry_.visitAndAdd(numbers, placed(find), add, isOfSites());
   }
 
-  /// Calls compare(a tile of the other site, those of its points that are near where they stand), nearest tiles first,
-  /// while there are some within the reach of the tile, which is asked for before each: it may fall.
+  /// Calls compare(tile, near points where they stand) for tiles of the other site, the nearest first, while they are
+  /// within reach() of the given tile. Before each tile, reach() is called again: it may fall.
   template <typename Reach, typename Compare>
   void compareWithOther(const Tile& tile, const Reach& reach, const Compare& compare)
   {
@@ -105,14 +106,14 @@ public:
 private:
   using Tiles = std::vector<std::pair<double, std::uint32_t>>;
 
-  /// Where the points of a tile may truly be, in the common frame.
+  /// Returns the box of the places where the points of a tile may truly be, in the common frame.
   Bounds boxOf(const Tile& tile) const
   {
     const Bounds box = trueBounds(tile, visited_.uncertainty);
     return visited_.pose.matrix().isIdentity(0.0) ? box : moved(box, visited_.pose, 0.0);
   }
 
-  /// Tiles that something of the other may come so near to: those first that may be nearest, each with a lower bound.
+  /// Returns the tiles within a distance of the other, by ascending lower bounds, each with its bound.
   Tiles tilesNear(double distance) const
   {
     Tiles tiles;

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh::site {
 
-/// Adds what the obstacle holds of some points of the input, where it is asked as a solid.
+/// Adds those of some points of the input that the obstacle holds, where it is asked as a solid.
 /// @param points where they stand. @param found of the surface
 template <typename Found>
 void addHeldOf(const Asked& asked, const Placed& points, Found& found)

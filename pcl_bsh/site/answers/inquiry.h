@@ -18,14 +18,14 @@ namespace pcl_bsh::site {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Adds to the flags of points what another tile says of them: one that collides with a tile collides, and is free only
-/// if it is of all.
+/// Joins the flags of points with those against another tile: a point that collides with a tile collides, and a point
+/// is free only if all tiles leave it free.
 inline void join(std::vector<Verdict>& flags, const std::vector<Verdict>& of_other)
 {
   std::transform(flags.begin(), flags.end(), of_other.begin(), flags.begin(), graver);
 }
 
-/// What a query is asked of each tile.
+/// Returns the request for each tile.
 template <typename Wanted>
 Wanted wantedOf(const Question& question)
 {
@@ -36,7 +36,8 @@ Wanted wantedOf(const Question& question)
   return wanted;
 }
 
-/// Of all tiles. @param collides the same on all ranks. @param is_undecided whether a tile of this rank is
+/// Returns the verdict of all tiles.
+/// @param collides equal on all ranks. @param is_undecided whether a tile of this rank is undecided
 inline Verdict verdictOfAllRanks(bool collides, bool is_undecided)
 {
   const bool none_is_sure = sumOfAllRanks(is_undecided ? 1 : 0) > 0;
@@ -55,7 +56,7 @@ public:
     requireUncertainty(visited.site, visited.uncertainty);
   }
 
-  /// Calls ask(tile, cloud, its hierarchy) for the first of these tiles, on one of the ranks each.
+  /// Calls ask(tile, cloud, its hierarchy) for each of the first of these tiles, on one of the ranks.
   /// @param go_on as that of TileVisitor::visitInTurn()
   template <typename Ask>
   TilesRead visit(const std::vector<std::uint32_t>& tiles, const Ask& ask,
@@ -65,8 +66,8 @@ public:
     return readOf(tiles.size());
   }
 
-  /// The same for all of them where what is found of a tile is added to the rest by numbers, which may be known from an
-  /// earlier run.
+  /// Calls find() for all of these tiles, and add() with the numbers that it returns. Tiles whose numbers an earlier
+  /// run has kept are not asked about: add() gets these numbers on the first rank.
   /// @param find (tile, cloud, its hierarchy): its numbers, after the sink. @param add (numbers)
   /// @param runs whether tiles that follow each other are better asked about on one rank
   template <typename Find, typename Add>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What several models that move together meet of a scan at each pose: a point that meets two of them is one point.
+// Summaries of poses of several models that move together: a point of the scan that meets two of them counts once.
 #pragma once
 
 #include <pcl_bsh/trajectory/trajectory.h>
@@ -16,10 +16,11 @@ public:
   JoinedPoses(const SphereHierarchy& scan, const std::vector<Eigen::Isometry3d>& poses,
               const TrajectoryRequest& request);
 
-  /// What the next model meets at each pose.
+  /// Adds the summaries of the next model.
   void add(const std::vector<PoseSummary>& of_model);
 
-  /// What all of them meet. At poses at which several meet points, their flags are found once more, and joined.
+  /// Returns the summaries of all models together. At poses at which several models meet points, flags are computed
+  /// once more, and joined.
   /// @param model_of the points of a model, by its number among those added; asked for once for many poses
   std::vector<PoseSummary> joined(const std::function<SphereHierarchy(std::size_t)>& model_of);
 

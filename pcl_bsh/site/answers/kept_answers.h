@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a question has found of tiles, in a file beside each tile of a site of results that is not complete.
+// A question's answers about tiles, in a file beside each tile of a site of results that is not complete.
 #pragma once
 
 #include <pcl_bsh/site/ask_site.h>
@@ -25,11 +25,11 @@ public:
   /// To be called before keep(): the checksum of the tile's file, which is complete.
   void setChecksum(std::size_t tile, std::uint32_t crc32) { checksums_[tile] = crc32; }
 
-  /// The checksum that an earlier run has kept with an answer; none: there is no answer that can be understood.
-  /// @throws files::FileError for one to another question
+  /// Returns the checksum that an earlier run has kept with an answer; nothing where no answer can be read.
+  /// @throws files::FileError for an answer to another question
   std::optional<std::uint32_t> checksumKept(std::size_t tile) const;
 
-  /// Makes the answers of these tiles, which are of the ranks that have looked at them, known to all ranks.
+  /// Sends the answers about these tiles, which this rank has read, to all ranks.
   void share(const std::vector<std::size_t>& mine);
 
   std::set<std::size_t> all() const;

@@ -21,7 +21,7 @@ std::optional<FirstContact> earliestOfAllRanks(const FirstContact& own)
   return earliest.pose == no_contact.pose ? std::nullopt : std::optional(earliest);
 }
 
-/// What `more` says of other points of the site, too.
+/// Adds the summaries of other points of the site.
 void addPoses(std::vector<PoseSummary>& poses, const std::vector<PoseSummary>& more)
 {
   poses.resize(std::max(poses.size(), more.size()));

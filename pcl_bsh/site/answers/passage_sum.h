@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tiles of a site meet along a path: what each is asked, and how the answers are added up.
+// The request for each tile of a site along a path, and the sum of the answers.
 #pragma once
 
 #include <pcl_bsh/site/answers/asked.h>
@@ -14,13 +14,13 @@ namespace pcl_bsh::site {
 /// The request for each tile: flags and, where they are wanted, distances and poses of points that collide.
 TrajectoryRequest alongPath(const Asked& asked);
 
-/// What comes so near may collide.
+/// Returns the reach of the model: a tile within it may collide.
 PathReach pathReach(const TrajectoryRequest& request);
 
-/// Of the box about its points; none of a site without.
+/// Returns two opposite corners of the box about its points; nothing for a site without finite points.
 std::vector<Point3> cornersOf(const Site& site);
 
-/// Refuses what the query would refuse of the whole site, although no tile may be asked: the site's corners are.
+/// Asks about the site's corners, so that the query refuses wrong arguments where no tile is asked about.
 /// @throws std::invalid_argument as collideAlong() does
 void refusePassage(const Site& site, const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                    const TrajectoryRequest& request);
@@ -33,7 +33,8 @@ public:
   /// @param poses how many there are
   PassageSum(const Asked& asked, std::size_t poses);
 
-  /// What is known of a tile, as numbers. @param met what closest_point are numbers of, where the model is a site
+  /// Returns the answer about a tile as numbers.
+  /// @param met the points that closest_point numbers, where the model is a site
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
                                 const std::vector<MetPoint>* met = nullptr) const;
 

@@ -27,7 +27,7 @@ void beginMpi()
   MPI_Initialized(&begun);
   if (begun != 0) return;
   // MPI asks hwloc what the machine is made of, and hwloc's component `gl` opens each X display from :0 to :9 for it: a
-  // server that ends meanwhile ends the program. What the user has set stays.
+  // server that ends meanwhile ends the program. A value that the user has set stays.
   setenv("HWLOC_COMPONENTS", "-gl", 0);
   MPI_Init(nullptr, nullptr);
   std::atexit([] {
@@ -43,7 +43,7 @@ diy::mpi::communicator world()
   return {};
 }
 
-/// What DIY holds of a tile. Its points are in memory only while it is visited, so DIY need not put blocks away.
+/// DIY's block of a tile. Its points are in memory only while it is visited, so DIY need not put blocks away.
 struct Block {
   std::uint32_t tile = 0;
   std::uint32_t place = 0; ///< in the order of the visits

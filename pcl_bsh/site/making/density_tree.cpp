@@ -159,7 +159,7 @@ void DensityTree::collect(std::size_t octant, const Place& place, std::uint32_t 
   }
 }
 
-/// What is of one tile need not be divided.
+/// Makes a divided cell whole where all of its parts are of one tile.
 void DensityTree::simplify(std::uint32_t number)
 {
   Cell& cell = cells_[number];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the points of a stream lie, counted finely where they are dense; and from that, tiles of at most so many
-// points.
+// Counts the points of a stream in cells, which are fine where points are dense, and makes tiles of at most so many
+// points of the cells.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
@@ -34,7 +34,7 @@ public:
   /// After plan(): all that tileOf() needs, as numbers that a file can hold.
   std::vector<std::uint32_t> planned() const;
 
-  /// The same tree again. @throws std::invalid_argument for numbers that planned() does not give
+  /// Returns the tree that planned() has described. @throws std::invalid_argument for other numbers
   static DensityTree fromPlanned(const std::vector<std::uint32_t>& numbers);
 
   /// Memory that it takes.
@@ -66,7 +66,7 @@ private:
 
   struct Undivided {
     std::vector<std::uint32_t> cells;
-    std::vector<CountedVoxel> voxels; ///< the same ones
+    std::vector<CountedVoxel> voxels; ///< of these cells
     std::vector<DividedVoxel> above;
   };
 

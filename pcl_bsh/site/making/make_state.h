@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a site is done already, noted on the disk, so that a run that was ended can be continued.
+// The state of a site that is being made, noted on the disk, so that a later run can go on.
 #pragma once
 
 #include <pcl_bsh/io/json/json_document.h>
@@ -25,14 +25,14 @@ struct MakeState {
   std::vector<Tile> measured;                   ///< the first files
 };
 
-/// The state as a document. @param question what the site is made of
+/// Returns the state as a document. @param question the clouds and options that the site is made of
 std::string stateText(const MakeState& state, const io::Json& question);
 
-/// The state in a file. @param question that it must be the state of
+/// Reads the state in a file. @param question that it must be the state of
 /// @throws files::FileError where it is of another question, or damaged
 MakeState readState(const std::filesystem::path& path, const io::Json& question);
 
-/// A plan as the bytes of a file, and again. @throws files::FileError when it has another checksum
+/// Returns a plan as the bytes of a file, and reads it again. @throws files::FileError when it has another checksum
 std::string planBytes(const std::vector<std::uint32_t>& numbers);
 std::vector<std::uint32_t> readPlan(const std::filesystem::path& path, std::uint32_t crc32);
 

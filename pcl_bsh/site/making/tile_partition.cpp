@@ -49,7 +49,7 @@ private:
     divide(middle, end);
   }
 
-  /// What a tile of these may get.
+  /// Returns the most points that a tile of these voxels may get.
   std::uint64_t mostIn(Numbers begin, Numbers end)
   {
     ++stamp_;
@@ -58,7 +58,7 @@ private:
     return most;
   }
 
-  /// What it may get more with one voxel more.
+  /// Returns the points that one voxel more may add to it.
   std::uint64_t moreWith(std::uint32_t voxel)
   {
     std::uint64_t more = voxels_[voxel].points;
@@ -69,7 +69,7 @@ private:
     return more;
   }
 
-  /// Of voxels with points, where any has some.
+  /// Returns the longest axis of the box about the voxels that have points.
   std::size_t longestAxis(Numbers begin, Numbers end) const
   {
     std::optional<Bounds> box;
@@ -82,8 +82,8 @@ private:
     return longest;
   }
 
-  /// Where the first of two parts ends: in the middle half, where they need the fewest tiles, and the fewest points may
-  /// lie on either side.
+  /// Returns the end of the first of two parts. It is the place in the middle half where the parts need the fewest
+  /// tiles and, of several, the fewest points may lie on either side.
   /// @param most points that all of them may have. @pre at least two voxels
   Numbers cut(Numbers begin, Numbers end, std::uint64_t most)
   {

@@ -15,15 +15,15 @@
 
 namespace pcl_bsh::site {
 
-/// Whether a folder holds what a program has left that was killed while it made a site.
+/// Whether a program was killed while it made a site in a folder.
 bool isUnfinished(const std::filesystem::path& folder);
 
-/// What of so many bytes of a site its folder's disk must have free: not what an earlier run has left there, which is
-/// taken over or removed first.
+/// Returns how many bytes the folder's disk must have free for a site of so many bytes. The files of an earlier run
+/// there do not count: they are taken over, or removed first.
 std::uint64_t spaceWanted(const std::filesystem::path& folder, std::uint64_t bytes);
 
-/// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. What
-/// an earlier run has left that was killed is removed first, which is told by its mark; nothing else ever is.
+/// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. The
+/// files of an earlier run that was killed are removed first: its mark tells them. No other file is ever removed.
 class UnfinishedSite {
 public:
   enum class Use {
@@ -33,7 +33,7 @@ public:
     resumed,     ///< as `shared`, and tiles of an earlier run stay until discardTiles()
   };
 
-  /// @param bytes that the site will take on the disk; what an earlier run has left there is of it, or makes room
+  /// @param bytes that the site will take on the disk; files of an earlier run there are part of it, or make room
   /// @throws files::FileError when there is a site already or anything else, when another program makes a site there,
   ///   when something was saved and the use is another one, when the folder cannot be made, or the disk has no room
   UnfinishedSite(const std::filesystem::path& folder, Use use, std::uint64_t bytes);
@@ -66,7 +66,7 @@ public:
   /// A file that was there when save() was called, with so many bytes. @param name relative to the folder
   files::NewFile& goOn(const std::filesystem::path& name, std::uint64_t bytes);
 
-  /// From now on, what is there stays where finish() is not reached.
+  /// From now on, the files stay where finish() is not reached.
   void savePlan(const std::string& bytes);
   void save(const std::string& state);
 

@@ -18,7 +18,7 @@ private:
   std::uint32_t crc_ = 0;
 };
 
-/// That of all bytes of a string, or of a cloud's records.
+/// Returns the checksum of all bytes of a string, or of a cloud's records.
 template <typename Bytes>
 std::uint32_t crcOf(const Bytes& bytes)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boxes about a cloud's points, wherever the cloud stands: what of a site may be near it is told by them in no time.
+// Boxes about a cloud's points, wherever the cloud stands. They tell cheaply which tiles of a site may be near it.
 #pragma once
 
 #include <pcl_bsh/hierarchy/points_view.h>
@@ -67,7 +67,7 @@ private:
   double largest_radius_ = 0.0;
 };
 
-/// The same, or one box where what lies between the parts counts, too.
+/// Returns the boxes about a cloud's points. @param whole return one box: the space between the parts counts, too
 inline CloudBoxes boxesOf(const PointsView& points, bool whole)
 {
   CloudBoxes boxes(points);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tiles of a site that another is compared with: read when they are needed, and cut to what is near.
+// The tiles of a site that another is compared with, read when they are needed, and cut to the points that are near.
 #pragma once
 
 #include <pcl_bsh/site/answers/asked.h>
@@ -21,8 +21,8 @@ public:
   /// At most the distance of a box in the common frame, wherever points truly are; none: it is greater than this.
   std::optional<double> lowerBound(const Bounds& box, double distance) const;
 
-  /// Calls compare(tile, those of its points that may be near where they stand), nearest tiles first, while there are
-  /// some within the reach of the box, which is asked for before each: it may fall.
+  /// Calls compare(tile, its points that may be near, where they stand), the nearest tiles first, while tiles are
+  /// within reach() of the box. Before each tile, reach() is called again: it may fall.
   template <typename Reach, typename Compare>
   void compare(const Bounds& box, const Reach& reach, const HierarchyOptions& building, const Compare& compare)
   {
@@ -49,8 +49,8 @@ private:
   const pcl::PCLPointCloud2& load(std::uint32_t tile);
 
   PlacedSite site_;
-  /// Those that were used last, the very last first. DIY's keeper of blocks would write them to a disk of its own; they
-  /// are on one.
+  /// The tiles that were used last, the very last first. DIY's keeper of blocks is not used: it would write tiles to
+  /// disk that are there already.
   std::list<std::pair<std::uint32_t, pcl::PCLPointCloud2>> kept_;
   std::uint64_t kept_points_ = 0, most_kept_points_ = 0;
   std::vector<std::pair<Bounds, std::uint32_t>> boxes_; ///< of tiles with points, wherever these truly are

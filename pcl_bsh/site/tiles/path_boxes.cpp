@@ -29,9 +29,10 @@ PathBoxes::PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3
   }
 }
 
-/// How far the model may be from all straight ways between its points' places at both ends of a step. A point turns
-/// about the pivot by an angle at a constant speed; linear interpolation of a function errs by an eighth of its second
-/// derivative, which here is the arm times the angle squared. What poses lack to rigid ones changes meanwhile.
+/// Returns how far the model's points may leave the straight lines between their places at both ends of a step. A point
+/// turns about the pivot by an angle at a constant speed; linear interpolation of a function errs by an eighth of its
+/// second derivative, which here is the arm times the angle squared. Poses are rigid within 1e-6 only; this error
+/// changes during the step.
 double PathBoxes::strayOf(std::size_t step) const
 {
   const Eigen::Matrix3d turn = poses_[step].linear().transpose() * poses_[step + 1].linear();

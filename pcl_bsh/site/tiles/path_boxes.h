@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a model may be on its way: a tree of boxes over the path, which tiles are compared with.
+// A tree of boxes over the path of a model, which tiles are compared with.
 #pragma once
 
 #include <pcl_bsh/site/tiles/cloud_boxes.h>
@@ -10,9 +10,9 @@
 
 namespace pcl_bsh::site {
 
-/// What is added to where a model is.
+/// The space about a model's points that counts, too.
 struct PathReach {
-  double distance = 0.0;    ///< how near counts
+  double distance = 0.0;    ///< places within this distance count
   bool moves = false;       ///< the motion between poses counts, too
   Point3 pivot = {0, 0, 0}; ///< of that motion, in the model's frame
 };

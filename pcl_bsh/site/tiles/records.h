@@ -34,7 +34,7 @@ Fields united(const std::vector<Fields>& sources, const std::vector<std::filesys
 void requireSiteFields(const io::JsonReader& json, const Fields& fields);
 
 /// Copies fields by name from records of one layout to those of another: values as they are, float32 to float64 and
-/// back where the types are these two. What is not there is NaN, or 0 in fields of whole numbers.
+/// back where the types are these two. Fields that a record lacks are NaN, or 0 where they are of whole numbers.
 class RecordCopy {
 public:
   RecordCopy(const Fields& from, const pcl::PCLPointCloud2& to);
@@ -90,7 +90,7 @@ private:
   std::size_t source_at_, record_at_;
 };
 
-/// That of a tile's point.
+/// Returns the name of a tile's point.
 inline SitePoint nameOf(const pcl::PCLPointCloud2& cloud, std::uint32_t i)
 {
   return PointNames(cloud)(cloud.data.data() + std::size_t{i} * cloud.point_step);

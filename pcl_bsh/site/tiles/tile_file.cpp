@@ -30,7 +30,8 @@ bool isSame(const Fields& a, const Fields& b)
   });
 }
 
-/// Of finite points; none where no number is there. Infinite ones are the largest numbers.
+/// Returns the greatest value of finite points; nothing where they have NaN alone. Infinite ones are the largest
+/// numbers.
 template <typename Real>
 std::optional<double> greatestOf(const pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t offset)
 {

@@ -24,7 +24,7 @@ public:
   /// Goes on with a file to whose end so many points have been flushed.
   TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer, std::uint64_t points);
 
-  /// What a file of so many points has, in bytes, until it is finished.
+  /// Returns the bytes of a file of so many points before it is finished.
   static std::uint64_t bytesOf(const Fields& fields, std::uint64_t points);
 
   /// Writes what is in the buffer.
@@ -47,8 +47,8 @@ private:
   std::string buffer_;
 };
 
-/// What the files of a site take on the disk, in bytes: so many points in so many tiles, and some of them in its
-/// overview.
+/// Returns the bytes that the files of a site take on the disk: so many points in so many tiles, and some of them in
+/// its overview.
 std::uint64_t diskSpaceOf(const Fields& fields, std::uint64_t points, std::uint64_t tiles, std::uint64_t overview);
 
 /// Points of a site for one of its overview, which has `most` at most. @pre most > 0
@@ -60,14 +60,14 @@ inline std::uint64_t overviewStep(std::uint64_t points, std::uint64_t most)
 /// The name of a tile's file in the site's folder.
 std::string tileFileName(std::size_t tile);
 
-/// That of the answer about a tile, which is there while a site of results is not complete.
+/// The name of the file with the answer about a tile. It is there while a site of results is not complete.
 inline constexpr std::string_view answer_extension = ".answer";
 std::filesystem::path answerFileName(std::size_t tile);
 
-/// A file of records of a site. @throws files::FileError when it has other fields
+/// Opens a file of records of a site. @throws files::FileError when it has other fields
 std::unique_ptr<io::CloudStream> openRecords(const std::filesystem::path& path, const Fields& fields);
 
-/// That of a tile. @throws files::FileError when it has other fields or another number of points
+/// Opens the file of a tile. @throws files::FileError when it has other fields or another number of points
 std::unique_ptr<io::CloudStream> openTile(const std::filesystem::path& path, const Fields& fields,
                                           std::uint64_t points);
 
@@ -78,7 +78,7 @@ pcl::PCLPointCloud2 loadTile(const std::filesystem::path& path, const Fields& fi
 /// Sets bounds and the greatest values of a tile from its points.
 void measureExtremes(const pcl::PCLPointCloud2& cloud, Tile& tile);
 
-/// The same, spacing and checksum.
+/// Sets bounds, greatest values, spacing and checksum of a tile from its points.
 void measure(const pcl::PCLPointCloud2& cloud, Tile& tile);
 
 } // namespace pcl_bsh::site

@@ -22,7 +22,7 @@ std::uint64_t sumOfAllRanks(std::uint64_t value);
 /// The bytes of all ranks, one after the other, on all of them.
 std::string gatheredFromAllRanks(const std::string& bytes);
 
-/// The same of structures whose bytes say all.
+/// The structures of all ranks, one after the other, on all of them. Structures must be trivially copyable.
 template <typename Structure>
 std::vector<Structure> gatheredFromAllRanks(const std::vector<Structure>& own)
 {
@@ -45,7 +45,7 @@ public:
   /// @throws std::invalid_argument when the largest tile needs more
   TileVisitor(const Site& site, std::uint64_t memory);
 
-  /// What the points of the largest tile and their hierarchy need.
+  /// Returns the bytes that the points of the largest tile and their hierarchy need.
   std::uint64_t bytesForLargest() const noexcept { return bytes_for_largest_; }
 
   using Use = std::function<void(const Tile&, const pcl::PCLPointCloud2&)>;
@@ -55,7 +55,7 @@ public:
   /// @throws what reading or `use` throws; where another rank has failed, std::runtime_error
   void visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run = 1);
 
-  /// The same with the first of these tiles, dealt to the ranks in turn.
+  /// Calls `use` with the first of these tiles, dealt to the ranks in turn.
   /// @param go_on asked by all ranks whenever each has had a tile more, with the number of tiles visited by all: false
   ///   ends the visit on all ranks, so it must be the same on all
   void visitInTurn(const std::vector<std::uint32_t>& tiles, const Use& use,
@@ -64,7 +64,7 @@ public:
   /// The number in the list of the tile that `use` is called with.
   std::uint64_t place() const noexcept { return place_; }
 
-  /// What each tile has cost that this rank has visited.
+  /// The cost of each tile that this rank has visited.
   const std::vector<TileCost>& costs() const noexcept { return costs_; }
 
   /// Tiles that this rank has read.

@@ -15,7 +15,7 @@
 
 namespace pcl_bsh::cli {
 
-/// What is not given is the question's.
+/// An obstacle of a command line. Members without a value are those of the question.
 struct ObstacleChoice {
   std::string name; ///< that lists and pages tell: the file's stem where none is given
   std::filesystem::path file;
@@ -29,8 +29,8 @@ struct ObstacleChoice {
 
 /// The values of --obstacle. A text that is the name of a file as a whole is that file.
 /// @param warnings gets those of poses
-/// @throws UsageError for a word that is no option of an obstacle, a value that is none, two obstacles of one name;
-///   files::FileError for a file of a pose
+/// @throws UsageError for a word that is no option of an obstacle, a value that its option refuses, two obstacles of
+///   one name; files::FileError for a file of a pose
 std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings);
 
 /// Two obstacles, or an obstacle and the input, that do not count against each other.

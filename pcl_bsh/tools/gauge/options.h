@@ -18,7 +18,7 @@ namespace pcl_bsh::cli {
 
 inline constexpr auto gauge_program = "pcl_bsh_gauge";
 
-/// A profile, and all that is said of it by its name, the file's without extension.
+/// A profile, with the options that name it. Its name is that of its file without the extension.
 struct ProfileOptions {
   std::string name;
   std::filesystem::path file;

@@ -27,8 +27,8 @@ using robots::Shape;
 using robots::Solid;
 using robots::Sphere;
 
-/// A cylinder about an axis of the solid's frame, centred, that encloses a box or a cylinder. Of a sphere, which lies
-/// within the radius of its centre, the length is 0.
+/// A cylinder about an axis of the solid's frame, centred, that encloses a box or a cylinder. For a sphere, the length
+/// is 0: all of it is within the radius of the centre.
 struct Rod {
   int axis = 2;
   double radius = 0.0, half_length = 0.0; ///< m
@@ -62,7 +62,7 @@ struct LinkBody {
   };
 
   std::vector<PlacedSolid> solids;
-  Balls enclosing; ///< what is within a length of a solid is within that length of one of these
+  Balls enclosing; ///< a point within a length of a solid is within that length of one of these
   Surface surface; ///< of the meshes
   std::vector<Mesh> meshes;
 
@@ -74,7 +74,7 @@ struct LinkBody {
   bool hasWithin(double padding, const Eigen::Vector3d& point) const;
 };
 
-/// Meshes are as their files have them, but for the rounding of a shape's pose and scale in double.
+/// Returns the body of a link. A shape's pose and scale are applied to the vertices of its mesh, rounded in double.
 /// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error naming the link for what
 ///   has no size
 LinkBody bodyOf(const Link& link);

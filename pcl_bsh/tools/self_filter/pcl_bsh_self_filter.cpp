@@ -83,7 +83,7 @@ void takePaddings(const std::vector<std::string>& texts, self_filter::Settings& 
   }
 }
 
-/// Refuses paddings of what is no link. @throws std::runtime_error naming the option
+/// Refuses paddings of links that are not there. @throws std::runtime_error naming the option
 void requireLinks(const self_filter::Settings& settings, const self_filter::Robot& robot)
 {
   try {

@@ -33,9 +33,8 @@ struct Settings {
 /// Reads all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
 class SelfFilter {
 public:
-  /// @throws as bodyOf() does; std::runtime_error for a robot without a body; std::invalid_argument for the padding of
-  /// a
-  ///   link that is not there, naming it
+  /// @throws as bodyOf() does; std::runtime_error for a robot without a body; std::invalid_argument naming a link that
+  ///   is not there and has a padding
   SelfFilter(Robot robot, const Settings& settings);
 
   const Robot& robot() const { return robot_; }
@@ -43,7 +42,7 @@ public:
   std::size_t solids() const;    ///< of all links: boxes, cylinders, spheres and meshes that close
   double leastPadding() const;   ///< of all links
 
-  /// What users should know of the links, a sentence each: meshes that do not close.
+  /// Warnings about the links, a sentence each: meshes that do not close.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// One per record of the scan: colliding where it is the robot, else free. Valid until the next call.
@@ -52,11 +51,11 @@ public:
   const std::vector<Verdict>& flags(const PointsView& scan, const Eigen::Isometry3d& T_scan_root,
                                     const JointValues& values);
 
-  /// What of the last scan matters to who asks about it; without a name.
+  /// Facts about the last scan, for warnings; without a name.
   const NamedCloud& scan() const { return scan_; }
 
 private:
-  /// A body, hierarchies of the balls about its solids and of its triangles, and what its meshes enclose.
+  /// A body, hierarchies of the balls about its solids and of its triangles, and the solids of its meshes.
   struct Part {
     /// @param warnings gets one for each mesh that does not close
     Part(LinkBody link_body, const std::string& link, unsigned threads, std::vector<std::string>& warnings);
@@ -80,7 +79,7 @@ private:
   NamedCloud scan_;
 };
 
-/// Whether a sensor says by this point, in its own frame, that nothing came back: it is exactly 0 0 0.
+/// Whether a point in the sensor's frame stands for a beam without a return: it is exactly 0 0 0.
 inline bool isNoReturn(const Point3& point)
 {
   return point == Point3{0.0, 0.0, 0.0};

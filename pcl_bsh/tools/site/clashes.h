@@ -15,7 +15,7 @@
 
 namespace pcl_bsh::cli {
 
-/// The lists of clashes, where any is asked for; else it does nothing.
+/// The lists of clashes. Does nothing where no list is asked for.
 class SiteClashList {
 public:
   /// Reads the earlier list. To be called by all ranks.
@@ -24,22 +24,23 @@ public:
 
   bool isWanted() const noexcept { return finder_.has_value(); }
 
-  /// Of the earlier list, a line each; see finish().
+  /// Warnings about the earlier list, a line each; see finish().
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// What the question needs for the lists; null where none is wanted.
+  /// Returns the finder that the question fills for the lists; null where no list is wanted.
   site::ClashFinder* finder() { return finder_ ? &*finder_ : nullptr; }
 
-  /// Points of a clash are so near to each other; 0 where no list is wanted.
+  /// The distance within which colliding points are one clash; 0 where no list is wanted.
   double clusterDistance() const noexcept { return distance_; }
 
-  /// After the question. To be called by all ranks; the first writes the lists, and warnings() are then of what they
-  /// were compared with. @param surface the obstacle, where it is one; else null. @param report gets the numbers of
-  /// clashes that there are now: certain ones, and those perhaps
+  /// Writes the lists on the first rank. To be called by all ranks, after the question. Afterwards warnings() has those
+  /// of the comparison with the earlier list.
+  /// @param surface the obstacle where it is a surface, else null
+  /// @param report gets the numbers of clashes that are there now: certain ones, and those perhaps
   void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const site::SiteAnswer& found,
               Json& report);
 
-  /// The same of an obstacle that is a site.
+  /// Writes the lists where the obstacle is a site.
   void finish(const site::Site& obstacle, const site::SiteAnswer& found, Json& report);
 
   /// After finish(): as io::clashCounts() tells it.

@@ -130,7 +130,7 @@ struct CollideTexts {
         ->check(CLI::Range(1u, 1000000u));
   }
 
-  /// What --seen needs, and does not go with.
+  /// Requires the options that --seen needs, and refuses those that it excludes. @throws UsageError
   void requireSight(const SiteOptions& options) const
   {
     if (any || closest || distances)
@@ -143,7 +143,7 @@ struct CollideTexts {
                        "neighbouring beams");
   }
 
-  /// @throws UsageError where they do not fit each other
+  /// @throws UsageError for options that exclude each other
   void read(SiteOptions& options)
   {
     const bool moves = !options.trajectory.empty();

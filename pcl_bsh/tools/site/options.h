@@ -27,15 +27,15 @@ struct SiteOptions {
       out; ///< of `write`: a .pcd or .pvtp file, or a folder for the sources; of `collide`: a site, or none
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
-  bool json = false; ///< of `info` and `validate`: what they tell
+  bool json = false; ///< of `info` and `validate`: print JSON
 
   // of `collide`
   /// Whether the obstacle is a site, too: a folder.
   bool obstacleIsSite() const { return std::filesystem::is_directory(obstacle); }
-  /// What is asked; its path is that of `trajectory`, once it is read, its threads are those of each process. Of
-  /// `make`, whether meshes are their vertices.
+  /// The question. Its path is that of `trajectory`, once that is read. Its threads are those of each process. For
+  /// `make`, it states whether meshes are their vertices.
   Question question;
-  bool alongPath() const { return question.path || question.wanted.contacts; } ///< if only of one pose
+  bool alongPath() const { return question.path || question.wanted.contacts; } ///< also with a single pose
   std::filesystem::path obstacle, trajectory, report;
   std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
   std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip

@@ -47,8 +47,8 @@ std::uint32_t checksumOf(const std::vector<Value>& values)
   return checksum.checksum();
 }
 
-/// What tells one obstacle from another: the points of a cloud, and its faces; of a site, which is too
-/// large for that, how it is made and when its tiles were written.
+/// Returns a text that tells one obstacle from another: checksums of the points of a cloud, and of its faces. A site is
+/// too large for that: its text says how it is made, and the sizes and times of its tiles.
 nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
 {
   nlohmann::json text = nlohmann::json::array();
@@ -81,7 +81,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                              {"clusters", cluster_distance},
                              {"obstacle", obstacleText(obstacle, options)},
                              {"poses", nlohmann::json::array()}};
-  question["numbers"] = 4; // what of a tile is kept
+  question["numbers"] = 4; // the version of the numbers that are kept of a tile
   for (const Eigen::Isometry3d& pose : asked.poses())
     question["poses"].push_back(std::vector<double>(pose.data(), pose.data() + 16));
   const auto bytes = nlohmann::json::to_cbor(question);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// pcl_bsh_site collide --out: what was found of each point, as a site.
+// pcl_bsh_site collide --out: the answer about each point, as a site.
 #pragma once
 
 #include "options.h"
@@ -16,7 +16,7 @@
 
 namespace pcl_bsh::cli {
 
-/// What a site is compared with, and how its file says more than points.
+/// The obstacle of a site, and the facts that its file states besides points.
 struct ObstacleFile {
   /// @throws files::FileError, also where its points shall be written and cannot; std::invalid_argument for an
   ///   uncertainty that it cannot have
@@ -32,14 +32,14 @@ struct ObstacleFile {
   io::CloudFacts facts; ///< of its file
 };
 
-/// Of a run with --out that ends before it has answered.
+/// The end of the message of a run with --out that ends before it has answered.
 inline constexpr auto what_stays = "what was found stays, and the same command with --resume goes on";
 
 /// The field of flags at one pose.
 site::ResultField collisionField();
 
-/// What a site of results drops without being asked, a line each: answers of a run that was ended, and fields of
-/// earlier questions. The same on all ranks, or none.
+/// Returns a line for each thing that a site of results drops without being asked: answers of a run that was ended, and
+/// fields of earlier questions.
 /// @param option that names its folder
 std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,
                                    const std::filesystem::path& folder, const site::Site& site,
@@ -53,10 +53,10 @@ public:
   /// @throws files::FileError for a folder that cannot be one
   SiteOutput(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance, const SiteOptions& options);
 
-  /// What users should know before the question is answered, a line each.
+  /// Warnings for users before the question is answered, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// What an earlier run has found, and where this one keeps what it finds; null: nothing is kept.
+  /// Returns the answers of an earlier run, to which this run adds its own; null: nothing is kept.
   site::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
 
   site::TileSink sink();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a question would take on other numbers of ranks, by what its tiles have cost.
+// Predicts how long a question takes on other numbers of ranks, by the cost of its tiles.
 #pragma once
 
 #include <pcl_bsh/site/ask_site.h>
@@ -11,8 +11,8 @@ namespace pcl_bsh::cli {
 
 /// A question that was answered, in seconds of the clock on the wall.
 struct MeasuredRun {
-  double seconds = 0.0; ///< all of it but copying
-  double copying = 0.0; ///< of tiles that were not asked, to the site of results
+  double seconds = 0.0; ///< all of it except copying
+  double copying = 0.0; ///< copying of tiles that were not asked, to the site of results
   int ranks = 1;        ///< that it was answered on
   std::vector<site::TileCost> tiles;
 };
@@ -20,15 +20,15 @@ struct MeasuredRun {
 struct RunPlan {
   unsigned ranks = 1;
   double seconds = 0.0;
-  /// What more ranks cannot shorten, or what keeps these from being used: "what all ranks do", "the longest tile",
-  /// "too few tiles", "uneven tiles"; "work" where more ranks would help.
+  /// The part that more ranks cannot shorten, or the reason why ranks stand idle: "what all ranks do", "the longest
+  /// tile", "too few tiles", "uneven tiles". It is "work" where more ranks would help.
   std::string limit;
   double on_all =
       0.0; ///< seconds that each rank spends by itself: the obstacle is read, its hierarchy built, tiles chosen
   double copying = 0.0; ///< of each rank
   double busiest = 0.0; ///< seconds of the rank with the most work
-  double even = 0.0;    ///< what that would be if the work were dealt evenly
-  double reading = 0.0; ///< of all tiles together: the least that a disk takes which serves one rank at a time
+  double even = 0.0;    ///< seconds of each rank if the work were dealt evenly
+  double reading = 0.0; ///< of all tiles together: the least time of a disk that serves one rank at a time
 };
 
 /// Tiles are dealt as TileVisitor deals them, to each rank when it has done one; ranks compute and read as fast as

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pcl_bsh_site collide is asked, and what its report says whatever the question.
+// The report of pcl_bsh_site collide: its question, and the parts that do not depend on the question.
 #pragma once
 
 #include "options.h"
@@ -16,18 +16,18 @@ namespace pcl_bsh::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// What was asked.
+/// Begins a report with the question.
 Json beginReport(const site::Site& site, const SiteOptions& options);
 
 /// @param key of the report
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 
-/// What was found, except the tiles. @param other the obstacle, where it is a site; else null
+/// Adds the answer, except the tiles. @param other the obstacle, where it is a site; else null
 /// @param part of an obstacle in memory: "point" or "triangle"
 void putAnswer(Json& report, const site::Site& site, const site::Site* other, const std::string& part,
                const SiteOptions& options, const site::SiteAnswer& found);
 
-/// What the tiles have cost, and how long the run would take on other numbers of ranks.
+/// Adds the cost of the tiles, and the time that the run would take on other numbers of ranks.
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run);
 
 } // namespace pcl_bsh::cli

@@ -16,7 +16,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// Adds values of what the cloud is asked about.
+/// Adds values of triangles, or of points where the cloud has no triangles.
 template <class Value>
 void addValues(const ViewedCloud& viewed, vtkPolyData& data, const std::string& name, const std::vector<Value>& values)
 {

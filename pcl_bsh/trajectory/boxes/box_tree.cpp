@@ -38,7 +38,7 @@ void enclose(BoxNode& node, std::uint32_t lane, const BoxNode& below)
 
 /// A point of a voxel, and its place there.
 struct PlacedPoint {
-  Eigen::Array4f at; ///< the fourth is none: the bits of the place
+  Eigen::Array4f at; ///< x, y, z, and the bits of the place
 
   PlacedPoint(float x, float y, float z, std::uint32_t i) : at(x, y, z, std::bit_cast<float>(i)) {}
 
@@ -62,14 +62,14 @@ public:
   }
 
   std::vector<BoxNode> boxes;
-  std::vector<std::uint32_t> begins; ///< of leaves, then of none
+  std::vector<std::uint32_t> begins; ///< of leaves, then the end of the last one
 
 private:
   using Place = std::vector<PlacedPoint>::iterator;
 
   struct Group {
     Place begin, end;
-    Eigen::Array4f low, high; ///< the fourth of each is none
+    Eigen::Array4f low, high; ///< of x, y, z; the fourth element of each is not used
     Eigen::Index axis = 0;    ///< along which it is divided
     float size = -1.0f;       ///< along it, by the stretch; negative: a leaf
   };
@@ -93,7 +93,8 @@ private:
     return group;
   }
 
-  /// In the middle of its space; of its points, where nearly all are on one side, so that the tree is never deep.
+  /// Divides a group in the middle of its space. Where nearly all points are on one side, it divides in the middle of
+  /// the points, so that the tree is never deep.
   Place divided(const Group& group) const
   {
     const Eigen::Index axis = group.axis;
@@ -146,7 +147,7 @@ private:
   const std::size_t most_;
 };
 
-/// Of places of halved triangles, relative to the largest coordinate: each halving rounds once.
+/// Bounds the rounding of places of halved triangles, relative to the largest coordinate: each halving rounds once.
 constexpr double kPartRoundings = 128 * kDoubleUnit;
 
 double medianOf(std::vector<double>& numbers)
@@ -179,7 +180,7 @@ Point3 originOf(const SphereHierarchy::Storage& storage)
   return {medianOf(places[0]), medianOf(places[1]), medianOf(places[2])};
 }
 
-/// Of the whole model: thinner boxes of triangles are not divided.
+/// Parts of triangles that are thinner than this share of the model's radius are not divided.
 constexpr double kThinShare = 0x1p-8;
 
 } // namespace

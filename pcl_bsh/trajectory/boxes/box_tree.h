@@ -34,9 +34,9 @@ struct alignas(32) BoxNode {
 struct BoxLeaf {
   const float *at_x, *at_y, *at_z; ///< as the voxel stores them
   const std::uint32_t* records;
-  const float* lengths; ///< their own uncertainties, likewise; null where they have none
+  const float* lengths; ///< their own uncertainties; null where they have none
   std::uint32_t count;
-  bool is_part = false; ///< whether there are other leaves of its record, perhaps
+  bool is_part = false; ///< whether other leaves may hold parts of its record
 
   const float* x() const { return at_x; }
   const float* y() const { return at_y; }
@@ -49,11 +49,12 @@ class BoxedVoxel {
 public:
   BoxedVoxel() = default;
 
-  /// Of points. @param offset from the tree's origin to the voxel's. @param stretch see BoxTree. @param uncertainties
-  /// of the cloud's records; may be null
+  /// Makes boxes of points.
+  /// @param offset from the tree's origin to the voxel's. @param stretch see BoxTree. @param uncertainties of the
+  ///   cloud's records; may be null
   BoxedVoxel(const Voxel& voxel, const Point3& offset, const float* stretch, const float* uncertainties);
 
-  /// Of balls, or of triangles: those that fill little of their boxes in parts.
+  /// Makes boxes of balls, or of triangles. Triangles that fill little of their boxes are divided into parts.
   BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3& origin, const float* stretch,
              const Division& division);
 
@@ -77,13 +78,13 @@ private:
   std::vector<BoxNode> boxes_;
   std::vector<float> coordinates_;     // x, y, z of each point
   std::vector<std::uint32_t> records_; // per point
-  std::vector<float> lengths_;         // likewise, of uncertain points
+  std::vector<float> lengths_;         // per point, of uncertain ones; else empty
   std::vector<std::uint32_t> begins_;  // per leaf: its first point; then their number
   bool is_divided_ = false;            // whether triangles are in parts
 };
 
-/// How the model moves along a path, by itself: what its middle travels along each of its own axes, and how far it
-/// turns in all.
+/// How the model moves along a path: how far its middle travels along each of its own axes, and how far it turns in
+/// all.
 struct Travel {
   Point3 way = {0, 0, 0};
   double turned = 0.0;
@@ -95,10 +96,10 @@ inline bool arePoints(const PointsView& view)
   return !view.radii && !view.triangles;
 }
 
-/// A cloud's points in boxes that are longer along the way that the cloud travels: what passes a long body beside it is
-/// tested against metres of its side at once, and beside a rough or noisy side only against what stands out. A box is
-/// divided where it is widest, and its length along the way counts for less, by `stretch`: as often as the cloud
-/// travels farther along that axis than its points move along others, kMostStretch at most.
+/// A cloud's points in boxes that are longer along the way that the cloud travels. A point that passes beside a long
+/// body is tested against metres of its side at once. Beside a rough or noisy side it is tested only against points
+/// that stand out. A box is divided where it is widest, and its length along an axis counts divided by `stretch`. The
+/// stretch is the ratio of the way along that axis to the way of points along the others, kMostStretch at most.
 class BoxTree {
 public:
   BoxTree(const SphereHierarchy::Storage& storage, const Travel& travel, const Division& division = {});
@@ -119,13 +120,13 @@ public:
   /// A leaf of a voxel whose boxes were made.
   BoxLeaf leaf(std::uint32_t voxel, std::uint32_t number) const { return voxels_[voxel].boxed.leaf(number); }
 
-  /// Of the coordinates that a voxel stores.
+  /// Returns the unit of the coordinates that a voxel stores.
   double unit(std::uint32_t voxel) const { return storage.voxels[voxel].frame.unit; }
 
-  /// From the tree's origin to the voxel's.
+  /// Returns the vector from the tree's origin to the voxel's.
   Point3 offset(std::uint32_t index) const;
 
-  /// The same, rounded.
+  /// Returns offset(), rounded to floats.
   std::array<float, 3> shift(std::uint32_t index) const
   {
     const Point3 at = offset(index);

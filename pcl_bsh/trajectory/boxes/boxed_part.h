@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a box of the model is put around where that is not of points: a ball, or a part of a triangle.
+// A ball, or a part of a triangle, with a box of the model around it.
 #pragma once
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
@@ -23,12 +23,12 @@ struct BoxedPart {
 
 /// How far triangles are divided into parts.
 struct Division {
-  double thin = 0.0;           ///< what is no thicker is left as it is
-  std::size_t most = 1U << 10; ///< parts in all; but four of each triangle
+  double thin = 0.0;           ///< parts that are no thicker are not divided
+  std::size_t most = 1U << 10; ///< most parts in all; always four of each triangle
 };
 
-/// What pays where they are compared with so many records, none of which is larger: parts finer than these say no more,
-/// and what is asked little is not worth many.
+/// Returns the division that pays where parts are compared with so many records of at most this radius. Parts finer
+/// than the records tell no more, and for few records many parts are not worth their cost.
 Division divisionFor(std::size_t records, double largest_radius);
 
 /// Divides triangles that fill little of their boxes, the thickest first: a box around a large slanting triangle, or

@@ -29,7 +29,7 @@ struct ModelBox {
 
   const BoxNode& box() const { return boxes[node]; }
   bool isLeaf() const { return voxel != kAboveVoxels && box().isLeaf(lane); }
-  /// Of a leaf.
+  /// Returns the points of a leaf.
   BoxLeaf points(const BoxTree& tree) const { return tree.leaf(voxel, box().leaf(lane)); }
   /// Half of its longest side, where sides along the way count for less. @param stretch of the tree
   float size(const float (&stretch)[3]) const
@@ -120,8 +120,8 @@ public:
     return rule_.mayEnter([&] { return tree_.storage.pointsToBuild(c.box().leaf(c.lane)); });
   }
 
-  /// Whether a box is so small that floats do not tell the boxes below it apart during the motion, and holds so many
-  /// points that each point of the scan is quicker to ask the model's spheres (model_descent.h).
+  /// Whether a box is so small that floats do not tell the boxes below it apart during the motion, and holds many
+  /// points. Then it is quicker to compare each point of the scan with the model's spheres (model_descent.h).
   bool isBlunt(const ModelBox& c, const VoxelMotion& motion) const
   {
     return !c.isLeaf() && c.size(tree_.stretch) < motion.blunt && !rule_.mayStop() && holdsMany(c);
@@ -136,14 +136,14 @@ public:
     return all({tree_.voxel(voxel, work_).boxes().data(), voxel, 0, 0, 1});
   }
 
-  /// Those that a thick segment may meet.
+  /// Returns the boxes of a candidate that a thick segment may meet.
   Siblings near(const Segment& segment, const Siblings& candidate, float steps)
   {
     work_.node_pairs += static_cast<std::uint64_t>(std::popcount(candidate.lanes));
     return candidate.only(candidate.lanes & boxesOnSegment(segment, candidate.box().low, candidate.box().high, steps));
   }
 
-  /// Those of all candidates that a thick segment may meet.
+  /// Collects the boxes of all candidates that a thick segment may meet.
   void near(const Segment& segment, const std::vector<Siblings>& candidates, float steps, std::vector<Siblings>& into)
   {
     into.clear();
@@ -151,7 +151,8 @@ public:
       if (const Siblings met = near(segment, candidate, steps); met.lanes != 0) into.push_back(met);
   }
 
-  /// What a thick segment may meet among boxes and below during the motion, in boxes no larger than `size`.
+  /// Collects boxes, of these and below, that a thick segment may meet during the motion. Boxes are opened until they
+  /// are smaller than `size`, except leaves, blunt boxes and boxes that may not be opened.
   void collect(const Segment& segment, const VoxelMotion& motion, float size, const Siblings& boxes,
                std::vector<Siblings>& into)
   {

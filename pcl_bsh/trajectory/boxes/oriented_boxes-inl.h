@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nodes of a scan's voxel as flat as the model finds them: boxes along its axes where it first comes near. What a
-// vehicle passes runs along its path, so that these boxes are thin where spheres reach across the gap to its side.
+// Boxes around the nodes of a scan's voxel, along the model's axes where the model first comes near. Walls run along a
+// vehicle's path, so that these boxes are thin where spheres reach across the gap to the vehicle's side.
 
 #if defined(PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAJECTORY_ORIENTED_BOXES_INL_H_
@@ -82,7 +82,7 @@ public:
   }
 
 private:
-  /// Of the children's boxes, from their spheres' centres, in the voxel's unit.
+  /// The children's boxes: how far they reach from their spheres' centres along each axis, in the voxel's unit.
   using Half = std::array<std::array<float, kLanes>, 3>;
 
   static constexpr float kRounding = 0x1p-17f; ///< some 20 u of the voxel's radius, and of turns

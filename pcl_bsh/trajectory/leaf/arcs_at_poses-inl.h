@@ -16,10 +16,10 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 /// A point matters at many poses, with summaries at each at which it collides, and mostly near several points of the
-/// model. How far it is from its arc at most is known: so its distances there, of many poses at once, say for certain
-/// that it collides, or that it passes. What they do not decide is compared at the pose itself once all boxes were
-/// seen: by then another point of the model has decided most of it, or is nearer. Where very many pairs are at just the
-/// clearance, or equally near, those seen so far are compared earlier, so that few are kept.
+/// model. Its distance from its arc is bounded. So its distances on the arc, of many poses at once, prove that it
+/// collides, or that it does not. Pairs that they do not decide are compared at the pose itself once all boxes were
+/// seen. By then another point of the model has decided most of them, or is nearer. Where very many pairs are at just
+/// the clearance, or equally near, those seen so far are compared earlier, so that few are kept.
 class ArcsAtPoses {
 public:
   ArcsAtPoses(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
@@ -35,14 +35,15 @@ public:
   {
   }
 
-  /// Whether distances on arcs say something: not where points have reaches of their own, where floats do not hold
-  /// the squares, nor of more poses than floats count.
+  /// Whether distances on arcs may decide: not where points have reaches of their own, where floats do not hold the
+  /// squares, nor of more poses than floats count.
   bool areFor(const VoxelMotion& motion) const
   {
     return say_something_ && motion.squares && motion.steps <= kMostSteps;
   }
 
-  /// Of a model's leaf whose frame has the clouds' unit. @param ranges the poses at which points may be near it
+  /// Compares points with a model's leaf whose frame has the clouds' unit.
+  /// @param ranges the poses at which points may be near it
   void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
   {
     if (ranges.lanes == 0) return;
@@ -74,7 +75,7 @@ public:
     }
   }
 
-  /// After the last box: compares what is left at the poses.
+  /// After the last box: compares the remaining pairs at the poses.
   void finish(LeafVisit& leaf, const VoxelMotion& motion)
   {
     is_begun_ = false;
@@ -121,14 +122,14 @@ private:
     candidates_.clear();
   }
 
-  /// The step from which on nothing matters of a point but what is nearer than its nearest so far. Without summaries.
+  /// Returns the step from which on only pairs nearer than the nearest so far matter to a point. @pre no summaries
   float knownFrom(const LeafVisit& leaf, std::uint32_t i) const
   {
     if ((results_.hit[leaf.slot] >> i & 1) == 0) return std::numeric_limits<float>::infinity();
     return query_.first ? static_cast<float>(results_.first[leaf.points.begin + i] - first_pose_) : 0.0f;
   }
 
-  /// Whether that a point collides at a step is known, or changes nothing.
+  /// Whether a collision of a point at a step is known, or changes no answer.
   bool isHit(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
   {
     if (!summing_) return static_cast<float>(k) >= knownFrom(leaf, i);
@@ -146,14 +147,14 @@ private:
   /// A larger squared distance on the arc is farther than `reach`.
   float limitOf(float reach) const { return std::min(squareOver(reach + astray_), miss_); }
 
-  /// The same, of the nearest that is known of a point.
+  /// Returns the limit by the nearest pair that is known of a point.
   float bestLimit(const LeafVisit& leaf, std::uint32_t i) const
   {
     return query_.closest ? limitOf(results_.best[leaf.points.begin + i].reach) : -1.0f;
   }
 
-  /// From step k on: larger squared distances change nothing. Of a point that is known to collide at a pose only a
-  /// pair that is as near as its nearest so far, or the pose's, matters.
+  /// Returns limits from step k on: larger squared distances change no answer. Where a point is known to collide at a
+  /// pose, a pair matters only if it is as near as the nearest so far of the point or of the pose.
   LaneVector limitsAt(const LeafVisit& leaf, std::uint32_t i, std::uint32_t k) const
   {
     const LaneTag d;
@@ -170,7 +171,8 @@ private:
     return hn::IfThenElse(is_hit, nearer, hn::Set(d, miss_));
   }
 
-  /// What follows from a squared distance on point i's arc at a step, and what has to be compared there.
+  /// Notes what a squared distance on point i's arc at a step decides, and keeps the pair if it has to be compared
+  /// there.
   void note(LeafVisit& leaf, std::uint32_t i, std::uint32_t k, float squared, const ModelBox& box,
             const VoxelMotion& motion)
   {

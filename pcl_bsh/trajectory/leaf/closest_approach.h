@@ -11,7 +11,7 @@ namespace pcl_bsh {
 
 /// Instants are in [0, 1]: 0 at the segment's start, 1 at its end. All in double. With u = 2^-53, the distance, and the
 /// distances at the two instants, are right within 16 u of the largest of |away|, |motion| and near_enough, however
-/// long the segment is: the chord that is near enough is measured from the foot of the perpendicular. The roots of the
+/// long the segment is. The chord that is near enough is measured from the foot of the perpendicular. The roots of the
 /// quadratic equation are not used: their discriminant is a difference of terms of the size (|away| |motion|)^2, and on
 /// a segment of 100 km it loses millimetres.
 /// @param away from the point at rest to where the segment starts. Lengths whose squares underflow count as 0.

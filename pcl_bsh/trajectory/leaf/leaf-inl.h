@@ -18,11 +18,11 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
-/// The same where distances count: by what arcs stray, pairs are too much alike to be told apart on them.
+/// A smaller share where distances count: arcs do not tell apart pairs whose distances differ by less than their stray.
 inline constexpr double kMeasuredStray = 0.003;
 inline constexpr float kFewPoses = 4; ///< as quickly looked at one by one as all together
 
-/// Compares leaves of the scan with what they may meet of the model.
+/// Compares leaves of the scan with the boxes of the model that they may meet.
 class LeafWalk {
 public:
   LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, StopCheck& stop_check,
@@ -120,7 +120,7 @@ public:
     return beside;
   }
 
-  /// Of pairs of points with uncertainties of their own.
+  /// Returns the reach of pairs of points with uncertainties of their own.
   const UncertainReach& reach() const { return at_pose_.reach(); }
 
 private:
@@ -282,7 +282,7 @@ private:
   LeafAtPose at_pose_;
   ArcsAtPoses on_arcs_;
   RecordLeaf records_;
-  std::vector<Siblings> near_; // what the leaf may meet
+  std::vector<Siblings> near_; // boxes that the leaf may meet
   std::vector<PointsNearBoxes> stack_;
   ClippedSegments<kLanes> clips_[kLeafPoints]; // of each point, when it is in the boxes it is compared with
   BoxesByDistance by_distance_;

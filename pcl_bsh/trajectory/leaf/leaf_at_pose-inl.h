@@ -43,7 +43,7 @@ public:
   /// vectors.
   std::uint16_t* hits() { return pose_hits_.data(); }
 
-  /// Of pairs of points with uncertainties of their own.
+  /// Returns the reach of pairs of points with uncertainties of their own.
   const UncertainReach& reach() const { return reach_; }
 
   /// Two leaves of points at pose k: by float bands, and exactly within the bands.
@@ -191,7 +191,7 @@ private:
     return met.voxel == voxel ? met.points : 0;
   }
 
-  /// What follows from the points in `hit`, which collide at pose k.
+  /// Notes the points in `hit`, which collide at pose k, and their nearest pairs.
   void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
             const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
   {

@@ -23,10 +23,10 @@ struct LeafVisit {
   std::uint32_t open; ///< bits of the points that are not settled
   Segments<kLeafPoints> segments;
   Segment around;
-  alignas(64) float near_squared[kLeafPoints]; ///< farther from a box, squared, nothing in it matters, at one pose
-  alignas(64) float own[kLeafPoints] = {};     ///< radii, of balls or of what holds triangles
+  alignas(64) float near_squared[kLeafPoints]; ///< at one pose, nothing in a box at a larger squared distance matters
+  alignas(64) float own[kLeafPoints] = {};     ///< radii of balls, or of the balls about triangles
 
-  /// Sets the arcs of its points, and what is around them. @param bound as LeafWalk::compare() has it
+  /// Sets the arcs of its points, and the segment around them. @param bound as LeafWalk::compare() has it
   void begin(const VoxelInModelFrame& voxel_frame, const VoxelMotion& motion, float bound)
   {
     alignas(64) float from[3][kLeafPoints], to[3][kLeafPoints], bow[3][kLeafPoints];
@@ -46,14 +46,14 @@ struct LeafVisit {
     around = voxel_frame.aroundSegments(motion, from, to, bow, extent, points.count);
   }
 
-  /// From now on, what is farther from a point than the best does not matter, during the motion.
+  /// From now on, records farther from a point than the best do not matter during the motion.
   void lowerReach(const VoxelInModelFrame& voxel_frame, std::uint32_t i, float best, const VoxelMotion& motion)
   {
     segments.reach[0][i] = std::min(segments.reach[0][i], voxel_frame.reachOf(motion, best, own[i]));
     if (motion.at_rest) near_squared[i] = std::min(near_squared[i], voxel_frame.nearSquared(motion, best, own[i]));
   }
 
-  /// Bits of the points, seen at these places at one pose, to which something in a box may matter.
+  /// Returns bits of the points, seen at these places at one pose, to which a record in a box may matter.
   std::uint32_t nearBox(const float* x, const float* y, const float* z, const ModelBox& box) const
   {
     const BoxEnds ends(box);

@@ -33,8 +33,8 @@ public:
   {
   }
 
-  /// Whether the candidate has a point in the probe; the nearest boxes are asked first, and of those that floats do not
-  /// tell apart during the motion one alone: it may have one all the same.
+  /// Whether the candidate has a point in the probe. The nearest boxes are asked first. Where floats do not tell boxes
+  /// apart during the motion, one of them alone is asked: then the answer may be false although there is a point.
   /// @param center of the probe, about where the model sees it.
   bool hasPoint(const ModelBox& candidate, const ProbeSphere& probe, const Point& center, const VoxelMotion& motion)
   {

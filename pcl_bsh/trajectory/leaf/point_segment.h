@@ -21,7 +21,7 @@ struct PointSegment {
     end = query.path.poses[last].see(world);
   }
 
-  /// Of the point to one of the model.
+  /// Returns the closest approach of the point to a point of the model.
   Approach approachTo(const TrajectoryQuery& query, std::uint32_t record, double near_enough) const
   {
     Point3 at = query.model.view().point(record);

@@ -36,7 +36,7 @@ struct PoseRanges {
   }
 };
 
-/// Of points in `lanes`.
+/// Returns the ranges of points in `lanes`.
 inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const VoxelMotion& motion)
 {
   PoseRanges ranges;
@@ -53,7 +53,7 @@ inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoint
   return ranges;
 }
 
-/// Of points in `lanes`, at one pose.
+/// Returns the ranges of points in `lanes` at one pose.
 inline PoseRanges rangesAt(std::uint32_t lanes, const VoxelMotion& motion)
 {
   PoseRanges ranges;

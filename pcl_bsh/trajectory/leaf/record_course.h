@@ -9,16 +9,17 @@ namespace pcl_bsh {
 
 struct RecordCourse {
   Corners world = {};
-  MovingCorners arcs = {}; ///< through where it is seen at the first, the middle and the last pose; straight
-                           ///< where motion is swept
+  MovingCorners arcs =
+      {}; ///< through its places at the first, the middle and the last pose; straight where motion is swept
 
   RecordCourse() = default;
   RecordCourse(const TrajectoryQuery& query, std::uint32_t record, const PathInterval& interval);
 
   Corners seenAt(const PathPose& pose) const;
 
-  /// Swept: of the record to one of the model, within a 64th of the tolerance. @param nearest whether the smallest
-  /// distance counts, or the first instant alone @param early_enough as approachOf() has it
+  /// Swept: returns the approach of the record to one of the model, within a 64th of the tolerance.
+  /// @param nearest whether the smallest distance counts, or the first instant alone @param early_enough as
+  ///   approachOf() has it
   Approach approachTo(const TrajectoryQuery& query, std::uint32_t record, const PathInterval& interval,
                       double near_enough, bool nearest, double early_enough = 1.0) const;
 };

@@ -20,9 +20,9 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// A pair is looked at at a pose in the middle. The direction along which it is apart there says of the poses before
-/// and after how near it may be; those that can matter are halved again. So a pair that passes takes a few looks,
-/// however many poses there are, and one that stays at a distance takes one for each pose at which that distance
+/// A pair is looked at at a pose in the middle. The direction along which it is apart there bounds how near it is at
+/// the poses before and after. Ranges of poses that can matter are halved again. So a pair that passes takes a few
+/// looks, however many poses there are, and one that stays at a distance takes one for each pose at which that distance
 /// matters.
 class RecordLeaf {
 public:
@@ -91,8 +91,8 @@ public:
     }
   }
 
-  /// Those of the points whose records may meet something in a box during the motion: of large ones, that their balls
-  /// reach it says little.
+  /// Returns the points whose records may meet a box during the motion. Records larger than the box are compared with
+  /// it, since their balls reach most boxes.
   std::uint32_t mayMeet(const LeafVisit& leaf, std::uint32_t points, const ModelBox& box, const VoxelMotion& motion)
   {
     if (!query_.scan.hierarchy().view().triangles) return points;
@@ -162,7 +162,7 @@ private:
     return (seen + placing_) * (1.0 + query_.path.skew) * (1.0 + kFewDoubleRoundings);
   }
 
-  /// Up to which distance the pair matters from a pose on.
+  /// Returns the distance up to which the pair matters from a pose on.
   double mattering(const Pair& pair, std::uint32_t from) const
   {
     if (!results_.bestBounds(pair.point(), from) || !isHit(pair)) return pair.most;
@@ -252,8 +252,8 @@ private:
       pair.leaf.lowerReach(voxel_frame_, pair.i, best.reach, pair.motion);
   }
 
-  /// Sign of the pair's gap at a pose less the best one of its point so far, where long numbers know it: of one that
-  /// stays beside a face, a scan's point has hundreds of poses that doubles cannot tell apart.
+  /// Returns the sign of the pair's gap at a pose less the best gap of its point so far, where long numbers tell it. A
+  /// point that stays beside a face has hundreds of poses whose gaps doubles cannot tell apart.
   std::optional<int> orderToBest(const Pair& pair, std::uint32_t k)
   {
     const NearestPoint& best = results_.best[pair.point()];

@@ -34,8 +34,8 @@ public:
   {
   }
 
-  /// Points, or triangles, that move in straight lines against those at rest, in double. What that gets wrong is small
-  /// against the tolerance (checkTolerance()). Floats say first which of the pairs can change an answer.
+  /// Compares points, or triangles, that move in straight lines with those at rest, in double. The rounding is small
+  /// against the tolerance (checkTolerance()). Floats tell first which of the pairs can change an answer.
   /// @param clipped during which part of the interval each may be near
   void compare(LeafVisit& leaf, std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const ModelBox& box,
                const VoxelMotion& motion)
@@ -49,7 +49,7 @@ public:
       if (other.is_part && compared_.add(other.record(0), 1u << i) == 0) continue;
       pass(leaf, i, other, box, motion);
       std::optional<PointSegment> segment;
-      std::optional<RecordCourse> course; // of what is not points
+      std::optional<RecordCourse> course; // where records are not points
       for (std::uint32_t left = mattering(leaf, i, passages_.near, motion); left != 0;) {
         const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
         left &= left - 1;
@@ -91,7 +91,8 @@ private:
 
   bool isHit(const LeafVisit& leaf, std::uint32_t i) const { return (results_.hit[leaf.slot] >> i & 1) != 0; }
 
-  /// How point i passes those of the model's leaf, in floats. Where these do not hold the lengths, all are near.
+  /// Computes how point i passes the points of the model's leaf, in floats. Where floats do not hold the lengths, all
+  /// are near.
   void pass(const LeafVisit& leaf, std::uint32_t i, const BoxLeaf& other, const ModelBox& box,
             const VoxelMotion& motion)
   {
@@ -109,8 +110,8 @@ private:
     return (motion.reach - static_cast<float>(motion.stray) - static_cast<float>(query_.reach)) + motion.rounding;
   }
 
-  /// Those of `points` that can change an answer: all of them while no contact of point i is known, then those that it
-  /// may come near earlier, or as near as the best.
+  /// Returns those of `points` that can change an answer. While no contact of point i is known, these are all. Then
+  /// they are those that it may come near earlier, or as near as the best.
   std::uint32_t mattering(const LeafVisit& leaf, std::uint32_t i, std::uint32_t points, const VoxelMotion& motion) const
   {
     if (points == 0 || query_.witness || !isHit(leaf, i)) return points;
@@ -122,7 +123,7 @@ private:
     return passages_.before(points, part, limit);
   }
 
-  /// A pair that comes near enough.
+  /// Keeps a pair that comes near enough.
   void keep(const LeafVisit& leaf, std::uint32_t i, const PointPair& pair, const Approach& approach, double begin,
             double steps)
   {

@@ -29,8 +29,8 @@ protected:
   /// The triangles that pass, and the vertices that they use. @throws OptionError for `keep_organized`
   StageCloudPtr keepFaces(const StageCloud& mesh, std::vector<std::uint8_t> passes) const;
 
-  /// One per record: 1 for what the stage lets pass when `negative` is false. Entries of points that are not finite do
-  /// not count.
+  /// One per record: 1 for records that the stage lets pass when `negative` is false. Entries of points that are not
+  /// finite do not count.
   virtual std::vector<std::uint8_t> passing(const StageCloudPtr& cloud) = 0;
 };
 

@@ -34,7 +34,7 @@ public:
   std::uint64_t size() const noexcept { return size_; }
   const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }
 
-  /// But for the viewpoint, which is of the first scan, of all that are read. There are no scanners where one scan has
+  /// Facts about all scans that are read; the viewpoint is that of the first. There are no scanners where one scan has
   /// points but neither a pose nor spherical coordinates: it may be merged of several.
   CloudFacts facts() const;
 

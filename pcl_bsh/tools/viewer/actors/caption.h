@@ -39,7 +39,7 @@ private:
 /// As all words of a picture look.
 void setLook(vtkTextProperty& look, int size);
 
-/// Hides most of what is behind words that may lie over anything.
+/// Sets a background that hides most of the picture behind the words.
 void setBacking(vtkTextProperty& look);
 
 } // namespace pcl_bsh::viewer

@@ -86,7 +86,7 @@ std::unique_ptr<CloudActor> makePointsActor(const ViewedCloud& viewed, vtkRender
 std::unique_ptr<CloudActor> makeTrianglesActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
                                                const Color& marked);
 
-/// The one that fits, added to what is drawn.
+/// Returns the actor that fits the cloud, added to the renderer.
 /// @param marked the colour of marks
 inline std::unique_ptr<CloudActor> makeCloudActor(const ViewedCloud& viewed, vtkRenderer& renderer, const Color& color,
                                                   const Color& marked)

@@ -115,7 +115,7 @@ void markValues(CloudActor& cloud, ValueBar& bar, const ViewContent& content, co
     bar.hide();
 }
 
-/// The colours of what is not free, one per part.
+/// Returns the colours of flags, one per part.
 std::vector<Color> colorsOfVerdicts(const std::vector<Verdict>& flags)
 {
   std::vector<Color> colors;

@@ -25,8 +25,8 @@ public:
   TileActors(const SiteContent& site, vtkRenderer& renderer, const CloudActor& overview, ValueBar& bar,
              ValueHistogram& histogram, Coloring coloring);
 
-  /// Lets go of what the camera does not want any more, and loads the nearest tile that it does. @return whether
-  /// anything changed
+  /// Drops tiles that the camera does not want any more, and loads the nearest tile that it wants.
+  /// @return whether anything changed
   /// @throws files::FileError for a tile that cannot be read: it is not asked for again
   bool step();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of what stands out in a picture other things hide.
+// The share of a picture's marks that other things do not hide.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,13 +11,13 @@
 
 namespace pcl_bsh::viewer {
 
-/// Places of what is drawn, about evenly: points or, of triangles, places all over them, so that none is farther than
-/// about `step` from the next. At most a few hundred thousand: of more, one of so many.
+/// Returns places of a drawing, about evenly: points or, for triangles, places all over them, about `step` from the
+/// next. Returns a few hundred thousand at most: of more places, one in so many.
 /// @param left_out places in the world that are not drawn; null: none
 std::vector<Eigen::Vector3d> placesOf(vtkPolyData& drawn, const Eigen::Isometry3d& pose, double step,
                                       const std::function<bool(const Eigen::Vector3d&)>& left_out = nullptr);
 
-/// From where a picture is taken.
+/// The place and the direction from which a picture is taken.
 struct Gaze {
   Eigen::Vector3d at;            ///< in the world
   Eigen::Vector3d toward;        ///< of length 1, from what is seen to the eye
@@ -28,11 +28,12 @@ struct Gaze {
 /// A thing in a picture.
 struct Drawn {
   std::vector<Eigen::Vector3d> places; ///< of all of it
-  std::vector<Eigen::Vector3d> marks;  ///< of what stands out; empty: none
+  std::vector<Eigen::Vector3d> marks;  ///< places that stand out; empty: none
 };
 
-/// The share of all marks that are in the picture and before which nothing is, in [0, 1]; about, for the picture is cut
-/// into cells. A thing hides its own marks where it is in front of them by more than some cells. 0 without a mark.
+/// Returns the share of all marks that are in the picture with nothing before them, in [0, 1]; about, for the picture
+/// is cut into cells. A thing hides its own marks where it is in front of them by more than some cells. 0 without a
+/// mark.
 double shareSeen(const Gaze& gaze, std::span<const Drawn> things);
 
 } // namespace pcl_bsh::viewer

@@ -21,7 +21,8 @@ public:
   MotionPaths paths(std::size_t /*step*/) const override { return {}; }
   std::vector<float> distances(std::size_t step) const override;
 
-  /// Where the field holds the distances of free points, too; those along a path are of what collides.
+  /// Returns distances where the field holds those of free points, too. Along a path it holds those of points that
+  /// collide.
   std::vector<double> allDistances(std::size_t step) const override;
   std::vector<std::int32_t> firstPoses() const override;
 

@@ -39,7 +39,7 @@ io::SceneFile readScene(const Options& options)
 }
 
 /// Step 0 is the start, step n the scene after n of its steps, responses included. Steps are run when they are first
-/// shown, and their poses are kept; the query for what collides runs again each time a step is shown.
+/// shown, and their poses are kept; the query for collisions runs again each time a step is shown.
 class SceneContent final : public ViewContent {
 public:
   explicit SceneContent(const Options& options);
