@@ -10,7 +10,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of what a child spans, counted over all voxels.
+/// The range of points below a child, counted over all voxels.
 struct Range {
   std::uint32_t begin, end;
 };
@@ -116,7 +116,9 @@ int BehindPlane::sideOf(std::uint32_t record) const
   return side;
 }
 
-/// @pre none of it is beyond the plane. What touches it are corners, and what is between them.
+/// Whether the record touches the plane with a corner that `known_` does not have. A triangle that is not beyond the
+/// plane touches it with corners, and between them.
+/// @pre no part of the record is beyond the plane
 bool BehindPlane::touchesElsewhere(std::uint32_t record) const
 {
   if (known_ == kNoRecord || !cloud_.view.triangles) return true;

@@ -11,25 +11,26 @@
 
 namespace pcl_bsh {
 
-/// A child of a node: what is below it.
+/// One child of a node; it stands for all records below it.
 struct NodeChild {
   std::uint32_t space; ///< of the node
   const Node& node;
   std::uint32_t lane;
 };
 
-/// Looks at each record of a node once for each kind of number, and remembers what it has found.
+/// Compares the records below nodes with a plane. Computes each kind of answer for a child once, and keeps it.
 class BehindPlane {
 public:
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
-  /// The smallest records that touch the plane, each kNoRecord if there is none.
+  /// The smallest numbers of records that touch the plane; kNoRecord where no record does.
   struct Touching {
     std::uint32_t lowest = kNoRecord;
-    std::uint32_t elsewhere = kNoRecord; ///< of those which touch it with a place that `known` does not touch it with
+    std::uint32_t elsewhere = kNoRecord; ///< of records that touch it with a corner that `known` does not have
   };
 
-  /// @param plane behind it is where its normal points away from @param known a record, or kNoRecord
+  /// @param plane its normal points to the side beyond it
+  /// @param known a record of the cloud, or kNoRecord
   BehindPlane(const SphereHierarchy::Storage& cloud, const ExactPlane& plane, std::uint32_t known)
   : cloud_(cloud),
     plane_(plane),
@@ -37,26 +38,28 @@ public:
   {
   }
 
-  /// No less than how far anything below a child reaches beyond the plane, in the plane's unit. Nothing where more
-  /// records would have to be looked at than `looks`, which those that are looked at are taken from; NaN where doubles
-  /// cannot tell.
+  /// Returns an upper bound of how far anything below a child reaches beyond the plane, in the plane's unit; NaN where
+  /// doubles cannot tell. Returns nothing where that takes more records than `looks`, from which records are
+  /// subtracted.
   std::optional<double> heightAtMost(const NodeChild& child, std::uint64_t& looks);
 
-  /// With more digits; nothing where these cannot tell. @pre heightAtMost() has paid for looking at the child
+  /// Returns how far the child reaches beyond the plane, with its error; nothing where LongNumber cannot tell.
+  /// @pre heightAtMost() has paid for looking at the child
   std::optional<LongNumber> height(const NodeChild& child);
 
   /// Both heights of one record.
   double heightAtMost(std::uint32_t record) const;
   std::optional<LongNumber> height(std::uint32_t record) const;
 
-  /// The records below a child that touch the plane, if none there is beyond it; exact. @pre as of height()
+  /// Returns the records below a child that touch the plane, exactly; nothing where a record reaches beyond it.
+  /// @pre heightAtMost() has paid for looking at the child
   std::optional<Touching> touching(const NodeChild& child);
 
-  /// The side that a record reaches to: 1 beyond the plane, 0 in it, -1 behind.
+  /// Returns 1 where a record reaches beyond the plane, 0 where it touches the plane, -1 where all of it is behind.
   int sideOf(std::uint32_t record) const;
 
 private:
-  /// What is known of some records.
+  /// Answers for the records below one child; each is unset until somebody asks.
   struct Known {
     std::optional<double> height;
     std::optional<std::optional<LongNumber>> longer;
@@ -72,7 +75,7 @@ private:
   const SphereHierarchy::Storage& cloud_;
   const ExactPlane plane_;
   const std::uint32_t known_;
-  std::unordered_map<std::uint64_t, Known> found_; ///< by the first and the last of the points below
+  std::unordered_map<std::uint64_t, Known> found_; ///< by the range of the points below a child
 };
 
 } // namespace pcl_bsh

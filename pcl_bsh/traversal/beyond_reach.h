@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs of nodes beyond a reach, where thousands of pairs of triangles are hardly farther apart than it.
+// Proves pairs of nodes beyond a reach, where thousands of pairs of triangles are hardly farther apart than the reach.
 #pragma once
 
 #include <pcl_bsh/traversal/planes_between.h>
@@ -12,8 +12,9 @@
 
 namespace pcl_bsh {
 
-/// What is no nearer than a pair that was found beyond the reach, or nearer by less than it is beyond, is beyond it,
-/// too. Knows nothing where each pair has a reach of its own.
+/// Lays planes through the nearest places of a pair that is beyond the reach. Records are beyond the reach, too, if the
+/// planes prove them no nearer than that pair, or nearer by less than it exceeds the reach. Tells nothing of clouds
+/// without triangles, of balls, and where pairs have reaches of their own.
 class BeyondReach {
 public:
   BeyondReach(const PointPairs& pairs, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b)
@@ -23,8 +24,8 @@ public:
   {
   }
 
-  /// Takes note of a pair that was decided to be beyond the reach. One in some is compared with the nearest of those
-  /// before, whose planes cut the least off.
+  /// Takes note of a pair that was decided to be beyond the reach. Compares one in 64 with the nearest of those
+  /// compared before: the planes of a near pair are the least likely to cut a cloud.
   void found(PointPair beyond)
   {
     if (!may_know_) return;
@@ -39,7 +40,7 @@ public:
     planes_.policy.decidedInVain();
   }
 
-  /// Whether it is worth asking about nodes.
+  /// Whether enough pairs were decided in vain to pay for asking about nodes.
   bool mayKnow() const { return planes_.policy.mayAsk(); }
 
   /// Whether all below two children is known to be beyond the reach.
@@ -54,19 +55,19 @@ private:
   {
     is_laid_ = true;
     const double least = std::nextafter(pairs_.gap(*nearest_), 0.0);
-    const double more = least - pairs_.ofPairs().around(*nearest_).second; // than the reach
+    const double more = least - pairs_.ofPairs().around(*nearest_).second; // by which the pair exceeds the reach
     planes_.lay(*nearest_, std::max(more, 0.0) * (1.0 - kDoubleMargin));
   }
 
   static constexpr std::uint64_t kDecisionsBetweenCompared = 64;
-  static constexpr std::uint64_t kDecisionsBeforeAsked = 1024; ///< what planes cost is little beside these
+  static constexpr std::uint64_t kDecisionsBeforeAsked = 1024; ///< they cost much more than planes
 
   const PointPairs& pairs_;
   PlanesBetween planes_;
   const bool may_know_;
   std::optional<PointPair> nearest_; ///< of those that were compared
-  double least_ = 0.0;               ///< its gap, at least
-  bool is_laid_ = false;             ///< whether the planes are of it
+  double least_ = 0.0;               ///< lower bound of its gap
+  bool is_laid_ = false;             ///< whether the planes are those of `nearest_`
 };
 
 } // namespace pcl_bsh

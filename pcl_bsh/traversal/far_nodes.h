@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two nodes far from each other for their size. There a sphere says too little: of an arc, or of a patch of a sheet, it
-// reaches towards the other node by half of its length, its points by the square of that alone.
+// Compares two nodes far from each other for their size, where spheres prune too little. The sphere of an arc, or of a
+// patch of a sheet, reaches towards the other node by half of its length. Its points reach there only by the order of
+// that length's square.
 #pragma once
 
 #include <pcl_bsh/geometry/given_sphere.h>
@@ -15,26 +16,26 @@
 
 namespace pcl_bsh {
 
-/// Nodes are far from each other where their middles are so many times as far apart as their radii are long together.
+/// Nodes are far from each other when the distance of their centres exceeds this many times the sum of their radii.
 inline constexpr float kFarNodes = 8.0f;
 
-/// Whether nodes can be that far from one of this radius and still be within reach.
+/// Whether a node can be far from one of this radius and still be within reach.
 inline bool mayBeFar(float reach, float radius)
 {
   return reach > (kFarNodes - 1.0f) * radius;
 }
 
-/// Of a support, relative to it and to the node's radius. The direction errs by 4 v of its length and, turned into the
-/// cloud's frame, by 6 v; the parts along both normals by 3 v each, what is left across them by 11 v, and the sum of
-/// their products by 3 v: less than 32 v.
+/// Error of a support, relative to it and to the node's radius. The direction errs by 4 v of its length, and by 6 v
+/// when it is turned into the cloud's frame. Its parts along both normals err by 3 v each, the rest by 11 v, and the
+/// sum of their products by 3 v: less than 32 v together.
 inline constexpr double kSupportError = 32 * kDoubleUnit;
 
-/// Of the vector between two middles, relative to the sum of all terms: a product, the sum of three, the translation
-/// and the difference, 5 roundings.
+/// Error of the vector between two centres, relative to the sum of all terms: a product, the sum of three, the
+/// translation and the difference, 5 roundings.
 inline constexpr double kBetweenError = kFewDoubleRoundings;
 
-/// How far the points of a node are from its sphere's centre at most, along a direction: its support. Two slabs, along
-/// which points vary least, leave the sphere to what is across both.
+/// The support of a node: an upper bound of how far its points are from its sphere's centre along a direction. Two
+/// slabs bound the directions along which points vary least; the sphere bounds the rest.
 class NodeSupport {
 public:
   /// @param slabs, cross_slabs of the node
@@ -51,7 +52,7 @@ public:
     take(cross_slabs, cross_, cross_h_);
   }
 
-  /// Of a single point, which reaches nowhere.
+  /// A point's support is 0 along each direction.
   explicit NodeSupport(const Point3& point)
   : sphere_{point, 0.0},
     radius_(0.0),
@@ -62,11 +63,12 @@ public:
   {
   }
 
-  /// In the cloud's own frame.
+  /// Centre of the sphere, in the cloud's own frame.
   const Point3& center() const { return sphere_.center; }
 
-  /// A direction is the sum of its parts along both normals, whatever these are, and of a rest, whose points are held
-  /// by the sphere. @param direction in the cloud's own frame, of length 1 within 1e-6
+  /// Returns the support in the clouds' unit. A direction is the sum of its parts along both normals, whichever these
+  /// are, and of a rest. Slabs bound points along the normals, the sphere along the rest.
+  /// @param direction in the cloud's own frame, of length 1 within 1e-6
   double along(const Eigen::Vector3d& direction) const
   {
     const double on_normal = direction.dot(normal_), on_cross = direction.dot(cross_);
@@ -82,7 +84,8 @@ private:
   double h_, cross_h_;
 };
 
-/// @param voxel built, its points without radii. @param work what is fitted for it is added
+/// @param voxel built, its points without radii
+/// @param work counts slabs that are fitted
 inline NodeSupport nodeSupport(Voxel& voxel, const PointsView& view, const Node& node, std::uint32_t child,
                                BuildWork& work)
 {
@@ -91,7 +94,7 @@ inline NodeSupport nodeSupport(Voxel& voxel, const PointsView& view, const Node&
           voxel.cross_slabs.of(voxel, view, work)[index]};
 }
 
-/// From the middle of a to that of b, both posed, and how much of it may be rounding.
+/// The vector from the centre of a to that of b, both posed, and a bound of its rounding error.
 struct Between {
   Between(const Eigen::Isometry3d& pose_a, const Point3& a, const Eigen::Isometry3d& pose_b, const Point3& b)
   {
@@ -105,13 +108,14 @@ struct Between {
   double error;
 };
 
-/// Whether no point of one node is within the clearance of one of the other, by how far both reach towards each other.
-/// The middles are compared in exact arithmetic.
+/// Returns true where supports prove that no point of one node is within the clearance of a point of the other. The
+/// centres are compared in exact arithmetic.
 ///
-/// With u along D, from centre to centre, |D + q - p| >= u . (D + q - p) >= |D| - support(u) - support(-u) for all p, q
-/// about their centres. u is d / |d| of a difference d that is off D by e at most, so that
-/// u . D = (|d|^2 + |D|^2 - |d - D|^2) / (2 |d|) >= |D| - e^2 / (2 |d|), of which four times is added for roundings.
-/// Where doubles say that it is not so, nothing is compared.
+/// Let D be the vector from centre to centre, and u a vector of length 1. Then |D + q - p| >= dot(u, D + q - p) >=
+/// dot(u, D) - support(u) - support(-u) for all p, q about their centres. Doubles compute d, which is off D by e at
+/// most, and u = d / |d|. So dot(u, D) = (|d|^2 + |D|^2 - |d - D|^2) / (2 |d|) >= |D| - e^2 / (2 |d|). The code
+/// subtracts four times that last term, for roundings. It compares nothing where doubles find the nodes nearer than
+/// that.
 /// @param exact_decisions counts the comparison
 inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometry3d& pose_a, const NodeSupport& a,
                              const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance,

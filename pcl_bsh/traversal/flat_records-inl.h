@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of b laid flat in the frames of their voxels as a walk comes near to them, and nodes of a against them: a
-// thin triangle is not its ball.
+// Lays triangles of b flat in the frames of their voxels as a walk comes near to them, and compares nodes of a with
+// them. A thin triangle is much smaller than its ball.
 
 #if defined(PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_FLAT_RECORDS_INL_H_
@@ -26,13 +26,13 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Leaves whose largest ball is so many times as large as a node are asked for their triangles.
+/// A leaf's triangles are compared with a node when the leaf's largest ball is more than this many times as large.
 inline constexpr double kLargeBall = 2.0;
 
-/// A triangle of a voxel in its frame.
+/// A triangle, laid flat in the frame of its voxel.
 struct FlatRecord {
   std::uint32_t record = kNoRecord;
-  double reach = 0.0; ///< of its corners, which may be beyond that of the frame
+  double reach = 0.0; ///< of its corners; may exceed the reach of the frame
   FlatTriangle<float> flat;
 
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
@@ -48,30 +48,30 @@ struct FlatRecord {
     return flat;
   }
 
-  /// By how much more than stored points it may be off, in the voxel's unit: what a frame says of its own reach does
-  /// not hold where poses turn what is beyond.
+  /// Returns by how much more than stored points it may be off, in the voxel's unit. A frame's own error counts the
+  /// skew of the poses within its reach only, and corners may lie beyond.
   double error(const RelativeFrame& frame) const { return double{flat.error} + 2 * frame.skew() * reach; }
 
-  /// Whether that is no more than what points are off by.
+  /// Whether error() is at most the frame's error of points.
   bool isUsual(const RelativeFrame& frame) const { return error(frame) <= frame.error; }
 
-  /// What squared distances of usual ones tell of a length: a little less than band() of each, but once for all.
+  /// The band of a length for all usual triangles. It leaves a little more undecided than band(), but is computed once.
   static DistanceBand usualBand(const RelativeFrame& frame, double length)
   {
     return frame.band(length, frame.error, kFlatShare);
   }
 
-  /// What its squared distances tell of a length, in the clouds' unit.
+  /// The band of this triangle for a length in the clouds' unit.
   DistanceBand band(const RelativeFrame& frame, double length) const
   {
     return frame.band(length, error(frame), kFlatShare);
   }
 };
 
-/// Those of one cloud that were asked for of late, in the order of its leaves, so that those of a leaf lie together.
+/// A cache of one cloud's flat triangles in the order of its leaves, so that the triangles of a leaf lie together.
 class FlatRecords {
 public:
-  /// Before a walk: forgets those of another cloud.
+  /// Call before a walk: forgets the triangles of another cloud.
   void prepare(const SphereHierarchy::Storage& cloud)
   {
     if (!cloud.view.triangles || cloud.revision == revision_) return;
@@ -79,7 +79,7 @@ public:
     revision_ = cloud.revision;
   }
 
-  /// Record i of a leaf. Valid until the next call
+  /// Returns record i of a leaf, laid flat. Valid until the next call.
   const FlatRecord& of(const PointsView& view, const LeafRange& leaf, std::uint32_t i)
   {
     const std::uint32_t record = leaf.record(i);
@@ -93,17 +93,17 @@ public:
 private:
   static constexpr std::size_t kMostSlots = 1u << 14;
 
-  std::vector<FlatRecord> slots_; ///< a power of two of them
-  std::uint64_t revision_ = 0;    ///< of the cloud; none has 0
+  std::vector<FlatRecord> slots_; ///< their number is a power of two
+  std::uint64_t revision_ = 0;    ///< of the cloud; no cloud has 0
 };
 
 /// The triangles of a leaf of a in the frame of a voxel of b.
 struct CarriedTriangles {
   LeafCorners leaf;
-  double error = 0.0; ///< of corners, beside the frame's: they may lie beyond its reach; in the voxel's unit
+  double error = 0.0; ///< of corners, beside the frame's, in the voxel's unit: they may lie beyond its reach
 
-  /// What carrying a corner takes of its coordinates, as a vector: its storing, and what RelativeFrame counts of
-  /// products.
+  /// Error of a carried corner, a vector, relative to the sum of its coordinates: storing and carrying round each, as
+  /// RelativeFrame counts.
   static constexpr double kError = 1.7321 * (kStoringError + kCarriedProductError + kFewDoubleRoundings);
 
   void carry(const PointsView& view, const LeafRange& of_a, const RelativeFrame& frame)
@@ -129,10 +129,10 @@ struct CarriedTriangles {
   }
 };
 
-/// Calls found(i, j) for the pairs of two leaves, of which one at least is of triangles, that floats do not prove to be
-/// farther apart than reach(), with the radii of points that have some; stops when found() returns true. A point beside
-/// a's triangles is a triangle without sides. @param reach in the clouds' unit, >= 0; asked before each
-/// record of b
+/// Calls found(i, j) for the pairs of two leaves that floats do not prove to be farther apart than reach(), radii of
+/// points subtracted. Stops when found() returns true. One leaf at least is of triangles; a point beside a's triangles
+/// counts as a triangle without sides.
+/// @param reach in the clouds' unit, >= 0; asked before each record of b
 template <class Reach, class Found>
 bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
                            FlatRecords& flat, const Reach& reach, const Found& found)
@@ -156,7 +156,7 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
     }
     const FlatRecord& triangle = view_b.triangles ? flat.of(view_b, leaves.b, j) : point_of_b;
     const double of_points =
-        (view_a.triangles ? 0.0 : largest) + (view_b.triangles ? 0.0 : leaves.b.radius(j)); // beside what is measured
+        (view_a.triangles ? 0.0 : largest) + (view_b.triangles ? 0.0 : leaves.b.radius(j)); // radii, not measured
     const double within = reach() + of_points;
     if (view_a.triangles) {
       if (!is_carried) own.carry(view_a, leaves.a, frame);
@@ -175,16 +175,18 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
   return false;
 }
 
-/// Spheres of a's nodes in the frame of a voxel of b, eight lanes, and which of them lie within or beyond a length of
-/// triangles.
+/// The result of comparing up to eight spheres with triangles, in the frame of a voxel of b: bits of the spheres.
 struct LanesNear {
-  std::uint32_t near = 0;   ///< bits of those that one of the triangles may be near to
-  std::uint32_t inside = 0; ///< of those all of which is within the length of one triangle, for certain
+  std::uint32_t near = 0;   ///< spheres that one of the triangles may be near to
+  std::uint32_t inside = 0; ///< spheres wholly within the length of one triangle, for certain
 };
 
-/// @param x, y, z, r of the spheres, r stretched. @param lanes those asked for. @param reach beyond which nothing is
-/// near, with the frame's error. @param sure_reach within which it is, less that; negative: nobody asks
-/// @param balls of the leaf: its triangles'. @param inverse of its voxel's unit
+/// Compares up to eight spheres with triangles.
+/// @param x, y, z, r of the spheres, r stretched
+/// @param lanes bits of the spheres to compare
+/// @param reach spheres farther from a triangle are not near it; the frame's error is added
+/// @param sure_reach spheres within it are inside; the frame's error is subtracted; negative: no caller asks
+/// @param triangle returns the FlatRecord of number j, below `count`
 template <class Triangles>
 HWY_NOINLINE LanesNear trianglesNear(const float* x, const float* y, const float* z, const float* r,
                                      std::uint32_t lanes, const RelativeFrame& frame, float reach, float sure_reach,

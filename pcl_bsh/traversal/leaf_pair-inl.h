@@ -20,14 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// A leaf so many times as large as a node has points that are far from each other for the node: its sphere tells
-/// nothing.
+/// A leaf more than this many times as large as a node is compared by its points. They are far from each other for the
+/// node, so the leaf's sphere prunes nothing.
 inline constexpr float kLargeLeaf = 8.0f;
 
-/// The same of a node far away: there it is the leaf's bend that counts, the square of its size.
+/// For nodes far from each other a smaller ratio is enough: there the leaf's bend counts, the square of its size.
 inline constexpr float kLargeFarLeaf = 2.0f;
 
-/// A leaf this large beside a node is asked for its points where bounds are wanted: these say more than its sphere.
+/// A leaf more than this many times as large as a node is bounded by its points: they bound better than its sphere.
 inline constexpr float kLeafBesideNode = 0.5f;
 
 /// The centre of a's sphere in the frame of b.
@@ -83,8 +83,8 @@ HWY_INLINE std::uint32_t pointsNearLeaf(const RelativeFrame& frame, const LeafPo
                     kSphereMargin);
 }
 
-/// Calls found(i, j, squared) for the pairs among `lanes` of leaf a and the points of leaf b whose float distance does
-/// not exceed `miss`, in the order of b's points; stops when found() returns true.
+/// Calls found(i, j, squared) for pairs of a point of leaf a in `lanes` and a point of leaf b, in the order of b's
+/// points. Leaves out pairs whose squared float distance exceeds `miss`. Stops when found() returns true.
 template <class Leaf, class Found>
 bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf& b, float miss, const Found& found)
 {
@@ -99,7 +99,8 @@ bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf
   return false;
 }
 
-/// Of two balls whose squared float distance is at most this, the gap is at most `least`, for certain.
+/// Returns a squared float distance: balls whose centres are no farther apart have a gap of at most `least`, for
+/// certain. Returns -1 where no distance is short enough.
 /// @param least as Reach has it; may be below 0
 HWY_INLINE float ballHit(const RelativeFrame& frame, double least, double radius_a, double radius_b)
 {
@@ -108,9 +109,9 @@ HWY_INLINE float ballHit(const RelativeFrame& frame, double least, double radius
   return surely > 0.0 ? frame.band(surely).hit : -1.0f;
 }
 
-/// The same as eachPairNotBeyond() where points have radii: pairs of balls that the clearance may join. Calls found(i,
-/// j, squared, surely), where `surely` says that their gap is at most `least`, for certain.
-/// @param least as Reach has it; minus infinity where nobody asks
+/// Calls found(i, j, squared, surely) for pairs of balls whose gap may be within the clearance, in the order of b's
+/// points. `surely` tells that the gap is at most `least`, for certain. Stops when found() returns true.
+/// @param least as Reach has it; minus infinity where no caller asks
 template <class Found>
 bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std::uint32_t lanes, const LeafRange& a,
                       const LeafRange& b, double clearance, double least, const Found& found)
@@ -119,7 +120,7 @@ bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std:
     const float reach = std::max(0.0f, frame.pruneReach(clearance + radius_a + radius_b));
     return reach * reach * (1.0f + kSphereMargin);
   };
-  // What the largest and the smallest balls say of all decides most pairs.
+  // Bounds by the largest and the smallest balls decide most pairs.
   const float farthest_of_all = farthest(a.largestRadius(), b.largestRadius());
   const float surely_of_all = ballHit(frame, least, a.smallestRadius(), b.smallestRadius());
   alignas(64) float squared[kLeafPoints];
@@ -157,8 +158,8 @@ struct ComparedLeaves {
   LeafPoints points;  ///< a's, in the frame
 };
 
-/// Calls found(i, j) for those pairs that may be the nearest of all and no farther apart than `to_beat`: the smallest
-/// float distance bounds which are worth an exact look. Stops when found() returns true.
+/// Calls found(i, j) for pairs that may be the nearest of all and no farther apart than `to_beat`. The smallest float
+/// distance leaves out the others. Stops when found() returns true.
 /// @param to_beat in the clouds' unit; below 0 only where points have radii
 template <class Found>
 void eachPairMaybeNearest(const ComparedLeaves& leaves, bool have_radii, double to_beat, const Found& found)

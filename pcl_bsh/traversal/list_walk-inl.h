@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The descent that queries for all points share: a node of a goes down with the list of what may matter of b to it. A
-// visitor makes the lists of its children, and compares leaves.
+// The descent that queries for all points share. A node of a goes down with a list of the items of b that may matter to
+// it. A visitor makes the lists of its children, and compares leaves.
 
 #if defined(PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_LIST_WALK_INL_H_
@@ -26,7 +26,7 @@ template <class Item>
 struct ListVisit {
   const Node* node = nullptr;
   std::uint32_t leaves = 0;       ///< bits of the children that are leaves
-  std::vector<Item> near[kLanes]; ///< what may matter of b to each child
+  std::vector<Item> near[kLanes]; ///< items of b that may matter to each child
 
   void begin(const Node& entered)
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A placed triangle in numbers of twice a double's digits, with what does not depend on the points that are compared
-// with it, and the part of it that is nearest to a point.
+// A placed triangle in numbers of twice a double's digits, and the part of it that is nearest to a point. It keeps
+// values that do not depend on the points it is compared with.
 
 #if defined(PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_LONG_TRIANGLE_INL_H_
@@ -79,11 +79,11 @@ HWY_INLINE LongVector lessLong(const LongVector& x, const LongVector& y)
   return z;
 }
 
-/// A vector of length 1 that is known well enough.
+/// A vector of length 1, if it is known well enough.
 struct LongDirection {
   enum State : std::uint8_t { not_asked, unknown, along_axis, known };
   State state = not_asked;
-  std::uint8_t axis = 0;  ///< that it is along: its coordinate there is 1 or -1
+  std::uint8_t axis = 0;  ///< if along_axis: the coordinate there is 1 or -1
   std::uint8_t zeros = 0; ///< bits of the axes along which it surely has no part
   LongVector unit;
 
@@ -126,22 +126,22 @@ struct LongDirection {
   static constexpr double kMostError = 0x1p-65; ///< with a greater one few lengths are known
 };
 
-/// Of products of two long vectors, relative to the absolute sum of the products of their coordinates: what is dropped
-/// is v^2 of it, and ten sums and products of low order, of terms that are 5 v of it together, err by v each.
+/// Error of a sum of products of two long vectors, relative to the absolute sum of the products of their coordinates.
+/// Dropped terms are v^2 of it. Ten sums and products of low order err by v each, of terms that are 5 v of it together.
 inline constexpr double kLongProductError = 0x1p-99;
 
 /// A triangle of b, placed by its pose.
 struct LongTriangle {
   Triangle3 given;
   Vector3<LongNumber> corners[3];
-  LongVector stored[3]; ///< the same
+  LongVector stored[3]; ///< the corners again
   bool usable = false;  ///< whether the following are set
   Point3 normal;
   Point3 edges[3], outward[3]; ///< from corner j to the next one, and in the plane away from the triangle; of length 1
   double lengths[3];           ///< of its edges
-  double along[3] = {}, side[3]; ///< what corner j is at, from corner 0, along edge j and outward
+  double along[3] = {}, side[3]; ///< coordinates of corner j from corner 0, along edge j and outward
   double longest = 0.0,
-         doubt = 0; ///< of what is measured along these, as a share of the place's distance and `longest`
+         doubt = 0; ///< error of coordinates along these, relative to the place's distance plus `longest`
   LongDirection long_normal, long_edges[3];
 
   void set(const Triangle3& triangle, const Eigen::Isometry3d& pose)
@@ -213,8 +213,8 @@ struct NearPart {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 };
 
-/// In the triangle's plane its inside, strips along its edges and wedges at its corners share all places between them.
-/// A part is sure where all that bounds it is farther away than what double arithmetic errs by.
+/// Returns the part nearest to a place. The triangle's inside, strips along its edges and wedges at its corners divide
+/// its plane. A part is sure where all of its borders are farther from the place than double arithmetic errs.
 /// @param place of the point
 HWY_INLINE NearPart nearPartOf(const LongTriangle& triangle, const LongVector& place)
 {
@@ -255,7 +255,7 @@ HWY_INLINE NearPart nearPartOf(const LongTriangle& triangle, const LongVector& p
   return part;
 }
 
-/// A part with the corners that it lies between: neighbours share theirs.
+/// A part with the corners that it lies between. Neighbours that share the part have equal corners.
 struct SharedPart : NearPart {
   Point3 from = {}, to = {};
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points against triangles in numbers of twice a double's digits: which of two triangles is nearer, or of one at two
-// poses, and the distance, rounded to the nearest double; or no answer. What does not depend on the point is computed
-// once for each triangle.
+// Compares points with triangles in numbers of twice a double's digits. Tells which of two triangles is nearer, or at
+// which of two poses one triangle is, and rounds the distance to the nearest double; or gives no answer. Values that do
+// not depend on the point are computed once for each triangle.
 
 #if defined(PCL_BSH_TRAVERSAL_LONG_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_LONG_TRIANGLES_INL_H_
@@ -24,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// x[i] y[j] - x[j] y[i], but for what both vectors err by.
+/// x[i] y[j] - x[j] y[i]. The error leaves out the errors of both vectors.
 HWY_INLINE LongCoordinate longMoment(const LongVector& x, const LongVector& y, std::size_t i, std::size_t j)
 {
   const WithError p = twoProduct(x.value[i], y.value[j]), q = twoProduct(-x.value[j], y.value[i]);
@@ -53,8 +53,8 @@ HWY_INLINE LongSpan spanOf(const LongCoordinate& x, const LongCoordinate& y = {}
   return span;
 }
 
-/// A vector as long as the distance of a point from the part of the triangle that is nearest; none where that is in
-/// doubt. Of a face, or along an axis, coordinates that are 0 come last.
+/// Sets `span` to a vector as long as the distance of a point from the nearest part of the triangle. Returns false
+/// where that is in doubt. Coordinates that are known to be 0 come last, for faces and for edges along an axis.
 HWY_INLINE bool longSpan(LongTriangle& triangle, const NearPart& part, const LongVector& place, LongSpan& span)
 {
   if (part.kind == NearPart::not_sure) return false;
@@ -107,7 +107,7 @@ HWY_INLINE double longDistance(LongTriangle& triangle, const NearPart& part, con
   return part.kind == NearPart::face ? roundedHeight(span[0]) : roundedLength(span, 0.0, 0.0);
 }
 
-/// Whether both lie in one plane across an axis.
+/// Whether both triangles lie in one plane across an axis.
 inline bool areLevel(LongTriangle& x, LongTriangle& y)
 {
   const LongDirection &of_x = x.face(), &of_y = y.face();
@@ -117,8 +117,9 @@ inline bool areLevel(LongTriangle& x, LongTriangle& y)
   return at_x.value() == at_y.value() && at_x.tail() == at_y.tail() && at_x.error() == 0.0 && at_y.error() == 0.0;
 }
 
-/// Whether a point's distances from two triangles at two poses are surely the same: from one plane; or from one part,
-/// which the poses turn alike, and the way from one to the other goes along axes that the part lies along.
+/// Returns true where a point's distances from two triangles at two poses are surely equal. Either both parts are faces
+/// in one plane across an axis. Or both are one part, which the poses turn alike and shift only along axes that it lies
+/// along.
 inline bool areSameParts(LongTriangle& x, const NearPart& part_x, const Eigen::Isometry3d& pose_x, LongTriangle& y,
                          const NearPart& part_y, const Eigen::Isometry3d& pose_y)
 {
@@ -139,7 +140,7 @@ inline bool areSameParts(LongTriangle& x, const NearPart& part_x, const Eigen::I
   return true;
 }
 
-/// Sign of the point's distance from a triangle less that from another; nothing where that is in doubt.
+/// Returns the sign of the point's distance from x less that from y; nothing where it is in doubt.
 /// @param part_x, part_y nearest to the point
 inline std::optional<int> longOrder(LongTriangle& x, const NearPart& part_x, LongTriangle& y, const NearPart& part_y,
                                     const LongVector& place)
@@ -161,13 +162,14 @@ inline std::optional<int> longOrder(LongTriangle& x, const NearPart& part_x, Lon
   return sure ? std::optional<int>(sign) : std::nullopt;
 }
 
-/// Triangles of one cloud, at some poses, that were asked for of late.
+/// A cache of one cloud's placed triangles, at some poses.
 class LongTriangles {
 public:
-  /// Before a walk.
+  /// Call before a walk: empties the cache.
   void forget() { keys_.assign(kSlots, kNone); }
 
-  /// Valid until a call for another one. @param k which pose that is, of those asked about
+  /// Valid until a call for another one.
+  /// @param k the number of the pose, out of those asked about
   LongTriangle& of(const TrianglesView& view, const Eigen::Isometry3d& pose, std::uint32_t record, std::uint32_t k = 0)
   {
     const std::uint64_t key = std::uint64_t{k} << 32 | record;

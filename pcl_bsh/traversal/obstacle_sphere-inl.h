@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What walks keep that take each node of a through a list of spheres of b.
+// Items of lists of spheres of b, for walks that take each node of a through such a list.
 
 #if defined(PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_OBSTACLE_SPHERE_INL_H_
@@ -29,7 +29,9 @@ struct ObstacleSphere {
   }
   LeafRange leaf(const Voxel& voxel) const { return {&voxel, node->begin[lane], node->comparedPoints(lane)}; }
 
-  /// What it holds, between the slabs of its voxel. @param cross null: there is one slab alone @param stretch of radii
+  /// Returns the sphere with its slab and its cross slab.
+  /// @param slabs, cross those of the voxel; `cross` is null where there is one slab only
+  /// @param stretch factor of radii
   CrossedSlabs between(const Voxel& voxel, const Slabs* slabs, const Slabs* cross, float stretch) const
   {
     const auto index = node - voxel.nodes.data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs that wait for a search that goes best first.
+// The queue of pairs that a search goes through best first.
 
 #if defined(PCL_BSH_TRAVERSAL_PAIR_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_PAIR_QUEUE_INL_H_
@@ -24,7 +24,7 @@ namespace HWY_NAMESPACE {
 
 /// Children of one node that wait, each with the same lane of the other cloud.
 struct WaitingChildren {
-  LanePair pair; ///< of one of them, whichever
+  LanePair pair; ///< of any one of them
   bool of_a = false;
   std::uint8_t left = 0; ///< bit i: child i waits
   alignas(32) float keys[kLanes] = {};
@@ -51,22 +51,23 @@ struct QueueScratch {
   }
 };
 
-/// The pair with the smallest key comes first; of equal keys, one of those that were put in last. What a step has found
-/// stays together, and the heap is of numbers that order as the smallest keys do: most children never come first.
+/// The pair with the smallest key comes first; of equal keys, one of those that were put in last. Children that a step
+/// has found stay together, because most of them never come first. The heap holds one number for each step, ordered by
+/// the smallest key of its children.
 class PairQueue {
 public:
-  /// @param floor keys below this are equal, but among those that were put in together
+  /// @param floor keys below it count as equal, except among children that were put in together
   explicit PairQueue(float floor = -std::numeric_limits<float>::infinity()) : floor_(floor) { clear(); }
 
   bool isEmpty() const { return heap_.empty(); }
 
-  /// Of what was put in together, and has some left.
+  /// The number of steps that have children left.
   std::size_t size() const { return heap_.size(); }
 
-  /// The smallest key; infinity where there is none.
+  /// The smallest key, or `floor` if that is greater; infinity where the queue is empty.
   float least() const { return heap_.empty() ? std::numeric_limits<float>::infinity() : keyOf(heap_.front()); }
 
-  /// @param children one at least; their keys are not NaN
+  /// @param children at least one; their keys are not NaN
   void push(const WaitingChildren& children)
   {
     if (waiting_.size() > 2 * heap_.size() + kFew) forgetTaken();
@@ -92,7 +93,7 @@ public:
     return pair;
   }
 
-  /// Moves all to a stack, so that what comes first is the last there.
+  /// Moves all pairs to a stack; the first pair is its last element.
   void drainTo(std::vector<LanePair>& stack)
   {
     const std::size_t from = stack.size();
@@ -108,7 +109,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t kFew = 2048; ///< that may be left behind without children
+  static constexpr std::size_t kFew = 2048; ///< entries without children that may stay
 
   std::uint64_t entryOf(const WaitingChildren& children, std::size_t place) const
   {
@@ -130,7 +131,7 @@ private:
 
   static std::uint32_t placeOf(std::uint64_t entry) { return ~static_cast<std::uint32_t>(entry); }
 
-  /// By an entry that may come later: those before it rise.
+  /// Replaces the first entry by one that may come later, and restores the heap.
   void replaceFirst(std::uint64_t entry)
   {
     std::size_t at = 0;
@@ -143,7 +144,7 @@ private:
     heap_[at] = entry;
   }
 
-  /// Leaves those in the queue alone, in their order.
+  /// Removes entries without children from `waiting_`; the others keep their order.
   void forgetTaken()
   {
     std::sort(heap_.begin(), heap_.end(), [](std::uint64_t x, std::uint64_t y) { return placeOf(x) < placeOf(y); });
@@ -158,7 +159,7 @@ private:
   const float floor_;
   const ScratchLease<QueueScratch> scratch_;
   std::vector<std::uint64_t>& heap_ = (*scratch_).heap;
-  std::vector<WaitingChildren>& waiting_ = (*scratch_).waiting; ///< and some that have nothing left
+  std::vector<WaitingChildren>& waiting_ = (*scratch_).waiting; ///< some have no children left
 };
 
 } // namespace HWY_NAMESPACE

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simultaneous descent of two hierarchies, for queries that look for pairs of points: the larger sphere of a pair
-// is opened, and its children are tested against the other sphere. One loop goes through the pairs, depth first; a
-// visitor says what is of interest, and what to do with two leaves.
+// The simultaneous descent of two hierarchies, for queries that look for pairs of points. A step opens the larger
+// sphere of a pair, and tests its children against the other sphere. visit_pairs-inl.h has the loop over pairs.
 
 #if defined(PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_PAIR_WALK_INL_H_
@@ -40,7 +39,7 @@ struct PairStack {
   std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(LanePair); }
 };
 
-/// Whose children to look at next.
+/// The side of a pair that is opened.
 enum class Opened : std::uint8_t { a, b, neither };
 
 /// Orders the pairs from `from` on so that the nearest is last, to be taken first. Insertion keeps the order of equals,
@@ -71,8 +70,8 @@ public:
   FrameTable frames;
   RecordDistance distance;
   Work work;
-  /// So many pairs of leaves are compared before leaves are told from far nodes point by point: a step that takes
-  /// microseconds, too long for who looks at a clock between two.
+  /// Number of pairs of leaves to compare before leaves are compared with far nodes point by point. Such a step takes
+  /// microseconds: too long for callers that look at a clock between two steps.
   std::uint64_t pairs_before_points = 0;
 
   /// Whether a cloud is of triangles, so that leaves are compared by eachPairNearTriangles().
@@ -108,7 +107,7 @@ public:
     return {nodeOf(a, pair.a).lowest[pair.a.lane], nodeOf(b, pair.b).lowest[pair.b.lane]};
   }
 
-  /// The larger one, in the clouds' unit, unless it is a leaf.
+  /// Returns the side with the larger sphere, in the clouds' unit; beside a leaf, the side that is no leaf.
   Opened choose(const LanePair& pair) const
   {
     const bool leaf_a = isLeaf(a, pair.a), leaf_b = isLeaf(b, pair.b);
@@ -119,35 +118,35 @@ public:
     return ra > rb ? Opened::a : Opened::b;
   }
 
-  /// Both radii together, in the clouds' unit: gaps of points below differ by at most twice that.
+  /// The sum of both radii, in the clouds' unit. Gaps of points below differ by at most twice that.
   double radiiOf(const LanePair& pair) const
   {
     return nodeOf(a, pair.a).r[pair.a.lane] * a.frame(pair.a.space).unit +
            nodeOf(b, pair.b).r[pair.b.lane] * b.frame(pair.b.space).unit;
   }
 
-  /// The children that a step has found near, as bits, with the sphere test's figures; all in the frame of b's space.
+  /// The result of a step: bits of the children that are near, and the figures of the tests, in the frame of b's space.
   struct Step {
     Lane entered;           ///< the node whose children were tested
     bool of_a = false;      ///< whether it is a's
     std::uint32_t near = 0; ///< bit i: child i is not proven to be apart
     std::uint32_t count = 0;
     float gap[kLanes]; ///< from the other sphere's centre to each child, by spheresNear()
-    /// If it was asked for: how far apart points are at least, by slabs and by leaves; lowest() where they do not tell.
+    /// If bounds were asked for: lower bounds of distances, by slabs and by leaves; lowest() where these tell nothing.
     float slab_gap[kLanes];
-    bool have_slabs = false; ///< likewise: whether slabs were compared
+    bool have_slabs = false; ///< if bounds were asked for: whether slabs were compared
     const RelativeFrame* frame = nullptr;
     SphereLanes children;
     Point center;                                      ///< of the other sphere
-    float radius = 0.0f;                               ///< its own, stretched
-    float reach = 0.0f;                                ///< what is farther apart than this is of no interest
-    alignas(32) float x[kLanes], y[kLanes], z[kLanes]; ///< where a's children are carried to
+    float radius = 0.0f;                               ///< of the other sphere, stretched
+    float reach = 0.0f;                                ///< points farther apart are of no interest
+    alignas(32) float x[kLanes], y[kLanes], z[kLanes]; ///< centres of a's children, carried
 
     Step() = default;
     Step(const Step&) = delete; // `children` points into it
     Step& operator=(const Step&) = delete;
 
-    /// The children all of whose points are within a length of all points of the other side.
+    /// Returns bits of the children all of whose points are within a length of all points of the other sphere.
     /// @param length in the clouds' unit; may be below 0
     std::uint32_t inside(double length) const
     {
@@ -157,8 +156,8 @@ public:
     }
   };
 
-  /// Tests the children of pair.a, once opened, against pair.b; or the other way round.
-  /// @tparam kBounds whether to tell how far apart they are, too, for boundKeys()
+  /// Opens pair.a and tests its children against pair.b, or the other way round.
+  /// @tparam kBounds whether to compute lower bounds, too, for boundKeys()
   /// @param reach how far apart points are still of interest, less their radii, in the clouds' unit
   template <bool kBounds = false>
   void step(const LanePair& pair, Opened opened, double reach, Step& out)
@@ -168,7 +167,7 @@ public:
     else
       testChildrenOfB<kBounds>(pair.a, enter(b, pair.b), reach, out);
     if (kBounds && out.near != 0 && out.have_slabs && std::isfinite(reach) && !distance.ofTriangles())
-      boundByLeafPoints(pair, opened, out); // triangles are not their leaves' points
+      boundByLeafPoints(pair, opened, out); // a triangle is more than its leaf's point
     const bool is_larger = out.radius > kLargeLeaf * out.children.r[0] * out.children.stretch;
     const bool is_blunt = out.radius <= out.frame->bluntRadius();
     if (HWY_UNLIKELY(is_larger || is_blunt || mayBeFar(out.reach, out.radius) || distance.ofTriangles()) &&
@@ -176,14 +175,14 @@ public:
       lookAgain<kBounds>(pair, opened, reach, out);
   }
 
-  /// Before seedWhole(), and before pairs are visited that another walk was seeded with so.
+  /// Call before seedWhole(), and before visiting pairs that another walk got from seedWhole().
   void makeWholes()
   {
     if (a.storage.size != 0) a.makeWhole();
     if (b.storage.size != 0) b.makeWhole();
   }
 
-  /// Calls push(pair, step) for the pair of both clouds, as wholes, if they may meet; boundKeys() tell of the step.
+  /// Calls push(pair, step) for the pair of both whole clouds, if they may meet. boundKeys() takes the step.
   template <class Push>
   void seedWhole(double reach, const Push& push)
   {
@@ -221,7 +220,7 @@ public:
     return child;
   }
 
-  /// No pair of points below child `lane` of a step is nearer than this, in the clouds' unit; may be negative.
+  /// Returns a lower bound of distances of points below child `lane` of a step, in the clouds' unit; may be negative.
   /// @param pair the child, as childOf() has it: the pair that was opened may be in a space of another unit
   double lowerBound(const LanePair& pair, const Step& step, std::uint32_t lane) const
   {
@@ -240,15 +239,15 @@ public:
     return std::isfinite(given) ? std::max(stored, given) : stored;
   }
 
-  /// The same as a key, by which the nearest come first. NaN is no bound at all.
+  /// Returns lowerBound() rounded down, as a key; minus infinity where it is NaN.
   float boundKey(const LanePair& pair, const Step& step, std::uint32_t lane) const
   {
     const double bound = lowerBound(pair, step, lane);
     return std::isnan(bound) ? -std::numeric_limits<float>::infinity() : roundDown(bound);
   }
 
-  /// lowerBound() of all children of a step that was asked for bounds, as keys; or minus infinity.
-  /// @param pair one of the children, whichever
+  /// Sets the keys of a step's children to lower bounds; minus infinity where there is no bound.
+  /// @param pair any one of the children @param step made with kBounds
   void boundKeys(const LanePair& pair, const Step& step, float* keys) const
   {
     const auto boundNear = [&](const auto& take) {
@@ -281,7 +280,8 @@ public:
     boundNear([](float by_stored, float key) { return std::max(by_stored, key); });
   }
 
-  /// Two leaves, and which points of a's may be near b's. @param reach as step() takes it; none: all of them
+  /// Returns two leaves, and which points of a's may be near b's.
+  /// @param reach as step() takes it; without it, all points may be near
   ComparedLeaves compare(const LanePair& pair, std::optional<double> reach = std::nullopt)
   {
     ++work.leaf_pairs;
@@ -293,7 +293,7 @@ public:
   }
 
 private:
-  /// The node below a lane that is not a leaf. Entering a voxel builds it.
+  /// Returns the node below a lane that is not a leaf. Builds a voxel that it enters.
   Lane enter(const Spaces& side, const Lane& lane)
   {
     const Node& node = nodeOf(side, lane);
@@ -361,7 +361,8 @@ private:
     out.near &= ~gapsBeyond(out.slab_gap, out.reach);
   }
 
-  /// Of a leaf and a node that is not much larger: by how far the node reaches towards each of the leaf's points.
+  /// Raises the bounds of a leaf beside a node that is not much larger, by how far the node reaches towards each of the
+  /// leaf's points.
   HWY_NOINLINE void boundByLeafPoints(const LanePair& pair, Opened opened, Step& out)
   {
     const bool of_a = opened == Opened::a;
@@ -419,7 +420,7 @@ private:
     if (gap * (1.0f - kSphereMargin) > out.reach) out.near &= ~(1u << lane);
   }
 
-  /// Of nodes far from each other for their size: by how far both reach towards each other.
+  /// Raises the bounds of nodes far from each other for their size, by their supports.
   HWY_NOINLINE void boundBySupports(const LanePair& child, Step& out)
   {
     std::uint32_t far = out.near & spheresFar(out.gap, out.children.r, out.children.stretch, out.radius, kFarNodes);
@@ -454,7 +455,7 @@ private:
     }
   }
 
-  /// `near` of the first `count` children, against a sphere of the other side, its radius stretched.
+  /// Tests the first `count` children against a sphere of the other side, its radius stretched. Sets `near`.
   void test(const RelativeFrame& frame, std::uint32_t count, const Point& center, float radius, double reach, Step& out)
   {
     out.frame = &frame;
@@ -467,7 +468,7 @@ private:
     work.node_pairs += count;
   }
 
-  /// What spheres say least about.
+  /// Tests children again where spheres prune least, as separation-inl.h says.
   template <bool kBounds>
   HWY_NOINLINE void lookAgain(const LanePair& pair, Opened opened, double reach, Step& out)
   {
@@ -498,9 +499,8 @@ private:
       out.near &= ~separation_.byTriangles(facing, out.near, [this]() -> FlatRecords& { return flat(); });
   }
 
-  /// Whether the other side of a pair is a leaf much larger than what was opened, and none of its points is near that.
-  /// (What is not a leaf is opened before what is smaller. The children are asked about when their turn comes, if it
-  /// does.)
+  /// Whether the side of a pair that was not opened is a leaf much larger than the opened node, and has no point near
+  /// it. (Of two inner nodes, the larger one is opened. Children are compared so when their own turn comes.)
   bool isLeafApart(const LanePair& pair, Opened opened, double reach)
   {
     const bool leaf_is_a = opened == Opened::b;
@@ -522,7 +522,7 @@ private:
     return lane.space == kAboveVoxels ? nullptr : &side.storage.voxels[lane.space];
   }
 
-  /// Whether slabs can be compared: in voxels of the same unit, where points are no balls.
+  /// Whether slabs can be compared: both lanes are in voxels of one unit, and records are no balls.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {
     return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.areBalls() &&

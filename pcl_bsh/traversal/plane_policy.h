@@ -16,17 +16,17 @@ public:
   std::uint64_t decisionsInVain() const { return decisions_; }
 
   bool mayAsk() const { return decisions_ >= next_; }
-  bool begins() const { return decisions_ == next_; } ///< with the last decision
+  bool begins() const { return decisions_ == next_; } ///< whether the last decision was the first to pay for planes
 
-  /// Planes are others now, or they wait until so many decisions.
+  /// Lets planes wait until so many decisions.
   void wait(std::uint64_t decisions)
   {
     next_ = decisions;
     asked_in_vain_ = 0;
   }
 
-  /// Takes note of an answer. After some in vain, one after the other, as many decisions go without.
-  /// @param known whether it told anything @return it
+  /// Takes note of an answer. After 32 in vain, one after the other, planes wait until decisions are twice as many.
+  /// @param known whether the answer told anything @return known
   bool answered(bool known)
   {
     constexpr std::uint32_t most = 32;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is no nearer than one pair of records, as planes between its nearest places tell: exactly where bounds cannot,
-// of triangles that are all as near.
+// Proves records no nearer than one pair of records, by planes between the nearest places of the pair. The planes are
+// exact, so they decide where bounds cannot: between triangles that are all as near.
 #pragma once
 
 #include <pcl_bsh/query/record_distance.h>
@@ -14,8 +14,9 @@
 
 namespace pcl_bsh {
 
-/// Two planes through the nearest places of a pair, across the way between them. What is behind both, each on its outer
-/// side, is no nearer than the pair. Planes are for searches that decide one pair after the other in vain.
+/// Two planes through the nearest places of a pair, across the way between them. A record of a behind the first plane
+/// and a record of b behind the second are no nearer than the pair. Planes are for searches that decide one pair after
+/// the other in vain.
 class PlanesBetween {
 public:
   /// @param before decisions in vain before planes are worth their cost
@@ -36,8 +37,9 @@ public:
     looked_ = 0;
   }
 
-  /// Between the nearest places of another pair. There may be none. @param less than the pair's distance: nothing
-  /// counts as near that is surely farther than the distance less this @param known_of_b as BehindPlane has it
+  /// Lays planes between the nearest places of a pair. There may be no such planes.
+  /// @param less records surely farther apart than the pair's distance less this count as beyond the planes
+  /// @param known_of_b as BehindPlane takes it
   void lay(PointPair pair, double less = 0.0, std::uint32_t known_of_b = BehindPlane::kNoRecord)
   {
     behind_a_.reset(), behind_b_.reset();
@@ -51,13 +53,14 @@ public:
     less_ = less > 0x1p-400 ? (1.0 - off) * less * (*planes)[0].length() : 0.0;
   }
 
-  /// What of two children touches the planes; of none, where all of them is surely farther apart than the planes.
+  /// The records of two children that touch the planes; no record where the children are surely farther apart than
+  /// these.
   struct Touching {
     BehindPlane::Touching a, b;
   };
 
-  /// If nothing below two children is surely nearer than the pair: what touches a plane, so that it may be as near.
-  /// Nothing, too, where not enough decisions have paid for looking.
+  /// Returns the records that touch a plane, which may be as near as the pair, if all below two children is proved to
+  /// be no nearer. Returns nothing otherwise, and where too few decisions have paid for looking.
   std::optional<Touching> touching(const NodeChild& a, const NodeChild& b)
   {
     const std::uint64_t allowed = kLooksForDecision * policy.decisionsInVain();
@@ -68,8 +71,9 @@ public:
     return found;
   }
 
-  /// The same for `looks` at records at most; those made are taken from it. What is beyond one plane may be as far
-  /// behind the other: the sum counts. @pre areLaid()
+  /// Looks at no more than `looks` records, and subtracts those it looks at. A record beyond its plane may be paired
+  /// with one that is at least as far behind the other plane, because heights are added.
+  /// @pre areLaid()
   std::optional<Touching> touching(const NodeChild& a, const NodeChild& b, std::uint64_t& looks)
   {
     const auto height_a = behind_a_->heightAtMost(a, looks);
@@ -85,7 +89,7 @@ public:
   /// Whether there are planes.
   bool areLaid() const { return behind_a_.has_value(); }
 
-  /// Whether two records are no nearer than the pair, as the planes tell.
+  /// Whether the planes prove two records to be no nearer than the pair.
   bool areBehind(PointPair pair) const
   {
     return areBeyond(pair) || (areLaid() && behind_a_->sideOf(pair.a) <= 0 && behind_b_->sideOf(pair.b) <= 0);
@@ -113,14 +117,14 @@ private:
     return height_a && height_b && (*height_a + LongNumber(unit_of_b_) * *height_b).sign(sure) < 0;
   }
 
-  /// How many records each decision allows to be looked at: a look costs a hundredth of a decision.
+  /// Records that may be looked at for each decision. A look costs a hundredth of a decision.
   static constexpr std::uint64_t kLooksForDecision = 16;
 
   const RecordDistance& distance_;
   const SphereHierarchy::Storage& storage_a_;
   const SphereHierarchy::Storage& storage_b_;
   std::optional<BehindPlane> behind_a_, behind_b_;
-  double unit_of_b_ = 1.0; ///< of heights over b's plane, in that of a's
+  double unit_of_b_ = 1.0; ///< of heights over b's plane, in the unit of a's
   double less_ = 0.0;      ///< in the unit of a's plane
   std::uint64_t looked_ = 0;
 };

@@ -34,8 +34,8 @@ public:
     return of_pairs_.holds(distance, pair);
   }
 
-  /// The same of a pair whose squared float distance in a frame is known. Where pairs of points have reaches of their
-  /// own, it decides most of them.
+  /// Decides a pair whose squared float distance in a frame is known. The float distance decides most pairs of points
+  /// that have reaches of their own.
   bool collide(const RelativeFrame& frame, float squared, PointPair pair, Work& work) const
   {
     if (!of_pairs_.isOne() && !ofTriangles()) {
@@ -53,13 +53,13 @@ public:
   /// Whether the trees are of balls, in place of points.
   bool haveRadii() const { return a_.radii || b_.radii; }
 
-  /// Whether the balls are no more than what holds triangles: then their gaps are bounds from below, and no more.
+  /// Whether one cloud is of triangles. Gaps of balls are then lower bounds, and prove no collision.
   bool ofTriangles() const { return distance.ofTriangles(); }
 
   /// Whether gaps may be below 0.
   bool mayOverlap() const { return a_.areBalls() || b_.areBalls(); }
 
-  /// What balls nearer than this collide for certain: Reach::least, or nothing.
+  /// Returns the gap up to which balls collide for certain: Reach::least, or minus infinity beside triangles.
   double surelyOfBalls() const { return ofTriangles() ? -std::numeric_limits<double>::infinity() : reach.least; }
 
   const PairReach& ofPairs() const { return of_pairs_; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Children of a node of one cloud against a sphere of the other, where spheres say least: nodes too small for floats,
-// leaves large beside what they are compared with, and nodes far from each other for their size. What spheres and slabs
-// leave is asked here, by every walk, before it is opened or compared.
+// Compares children of a node of one cloud with a sphere of the other where spheres prune least. Nodes are too small
+// for floats, or far from each other for their size, or one is a leaf that is large beside the other. Walks of pairs
+// and of flags ask for this when spheres and slabs leave a pair, before they open or compare it.
 
 #if defined(PCL_BSH_TRAVERSAL_SEPARATION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_SEPARATION_INL_H_
@@ -26,11 +26,11 @@ struct Facing {
   Voxel* voxel; ///< that the node is in; null above the voxels
   const Node& node;
   SphereLanes spheres; ///< the node's children
-  Voxel* other_voxel;  ///< likewise
+  Voxel* other_voxel;  ///< that the other node is in; null above the voxels
   const Node& other_node;
   std::uint32_t other_lane;
   Point center; ///< of the other sphere
-  float radius; ///< its own, stretched
+  float radius; ///< of the other sphere, stretched
   double reach; ///< how far apart points are still of interest, less their radii, in the clouds' unit
 
   float radiusOf(std::uint32_t lane) const { return spheres.r[lane] * spheres.stretch; }
@@ -55,7 +55,7 @@ public:
   {
   }
 
-  /// Of nodes as small as the float error: by their points as given. @pre both are in voxels
+  /// Compares nodes as small as the float error, by their points as given. @pre both are in voxels
   HWY_NOINLINE std::uint32_t asGiven(const Facing& facing, std::uint32_t near) const
   {
     alignas(32) float squared[kLanes];
@@ -79,7 +79,7 @@ public:
     return apart;
   }
 
-  /// Of a leaf and a node that is none and much smaller: by the leaf's points.
+  /// Compares a leaf with a much smaller node that is no leaf, by the leaf's points.
   HWY_NOINLINE std::uint32_t byLeafPoints(const Facing& facing, std::uint32_t near) const
   {
     const bool other_is_leaf = facing.otherIsLeaf();
@@ -99,9 +99,10 @@ public:
     return apart;
   }
 
-  /// Of nodes far from each other for their size: by how far their points reach towards each other, and point by point
-  /// where one is a leaf of points much larger than the other. @param gap as spheresNear() gave it. @pre both are in
-  /// voxels, no balls. @param by_points whether to go so far
+  /// Compares nodes far from each other for their size, by their supports towards each other. Then compares a leaf of
+  /// points with a much smaller node, point by point.
+  /// @param gap as spheresNear() gave it @param by_points whether to compare point by point
+  /// @pre both are in voxels, and records are no balls
   HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near, bool by_points) const
   {
     std::uint32_t far = near & spheresFar(gap, facing.spheres.r, facing.spheres.stretch, facing.radius, kFarNodes);
@@ -127,8 +128,8 @@ public:
     return apart;
   }
 
-  /// Of leaves of triangles with balls larger than the other node: by the triangles.
-  /// @param flat b's triangles laid flat: returns FlatRecords&, called where they are needed
+  /// Compares leaves of triangles with nodes much smaller than their largest ball, by the triangles.
+  /// @param flat returns b's triangles laid flat as FlatRecords&; called where they are needed
   template <class Flat>
   HWY_NOINLINE std::uint32_t byTriangles(const Facing& facing, std::uint32_t near, const Flat& flat) const
   {
@@ -163,8 +164,8 @@ public:
   }
 
 private:
-  /// Those of some spheres of the other cloud that none of a leaf's triangles is near to, of those that are smaller
-  /// than its largest ball.
+  /// Returns the spheres of the other cloud that no triangle of a leaf is near to. Compares only spheres less than half
+  /// as large as the leaf's largest ball.
   template <class Flat>
   std::uint32_t apartFromTriangles(const LeafRange& leaf, bool leaf_is_a, const RelativeFrame& frame,
                                    const SphereLanes& spheres, std::uint32_t lanes, double reach,

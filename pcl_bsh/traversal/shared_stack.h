@@ -19,10 +19,10 @@
 
 namespace pcl_bsh {
 
-/// Steps of a search before it is shared: less than waking another thread costs.
+/// Steps of a search before it is shared. They cost less than waking another thread.
 inline constexpr std::uint32_t kStepsAlone = 512;
 
-/// Steps between two looks at what the other threads do.
+/// Steps on a piece before a thread gives it back.
 inline constexpr std::uint32_t kStepsOfPiece = 256;
 
 /// Tells a search when to pause: after some steps, or when what it looks for is of no use any more.
@@ -41,8 +41,8 @@ struct Pause {
 
 /// Pairs still to be visited, kept as a list of pieces in the order of the depth-first search. A thread takes pairs
 /// from the first piece that waits, visits them and what is below for some steps, and puts back what is left in their
-/// place. What one piece finds ends the search for all pieces behind it, and for none before it: the first find in
-/// depth-first order wins, whichever thread is the fastest, and the work up to it is that of one thread.
+/// place. A find ends the search of all pieces behind it, and of no piece before it. So the first find in depth-first
+/// order wins, whichever thread is the fastest, and the work up to it is that of one thread.
 template <class Pair>
 class SharedStack {
 public:
@@ -86,7 +86,7 @@ public:
   /// The first find.
   std::optional<PointPair> found() const { return pieces_.front().found; }
 
-  /// All work up to the first find. What was built behind it is counted, too, for it is there now.
+  /// Returns the work up to the first find. Adds voxels and volumes that were built behind it, because they stay built.
   Work work() const
   {
     Work all = pieces_.front().work;
@@ -97,7 +97,7 @@ private:
   using State = typename Piece::State;
   using Place = typename std::list<Piece>::iterator;
 
-  /// The next pairs to visit; waits while there are none but may be. @return null at the end
+  /// Returns the next pairs to visit; null at the end. Waits while other threads may still give pairs back.
   Piece* take()
   {
     std::unique_lock<std::mutex> lock(mutex_);

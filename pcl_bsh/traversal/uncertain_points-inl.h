@@ -15,20 +15,20 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// What pays for float sums of up to four roundings, relative to the sum of their terms: 4 u of 8 u.
+/// Margin for float sums of up to four roundings, relative to the sum of their terms: 4 u of its 8 u.
 inline constexpr float kSumMargin = kReachMargin;
 
-/// The same with nearestWithLengths(): the root of a squared distance, a product and a sum err by 6 u of their terms,
-/// the other point's length counts three times, and thresholds by 4 u; less than 23 u of the 32.
+/// Margin for distances of nearestWithLengths(). The root of a squared distance, a product and a sum err by 6 u of
+/// their terms. The other point's length counts three times, and thresholds err by 4 u: less than 23 u of its 32 u.
 inline constexpr float kLengthsMargin = 4 * kSumMargin;
 
-/// The reaches of a leaf's points: of distances plus or less the other points' uncertainties, as nearestWithLengths()
-/// has them.
+/// Thresholds of a leaf's points, for distances plus (longer) or less (shorter) the other points' uncertainties, as
+/// nearestWithLengths() returns them.
 struct UncertainPoints {
-  alignas(64) float sure[kLeafPoints];      ///< up to it, colliding for certain
-  alignas(64) float maybe[kLeafPoints];     ///< up to it, of shortened distances, it may be so
-  alignas(64) float sure_miss[kLeafPoints]; ///< beyond it, not for certain
-  alignas(64) float miss[kLeafPoints];      ///< beyond it, of shortened distances, free
+  alignas(64) float sure[kLeafPoints];      ///< longer ones up to it: collides for certain
+  alignas(64) float maybe[kLeafPoints];     ///< shorter ones up to it: may collide
+  alignas(64) float sure_miss[kLeafPoints]; ///< longer ones beyond it: not certain to collide
+  alignas(64) float miss[kLeafPoints];      ///< shorter ones beyond it: free
 
   UncertainPoints(const UncertainReach& reach, const float* own)
   {
@@ -43,7 +43,8 @@ struct UncertainPoints {
   }
 };
 
-/// The lengths of a leaf's points, sixteen to be read; zeros where they have none of their own.
+/// Returns the uncertainties of a leaf's points, sixteen to be read; zeros where points have no uncertainties of their
+/// own.
 inline const float* ownOf(const OwnUncertainties* own, const LeafRange& leaf)
 {
   alignas(64) static constexpr float kNone[kLeafPoints] = {};

@@ -11,31 +11,32 @@
 
 namespace pcl_bsh {
 
-/// Those of a built voxel; null where its points have none of their own.
+/// Returns the uncertainties of a built voxel; null where points have no uncertainties of their own.
 inline const OwnUncertainties* ownUncertainties(const SphereHierarchy::Storage& storage, std::size_t voxel)
 {
   Voxel& of = storage.voxels[voxel];
   return storage.view.uncertainties ? of.own_uncertainties.of(of, storage.view) : nullptr;
 }
 
-/// How near points of two voxels have to be, but for what is their own: bounds in the frame and the unit of b's voxel,
-/// rounded to the safe side. From `sure` and `sure_near`, the lengths that points of a pair have of their own are to be
-/// subtracted, to `maybe` and `near` they are to be added: rounded up where that is a claim, else down.
+/// Thresholds of distances between points of two voxels, without the points' own uncertainties. They are in the frame
+/// and the unit of b's voxel, rounded to the safe side. Own uncertainties are subtracted from the thresholds of certain
+/// collisions, and added to those of possible ones. `scale_up` or `scale_down` rounds them to the safe side, too.
 struct UncertainReach {
-  float sure;                 ///< whatever is so near collides for certain
-  float maybe;                ///< may collide
+  float sure;                 ///< points as near collide for certain
+  float maybe;                ///< points as near may collide
   float sure_near;            ///< nothing in spheres farther apart collides for certain
-  float near;                 ///< nor may it
-  float sure_miss, miss;      ///< the same of points
-  float scale_up, scale_down; ///< the clouds' unit in b's, with the poses' skew
-  float most_of_b = 0.0f;     ///< of the lengths that b's points have of their own, in its unit
-  float magnitude = 0.0f;     ///< of the terms of sums of these, b's own lengths included
+  float near;                 ///< nothing in spheres farther apart may collide
+  float sure_miss, miss;      ///< sure_near and near, for points
+  float scale_up, scale_down; ///< factors from the clouds' unit to b's, with the poses' skew
+  float most_of_b = 0.0f;     ///< greatest own uncertainty of b's points, in its unit
+  float magnitude = 0.0f;     ///< of the terms of sums of these, b's own uncertainties included
   const OwnUncertainties* of_b = nullptr;
 
-  /// @param error of distances of points, in b's unit; may be infinite. @param skew as RelativeFrame has it. @param
-  /// unit of b. @param least, most reach of all pairs, without what points have of their own, in the clouds' unit, as
-  /// `b_most`, the most that points of b have; `least` may be below 0. @param of_spheres their reach where none of
-  /// this can be known
+  /// @param error of distances of points, in b's unit; may be infinite
+  /// @param skew as RelativeFrame has it @param unit of b
+  /// @param least, most reach of all pairs, without own uncertainties, in the clouds' unit; `least` may be below 0
+  /// @param b_most greatest own uncertainty of b's points, in the clouds' unit
+  /// @param of_spheres reach of spheres where a length or a unit is out of the range of floats
   UncertainReach(double error, double skew, double unit, double least, double most, double b_most, float of_spheres)
   : sure(-kNever),
     maybe(-kNever),

@@ -18,27 +18,27 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// What a visitor of pairs wants next.
+/// A visitor's answer: go on, leave the pair out, or end the walk.
 enum class Next : std::uint8_t { go_on, prune, stop };
 
-/// What visitors of pairs do, unless they say otherwise.
+/// Defaults of visitors of pairs.
 struct PairVisitor {
   explicit PairVisitor(const Watch& by = {}) : watch(by) {}
 
   static constexpr bool kBounds = false; ///< whether steps tell how far apart children are
 
-  const Watch watch; ///< who watches the walk, and may end it
+  const Watch watch; ///< observes the walk, and may cancel it
 
-  /// Before a pair is looked at: whether it is of no interest any more, or the walk is to stop with it on the stack.
+  /// Called before a pair is expanded. prune: it is of no interest any more; stop: the walk ends with it on the stack.
   static Next visit(const LanePair&) { return Next::go_on; }
 
-  /// Whether to open a pair that is not one of leaves.
+  /// Whether to open a pair that is not a pair of leaves.
   static bool opens(const LanePair&, Opened) { return true; }
 
-  /// After the children of one side of a pair were tested: go on with them, or stop.
+  /// Called after the children of one side of a pair were tested: go on with them, or stop.
   static Next opened(const LanePair&, Opened, const PairWalk::Step&) { return Next::go_on; }
 
-  /// Whether a child that is near has to be visited. It may change the child's key, by which these are ordered.
+  /// Whether a child that is near has to be visited. May change the child's key, which orders the children.
   static bool keep(LanePair&, Opened, const PairWalk::Step&, std::uint32_t) { return true; }
 };
 

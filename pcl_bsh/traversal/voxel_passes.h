@@ -25,11 +25,11 @@ struct PassScratch {
 };
 
 /// @tparam Place a voxel with something undecided
-/// @tparam Part what one walk through it came to: its `work`, and whether something was left `undecided`
+/// @tparam Part the result of one walk through it: its `work`, and whether something was left `undecided`
 template <class Place, class Part>
 class VoxelPasses {
 public:
-  /// @param work receives that of all walks
+  /// @param work sums the work of all walks
   /// @param progress counts them
   VoxelPasses(unsigned threads, Work& work, Progress& progress) : threads_(threads), work_(work), progress_(progress)
   {
@@ -42,7 +42,8 @@ public:
   /// Sphere tests of all passes so far.
   std::uint64_t spent() const { return spent_; }
 
-  /// All passes of a rule. @param tests for all of them, those already spent among them
+  /// Makes all passes of a rule.
+  /// @param tests budget of all of them, tests already spent included
   /// @param walk Part(rule, place), from several threads at once for different places
   /// @throws Cancelled
   template <class Walk>
@@ -71,7 +72,7 @@ private:
     if (rule.node_pairs == StopRule::kNever) {
       parallelFor(places.size(), threads_, [&](std::size_t i) { parts_[i] = watched(rule, places[i]); });
     }
-    else { // one after another: what one leaves is the next one's
+    else { // one after another: the next one gets the tests that one leaves
       StopRule own = rule;
       for (std::size_t i = 0; i < places.size(); ++i) {
         parts_[i] = watched(own, places[i]);
@@ -99,15 +100,15 @@ public:
   std::vector<Place>& places = (*scratch_).places; ///< to be set before the first pass
 };
 
-/// Both clouds share the budget: each has half of it, and what one leaves is the other's.
+/// Both clouds share the budget: a gets half of it, b the rest; a timed rule then lets a go on.
 /// @tparam Side has spent() and passes(rule, tests), as VoxelPasses
 template <class Side>
 void passBothWithin(Side& a, Side& b, const StopRule& rule)
 {
   const StopRule half = rule.part(0.5);
   a.passes(half, half.node_pairs);
-  // Of a count of tests, b gets more than half (and one) only when a is done, for else a has spent its half: then a is
-  // done with any larger count as well, and whatever a count decides, a larger one decides.
+  // A count of tests gives b more than half (and one) only when a is done; otherwise a has spent its half. Then a is
+  // done with any larger count, too. So a larger count decides all that a smaller one decides.
   const std::uint64_t left = rule.node_pairs - std::min(rule.node_pairs, a.spent());
   b.passes(rule, std::max(half.node_pairs, left));
   if (rule.isTimed()) a.passes(rule, StopRule::kNever);
