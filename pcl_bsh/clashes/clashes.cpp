@@ -6,6 +6,7 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/clashes/near_boxes.h>
 #include <pcl_bsh/clusters/clusters.h>
+#include <pcl_bsh/trajectory/told_distance.h>
 
 #include <algorithm>
 #include <array>
@@ -75,9 +76,8 @@ void add(Clash& clash, std::uint32_t record, const PointsView& scan, const Traje
     clash.high[k] = std::max(clash.high[k], extent.high[k] + 0.0);
   }
   clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
-  double distance = static_cast<double>(found.distance[record]);
+  const double distance = toldDistance(found, record);
   if (!found.interval.empty() && !std::isnan(found.interval[record].lower)) {
-    distance = std::clamp(distance, found.interval[record].lower, found.interval[record].upper); // it was rounded
     clash.interval.lower = std::fmin(clash.interval.lower, found.interval[record].lower);
     clash.interval.upper = std::fmin(clash.interval.upper, found.interval[record].upper);
   }

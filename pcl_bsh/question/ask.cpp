@@ -13,6 +13,7 @@
 #include <pcl_bsh/question/solids.h>
 #include <pcl_bsh/question/unseen.h>
 #include <pcl_bsh/question/warnings/hollow.h>
+#include <pcl_bsh/trajectory/told_distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,9 +64,7 @@ DistanceResult closestOf(const TrajectoryResult& found)
 {
   DistanceResult closest;
   for (std::size_t i = 0; i < found.distance.size(); ++i) {
-    double distance = static_cast<double>(found.distance[i]);
-    if (!found.interval.empty() && !std::isnan(found.interval[i].lower))
-      distance = std::clamp(distance, found.interval[i].lower, found.interval[i].upper); // it was rounded
+    const double distance = toldDistance(found, i);
     if (!(distance < closest.distance)) continue;
     closest.distance = distance;
     closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};

@@ -2,6 +2,7 @@
 #include <pcl_bsh/question/solids.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/held.h>
 #include <pcl_bsh/question/options.h>
@@ -300,7 +301,8 @@ TEST_F(SolidsTest, AListTellsTheDepthAndItsPlace)
   EXPECT_EQ(found.collisions.distance[0], static_cast<float>(-(1.0 - 0.8)));
   EXPECT_THAT(found.collisions.closest_pose, ElementsAre(0, -1));
   EXPECT_THAT(found.collisions.closest_point[0], testing::AnyOf(2u, 3u)); // its top
-  EXPECT_NEAR(found.closest.distance, -(1.0 - 0.8), 1e-16);               // not only to a float
+  EXPECT_EQ(found.closest.distance, -(1.0 - 0.8));                        // not only to a float
+  EXPECT_EQ(findClashes(viewOf(points[0].data(), points.size()), found.collisions, 0.5).at(0).distance, -(1.0 - 0.8));
   EXPECT_EQ(*found.closest.pair, (PointPair{0, found.collisions.closest_point[0]}));
   EXPECT_LE(found.collisions.interval[0].lower, -(1.0 - 0.8));
   EXPECT_GE(found.collisions.interval[0].upper, -(1.0 - 0.8));

@@ -25,7 +25,8 @@ DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDis
                     cloud.pose, found,  cloud.hierarchy().size(),
                     {},         0.0,    {}};
   side.statistics = statisticsOf(found.distance);
-  side.beyond = beyond.value_or(side.statistics.percentiles[3]);
+  const double usual = side.statistics.percentiles[3];
+  side.beyond = beyond.value_or(usual < 0.0 ? 0.0 : usual);       // what is inside of a solid is not far
   const double far = std::isnan(side.beyond) ? 0.0 : side.beyond; // then every point is farther than all that was asked
   side.places = findFarPlaces(side.cloud, found, far, clusterDistanceFor(0.0, spacingOf(SphereHierarchy(points))));
   return side;

@@ -21,7 +21,7 @@ struct DistanceQuestion {
   std::string input, obstacle; ///< file names
   std::string unit;            ///< of the clouds' lengths; empty: not known
   PointDistancesRequest request;
-  std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points
+  std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points, or 0
   const Obstacle* surface = nullptr;  ///< the obstacle, where it is one: its records are triangles
   bool solid = false;                 ///< it counts with what it encloses
   std::string coordinate_system = {}; ///< of the input, where its file names one; else empty

@@ -45,7 +45,8 @@ void requireNoMoreLines(const HeaderCount& count, TextCursor& text)
   std::uint64_t there = count.told + 1;
   while (text.nextLine()) ++there;
   first.fail("is one more " + count.one + " than the header promises",
-             "mend the count in its header, for there are " + namedCount(count, there) + ", or export the file again");
+             std::string("mend the count in its header, for there") + verbOf(there) + ' ' + namedCount(count, there) +
+                 ", or export the file again");
 }
 
 void requireNoMoreBytes(const HeaderCount& count, std::uint64_t left, std::uint64_t record, bool exact)

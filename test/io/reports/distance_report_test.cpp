@@ -104,6 +104,23 @@ TEST_F(DistanceReports, TellWhatWasAskedForOtherThanUsual)
   EXPECT_THAT(page(), HasSubstr("tolerance=0.01"));
 }
 
+/// As of what a solid holds.
+TEST_F(DistanceReports, OfNegativeDistancesHaveNoFarPlaces)
+{
+  const SphereHierarchy a(viewOf(high.data(), high.size() / 3)), b(viewOf(low.data(), low.size() / 3));
+  SymmetricDistances found = symmetricDistances({a}, {b}, question.request);
+  for (const std::size_t outside : {0u, 1u, 5u}) { // of a hundred
+    for (std::size_t i = 0; i < found.a.distance.size(); ++i)
+      found.a.distance[i] = i < outside ? 3.0 : -0.01 * static_cast<double>(i);
+    const DistanceReport report = reportOf(question, {a}, {b}, found);
+    const Json to = distanceJson(report)["input_to_obstacle"];
+    EXPECT_LT(to["median"], 0.0);
+    EXPECT_EQ(to["places_beyond"], 0.0);
+    EXPECT_EQ(to["places"].empty(), outside == 0) << outside;
+    EXPECT_THAT(distancePage(report), HasSubstr(outside == 0 ? "No point is farther than 0" : "farther than 0"));
+  }
+}
+
 TEST_F(DistanceReports, TellWhatHasNoDistance)
 {
   question.request.max_distance = 1;

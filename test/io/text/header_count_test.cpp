@@ -35,6 +35,14 @@ TEST(HeaderCount, NoLineMayFollow)
     EXPECT_STREQ(error.what(), "line 2 is one more point than the header promises");
     EXPECT_EQ(error.remedy(), "mend the count in its header, for there are 4 points, or export the file again");
   }
+  TextCursor one("1 2 3");
+  try {
+    requireNoMoreLines({0}, one);
+    ADD_FAILURE() << "was taken";
+  }
+  catch (const FormatError& error) {
+    EXPECT_EQ(error.remedy(), "mend the count in its header, for there is 1 point, or export the file again");
+  }
 }
 
 TEST(HeaderCount, NoRecordMayFollow)

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one number that is told of a record's distance along a path.
+#pragma once
+
+#include <pcl_bsh/trajectory/trajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace pcl_bsh {
+
+/// The result has the distance as a float, and an interval of what a solid holds. That of a point is a double and its
+/// two neighbours: then this is the double. Of others it is the float, or the interval's end next to it.
+inline double toldDistance(const TrajectoryResult& found, std::size_t record)
+{
+  const auto rounded = static_cast<double>(found.distance[record]);
+  if (found.interval.empty() || std::isnan(found.interval[record].lower)) return rounded;
+  const auto [lower, upper] = found.interval[record];
+  const double next = std::nextafter(lower, upper);
+  return std::nextafter(next, upper) == upper ? next : std::clamp(rounded, lower, upper);
+}
+
+} // namespace pcl_bsh
