@@ -10,8 +10,9 @@
 
 namespace pcl_bsh {
 
-/// The result has the distance as a float, and an interval of what a solid holds. That of a point is a double and its
-/// two neighbours: then this is the double. Of others it is the float, or the interval's end next to it.
+/// The result has the distance as a float, and an interval where a solid encloses the record. A point's interval is a
+/// double with its two neighbours: this returns that double. It returns the float for other records, or the end of the
+/// interval next to it.
 inline double toldDistance(const TrajectoryResult& found, std::size_t record)
 {
   const auto rounded = static_cast<double>(found.distance[record]);

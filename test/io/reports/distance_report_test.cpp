@@ -104,7 +104,7 @@ TEST_F(DistanceReports, TellWhatWasAskedForOtherThanUsual)
   EXPECT_THAT(page(), HasSubstr("tolerance=0.01"));
 }
 
-/// As of what a solid holds.
+/// A solid gives its records negative distances.
 TEST_F(DistanceReports, OfNegativeDistancesHaveNoFarPlaces)
 {
   const SphereHierarchy a(viewOf(high.data(), high.size() / 3)), b(viewOf(low.data(), low.size() / 3));
