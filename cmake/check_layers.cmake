@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-set(without_pcl "^pcl_bsh/(base|simd|geometry|hierarchy|query|traversal|flags|pairs|distances|neighbors|clusters|seen|solid|depths|manifold|trajectory|brute_force|roadmap|robot|scene|track|clashes|question|certify|physics)$")
+set(without_pcl "^pcl_bsh/(base|simd|geometry|hierarchy|query|traversal|flags|pairs|distances|neighbors|clusters|seen|solid|depths|manifold|trajectory|brute_force|many_poses|robot|scene|track|clashes|question|certify|physics)$")
 set(never_without_pcl "^(pcl/|pcl_bsh/io/|pcl_bsh/collide\\.h$|iostream$|fstream$)")
 set(with_vtk "^(pcl_bsh/vtk|pcl_bsh/vtk_filters|pcl_bsh/tools/viewer)$")
 set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers

@@ -16,11 +16,11 @@
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/contacts.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/seen/seen_space.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/solid/labels.h>

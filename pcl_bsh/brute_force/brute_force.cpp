@@ -65,7 +65,7 @@ void guardDensity(const Placed& a, const Placed& b, const FlagsRequest& request,
 {
   const RecordDistance distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose);
   const PointsView &of_a = a.hierarchy().view(), &of_b = b.hierarchy().view();
-  const PairReach reach(of_a, of_b, request.clearance, Places::covered, {request.spacings_of_b, of_b.count});
+  const PairReach reach(of_a, of_b, request.clearance, MeantPlaces::covered, {request.spacings_of_b, of_b.count});
   for (const FinitePoint& p : finitePoints(of_a))
     for (const FinitePoint& q : finitePoints(of_b))
       if (flags[p.record] == Verdict::free && reach.holds(distance, {p.record, q.record}))
@@ -85,17 +85,17 @@ FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest&
     flags_b[q.record] = graver(flags_b[q.record], verdict);
     return true;
   });
-  const auto asked = [&](Side side) {
+  const auto asked = [&](Flagged side) {
     return (static_cast<unsigned>(request.flagged) & static_cast<unsigned>(side)) != 0;
   };
-  if (asked(Side::a)) {
+  if (asked(Flagged::a)) {
     if (request.spacings_of_b) guardDensity(a, b, request, flags_a);
     result.sparse_a = countOf(flags_a, Verdict::sparse);
     result.colliding_a = countOf(flags_a, Verdict::colliding);
     result.undecided_a = countOf(flags_a, Verdict::undecided);
     result.a = std::move(flags_a);
   }
-  if (asked(Side::b)) {
+  if (asked(Flagged::b)) {
     result.colliding_b = countOf(flags_b, Verdict::colliding);
     result.undecided_b = countOf(flags_b, Verdict::undecided);
     result.b = std::move(flags_b);

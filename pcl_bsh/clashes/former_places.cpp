@@ -34,8 +34,8 @@ double reachOf(const std::vector<Clash*>& clashes, double clearance, double clus
 
 } // namespace
 
-struct FormerPlaces::Places {
-  Places(std::vector<Clash>& of, double clearance, double cluster_distance)
+struct FormerPlaces::Impl {
+  Impl(std::vector<Clash>& of, double clearance, double cluster_distance)
   : clashes(resolvedOf(of)),
     reach(reachOf(clashes, clearance, cluster_distance)),
     not_scanned(boxesOf(clashes)),
@@ -57,7 +57,7 @@ struct FormerPlaces::Places {
 };
 
 FormerPlaces::FormerPlaces(std::vector<Clash>& clashes, double clearance, double cluster_distance)
-: places_(std::make_unique<Places>(clashes, clearance, cluster_distance))
+: impl_(std::make_unique<Impl>(clashes, clearance, cluster_distance))
 {
 }
 
@@ -65,13 +65,13 @@ FormerPlaces::~FormerPlaces() = default;
 
 bool FormerPlaces::empty() const
 {
-  return places_->clashes.empty();
+  return impl_->clashes.empty();
 }
 
 /// Calls near(i) for each place that is not visited yet and that the model comes near to.
 template <typename Near>
-void FormerPlaces::Places::findNear(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
-                                    const TrajectoryRequest& motion, const Near& near) const
+void FormerPlaces::Impl::findNear(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
+                                  const TrajectoryRequest& motion, const Near& near) const
 {
   std::vector<std::size_t> left;
   std::vector<Point3> at;
@@ -95,7 +95,7 @@ void FormerPlaces::Places::findNear(const SphereHierarchy& model, const std::vec
 void FormerPlaces::visit(const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses,
                          const TrajectoryRequest& motion)
 {
-  places_->findNear(model, poses, motion, [&](std::size_t i) { places_->is_visited[i] = true; });
+  impl_->findNear(model, poses, motion, [&](std::size_t i) { impl_->is_visited[i] = true; });
 }
 
 bool FormerPlaces::mayVisit(const Extent& box, const std::vector<Eigen::Isometry3d>& poses,
@@ -106,17 +106,17 @@ bool FormerPlaces::mayVisit(const Extent& box, const std::vector<Eigen::Isometry
   PointsView ball = viewOf(about.center.data(), 1);
   ball.radii = &radius;
   bool may = false;
-  places_->findNear(SphereHierarchy(ball), poses, motion, [&](std::size_t) { may = true; });
+  impl_->findNear(SphereHierarchy(ball), poses, motion, [&](std::size_t) { may = true; });
   return may;
 }
 
 void FormerPlaces::scan(const PointsView& points)
 {
-  for (std::size_t i = 0; i < points.size() && places_->not_scanned.left() > 0; ++i) {
+  for (std::size_t i = 0; i < points.size() && impl_->not_scanned.left() > 0; ++i) {
     const std::uint32_t record = points.record(i);
     if (!isFinite(points.point(record))) continue;
-    places_->not_scanned.visitNear(extentOf(points, record), places_->reach, [&](std::size_t place) {
-      places_->is_scanned[place] = true;
+    impl_->not_scanned.visitNear(extentOf(points, record), impl_->reach, [&](std::size_t place) {
+      impl_->is_scanned[place] = true;
       return true;
     });
   }
@@ -124,9 +124,9 @@ void FormerPlaces::scan(const PointsView& points)
 
 void FormerPlaces::unsee(const Extent& box)
 {
-  if (places_->not_unseen.left() == 0) return;
-  places_->not_unseen.visitNear(box, places_->reach, [&](std::size_t place) {
-    places_->is_unseen[place] = true;
+  if (impl_->not_unseen.left() == 0) return;
+  impl_->not_unseen.visitNear(box, impl_->reach, [&](std::size_t place) {
+    impl_->is_unseen[place] = true;
     return true;
   });
 }
@@ -134,7 +134,7 @@ void FormerPlaces::unsee(const Extent& box)
 bool FormerPlaces::mayScan(const Extent& box) const
 {
   bool near = false;
-  places_->not_scanned.visitNear(box, places_->reach, [&](std::size_t) {
+  impl_->not_scanned.visitNear(box, impl_->reach, [&](std::size_t) {
     near = true;
     return false;
   });
@@ -143,13 +143,13 @@ bool FormerPlaces::mayScan(const Extent& box) const
 
 void FormerPlaces::judge()
 {
-  for (std::size_t i = 0; i < places_->clashes.size(); ++i) {
-    if (!places_->is_visited[i])
-      places_->clashes[i]->status = ClashStatus::not_visited;
-    else if (places_->is_unseen[i])
-      places_->clashes[i]->status = ClashStatus::unseen;
-    else if (!places_->is_scanned[i])
-      places_->clashes[i]->status = ClashStatus::not_scanned;
+  for (std::size_t i = 0; i < impl_->clashes.size(); ++i) {
+    if (!impl_->is_visited[i])
+      impl_->clashes[i]->status = ClashStatus::not_visited;
+    else if (impl_->is_unseen[i])
+      impl_->clashes[i]->status = ClashStatus::unseen;
+    else if (!impl_->is_scanned[i])
+      impl_->clashes[i]->status = ClashStatus::not_scanned;
   }
 }
 

@@ -55,8 +55,8 @@ public:
   void judge();
 
 private:
-  struct Places;
-  std::unique_ptr<Places> places_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 } // namespace pcl_bsh

@@ -20,21 +20,21 @@ Interval about(double rounded)
   return {std::nextafter(rounded, 0.0), std::nextafter(rounded, std::numeric_limits<double>::infinity())};
 }
 
-/// Depths of points and balls. A ball is held where its middle is.
-std::vector<Depth> depthsOfPoints(const DeepSolid& solid, const Placed& content,
+/// Depths of points and balls. A ball is enclosed where its middle is.
+std::vector<Depth> depthsOfPoints(const DeepSolid& solid, const Placed& queried,
                                   const std::vector<std::uint32_t>& records, unsigned threads, Work& work)
 {
   std::vector<Depth> depths;
   if (records.empty()) return depths;
   PointDistancesRequest request;
   request.threads = threads;
-  const PointDistances found = pointDistances(content, records, {solid.surface, solid.pose}, request);
+  const PointDistances found = pointDistances(queried, records, {solid.surface, solid.pose}, request);
   work += found.work;
   const DefaultFloatEnvironment environment;
-  const PointsView& view = content.hierarchy().view();
+  const PointsView& view = queried.hierarchy().view();
   std::vector<float> radii;
   const PointsView below = sunk(view, radii);
-  const RecordDistance exact(below, content.pose, solid.surface.view(), solid.pose);
+  const RecordDistance exact(below, queried.pose, solid.surface.view(), solid.pose);
   for (const std::uint32_t record : records) {
     const std::uint32_t nearest = found.closest_point[record];
     if (std::isnan(found.distance[record])) continue;
@@ -55,36 +55,37 @@ PointsView sunk(PointsView balls, std::vector<float>& radii)
   return balls;
 }
 
-std::vector<Depth> depthsOf(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
-                            const std::vector<std::uint32_t>& records, unsigned threads, bool deepest, Work& work)
+std::vector<Depth> depthsOf(const DeepSolid& solid, const QueriedRecords& queried,
+                            const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& records,
+                            unsigned threads, bool deepest, Work& work)
 {
-  if (content.isSurface()) return depthsOfTriangles(solid, content, T_world_content, records, threads, deepest, work);
-  return depthsOfPoints(solid, {content.thing(), T_world_content}, records, threads, work);
+  if (queried.isSurface()) return depthsOfTriangles(solid, queried, T_world_queried, records, threads, deepest, work);
+  return depthsOfPoints(solid, {queried.thing(), T_world_queried}, records, threads, work);
 }
 
-std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const Content& content,
-                                     const Eigen::Isometry3d& T_world_content, unsigned threads, Work& work)
+std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const QueriedRecords& queried,
+                                     const Eigen::Isometry3d& T_world_queried, unsigned threads, Work& work)
 {
-  std::vector<std::uint32_t> held = heldBy({solid.solid, solid.pose}, content, T_world_content, threads, &work);
-  if (!content.isSurface()) return held;
+  std::vector<std::uint32_t> enclosed = enclosedBy({solid.solid, solid.pose}, queried, T_world_queried, threads, &work);
+  if (!queried.isSurface()) return enclosed;
   PointDistancesRequest touching;
   touching.max_distance = 0.0;
   touching.threads = threads;
-  const PointDistances met = pointDistances({content.thing(), T_world_content}, {solid.surface, solid.pose}, touching);
+  const PointDistances met = pointDistances({queried.thing(), T_world_queried}, {solid.surface, solid.pose}, touching);
   work += met.work;
   std::vector<std::uint32_t> meeting, all;
   for (std::uint32_t i = 0; i < met.distance.size(); ++i)
     if (!std::isnan(met.distance[i])) meeting.push_back(i);
-  std::set_union(held.begin(), held.end(), meeting.begin(), meeting.end(), std::back_inserter(all));
+  std::set_union(enclosed.begin(), enclosed.end(), meeting.begin(), meeting.end(), std::back_inserter(all));
   return all;
 }
 
-DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
+DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
                       unsigned threads, bool deepest)
 {
   DepthsResult result;
-  const std::vector<std::uint32_t> records = recordsIn(solid, content, T_world_content, threads, result.work);
-  result.depths = depthsOf(solid, content, T_world_content, records, threads, deepest, result.work);
+  const std::vector<std::uint32_t> records = recordsIn(solid, queried, T_world_queried, threads, result.work);
+  result.depths = depthsOf(solid, queried, T_world_queried, records, threads, deepest, result.work);
   return result;
 }
 
@@ -96,10 +97,10 @@ const Depth* deepestOf(const std::vector<Depth>& depths)
   return deepest;
 }
 
-void deepen(DistanceResult& closest, const DeepSolid& solid, bool solid_is_b, const Content& content,
-            const Eigen::Isometry3d& T_world_content, unsigned threads)
+void deepen(DistanceResult& closest, const DeepSolid& solid, bool solid_is_b, const QueriedRecords& queried,
+            const Eigen::Isometry3d& T_world_queried, unsigned threads)
 {
-  const DepthsResult found = depthsIn(solid, content, T_world_content, threads, true);
+  const DepthsResult found = depthsIn(solid, queried, T_world_queried, threads, true);
   closest.work += found.work;
   double upper = 0.0;
   for (const Depth& depth : found.depths) upper = std::max(upper, depth.depth.upper);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How deep is what a solid holds?
 //
-//   const Content robot(robot_hierarchy);
+//   const QueriedRecords robot(robot_hierarchy);
 //   DepthsResult found = depthsIn({tank_solid, tank_hierarchy, T_world_tank}, robot, T_world_robot);
 //   found.depths[0].depth.upper // of the first record that the tank holds, or that meets its surface
 //
 // The depth of a point is its distance to the surface. The depth of a triangle is the greatest distance to the surface
-// of its places that are inside. The depth of a ball whose middle is held is that of its middle and its radius: how far
-// the ball has to move at least until none of it is inside. So it goes on from the distance of a ball outside, which is
-// that of its middle less the radius.
+// of its places that are inside. The depth of a ball whose middle is enclosed is that of its middle and its radius: how
+// far the ball has to move at least until none of it is inside. So it goes on from the distance of a ball outside,
+// which is that of its middle less the radius.
 #pragma once
 
 #include <pcl_bsh/pairs/closest_pair.h>
@@ -47,16 +47,16 @@ struct DepthsResult {
 /// pieces as the query allows, so that its interval is wider.
 inline constexpr double kDepthShare = 0x1p-10;
 
-/// Records, ascending, with a place inside or on the surface: points that are held, triangles that are held or meet the
-/// surface. @throws std::invalid_argument when a pose is not rigid
-std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const Content& content,
-                                     const Eigen::Isometry3d& T_world_content, unsigned threads, Work& work);
+/// Records, ascending, with a place inside or on the surface: points that are enclosed, triangles that are enclosed or
+/// meet the surface. @throws std::invalid_argument when a pose is not rigid
+std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const QueriedRecords& queried,
+                                     const Eigen::Isometry3d& T_world_queried, unsigned threads, Work& work);
 
 /// The depth of each record of recordsIn().
 /// @param deepest of others than the deepest, no more is found out than that they are not deeper: their intervals hold
 ///   their depths all the same
 /// @param threads 0: all of the machine's. @throws std::invalid_argument when a pose is not rigid
-DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
+DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
                       unsigned threads = 1, bool deepest = false);
 
 /// The greatest depth; of several equal ones, that of the first record. Nothing where no record is deeper than 0.
@@ -64,13 +64,14 @@ const Depth* deepestOf(const std::vector<Depth>& depths);
 
 /// The smallest distance of the two becomes the depth of the deepest record, less than 0, where the solid holds
 /// anything; of several the first. Its interval holds the depths of all.
-/// @param solid_is_b whether pairs are (content's record, solid's triangle), or the other way round
-void deepen(DistanceResult& closest, const DeepSolid& solid, bool solid_is_b, const Content& content,
-            const Eigen::Isometry3d& T_world_content, unsigned threads = 1);
+/// @param solid_is_b whether pairs are (queried record, solid's triangle), or the other way round
+void deepen(DistanceResult& closest, const DeepSolid& solid, bool solid_is_b, const QueriedRecords& queried,
+            const Eigen::Isometry3d& T_world_queried, unsigned threads = 1);
 
 /// As depthsIn(), of some of the records that recordsIn() has. @param records ascending
-std::vector<Depth> depthsOf(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
-                            const std::vector<std::uint32_t>& records, unsigned threads, bool deepest, Work& work);
+std::vector<Depth> depthsOf(const DeepSolid& solid, const QueriedRecords& queried,
+                            const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& records,
+                            unsigned threads, bool deepest, Work& work);
 
 /// A view of the same points of which each radius is less than 0 by as much as it was greater: distances of these are
 /// depths. For RecordDistance alone. @param radii are written, and must last as long as the view

@@ -22,12 +22,12 @@ constexpr double kWayStretch = 1.0 + 4e-6; ///< what poses may lengthen a way by
 
 class Along {
 public:
-  Along(const DeepSolid& solid, const ContentPart& part, const DepthPath& path, Work& work)
+  Along(const DeepSolid& solid, const QueriedPart& part, const DepthPath& path, Work& work)
   : solid_(solid),
     part_(part),
     path_(path),
     work_(work),
-    count_(static_cast<std::uint32_t>(part.content().thing().view().count)),
+    count_(static_cast<std::uint32_t>(part.queried().thing().view().count)),
     best_(count_),
     last_(count_),
     beyond_(count_, 0.0)
@@ -39,9 +39,9 @@ public:
     if (at_poses) at_poses->assign(path_.poses.size(), 0.0);
     for (std::uint32_t k = 0; k < path_.poses.size(); ++k) {
       const auto [at, pose] = placed(path_.poses[k]);
-      std::vector<std::uint32_t> records = recordsIn(at, part_.content(), pose, path_.threads, work_);
+      std::vector<std::uint32_t> records = recordsIn(at, part_.queried(), pose, path_.threads, work_);
       if (!at_poses) leaveOutNoDeeper(records, at.pose, pose);
-      const std::vector<Depth> depths = depthsOf(at, part_.content(), pose, records, path_.threads, false, work_);
+      const std::vector<Depth> depths = depthsOf(at, part_.queried(), pose, records, path_.threads, false, work_);
       for (const Depth& depth : depths) {
         note(depth, k);
         if (!at_poses) last_[depth.record] = {depth.depth.upper, seenPlaces(depth.record, at.pose, pose)};
@@ -91,9 +91,9 @@ private:
   }
 
   std::vector<Point3> seenPlaces(std::uint32_t record, const Eigen::Isometry3d& of_solid,
-                                 const Eigen::Isometry3d& of_content) const
+                                 const Eigen::Isometry3d& of_queried) const
   {
-    const Eigen::Isometry3d see(of_solid.matrix().inverse() * of_content.matrix());
+    const Eigen::Isometry3d see(of_solid.matrix().inverse() * of_queried.matrix());
     std::vector<Point3> places = part_.placesOf(record);
     for (Point3& place : places) {
       const Eigen::Vector3d at = see * Eigen::Vector3d(place[0], place[1], place[2]);
@@ -103,13 +103,13 @@ private:
   }
 
   void leaveOutNoDeeper(std::vector<std::uint32_t>& records, const Eigen::Isometry3d& of_solid,
-                        const Eigen::Isometry3d& of_content) const
+                        const Eigen::Isometry3d& of_queried) const
   {
-    const double size = of_solid.translation().cwiseAbs().maxCoeff() + of_content.translation().cwiseAbs().maxCoeff();
+    const double size = of_solid.translation().cwiseAbs().maxCoeff() + of_queried.translation().cwiseAbs().maxCoeff();
     const auto is_no_deeper = [&](std::uint32_t record) {
       const Last& last = last_[record];
       if (last.places.empty()) return false;
-      const std::vector<Point3> now = seenPlaces(record, of_solid, of_content), given = part_.placesOf(record);
+      const std::vector<Point3> now = seenPlaces(record, of_solid, of_queried), given = part_.placesOf(record);
       double way = 0.0, largest = size;
       for (std::size_t i = 0; i < now.size(); ++i) {
         const Point3 &p = now[i], &q = last.places[i];
@@ -123,7 +123,7 @@ private:
   }
 
   /// A ball's radius: its depth is that of its middle, plus the radius.
-  double radiusOf(std::uint32_t record) const { return part_.content().thing().view().ownRadius(record); }
+  double radiusOf(std::uint32_t record) const { return part_.queried().thing().view().ownRadius(record); }
 
   /// Depths at most of some records at an instant; of a place outside, less than 0. Notes records inside.
   std::map<std::uint32_t, double> depthsAt(const std::vector<std::uint32_t>& records, const Eigen::Isometry3d& at,
@@ -131,29 +131,31 @@ private:
   {
     std::map<std::uint32_t, double> depths;
     const std::vector<std::int32_t> subset(records.begin(), records.end());
-    PointsView view = part_.content().thing().view();
+    PointsView view = part_.queried().thing().view();
     view.restrictTo(subset.data(), subset.size());
     const SphereHierarchy some(view);
-    const Content content(some);
-    const std::vector<double> found = depthsOfAll(content, at, pose, std::numeric_limits<double>::infinity());
+    const QueriedRecords queried(some);
+    const std::vector<double> found = depthsOfAll(queried, at, pose, std::numeric_limits<double>::infinity());
     for (const std::uint32_t record : records) depths[record] = found[record];
     return depths;
   }
 
-  /// Depths at most of all records of a content, by their numbers; minus infinity if farther outside than `reach`.
-  std::vector<double> depthsOfAll(const Content& content, const Eigen::Isometry3d& at, std::uint32_t pose, double reach)
+  /// Depths at most of all records of a queried thing, by their numbers; minus infinity if farther outside than
+  /// `reach`.
+  std::vector<double> depthsOfAll(const QueriedRecords& queried, const Eigen::Isometry3d& at, std::uint32_t pose,
+                                  double reach)
   {
-    const auto [solid, of_content] = placed(at);
+    const auto [solid, of_queried] = placed(at);
     PointDistancesRequest near;
     near.max_distance = reach;
     near.threads = path_.threads;
-    PointDistances found = pointDistances({content.thing(), of_content}, {solid.surface, solid.pose}, near);
+    PointDistances found = pointDistances({queried.thing(), of_queried}, {solid.surface, solid.pose}, near);
     work_ += found.work;
     std::vector<double> depths = std::move(found.distance);
     for (double& depth : depths) // of a ball outside, too: its middle is so far outside, less its radius
       depth = std::isnan(depth) ? -std::numeric_limits<double>::infinity() : -std::nextafter(depth, -1.0);
-    const std::vector<std::uint32_t> inside = recordsIn(solid, content, of_content, path_.threads, work_);
-    for (const Depth& depth : depthsOf(solid, content, of_content, inside, path_.threads, false, work_)) {
+    const std::vector<std::uint32_t> inside = recordsIn(solid, queried, of_queried, path_.threads, work_);
+    for (const Depth& depth : depthsOf(solid, queried, of_queried, inside, path_.threads, false, work_)) {
       note(depth, pose);
       depths[depth.record] = depth.depth.upper;
     }
@@ -178,9 +180,9 @@ private:
       const RigidMotion motion = motionFrom(k);
       for (std::uint32_t i = 0; i < count_; ++i) reach = std::fmax(reach, speedOf(i, motion));
     }
-    std::vector<double> first = depthsOfAll(part_.content(), path_.poses[0], 0, reach);
+    std::vector<double> first = depthsOfAll(part_.queried(), path_.poses[0], 0, reach);
     for (std::uint32_t k = 0; k + 1 < path_.poses.size(); ++k) {
-      std::vector<double> last = depthsOfAll(part_.content(), path_.poses[k + 1], k + 1, reach);
+      std::vector<double> last = depthsOfAll(part_.queried(), path_.poses[k + 1], k + 1, reach);
       sweep(k, first, last, reach);
       first = std::move(last);
     }
@@ -249,7 +251,7 @@ private:
   }
 
   const DeepSolid& solid_;
-  const ContentPart& part_;
+  const QueriedPart& part_;
   const DepthPath& path_;
   Work& work_;
   const std::uint32_t count_;
@@ -260,7 +262,7 @@ private:
 
 } // namespace
 
-std::vector<DepthAlong> depthsAlong(const DeepSolid& solid, const ContentPart& part, const DepthPath& path, Work& work,
+std::vector<DepthAlong> depthsAlong(const DeepSolid& solid, const QueriedPart& part, const DepthPath& path, Work& work,
                                     std::vector<double>* at_poses)
 {
   return Along(solid, part, path, work).find(at_poses);

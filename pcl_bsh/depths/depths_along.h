@@ -2,8 +2,8 @@
 // How deep is what a solid holds along a path, at which pose, and at which place?
 #pragma once
 
-#include <pcl_bsh/depths/content_part.h>
 #include <pcl_bsh/depths/depths.h>
+#include <pcl_bsh/depths/queried_part.h>
 #include <pcl_bsh/geometry/point3.h>
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 
 namespace pcl_bsh {
 
-/// The solid goes from pose to pose, or its content does.
+/// The solid goes from pose to pose, or the queried thing does.
 struct DepthPath {
   const std::vector<Eigen::Isometry3d>& poses; ///< of what moves, in the world
   Eigen::Isometry3d at_rest;                   ///< the pose of the other
@@ -37,7 +37,7 @@ struct DepthAlong : Depth {
 /// @param at_poses when given, set to the greatest depth at each pose, 0 where nothing is inside: then everything that
 ///   is inside is measured at each pose
 /// @throws std::invalid_argument when a pose is not rigid; swept: as poseBetween() does
-std::vector<DepthAlong> depthsAlong(const DeepSolid& solid, const ContentPart& part, const DepthPath& path, Work& work,
+std::vector<DepthAlong> depthsAlong(const DeepSolid& solid, const QueriedPart& part, const DepthPath& path, Work& work,
                                     std::vector<double>* at_poses = nullptr);
 
 } // namespace pcl_bsh

@@ -53,10 +53,10 @@ struct Search {
 
 class Searches {
 public:
-  Searches(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& pose, unsigned threads,
+  Searches(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& pose, unsigned threads,
            bool deepest, Work& work)
   : solid_(solid),
-    triangles_(*content.thing().view().triangles),
+    triangles_(*queried.thing().view().triangles),
     pose_(pose),
     threads_(threads),
     deepest_(deepest),
@@ -263,7 +263,7 @@ private:
     return normalOf(Triangle3{places_[piece.corners[0]], places_[piece.corners[1]], places_[piece.corners[2]]});
   }
 
-  /// Normal of the solid's triangle that is nearest to the piece, in the content's frame.
+  /// Normal of the solid's triangle that is nearest to the piece, in the queried thing's frame.
   Eigen::Vector3d normalAt(const Piece& piece) const
   {
     const auto highest = *std::max_element(piece.corners.begin(), piece.corners.end(), [&](auto one, auto other) {
@@ -383,13 +383,13 @@ private:
 
 } // namespace
 
-std::vector<Depth> depthsOfTriangles(const DeepSolid& solid, const Content& content,
-                                     const Eigen::Isometry3d& T_world_content,
+std::vector<Depth> depthsOfTriangles(const DeepSolid& solid, const QueriedRecords& queried,
+                                     const Eigen::Isometry3d& T_world_queried,
                                      const std::vector<std::uint32_t>& records, unsigned threads, bool deepest,
                                      Work& work)
 {
   if (records.empty()) return {};
-  return Searches(solid, content, T_world_content, threads, deepest, work).find(records);
+  return Searches(solid, queried, T_world_queried, threads, deepest, work).find(records);
 }
 
 } // namespace pcl_bsh

@@ -10,8 +10,8 @@
 namespace pcl_bsh {
 
 /// As depthsOf(), which has it for surfaces.
-std::vector<Depth> depthsOfTriangles(const DeepSolid& solid, const Content& content,
-                                     const Eigen::Isometry3d& T_world_content,
+std::vector<Depth> depthsOfTriangles(const DeepSolid& solid, const QueriedRecords& queried,
+                                     const Eigen::Isometry3d& T_world_queried,
                                      const std::vector<std::uint32_t>& records, unsigned threads, bool deepest,
                                      Work& work);
 

@@ -57,7 +57,7 @@ struct DistanceObstacle {
   }
 
   /// The slabs of a sphere of the voxel, which hold its records. @pre it has slabs
-  CrossedSlabs heldBy(const ObstacleSphere& sphere) const
+  CrossedSlabs slabsOf(const ObstacleSphere& sphere) const
   {
     return sphere.between(*voxel, slabs, cross_slabs, frame.stretch_b);
   }

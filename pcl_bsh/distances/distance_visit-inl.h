@@ -36,8 +36,8 @@ struct DistanceRow {
   ObstacleSphere sphere;
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
-  float
-      about_center[kLanes]; ///< the same without the child's slab, for Outdoing; where slabs of both sides are compared
+  float about_center[kLanes]; ///< the same without the child's slab, for DifferenceBound; where slabs of both sides are
+                              ///< compared
   std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
 };
 
@@ -48,7 +48,7 @@ struct DistanceVisit : ListVisit<NearSphere> {
   float large_leaf = 0.0f;                ///< a leaf of b with a greater radius is large beside a child
   float cut[kLanes];                      ///< what is farther than this is not the nearest of any point of the child
   float limit[kLanes];                    ///< spheres with a lower bound above it are outdone; infinite where none are
-  float turn[kLanes];                     ///< Outdoing::turnOf() of the children
+  float turn[kLanes];                     ///< DifferenceBound::turnOf() of the children
   std::array<std::uint8_t, kLanes> order; ///< in which the children are measured
   std::vector<DistanceRow> rows;          ///< of what the node itself was near to
   std::vector<DistanceRow> kept;          ///< of what its children are to be compared with
@@ -84,7 +84,7 @@ struct DistanceVisit : ListVisit<NearSphere> {
   }
 };
 
-/// Lowers `cut` to upper bounds, and `limit` to what they make of spheres that are outdone (outdoing.h).
+/// Lowers `cut` to upper bounds, and `limit` to what they make of spheres that are outdone (difference_bound.h).
 HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
 {
   const LaneTag d;
@@ -99,11 +99,11 @@ HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
 }
 
 /// Bounds the distances from the children of a visit to what lies within a sphere, one point at least.
-/// @param outdoing whether `limit` is of use
+/// @param has_limit whether `limit` is of use
 HWY_INLINE void boundChildren(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
-                              const Point& center, float radius, bool outdoing, float* lower)
+                              const Point& center, float radius, bool has_limit, float* lower)
 {
-  if (!outdoing) return boundDistances(own, obstacle, center, radius, lower, visit.cut);
+  if (!has_limit) return boundDistances(own, obstacle, center, radius, lower, visit.cut);
   float upper[kLanes];
   std::fill(std::begin(upper), std::end(upper), std::numeric_limits<float>::infinity());
   boundDistances(own, obstacle, center, radius, lower, upper);
@@ -113,12 +113,12 @@ HWY_INLINE void boundChildren(DistanceVisit& visit, const CarriedNode& own, cons
 /// Sharpens such bounds by the points of the sphere's leaf, where that is much larger than a child: its sphere tells
 /// nothing. @pre no radii
 HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
-                                       const LeafRange& leaf, bool outdoing, float* lower)
+                                       const LeafRange& leaf, bool has_limit, float* lower)
 {
   float least[kLanes], of_point[kLanes];
   std::fill(std::begin(least), std::end(least), std::numeric_limits<float>::infinity());
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    boundChildren(visit, own, obstacle, {leaf.x()[i], leaf.y()[i], leaf.z()[i]}, 0.0f, outdoing, of_point);
+    boundChildren(visit, own, obstacle, {leaf.x()[i], leaf.y()[i], leaf.z()[i]}, 0.0f, has_limit, of_point);
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) least[lane] = std::min(least[lane], orNone(of_point[lane]));
   }
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
@@ -128,7 +128,7 @@ HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& 
 /// @param triangle(j) laid flat
 template <class Triangles>
 HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
-                                   std::uint32_t count, bool outdoing, float* lower, const Triangles& triangle)
+                                   std::uint32_t count, bool has_limit, float* lower, const Triangles& triangle)
 {
   const LaneTag d;
   alignas(64) float squared[kLanes], of_triangle[kLanes], least[kLanes], upper[kLanes];
@@ -147,7 +147,7 @@ HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own,
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) least[lane] = std::min(least[lane], orNone(of_triangle[lane]));
   }
   for (std::uint32_t lane = 0; lower && lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
-  if (outdoing) return lowerCuts(visit, upper);
+  if (has_limit) return lowerCuts(visit, upper);
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) visit.cut[lane] = std::min(visit.cut[lane], upper[lane]);
 }
 

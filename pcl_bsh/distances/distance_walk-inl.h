@@ -11,9 +11,9 @@
 #endif
 
 #include <pcl_bsh/base/kept_scratch.h>
+#include <pcl_bsh/distances/difference_bound.h>
 #include <pcl_bsh/distances/distance_leaf-inl.h>
 #include <pcl_bsh/distances/entered_spaces-inl.h>
-#include <pcl_bsh/distances/outdoing.h>
 #include <pcl_bsh/distances/voxel_bounds-inl.h>
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/query/progress.h>
@@ -64,9 +64,10 @@ public:
     const Node& root = b_.storage.top[0];
     constexpr double stretch = 1.0 + 2 * kPoseStretch;
     if (const float least = bounds().least(a_voxel_->radius); least > 0.0f)
-      outdoing_ = Outdoing(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
+      difference_bound_ =
+          DifferenceBound(extentBelow(root) * b_.frame(kAboveVoxels).unit / unit_ * stretch * stretch, least);
     radius_unit_ = a_.frame(voxel).unit / unit_ / stretch;
-    leaves_alone_ = !rule_.mayStop() && !outdoing_.isPossible() && leaf_.mayMeasureAlone();
+    leaves_alone_ = !rule_.mayStop() && !difference_bound_.isPossible() && leaf_.mayMeasureAlone();
     scratch_.roots.clear();
     const float least = query_.pairs.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
     for (std::uint16_t lane = 0; lane < root.count; ++lane)
@@ -90,8 +91,8 @@ public:
   std::uint32_t refine(DistanceVisit& visit, const Part& part, const std::vector<NearSphere>& list)
   {
     visit.begin(part, part.cut, ++scratch_.stamp);
-    for (std::uint32_t lane = 0; outdoing_.isPossible() && lane < kLanes; ++lane)
-      visit.turn[lane] = outdoing_.turnOf(part.node.r[lane] * radius_unit_);
+    for (std::uint32_t lane = 0; difference_bound_.isPossible() && lane < kLanes; ++lane)
+      visit.turn[lane] = difference_bound_.turnOf(part.node.r[lane] * radius_unit_);
     const std::uint32_t alone = leaves_alone_ ? leaf_.measureAlone(*a_voxel_, visit, list, part.cut) : 0;
     const std::uint32_t others = firstBits(part.node.count) & ~alone & ~measureTriangles(visit, list, part.cut);
     if (others == 0) return 0;
@@ -197,20 +198,20 @@ private:
     const float radius = node.r[sphere.lane] * obstacle.frame.stretch_b;
     DistanceRow row{sphere, lanes, {}, {}, 0};
     boundChildren(visit, own, obstacle, {node.x[sphere.lane], node.y[sphere.lane], node.z[sphere.lane]}, radius,
-                  outdoing_.isPossible(), row.lower);
+                  difference_bound_.isPossible(), row.lower);
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     if (HWY_UNLIKELY(radius > visit.large_leaf) && sphere.level > 0 && sphere.isLeaf() && !query_.pairs.haveRadii() &&
         visit.areSmall(lanes & notAbove(row.lower, visit.cut), radius)) {
-      boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), outdoing_.isPossible(), row.lower);
+      boundByPoints(visit, own, obstacle, sphere.leaf(*obstacle.voxel), difference_bound_.isPossible(), row.lower);
       found.work.node_pairs += node.comparedPoints(sphere.lane);
     }
     CrossedSlabs held = {};
-    if (obstacle.slabs) raiseBySlabs(own, obstacle, held = obstacle.heldBy(sphere), row.lower);
+    if (obstacle.slabs) raiseBySlabs(own, obstacle, held = obstacle.slabsOf(sphere), row.lower);
     if (b_.storage.view.triangles && sphere.level > 0 && sphere.isLeaf() && isLargeBall(visit, sphere)) {
       const LeafRange leaf = sphere.leaf(*obstacle.voxel);
       const std::uint32_t asked = isThin(visit, obstacle, held) ? 1 : leaf.count;
       boundByTriangles(
-          visit, own, obstacle, asked, outdoing_.isPossible(), asked == leaf.count ? row.lower : nullptr,
+          visit, own, obstacle, asked, difference_bound_.isPossible(), asked == leaf.count ? row.lower : nullptr,
           [&](std::uint32_t j) -> const FlatRecord& { return scratch_.flat.of(b_.storage.view, leaf, j); });
       found.work.node_pairs += asked;
     }
@@ -266,7 +267,7 @@ private:
   std::uint32_t nearLanes(const DistanceVisit& visit, const DistanceRow& row) const
   {
     const std::uint32_t near = row.lanes & notAbove(row.lower, visit.cut);
-    if (!outdoing_.isPossible()) return near;
+    if (!difference_bound_.isPossible()) return near;
     return near & (notAbove(compares_slabs_ ? row.about_center : row.lower, visit.limit) | row.as_given);
   }
 
@@ -371,10 +372,10 @@ private:
   const bool compares_slabs_; ///< of both sides: of triangles, and of triangles or points that are no balls
   DistanceLeaf leaf_;
   ListWalk<DistanceVisit> walk_;
-  bool leaves_alone_ = false;      ///< whether leaves of a may: see DistanceLeaf::measureAlone()
-  Outdoing outdoing_;              ///< of the voxel of a
-  double radius_unit_ = 0.0;       ///< at most what a length of 1 in it is, in the walk's unit
-  std::uint32_t voxel_ = kNoVoxel; ///< of a
+  bool leaves_alone_ = false;        ///< whether leaves of a may: see DistanceLeaf::measureAlone()
+  DifferenceBound difference_bound_; ///< of the voxel of a
+  double radius_unit_ = 0.0;         ///< at most what a length of 1 in it is, in the walk's unit
+  std::uint32_t voxel_ = kNoVoxel;   ///< of a
   const Voxel* a_voxel_ = nullptr;
   WorkPulse pulse_{found.work};
 };

@@ -54,7 +54,7 @@ public:
       const LeafRange other = candidate.sphere.leaf(*obstacle.voxel);
       const float stretched = stretchOf(obstacle);
       setReach(obstacle, reach);
-      if (nearerPoints(own.points, obstacle.heldBy(candidate.sphere), reach) == 0) continue;
+      if (nearerPoints(own.points, obstacle.slabsOf(candidate.sphere), reach) == 0) continue;
       ++leaf_.work.leaf_pairs;
       std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
       float largest_error = 0.0f;

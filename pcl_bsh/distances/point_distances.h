@@ -47,7 +47,8 @@ struct PointDistances {
   std::vector<std::uint32_t> closest_point; ///< its record, of several the smallest; kNothing where NaN
   /// Holds each point's distance for certain, whether within max_distance or not; from max_distance to infinity where
   /// it is proven to be farther than that, and NaN where the record is no point. Empty when the accuracy is exact, for
-  /// then the doubles beside `distance` do the same, unless a solid was added that holds triangles (question/held.h).
+  /// then the doubles beside `distance` do the same, unless a solid was added that holds triangles
+  /// (question/enclosed.h).
   std::vector<Interval> interval;
   std::size_t measured = 0;  ///< points that have a distance
   std::size_t undecided = 0; ///< points that may have one within max_distance, but were left when the search stopped

@@ -16,19 +16,19 @@ namespace {
 /// The flags of one cloud: whose points are flagged, in which voxels, and in how many passes.
 class FlagSide {
 public:
-  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, const StopRule& rule,
+  FlagSide(const Placed& a, const Placed& b, const FlagsRequest& request, MeantPlaces places, const StopRule& rule,
            std::vector<Verdict>& flags, Work& work, Progress& progress, const PatchSpacings& patches_of_b = {})
   : flags_(flags),
     marked_(rule.mayStop() && rule.deepest == StopRule::kNever),
-    pairs_(a, b, request.clearance, places == Places::either ? Places::possible : places, patches_of_b),
-    certain_(a, b, request.clearance, Places::certain),
+    pairs_(a, b, request.clearance, places == MeantPlaces::either ? MeantPlaces::possible : places, patches_of_b),
+    certain_(a, b, request.clearance, MeantPlaces::certain),
     query_{a,
            b,
            pairs_,
            RelativeRotation(a.pose, b.pose),
-           Acceptance(pairs_.reach, request.accuracy),
-           places == Places::either ? &certain_ : nullptr,
-           Acceptance(places == Places::either ? certain_.reach : pairs_.reach, request.accuracy)},
+           LengthBand(pairs_.reach, request.accuracy),
+           places == MeantPlaces::either ? &certain_ : nullptr,
+           LengthBand(places == MeantPlaces::either ? certain_.reach : pairs_.reach, request.accuracy)},
     voxels_(threadCount(request.threads), work, progress)
   {
     if (!a.hierarchy().empty() && !b.hierarchy().empty()) {
@@ -73,11 +73,11 @@ private:
 };
 
 /// The flags of points that are where `places` says, which takes the progress from one share of the whole to another.
-void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, Places places, FlagsResult& found,
+void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, MeantPlaces places, FlagsResult& found,
                 Progress& progress, double from, double to)
 {
   const StopRule rule(request.accuracy);
-  const bool both = request.flagged == Side::both;
+  const bool both = request.flagged == Flagged::both;
   if (both && rule.mayStop()) {
     FlagSide side_a(a, b, request, places, rule, found.a, found.work, progress),
         side_b(b, a, request, places, rule, found.b, found.work, progress);
@@ -94,13 +94,13 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, P
       side.passes(rule, rule.node_pairs);
       return side.colliding();
     };
-    const PatchSpacings patches(places == Places::covered ? request.spacings_of_b : nullptr,
+    const PatchSpacings patches(places == MeantPlaces::covered ? request.spacings_of_b : nullptr,
                                 b.hierarchy().view().count);
-    if (request.flagged != Side::b)
+    if (request.flagged != Flagged::b)
       found.colliding_a = collidingOf(a, b, found.a, both ? 0.5 * (from + to) : to, patches);
-    if (request.flagged != Side::a) found.colliding_b = collidingOf(b, a, found.b, to, {});
+    if (request.flagged != Flagged::a) found.colliding_b = collidingOf(b, a, found.b, to, {});
   }
-  if (!request.accuracy.stopsEarly() && places != Places::either) return;
+  if (!request.accuracy.stopsEarly() && places != MeantPlaces::either) return;
   found.undecided_a = countOf(found.a, Verdict::undecided);
   found.undecided_b = countOf(found.b, Verdict::undecided);
 }
@@ -111,9 +111,9 @@ constexpr double kUnguarded = 0.5;
 /// Free points that may be within the clearance of a patch of b's surface are sparse.
 void guardDensity(const Placed& a, const Placed& b, FlagsRequest request, FlagsResult& found, Progress& progress)
 {
-  request.flagged = Side::a;
+  request.flagged = Flagged::a;
   FlagsResult covered;
-  flagPlaces(a, b, request, Places::covered, covered, progress, kUnguarded, 1.0);
+  flagPlaces(a, b, request, MeantPlaces::covered, covered, progress, kUnguarded, 1.0);
   for (std::size_t i = 0; i < found.a.size(); ++i) {
     if (found.a[i] != Verdict::free || covered.a[i] == Verdict::free) continue;
     const bool sparse = covered.a[i] == Verdict::colliding;
@@ -136,8 +136,8 @@ void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& reques
   found.a.clear();
   found.b.clear();
   Progress progress(request.progress);
-  const bool guarded = request.spacings_of_b && request.flagged != Side::b;
-  flagPlaces(a, b, request, areUncertain(a, b) ? Places::either : Places::measured, found, progress, 0.0,
+  const bool guarded = request.spacings_of_b && request.flagged != Flagged::b;
+  flagPlaces(a, b, request, areUncertain(a, b) ? MeantPlaces::either : MeantPlaces::measured, found, progress, 0.0,
              guarded ? kUnguarded : 1.0);
   if (guarded) guardDensity(a, b, request, found, progress);
   progress.finish();

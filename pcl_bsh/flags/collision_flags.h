@@ -15,20 +15,20 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// Whose points are flagged.
-enum class Side : std::uint8_t { a = 1, b = 2, both = 3 };
+enum class Flagged : std::uint8_t { a = 1, b = 2, both = 3 };
 
 /// What collisionFlags() reads.
 struct FlagsRequest : Effort {
   FlagsRequest() = default;
-  /** All. */ FlagsRequest(double within, Side whose = Side::a, Effort effort = {})
+  /** All. */ FlagsRequest(double within, Flagged whose = Flagged::a, Effort effort = {})
   : Effort(std::move(effort)),
     clearance(within),
     flagged(whose)
   {
   }
 
-  double clearance = 0.0; ///< finite, >= 0; inclusive
-  Side flagged = Side::a; ///< whose points are flagged
+  double clearance = 0.0;       ///< finite, >= 0; inclusive
+  Flagged flagged = Flagged::a; ///< whose points are flagged
 
   /// The density guard, for collisionFlags(): how far the samples of b's surface are apart at each record of its view
   /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, alike at the same place; null: no guard. A patch

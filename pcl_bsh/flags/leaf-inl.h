@@ -265,7 +265,7 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
                      const bool is_usual = triangle.isUsual(obstacle.frame);
                      hit |= decide(is_usual ? obstacle.flat : query.surely.band(bandOf), query.surePairs(), near);
                      if (query.certain)
-                       visit.perhaps[lane] |= decide(is_usual ? obstacle.possibly_flat : query.acceptance.band(bandOf),
+                       visit.perhaps[lane] |= decide(is_usual ? obstacle.possibly_flat : query.length_band.band(bandOf),
                                                      query.pairs, near & ~hit & ~visit.perhaps[lane]);
                      return hit == open;
                    });

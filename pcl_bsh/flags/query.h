@@ -2,7 +2,7 @@
 #pragma once
 
 #include <pcl_bsh/flags/flag_writer.h>
-#include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/query/length_band.h>
 #include <pcl_bsh/query/stop_rule.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
@@ -17,10 +17,10 @@ struct FlagQuery {
   const Placed& b;
   const PointPairs& pairs;
   RelativeRotation rotation;
-  Acceptance acceptance;
+  LengthBand length_band;
   /// Where points are uncertain: `pairs` are those that may collide, these are the ones that do for certain.
   const PointPairs* certain = nullptr;
-  Acceptance surely; ///< of the pairs that do for certain, or of all
+  LengthBand surely; ///< of the pairs that do for certain, or of all
 
   const PointPairs& surePairs() const { return certain ? *certain : pairs; }
 };

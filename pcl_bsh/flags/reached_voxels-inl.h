@@ -73,7 +73,7 @@ public:
           {&b_.storage.voxels[other], frame, frame.pruneReach(reach_),
            frame.acceptReach(query_.surePairs().reach.least - a_.storage.view.off_middle - b_.storage.view.off_middle),
            frame.acceptReach(query_.surely.hit), frame.bluntRadius(), query_.surely.band(frame),
-           query_.acceptance.band(frame), query_.surely.band(flat), query_.acceptance.band(flat), nullptr, nullptr,
+           query_.length_band.band(frame), query_.surely.band(flat), query_.length_band.band(flat), nullptr, nullptr,
            b_.storage.hasLongTriangles(other)});
     }
   }

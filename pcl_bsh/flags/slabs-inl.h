@@ -100,7 +100,7 @@ public:
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     return visit.has_slabs && obstacle.cross_slabs &&
-           heldBy(obstacle, candidate).thickness() < visit.smallest + obstacle.reach;
+           slabsOf(obstacle, candidate).thickness() < visit.smallest + obstacle.reach;
   }
 
   /// Whether a is of long triangles, and this is a leaf of points.
@@ -150,12 +150,12 @@ public:
   std::uint32_t facingPoints(const FlagVisit& visit, const LeafPoints& points, const ObstacleSphere& candidate) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
-    return pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, heldBy(obstacle, candidate), obstacle.reach);
+    return pointsNearSlabs(points.x, points.y, points.z, kLeafPoints, slabsOf(obstacle, candidate), obstacle.reach);
   }
 
 private:
   /// What a candidate holds, between both of its slabs where its triangles are long.
-  static CrossedSlabs heldBy(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate)
+  static CrossedSlabs slabsOf(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate)
   {
     return candidate.between(*obstacle.voxel, obstacle.slabs, obstacle.cross_slabs, obstacle.frame.stretch_b);
   }
@@ -165,7 +165,7 @@ private:
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
     const SphereLanes spheres{visit.x, visit.y, visit.z, visit.r, 1.0f};
-    const CrossedSlabs held = heldBy(obstacle, candidate);
+    const CrossedSlabs held = slabsOf(obstacle, candidate);
     static constexpr float kNone[kLanes] = {};
     near &= ~crossedSlabsApart(spheres, {visit.nx, visit.ny, visit.nz, visit.slabs->h},
                                has_long_triangles_ ? SlabLanes{visit.cx, visit.cy, visit.cz, visit.cross_slabs->h}

@@ -183,18 +183,18 @@ private:
     const Point center{node.x[k], node.y[k], node.z[k]};
     const SphereLanes children{visit.x, visit.y, visit.z, visit.r, 1.0f};
     Voxel* const other_voxel = &b_.storage.voxels[reached_.numbers[visit.obstacle]];
-    const Facing facing{
+    const ChildrenAndSphere compared{
         obstacle.frame, true,  &a_.storage.voxels[voxel_], *visit.node, children, other_voxel, node, k, center,
         radius,         reach_};
-    std::uint32_t apart = is_blunt ? separation_.asGiven(facing, near) : 0;
-    if (has_large_leaf) apart |= separation_.byLeafPoints(facing, near & ~apart);
+    std::uint32_t apart = is_blunt ? separation_.asGiven(compared, near) : 0;
+    if (has_large_leaf) apart |= separation_.byLeafPoints(compared, near & ~apart);
     if (of_triangles)
       apart |=
-          separation_.byTriangles(facing, near & ~apart & visit.leaves, [this]() -> FlatRecords& { return flat_; });
+          separation_.byTriangles(compared, near & ~apart & visit.leaves, [this]() -> FlatRecords& { return flat_; });
     if (!may_be_far || (near & ~apart) == 0) return apart;
     alignas(32) float gap[kLanes];
     spheresNear(children, {center.x, center.y, center.z, 0.0f, 0.0f}, gap);
-    return apart | separation_.byExtent(facing, gap, near & ~apart, true);
+    return apart | separation_.byExtent(compared, gap, near & ~apart, true);
   }
 
   /// Of the children in `near`, those that triangles of a leaf may be near to, where a ball of these tells little. It

@@ -136,7 +136,7 @@ RefitReport SphereHierarchy::refit(const PointsView& now, double most_growth)
     frames[v] = frameBetween(bounds.low, bounds.high, now.scalar == Scalar::float32, largest_radius);
     sum += static_cast<double>(radiusOf(frames[v], largest_radius)) * frames[v].unit;
     all.add(bounds.low, bounds.high);
-    strayed = std::max(strayed, s.strayOf(s.voxels[v].key, bounds.low, bounds.high));
+    strayed = std::max(strayed, s.shiftOf(s.voxels[v].key, bounds.low, bounds.high));
     most_points = std::max(most_points, s.voxels[v].count);
   }
   report.looseness = s.extent > 0.0 ? sum / s.extent : 1.0;

@@ -27,12 +27,12 @@ namespace pcl_bsh {
 namespace {
 
 /// Places that slabs hold, in a voxel's frame: its stored points, or the corners of its triangles, one after another.
-struct Places {
+struct SlabPlaces {
   struct Set {
     const float *x, *y, *z; ///< one for each point of the voxel, and what vectors read behind them
   };
 
-  Places(const Voxel& voxel, const PointsView& view)
+  SlabPlaces(const Voxel& voxel, const PointsView& view)
   {
     if (!view.triangles) {
       sets.push_back({voxel.x(), voxel.y(), voxel.z()});
@@ -67,13 +67,13 @@ private:
 
 /// How the places below child i of a node spread. In eight sums side by side on every instruction set: the same places
 /// give the same bits.
-Eigen::Matrix3d covarianceOf(const Places& places, const Node& node, std::uint32_t i)
+Eigen::Matrix3d covarianceOf(const SlabPlaces& places, const Node& node, std::uint32_t i)
 {
   constexpr std::uint32_t kSums = 8;
   enum { x, y, z, xx, xy, xz, yy, yz, zz, kMoments };
   float sums[kMoments][kSums] = {};
   const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
-  for (const Places::Set& set : places.sets) {
+  for (const SlabPlaces::Set& set : places.sets) {
     const auto add = [&](std::uint32_t from, std::uint32_t count) {
       for (std::uint32_t k = 0; k < count; ++k) {
         const float px = set.x[from + k] - node.x[i], py = set.y[from + k] - node.y[i],
@@ -121,13 +121,13 @@ namespace {
 
 /// Largest |n . (x - c)|, in float arithmetic: it errs by less than 8 u |x - c|, half of kRadiusMargin. Reads whole
 /// vectors.
-HWY_INLINE float thickness(const Places& places, const Node& node, std::uint32_t i, const Eigen::Vector3f& normal)
+HWY_INLINE float thickness(const SlabPlaces& places, const Node& node, std::uint32_t i, const Eigen::Vector3f& normal)
 {
   const LaneTag d;
   const LaneVector nx = hn::Set(d, normal.x()), ny = hn::Set(d, normal.y()), nz = hn::Set(d, normal.z());
   const LaneVector cx = hn::Set(d, node.x[i]), cy = hn::Set(d, node.y[i]), cz = hn::Set(d, node.z[i]);
   LaneVector most = hn::Zero(d);
-  for (const Places::Set& set : places.sets)
+  for (const SlabPlaces::Set& set : places.sets)
     for (std::size_t k = node.begin[i]; k < node.begin[i + 1]; k += hn::Lanes(d)) {
       const LaneVector along = hn::Add(
           hn::Add(hn::Mul(hn::Sub(hn::LoadU(d, set.x + k), cx), nx), hn::Mul(hn::Sub(hn::LoadU(d, set.y + k), cy), ny)),
@@ -143,7 +143,7 @@ HWY_INLINE float thickness(const Places& places, const Node& node, std::uint32_t
 /// @return how many normals were found
 std::uint64_t fitSlabsOnTarget(const Voxel& voxel, const PointsView& view, SlabAxis axis, Slabs* slabs)
 {
-  const Places places(voxel, view);
+  const SlabPlaces places(voxel, view);
   std::vector<Eigen::Vector3f> normals(voxel.nodes.size(), Eigen::Vector3f::Zero()); // of all that is below each node
   std::uint64_t found = 0;
   for (std::size_t n = 0; n < voxel.nodes.size(); ++n) {

@@ -101,7 +101,7 @@ SphereHierarchy::Storage::GridPlace SphereHierarchy::Storage::find(const Point3&
   return {slots_[slot], (margin - strayed) * voxel_edge * (1.0 - kDoubleMargin)};
 }
 
-double SphereHierarchy::Storage::strayOf(std::uint64_t key, const std::array<double, 3>& low,
+double SphereHierarchy::Storage::shiftOf(std::uint64_t key, const std::array<double, 3>& low,
                                          const std::array<double, 3>& high) const noexcept
 {
   const double inverse = 1.0 / voxel_edge;

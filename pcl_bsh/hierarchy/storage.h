@@ -209,7 +209,7 @@ public:
   double strayed = 0.0;
 
   /// At least how far the range [low, high] reaches out of the cell of that key, on any axis, in cells.
-  double strayOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
+  double shiftOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
 
   /// Another number after every change of the points; no two hierarchies of a process share one. For callers that
   /// remember answers.

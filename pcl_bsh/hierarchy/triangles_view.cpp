@@ -5,7 +5,7 @@
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/large_buffer.h>
-#include <pcl_bsh/geometry/apart.h>
+#include <pcl_bsh/geometry/distance_between.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/geometry/triangle/vector3.h>
 #include <pcl_bsh/hierarchy/triangle_balls.h>
@@ -35,7 +35,7 @@ std::array<double, 3> sharesOf(const std::array<Point3, 3>& corners)
   }
   double longest = std::max({sides[0], sides[1], sides[2]});
   if (!std::isnormal(longest)) { // squares leave the range of doubles early
-    for (std::size_t i = 0; i < 3; ++i) sides[i] = apart(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+    for (std::size_t i = 0; i < 3; ++i) sides[i] = distanceBetween(corners[(i + 1) % 3], corners[(i + 2) % 3]);
     longest = std::max({sides[0], sides[1], sides[2]});
     const double unit = longest > 0.0 ? 1.0 / longest : 0.0;
     for (double& side : sides) side *= side * unit * unit;
@@ -73,7 +73,8 @@ double reachFrom(const Point3& place, const std::array<Point3, 3>& corners)
     most = std::max(most, dot(way, way));
   }
   if (std::isnormal(most)) return std::sqrt(most);
-  return std::max({apart(place, corners[0]), apart(place, corners[1]), apart(place, corners[2])});
+  return std::max(
+      {distanceBetween(place, corners[0]), distanceBetween(place, corners[1]), distanceBetween(place, corners[2])});
 }
 
 template <class Coordinate>

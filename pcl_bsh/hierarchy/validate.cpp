@@ -67,7 +67,7 @@ private:
       const Point3 p = s_.view.point(record);
       if (s_.view.triangles && !holdsTriangle(record))
         defect("triangle " + std::to_string(record) + " reaches out of its ball");
-      if (!(s_.strayOf(voxel.key, p, p) <= most_stray))
+      if (!(s_.shiftOf(voxel.key, p, p) <= most_stray))
         defect("point " + std::to_string(record) + " farther outside its voxel's cell than is known");
       const float stored[3] = {voxel.x()[i], voxel.y()[i], voxel.z()[i]};
       for (std::size_t k = 0; k < 3; ++k) {

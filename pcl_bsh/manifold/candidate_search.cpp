@@ -186,7 +186,7 @@ private:
 
   void add(PointPair pair)
   {
-    if (!channel_.held.empty() && channel_.held[pair.a]) return;
+    if (!channel_.enclosed.empty() && channel_.enclosed[pair.a]) return;
     const RecordDistance::Pair posed = pairs_.posed(pair);
     const auto [low, high] = pairs_.distance.enclose(posed);
     if (!std::isfinite(high)) {

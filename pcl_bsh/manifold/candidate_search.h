@@ -20,8 +20,8 @@ struct Channel {
   std::uint8_t number = 0; ///< 0: places of a against b, 1: places of b against a, 2: edges of a against edges of b
   Placed probe, surface;
   const std::vector<SharpEdge>*sharp_probe = nullptr, *sharp_surface = nullptr; ///< of channel 2
-  std::vector<std::uint8_t> held; ///< not 0: of probes that the other side holds; empty: it holds none
-  std::vector<Candidate> inside;  ///< these, without scores
+  std::vector<std::uint8_t> enclosed; ///< not 0: of probes that the other side holds; empty: it holds none
+  std::vector<Candidate> inside;      ///< these, without scores
 
   bool isOfEdges() const { return sharp_probe != nullptr; }
 };

@@ -2,7 +2,7 @@
 // A thing that touches: a cloud, or a surface with its corners and edges, made ready for one manifold after another.
 //
 //   Collider stone(stone_hierarchy);                    // points, balls or triangles
-//   Collider crate(crate_hierarchy, &crate_solid);      // what is inside is held: gaps are signed
+//   Collider crate(crate_hierarchy, &crate_solid);      // what is inside is enclosed: gaps are signed
 #pragma once
 
 #include <pcl_bsh/export.h>

@@ -41,31 +41,31 @@ void check(const PlacedCollider& a, const PlacedCollider& b, const ManifoldReque
 }
 
 /// Places of a channel that the solid of the other side holds, with depths.
-void addHeld(const Solid* solid, double thickness, Channel& channel, Work& work)
+void addEnclosed(const Solid* solid, double thickness, Channel& channel, Work& work)
 {
   if (!solid) return;
   LabelsResult labels = labelPoints(channel.probe, {*solid, channel.surface.pose});
   work += labels.work;
   if (labels.inside + labels.on_surface == 0) return;
-  std::vector<std::uint32_t> held;
+  std::vector<std::uint32_t> enclosed;
   for (std::uint32_t i = 0; i < labels.labels.size(); ++i)
-    if (labels.labels[i] != labelOf(Label::outside)) held.push_back(i);
-  const PointDistances near = pointDistances(channel.probe, held, channel.surface);
+    if (labels.labels[i] != labelOf(Label::outside)) enclosed.push_back(i);
+  const PointDistances near = pointDistances(channel.probe, enclosed, channel.surface);
   work += near.work;
   std::vector<float> radii;
   const PointsView below = sunk(channel.probe.hierarchy().view(), radii);
   const RecordDistance depth(below, channel.probe.pose, channel.surface.hierarchy().view(), channel.surface.pose);
-  for (const std::uint32_t i : held) {
+  for (const std::uint32_t i : enclosed) {
     const PointPair pair{i, near.closest_point[i]};
     Candidate inside;
     inside.gap = -depth.gap(pair) - thickness;
     inside.channel = channel.number;
     inside.pair = pair;
-    inside.is_held = true;
+    inside.is_enclosed = true;
     inside.place = probePlace(channel, i);
     channel.inside.push_back(inside);
   }
-  channel.held = std::move(labels.labels);
+  channel.enclosed = std::move(labels.labels);
 }
 
 class Making {
@@ -87,11 +87,11 @@ public:
     };
     if (!a_.isSurface() || b_.isSurface()) {
       add(0, {a_.places(), a.pose}, {b_.thing, b.pose});
-      addHeld(b_.solid, made_.thickness, channels_.back(), made_.work);
+      addEnclosed(b_.solid, made_.thickness, channels_.back(), made_.work);
     }
     if (a_.isSurface()) {
       add(1, {b_.places(), b.pose}, {a_.thing, a.pose});
-      addHeld(a_.solid, made_.thickness, channels_.back(), made_.work);
+      addEnclosed(a_.solid, made_.thickness, channels_.back(), made_.work);
     }
     if (a_.isSurface() && b_.isSurface()) {
       Channel& edges = add(2, {*a_.edges, a.pose}, {*b_.edges, b.pose});

@@ -88,7 +88,7 @@ SurfaceNormal normalOfTriangle(const Channel& channel, const Candidate& of, cons
   const auto given = channel.surface.hierarchy().view().triangles->triangle(of.pair.b);
   for (std::size_t k = 0; k < 3; ++k) corners[k] = channel.surface.pose * vectorOf(given[k]);
   const Eigen::Vector3d front = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
-  const Eigen::Vector3d way = of.is_held ? nearest - of.place : of.place - nearest;
+  const Eigen::Vector3d way = of.is_enclosed ? nearest - of.place : of.place - nearest;
   const double size = std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm());
   const bool has_way = way.norm() > kNoDirection * (size + nearest.norm());
   if (!front.isZero(0.0) && (!has_way || isWithin(corners, front, nearest)))

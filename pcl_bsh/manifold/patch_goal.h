@@ -20,7 +20,7 @@ struct Candidate {
   double gap = std::numeric_limits<double>::infinity();
   std::uint8_t channel = 0;
   PointPair pair;                                   ///< of the channel's sides
-  bool is_held = false;                             ///< the probe is in the solid of the other side
+  bool is_enclosed = false;                         ///< the probe is in the solid of the other side
   Eigen::Vector3d place;                            ///< of the probe, in the world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< of edges that cross: from the other side to the probe's
 

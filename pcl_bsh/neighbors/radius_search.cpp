@@ -77,7 +77,7 @@ private:
   LargeArray<float>& squared_;
 };
 
-/// A sink that ends the walk at the first point found.
+/// A receiver that ends the walk at the first point found.
 class FindOne {
 public:
   bool takeAll(const Voxel&, std::uint32_t, std::uint32_t) { return true; }
@@ -86,19 +86,19 @@ public:
   static constexpr bool kNeedsRecords = false;
 };
 
-template <class Sink>
+template <class Receiver>
 class RadiusWalk {
 public:
-  RadiusWalk(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Sink& sink, Work& work)
+  RadiusWalk(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Receiver& receiver, Work& work)
   : cloud_(cloud),
     query_(query),
     radius_(radius),
-    sink_(sink),
+    receiver_(receiver),
     work_(work)
   {
   }
 
-  /// @return whether the sink was content before the end.
+  /// @return whether the receiver had enough before the end.
   bool run()
   {
     if (cloud_.size == 0) return false;
@@ -106,7 +106,7 @@ public:
     const bool in_voxel = place.voxel != kNoVoxel;
     if (radius_ < place.margin) return in_voxel && visitVoxel(place.voxel);
     // Where one point is enough, the voxel around the query is the first to ask.
-    if (!Sink::kNeedsRecords && in_voxel) {
+    if (!Receiver::kNeedsRecords && in_voxel) {
       if (visitVoxel(place.voxel)) return true;
       done_ = place.voxel;
     }
@@ -141,9 +141,9 @@ private:
     const Children children = test(node, ball);
     for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      if constexpr (!Sink::kNeedsRecords) return true;
+      if constexpr (!Receiver::kNeedsRecords) return true;
       for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
-        sink_.takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
+        receiver_.takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -178,7 +178,7 @@ private:
     fetch(local.voxel, node, children.near);
     for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      if (sink_.takeAll(local.voxel, node.begin[i], node.begin[i + 1])) return true;
+      if (receiver_.takeAll(local.voxel, node.begin[i], node.begin[i + 1])) return true;
     }
     for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -203,7 +203,7 @@ private:
       hwy::Prefetch(voxel.x() + node.begin[i]);
       hwy::Prefetch(voxel.y() + node.begin[i]);
       hwy::Prefetch(voxel.z() + node.begin[i]);
-      if (Sink::kNeedsRecords) hwy::Prefetch(voxel.records() + node.begin[i]);
+      if (Receiver::kNeedsRecords) hwy::Prefetch(voxel.records() + node.begin[i]);
     }
   }
 
@@ -217,7 +217,7 @@ private:
                          local.ball.z, squared);
     std::uint32_t hits = atMost(squared, local.band.hit) & firstBits(count);
     std::uint32_t open = ~(hits | above(squared, local.band.miss)) & firstBits(count);
-    if constexpr (!Sink::kNeedsRecords)
+    if constexpr (!Receiver::kNeedsRecords)
       if (hits != 0) return true;
     for (; open != 0; open &= open - 1) {
       const int i = std::countr_zero(open);
@@ -225,14 +225,14 @@ private:
       if (isWithin(p, query_, radius_, work_)) hits |= 1u << i;
     }
     if (hits == 0) return false;
-    if (node.isCoincident(child)) return sink_.takeAll(voxel, begin, node.begin[child + 1]);
-    return sink_.takeSome(voxel, begin, hits);
+    if (node.isCoincident(child)) return receiver_.takeAll(voxel, begin, node.begin[child + 1]);
+    return receiver_.takeSome(voxel, begin, hits);
   }
 
   const SphereHierarchy::Storage& cloud_;
   const Point3& query_;
   const double radius_;
-  Sink& sink_;
+  Receiver& receiver_;
   Work& work_;
   std::uint32_t done_ = kNoVoxel; ///< a voxel known to hold nothing within the radius
 };
@@ -242,14 +242,14 @@ private:
 void findWithinOnTarget(const SphereHierarchy::Storage& cloud, const Point3& query, double radius,
                         NeighborScratch& scratch, Work& work)
 {
-  Collect sink(cloud.view, query, scratch);
-  RadiusWalk<Collect>(cloud, query, radius, sink, work).run();
+  Collect receiver(cloud.view, query, scratch);
+  RadiusWalk<Collect>(cloud, query, radius, receiver, work).run();
 }
 
 bool findAnyOnTarget(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Work& work)
 {
-  FindOne sink;
-  return RadiusWalk<FindOne>(cloud, query, radius, sink, work).run();
+  FindOne receiver;
+  return RadiusWalk<FindOne>(cloud, query, radius, receiver, work).run();
 }
 
 } // namespace HWY_NAMESPACE

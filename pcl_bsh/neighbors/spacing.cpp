@@ -2,7 +2,7 @@
 #include <pcl_bsh/neighbors/spacing.h>
 
 #include <pcl_bsh/base/float_environment.h>
-#include <pcl_bsh/geometry/apart.h>
+#include <pcl_bsh/geometry/distance_between.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 
@@ -39,7 +39,7 @@ private:
       nearestKSearch(cloud_, place, k, found_);
       for (const std::int32_t index : found_.indices) {
         const Point3 p = cloud_.view().point(static_cast<std::uint32_t>(index));
-        if (p != place) return apart(p, place);
+        if (p != place) return distanceBetween(p, place);
       }
       if (found_.indices.size() < k) return std::numeric_limits<double>::infinity();
     }

@@ -9,7 +9,7 @@
 namespace pcl_bsh {
 
 /// One search, of points that are where `places` says. @param request checked; its accuracy does not stop early
-AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
                          const Watch& watch = {});
 
 /// What search(places, watch) finds of what may collide and of what does for certain, as one answer. @pre the points
@@ -17,9 +17,9 @@ AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& req
 template <class Search>
 AnyResult anyOfUncertain(Progress& progress, const Search& search)
 {
-  AnyResult possible = search(Places::possible, Watch{&progress, 0.5});
+  AnyResult possible = search(MeantPlaces::possible, Watch{&progress, 0.5});
   if (possible.verdict == Verdict::free) return possible;
-  AnyResult certain = search(Places::certain, Watch{&progress, 1.0});
+  AnyResult certain = search(MeantPlaces::certain, Watch{&progress, 1.0});
   certain.work += possible.work;
   if (certain.verdict == Verdict::colliding) return certain;
   return {Verdict::undecided, std::nullopt, {certain.interval.lower, possible.interval.upper}, certain.work};

@@ -59,7 +59,7 @@ private:
 /// What one of several threads does.
 class AnyShare {
 public:
-  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, Places places)
+  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places)
   : search_(a, b, request, Pausing(pause_), places)
   {
   }
@@ -76,8 +76,8 @@ private:
 };
 
 /// By so many threads. A search that is soon over is that of one.
-AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, Places places, unsigned threads,
-                       const Watch& watch)
+AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
+                       unsigned threads, const Watch& watch)
 {
   std::optional<SharedStack<LanePair>> shared;
   Work alone;
@@ -96,7 +96,7 @@ AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& reque
 
 } // namespace
 
-AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, Places places,
+AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
                                unsigned threads, const Watch& watch)
 {
   return threads > 1 ? searchShared(a, b, request, places, threads, watch)
@@ -106,7 +106,7 @@ AnyResult anyCollisionOnTarget(const Placed& a, const Placed& b, const AnyReques
 AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const AnyRequest& request, const StopRule& rule,
                                      const Watch& watch)
 {
-  return AnySearch(a, b, request, Hurried(rule), Places::measured, watch).run();
+  return AnySearch(a, b, request, Hurried(rule), MeantPlaces::measured, watch).run();
 }
 
 } // namespace HWY_NAMESPACE
@@ -147,19 +147,20 @@ AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& re
 {
   if (request.accuracy.stopsEarly()) {
     AnyResult found = searchWithin(a, b, ClosestGoal(request.accuracy), {&progress, 1.0});
-    const bool certain = found.interval.upper <= reachBetween(a, b, request.clearance, Places::certain).least;
-    const bool possible = !(found.interval.lower > reachBetween(a, b, request.clearance, Places::possible).most);
+    const bool certain = found.interval.upper <= reachBetween(a, b, request.clearance, MeantPlaces::certain).least;
+    const bool possible = !(found.interval.lower > reachBetween(a, b, request.clearance, MeantPlaces::possible).most);
     found.verdict = certain ? Verdict::colliding : possible ? Verdict::undecided : Verdict::free;
     if (!certain) found.pair.reset();
     return found;
   }
   return anyOfUncertain(
-      progress, [&](Places places, const Watch& watch) { return anyCollisionAt(a, b, request, places, watch); });
+      progress, [&](MeantPlaces places, const Watch& watch) { return anyCollisionAt(a, b, request, places, watch); });
 }
 
 } // namespace
 
-AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, Places places, const Watch& watch)
+AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
+                         const Watch& watch)
 {
   return HWY_DYNAMIC_DISPATCH(anyCollisionOnTarget)(a, b, request, places, threadCount(request.threads), watch);
 }
@@ -169,9 +170,10 @@ AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& reque
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
-  AnyResult found = areUncertain(a, b)              ? searchUncertain(a, b, request, progress)
-                    : request.accuracy.stopsEarly() ? searchAsFarAsAllowed(a, b, request, progress)
-                                                    : anyCollisionAt(a, b, request, Places::measured, {&progress, 1.0});
+  AnyResult found = areUncertain(a, b) ? searchUncertain(a, b, request, progress)
+                    : request.accuracy.stopsEarly()
+                        ? searchAsFarAsAllowed(a, b, request, progress)
+                        : anyCollisionAt(a, b, request, MeantPlaces::measured, {&progress, 1.0});
   progress.finish();
   return found;
 }

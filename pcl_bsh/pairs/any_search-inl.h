@@ -8,7 +8,7 @@
 #define PCL_BSH_PAIRS_ANY_SEARCH_INL_H_
 #endif
 
-#include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/query/length_band.h>
 #include <pcl_bsh/traversal/beyond_reach.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
@@ -29,7 +29,7 @@ struct NoObserver {
   static bool stops(const PairWalk&, const LanePair&) { return false; }
 };
 
-inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<PointPair>& witness, bool stopped,
+inline AnyResult resultOf(const LengthBand& length_band, const std::optional<PointPair>& witness, bool stopped,
                           const Work& work)
 {
   AnyResult result;
@@ -38,7 +38,7 @@ inline AnyResult resultOf(const Acceptance& acceptance, const std::optional<Poin
   result.verdict = witness ? Verdict::colliding : stopped ? Verdict::undecided : Verdict::free;
   if (result.verdict != Verdict::undecided)
     (witness ? result.interval.upper : result.interval.lower) =
-        witness ? acceptance.surely_within : acceptance.surely_beyond;
+        witness ? length_band.surely_within : length_band.surely_beyond;
   return result;
 }
 
@@ -49,11 +49,11 @@ template <class Observer>
 class AnySearch : public PairVisitor {
 public:
   AnySearch(const Placed& a, const Placed& b, const AnyRequest& request, Observer observer,
-            Places places = Places::measured, const Watch& by = {})
+            MeantPlaces places = MeantPlaces::measured, const Watch& by = {})
   : PairVisitor(by),
     walk_(a, b),
     pairs_(a, b, request.clearance, places),
-    acceptance_(pairs_.reach, request.accuracy),
+    length_band_(pairs_.reach, request.accuracy),
     observer_(std::move(observer))
   {
   }
@@ -67,7 +67,7 @@ public:
     });
     nearestLast(stack_, 0);
     const std::optional<PointPair> witness = search();
-    return resultOf(acceptance_, witness, stopped_, walk_.work);
+    return resultOf(length_band_, witness, stopped_, walk_.work);
   }
 
   /// Visits the pairs of a piece and what is below, until a witness is found or the observer stops.
@@ -86,7 +86,7 @@ public:
 
   // As visitPairs() asks.
 
-  double reach() const { return acceptance_.miss; }
+  double reach() const { return length_band_.miss; }
 
   Next visit(const LanePair& pair)
   {
@@ -98,7 +98,7 @@ public:
   Next opened(const LanePair& pair, Opened opened, const PairWalk::Step& step)
   {
     observer_.stepped(pair, opened, step);
-    const std::uint32_t inside = step.inside(acceptance_.hit);
+    const std::uint32_t inside = step.inside(length_band_.hit);
     if (inside == 0) return Next::go_on;
     const LanePair child = PairWalk::childOf(pair, opened, step, static_cast<std::uint32_t>(std::countr_zero(inside)));
     witness_ = PointPair{firstRecord(walk_.a, child.a), firstRecord(walk_.b, child.b)};
@@ -128,7 +128,7 @@ public:
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {
-      const DistanceBand band = acceptance_.band(leaves.frame);
+      const DistanceBand band = length_band_.band(leaves.frame);
       alignas(64) float nearest[kLeafPoints];
       std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
       nearestSquared(leaves.points, leaves.b.x(), leaves.b.y(), leaves.b.z(), firstBits(leaves.b.count), nearest);
@@ -161,7 +161,7 @@ private:
 
   PairWalk walk_;
   const PointPairs pairs_;
-  const Acceptance acceptance_;
+  const LengthBand length_band_;
   BeyondReach beyond_{pairs_, walk_.a.storage, walk_.b.storage};
   Observer observer_;
   std::optional<PointPair> witness_;

@@ -275,16 +275,16 @@ private:
 void nearestContactsOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
                              ContactsResult& result)
 {
-  NearestPairs sink(a, b, request);
-  result.work = ReachWalk(a, b, sink, progress).run();
-  sink.collect(a, b, result);
+  NearestPairs receiver(a, b, request);
+  result.work = ReachWalk(a, b, receiver, progress).run();
+  receiver.collect(a, b, result);
 }
 
 void pairsWithinOnTarget(const Placed& a, const Placed& b, const ContactsRequest& request, Progress& progress,
                          PairsWithin& result)
 {
-  AllPairs sink(a, b, request, result);
-  result.work = ReachWalk(a, b, sink, progress).run();
+  AllPairs receiver(a, b, request, result);
+  result.work = ReachWalk(a, b, receiver, progress).run();
 }
 
 } // namespace HWY_NAMESPACE

@@ -19,20 +19,20 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Tells what a sink did with a pair.
+/// Tells what a receiver did with a pair.
 enum class Added { kept, dropped, stop };
 
-/// Walks to every pair of points that may be within a reach and hands it to a sink: `pairs`, which decides them;
+/// Walks to every pair of points that may be within a reach and hands it to a receiver: `pairs`, which decides them;
 /// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
 /// `Added add(PointPair, bool surely, Work&)`, of which it may be known that they collide; `bool passesOver(PairWalk,
 /// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
-template <class Sink>
+template <class Receiver>
 class ReachWalk : public PairVisitor {
 public:
-  ReachWalk(const Placed& a, const Placed& b, Sink& sink, Progress& progress)
+  ReachWalk(const Placed& a, const Placed& b, Receiver& receiver, Progress& progress)
   : PairVisitor(Watch{&progress, 1.0}),
     walk_(a, b),
-    sink_(sink)
+    receiver_(receiver)
   {
   }
 
@@ -51,11 +51,11 @@ public:
   // As visitPairs() asks.
 
   /// The reach of sphere tests, never below 0.
-  double reach() const { return std::max(sink_.reach(), 0.0); }
+  double reach() const { return std::max(receiver_.reach(), 0.0); }
 
   Next visit(const LanePair& pair)
   {
-    return pair.key > sink_.reach() || sink_.passesOver(walk_, pair) ? Next::prune : Next::go_on;
+    return pair.key > receiver_.reach() || receiver_.passesOver(walk_, pair) ? Next::prune : Next::go_on;
   }
 
   bool keep(LanePair& pair, Opened, const PairWalk::Step& step, std::uint32_t lane) const
@@ -81,17 +81,18 @@ public:
           leaves, walk_.a.storage.view, walk_.b.storage.view, walk_.flat(), [this] { return reach(); },
           [&](std::uint32_t i, std::uint32_t j) { return found(i, j, false); });
     }
-    else if (sink_.pairs.haveRadii()) {
-      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, sink_.reach(), sink_.pairs.surelyOfBalls(),
+    else if (receiver_.pairs.haveRadii()) {
+      eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, receiver_.reach(),
+                       receiver_.pairs.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
     }
     else {
-      const float hit = leaves.frame.band(sink_.pairs.reach.length()).hit;
-      double reach = sink_.reach();
+      const float hit = leaves.frame.band(receiver_.pairs.reach.length()).hit;
+      double reach = receiver_.reach();
       float miss = leaves.frame.band(reach).miss;
       eachPairNotBeyond(leaves.points, leaves.near, b, miss, [&](std::uint32_t i, std::uint32_t j, float squared) {
-        if (sink_.reach() < reach) { // shrunk since the last pair that was near
-          reach = sink_.reach();
+        if (receiver_.reach() < reach) { // shrunk since the last pair that was near
+          reach = receiver_.reach();
           miss = leaves.frame.band(reach).miss;
         }
         return !(squared > miss) && found(i, j, squared <= hit);
@@ -114,7 +115,7 @@ private:
     for (std::uint32_t i = 0; i < a.count; ++i)
       for (std::uint32_t j = 0; j < b.count; ++j) {
         pulse_.count(1);
-        const Added added = sink_.add({a.record(i), b.record(j)}, surely, walk_.work);
+        const Added added = receiver_.add({a.record(i), b.record(j)}, surely, walk_.work);
         if (added == Added::stop) return false;
         if (added != Added::kept) return true; // of pairs at one distance, those that follow are larger still
         surely = true;
@@ -123,7 +124,7 @@ private:
   }
 
   PairWalk walk_;
-  Sink& sink_;
+  Receiver& receiver_;
   Pulse pulse_; ///< of pairs at one place
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs;

@@ -112,10 +112,11 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
   Met met_a(a), met_b(b);
   CollisionTrace trace;
   Progress progress(request.progress);
-  const auto search = [&](Places places, const Watch& watch) {
+  const auto search = [&](MeantPlaces places, const Watch& watch) {
     return AnySearch(a, b, request, TraceObserver(met_a, met_b), places, watch).run();
   };
-  trace.result = areUncertain(a, b) ? anyOfUncertain(progress, search) : search(Places::measured, {&progress, 1.0});
+  trace.result =
+      areUncertain(a, b) ? anyOfUncertain(progress, search) : search(MeantPlaces::measured, {&progress, 1.0});
   progress.finish();
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();

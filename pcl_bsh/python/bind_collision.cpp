@@ -6,7 +6,7 @@
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/python/typed.h>
-#include <pcl_bsh/question/held.h>
+#include <pcl_bsh/question/enclosed.h>
 
 #include <optional>
 #include <string>
@@ -146,22 +146,22 @@ bool isNotBoth(py::handle side)
 using OneSide = As<"Literal['a', 'b']", isNotBoth>;
 using BothSides = As<"Literal['both']">;
 
-Side sideOf(const std::string& text)
+Flagged sideOf(const std::string& text)
 {
-  if (text == "a") return Side::a;
-  if (text == "b") return Side::b;
-  if (text == "both") return Side::both;
+  if (text == "a") return Flagged::a;
+  if (text == "b") return Flagged::b;
+  if (text == "both") return Flagged::both;
   throw InvalidInput(Input::result, "side", "`" + text + "` is none", "give \"a\", \"b\" or \"both\"");
 }
 
 /// Arrays of one side, or of both.
 template <class Sides, class Value>
-auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Side side)
+auto arraysOf(std::vector<Value>&& a, std::vector<Value>&& b, Flagged side)
 {
   if constexpr (std::is_same_v<Sides, BothSides>)
     return std::pair(arrayFrom(std::move(a)), arrayFrom(std::move(b)));
   else
-    return arrayFrom(std::move(side == Side::a ? a : b));
+    return arrayFrom(std::move(side == Flagged::a ? a : b));
 }
 
 /// The question about collisions at one pose each.
@@ -191,11 +191,11 @@ auto collisionFlagsOf(const Cloud& a, const Cloud& b, double clearance, const Po
                       const As<"Optional[npt.NDArray[np.float32]]">& spacings_of_b, const py::kwargs& options)
 {
   PythonQuestion asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
-  const Side flagged = sideOf(side.template cast<std::string>());
+  const Flagged flagged = sideOf(side.template cast<std::string>());
   Question& question = asked.question;
-  if (flagged == Side::a) refuseSeen(asked);
-  question.wanted.flags = flagged != Side::b;
-  question.wanted.obstacle_flags = flagged != Side::a;
+  if (flagged == Flagged::a) refuseSeen(asked);
+  question.wanted.flags = flagged != Flagged::b;
+  question.wanted.obstacle_flags = flagged != Flagged::a;
   question.wanted.spacings = true;
   if (!spacings_of_b.is_none()) {
     const py::array_t<float> spacings = floatsOf("spacings_of_b", spacings_of_b, viewNow(b).count);
@@ -212,10 +212,10 @@ auto collidingIndicesOf(const Cloud& a, const Cloud& b, double clearance, const 
                         const py::kwargs& options)
 {
   PythonQuestion asked = collisionsAsked(a, b, clearance, pose_a, pose_b, accuracy, threads, options);
-  const Side flagged = sideOf(side.template cast<std::string>());
+  const Flagged flagged = sideOf(side.template cast<std::string>());
   refuseSeen(asked);
-  asked.question.wanted.indices = flagged != Side::b;
-  asked.question.wanted.obstacle_indices = flagged != Side::a;
+  asked.question.wanted.indices = flagged != Flagged::b;
+  asked.question.wanted.obstacle_indices = flagged != Flagged::a;
   CollidingIndices found = asked.answer().indices;
   const std::size_t undecided = found.undecided_a.size() + found.undecided_b.size();
   if (undecided > 0)
@@ -256,7 +256,7 @@ DistanceResult closestPairOf(const Cloud& a, const Cloud& b, const PoseLike& pos
   request.threads = asked.question.threads = threads;
   const auto find = [&] {
     DistanceResult found = closestPair(asked.a, asked.b, request);
-    addHeld(asked.question, asked.input, asked.obstacle, found);
+    addEnclosed(asked.question, asked.input, asked.obstacle, found);
     return found;
   };
   return asked.answer(find, [](const DistanceResult& found) { return found.distance; });

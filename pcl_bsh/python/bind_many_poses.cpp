@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/python_question.h>
-#include <pcl_bsh/question/held.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
+#include <pcl_bsh/question/enclosed.h>
 
 #include <utility>
 
@@ -118,7 +118,7 @@ py::array_t<std::uint8_t> anyAtPosesOf(const Cloud& a, const Cloud& b, const Arr
   request.progress = progressOf(progress);
   const auto find = [&] {
     AnyAtPoses of_surfaces = anyCollisionAtPoses(asked.a, b, list, request);
-    addHeld(asked.question, asked.input, asked.obstacle, list, of_surfaces.flags);
+    addEnclosed(asked.question, asked.input, asked.obstacle, list, of_surfaces.flags);
     return of_surfaces;
   };
   return arrayFrom(asked.answer(find, [](const AnyAtPoses& found) { return nearestOf(found.flags); }).flags);
@@ -135,7 +135,7 @@ closestAtPosesOf(const Cloud& a, const Cloud& b, const ArrayLike& poses, const P
   const DistanceRequest request(threads, progressOf(progress));
   const auto find = [&] {
     DistancesAtPoses of_surfaces = closestPairAtPoses(asked.a, b, list, request);
-    addHeld(asked.question, asked.input, asked.obstacle, list, of_surfaces.distances, of_surfaces.pairs);
+    addEnclosed(asked.question, asked.input, asked.obstacle, list, of_surfaces.distances, of_surfaces.pairs);
     return of_surfaces;
   };
   DistancesAtPoses found = asked.answer(find, [](const DistancesAtPoses& all) { return nearestOf(all.distances); });
@@ -165,7 +165,7 @@ py::array_t<std::uint8_t> onMotionsOf(const Cloud& scan, const Cloud& model, con
     AnyOnMotions of_surfaces = anyCollisionOnMotions(asked.a, model, list, edges, request);
     std::vector<Eigen::Isometry3d> starts;
     for (const PoseMotion& edge : edges) starts.push_back(list[edge.from]);
-    addHeld(asked.question, asked.input, asked.obstacle, starts, of_surfaces.flags);
+    addEnclosed(asked.question, asked.input, asked.obstacle, starts, of_surfaces.flags);
     return of_surfaces;
   };
   return arrayFrom(asked.answer(find, [](const AnyOnMotions& found) { return nearestOf(found.flags); }).flags);

@@ -4,7 +4,7 @@
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/python_question.h>
-#include <pcl_bsh/question/held.h>
+#include <pcl_bsh/question/enclosed.h>
 
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -125,7 +125,7 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
     TrajectoryRequest wanted = request;
     wanted.flags = flags || solid || input_solid; // which what is held is counted by
     TrajectoryResult found = collideAlong(asked.a, model, list, wanted);
-    addHeld(asked.question, asked.input, asked.obstacle, found, request.pivot);
+    addEnclosed(asked.question, asked.input, asked.obstacle, found, request.pivot);
     return found;
   };
   run.result = asked.answer(find, [](const TrajectoryResult& found) { return nearestOf(found); });

@@ -16,7 +16,7 @@ namespace pcl_bsh {
 /// places that are asked about.
 class PairReach {
 public:
-  PairReach(const PointsView& a, const PointsView& b, double clearance, Places places,
+  PairReach(const PointsView& a, const PointsView& b, double clearance, MeantPlaces places,
             const PatchSpacings& patches_of_b = {})
   : a_(a),
     b_(b),
@@ -26,7 +26,7 @@ public:
   {
   }
 
-  bool areMeasured() const { return places_ == Places::measured; }
+  bool areMeasured() const { return places_ == MeantPlaces::measured; }
 
   /// Whether all pairs share one reach, apart from their radii.
   bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
@@ -59,7 +59,7 @@ public:
   /// Before rounding.
   RecordDistance::Sum of(PointPair pair) const
   {
-    const double sign = areMeasured() ? 0.0 : places_ == Places::certain ? -1.0 : 1.0;
+    const double sign = areMeasured() ? 0.0 : places_ == MeantPlaces::certain ? -1.0 : 1.0;
     return {clearance_,
             a_.ownRadius(pair.a),
             b_.ownRadius(pair.b),
@@ -79,7 +79,7 @@ private:
   const PointsView& a_;
   const PointsView& b_;
   const double clearance_;
-  const Places places_;
+  const MeantPlaces places_;
   const PatchSpacings patches_;
 };
 

@@ -11,7 +11,7 @@
 namespace pcl_bsh {
 
 /// The places of uncertain points that a question means.
-enum class Places : std::uint8_t {
+enum class MeantPlaces : std::uint8_t {
   measured, ///< are they within the clearance as they were measured?
   certain,  ///< are they wherever they truly are, within their uncertainties?
   possible, ///< may they be?
@@ -37,16 +37,16 @@ struct PatchSpacings {
 /// How far a pair may be apart, less its radii: the clearance, less the uncertainties of both points for a certain
 /// answer, plus them for a possible one. Between these two, whatever the pair.
 struct Reach {
-  Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, Places places,
+  Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, MeantPlaces places,
         const PatchSpacings& patches = {})
   : least(clearance),
     most(clearance)
   {
-    if (places == Places::measured) return;
+    if (places == MeantPlaces::measured) return;
     const double low = down(a.least + b.least), high = up(a.most + b.most);
-    least = down(places == Places::certain ? clearance - high : clearance + low);
-    most = up(places == Places::certain ? clearance - low : clearance + high);
-    if (places != Places::covered) return;
+    least = down(places == MeantPlaces::certain ? clearance - high : clearance + low);
+    most = up(places == MeantPlaces::certain ? clearance - low : clearance + high);
+    if (places != MeantPlaces::covered) return;
     least = down(least + patches.least / 2);
     most = up(most + patches.most / 2);
   }

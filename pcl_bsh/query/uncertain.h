@@ -18,13 +18,13 @@ inline bool areUncertain(const Placed& a, const Placed& b)
 }
 
 /// Where the points of two clouds are that collide for certain, and of those that may.
-inline Places certainPlaces(const Placed& a, const Placed& b)
+inline MeantPlaces certainPlaces(const Placed& a, const Placed& b)
 {
-  return areUncertain(a, b) ? Places::certain : Places::measured;
+  return areUncertain(a, b) ? MeantPlaces::certain : MeantPlaces::measured;
 }
-inline Places possiblePlaces(const Placed& a, const Placed& b)
+inline MeantPlaces possiblePlaces(const Placed& a, const Placed& b)
 {
-  return areUncertain(a, b) ? Places::possible : Places::measured;
+  return areUncertain(a, b) ? MeantPlaces::possible : MeantPlaces::measured;
 }
 
 /// The budget of each of the two searches.

@@ -4,8 +4,8 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/depths/content_part.h>
 #include <pcl_bsh/depths/depths.h>
+#include <pcl_bsh/depths/queried_part.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/record_distance.h>
@@ -79,9 +79,9 @@ DistanceResult closestOf(const TrajectoryResult& found)
 }
 
 /// One question, of two things that are built.
-class Asking {
+class QuestionRun {
 public:
-  Asking(const Question& question, Shape& input, Shape& obstacle)
+  QuestionRun(const Question& question, Shape& input, Shape& obstacle)
   : question_(question),
     wanted_(question.wanted),
     input_(input),
@@ -115,9 +115,9 @@ private:
   {
     const float* const spacings = question_.density ? guard() : nullptr;
     FlagsRequest request(question_.clearance.value_or(0.0),
-                         !wanted_.flags           ? Side::b
-                         : wanted_.obstacle_flags ? Side::both
-                                                  : Side::a,
+                         !wanted_.flags           ? Flagged::b
+                         : wanted_.obstacle_flags ? Flagged::both
+                                                  : Flagged::a,
                          nextEffort());
     request.spacings_of_b = spacings;
     FlagsResult found = flags(std::move(request));
@@ -147,9 +147,9 @@ private:
   void list()
   {
     const FlagsRequest request(question_.clearance.value_or(0.0),
-                               !wanted_.indices           ? Side::b
-                               : wanted_.obstacle_indices ? Side::both
-                                                          : Side::a,
+                               !wanted_.indices           ? Flagged::b
+                               : wanted_.obstacle_indices ? Flagged::both
+                                                          : Flagged::a,
                                nextEffort());
     if (solids_->none()) {
       answer_.indices = collidingIndices(a_, b_, request);
@@ -242,9 +242,9 @@ private:
     std::vector<std::uint32_t> some;
     for (std::uint32_t i = 0; i < flags.size(); ++i)
       if (flags[i] != Verdict::free) some.push_back(i);
-    const ContentPart part(a_.hierarchy(), whole ? std::vector<std::uint32_t>() : some);
-    Shape input = whole ? input_ : Shape(input_.name(), {std::shared_ptr<const void>(), &part.content().thing()});
-    const Placed a(whole ? a_.hierarchy() : part.content().thing(), a_.pose);
+    const QueriedPart part(a_.hierarchy(), whole ? std::vector<std::uint32_t>() : some);
+    Shape input = whole ? input_ : Shape(input_.name(), {std::shared_ptr<const void>(), &part.queried().thing()});
+    const Placed a(whole ? a_.hierarchy() : part.queried().thing(), a_.pose);
     const std::vector<Eigen::Isometry3d> poses = question_.poses();
     std::vector<PoseSummary>& told = answer_.collisions.poses;
     told.resize(poses.size());
@@ -374,7 +374,7 @@ Answer ask(const Question& question, Shape& input, Shape& obstacle)
   requireAnswerable(question, input);
   input.ignore(question.ignore_points);
   obstacle.ignore(question.obstacle_ignore_points);
-  return Asking(question, input, obstacle).answer();
+  return QuestionRun(question, input, obstacle).answer();
 }
 
 void check(const Question& question)

@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
-#include <pcl_bsh/geometry/apart.h>
+#include <pcl_bsh/geometry/distance_between.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/question/text_numbers.h>
 
@@ -40,7 +40,7 @@ double PoseUncertainty::turned(const Point3& point, double radius) const
   if (angle == 0.0) return 0.0;
   constexpr double half_turn = 3.141592653589793;
   const double chord = angle >= half_turn ? 2.0 : 2.0 * std::sin(0.5 * angle);
-  const double arm = apart(point, about) + radius;
+  const double arm = distanceBetween(point, about) + radius;
   return chord * arm * (1.0 + kDoubleMargin);
 }
 

@@ -25,7 +25,7 @@ struct Shape::Faces {
 };
 
 struct Shape::Built {
-  MadeOnce<const Content> content;
+  MadeOnce<const QueriedRecords> queried;
   MadeOnce<const NamedCloud> facts; ///< without a spacing
 };
 
@@ -191,9 +191,9 @@ std::optional<bool> Shape::isKnownToClose()
   return isClosed();
 }
 
-const Content& Shape::content()
+const QueriedRecords& Shape::queried()
 {
-  return madeOnce(built_->content, [this] { return std::make_unique<const Content>(*hierarchy_); });
+  return madeOnce(built_->queried, [this] { return std::make_unique<const QueriedRecords>(*hierarchy_); });
 }
 
 void Shape::setPatches(std::vector<float> spacings)

@@ -23,7 +23,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-class Content;
+class QueriedRecords;
 class SolidBodies;
 
 /// A copy shares what is built: two threads may ask about two copies. The records of its hierarchy are the user's:
@@ -100,7 +100,7 @@ public:
 
   /// Returns the places that solids are asked about: its points, or the corners of its triangles. Made once.
   /// @pre hierarchy() was called
-  const Content& content();
+  const QueriedRecords& queried();
 
   /// Returns the facts that warnings depend on. @pre hierarchy() was called
   /// @param spacing whether to measure the spacing of its points, once for all copies; never of triangles, nor of

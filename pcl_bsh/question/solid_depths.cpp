@@ -47,9 +47,9 @@ void Solids::turn(SymmetricDistances& found, bool both_ways) const
 void Solids::turn(const Pairing& pair, PointDistances& found) const
 {
   const DepthsResult depths =
-      depthsIn(deepSolid(pair, b_.pose), pair.content, poseOfContent(pair, b_.pose), question_.threads);
+      depthsIn(deepSolid(pair, b_.pose), pair.queried, poseOfQueried(pair, b_.pose), question_.threads);
   found.work += depths.work;
-  if (pair.content.isSurface() && !depths.depths.empty()) tellIntervals(found);
+  if (pair.queried.isSurface() && !depths.depths.empty()) tellIntervals(found);
   for (const Depth& depth : depths.depths) {
     double& distance = found.distance[depth.record];
     found.measured += std::isnan(distance);
@@ -72,23 +72,23 @@ void Solids::turn(const Pairing& pair, PointDistances& found) const
 void Solids::turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const
 {
   for (const Pairing& pair : pairings_)
-    deepen(closest, deepSolid(pair, pose), pair.of_obstacle, pair.content, poseOfContent(pair, pose),
+    deepen(closest, deepSolid(pair, pose), pair.of_obstacle, pair.queried, poseOfQueried(pair, pose),
            question_.threads);
 }
 
-/// Records of the content of which a path may make depths.
+/// Records of the queried thing of which a path may make depths.
 Solids::Records Solids::mayBeDeep(const Pairing& pair, const FirstPoses& first, const TrajectoryResult& found) const
 {
   Records records;
   if (!pair.of_obstacle) { // nothing is known of the obstacle's records
-    records.resize(pair.content.thing().view().count);
+    records.resize(pair.queried.thing().view().count);
     std::iota(records.begin(), records.end(), 0U);
     return records;
   }
   const bool between = question_.swept > 0.0;
   for (std::uint32_t i = 0; i < first.possible.size(); ++i) {
     bool may = first.possible[i] != kNothing;
-    if (pair.content.isSurface() || between) { // what no pose holds may cross the surface
+    if (pair.queried.isSurface() || between) { // what no pose holds may cross the surface
       if (!found.distance.empty())
         may |= static_cast<double>(found.distance[i]) <= question_.swept;
       else
@@ -105,7 +105,7 @@ void Solids::addDepths(const Pairing& pair, const FirstPoses& first, const std::
                        const Point3& pivot, TrajectoryResult& found, std::vector<double>& at_poses, Work& work) const
 {
   if (found.distance.empty() && found.poses.empty()) return;
-  const ContentPart part(pair.content.thing(), mayBeDeep(pair, first, found));
+  const QueriedPart part(pair.queried.thing(), mayBeDeep(pair, first, found));
   DepthPath path{poses, a_.pose, pair.of_obstacle, question_.sweptTolerance(), pivot, question_.threads};
   std::vector<double> deepest;
   const std::vector<DepthAlong> depths =
@@ -136,7 +136,7 @@ void Solids::addDepths(const Pairing& pair, const FirstPoses& first, const std::
     if (!(depth.told > 0.0)) continue;
     std::uint32_t triangle = depth.nearest;
     if (first.possible[triangle] == kNothing && !(found.distance[triangle] <= question_.swept)) // of another body
-      triangle = holderOf(pair.solid, a_.pose, pair.content, poses[depth.pose], depth.record, &work);
+      triangle = holderOf(pair.solid, a_.pose, pair.queried, poses[depth.pose], depth.record, &work);
     bound(triangle, depth.depth);
     tell(triangle, -depth.told, depth.pose, depth.record);
   }

@@ -2,7 +2,7 @@
 #include <pcl_bsh/question/solids.h>
 
 #include <pcl_bsh/query/uncertain.h>
-#include <pcl_bsh/question/held.h>
+#include <pcl_bsh/question/enclosed.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/solid/poses_inside.h>
 
@@ -48,32 +48,32 @@ Solids::Solids(const Question& question, Shape& input, Shape& obstacle, const Pl
   b_(b),
   uncertain_(areUncertain(a, b))
 {
-  if (question.solid) pairings_.push_back({true, solidOf(obstacle, "solid"), input.content(), {}});
-  if (question.input_solid) pairings_.push_back({false, solidOf(input, "input_solid"), obstacle.content(), {}});
+  if (question.solid) pairings_.push_back({true, solidOf(obstacle, "solid"), input.queried(), {}});
+  if (question.input_solid) pairings_.push_back({false, solidOf(input, "input_solid"), obstacle.queried(), {}});
 }
 
-Solids::Records Solids::heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const
+Solids::Records Solids::enclosedAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const
 {
-  return heldBy({pair.solid.whole(), poseOfSolid(pair, pose)}, pair.content, poseOfContent(pair, pose),
-                question_.threads, &work);
+  return enclosedBy({pair.solid.whole(), poseOfSolid(pair, pose)}, pair.queried, poseOfQueried(pair, pose),
+                    question_.threads, &work);
 }
 
-const Solids::Records& Solids::held(Pairing& pair, Work& work)
+const Solids::Records& Solids::enclosed(Pairing& pair, Work& work)
 {
-  if (!pair.held) pair.held = heldAt(pair, b_.pose, work);
-  return *pair.held;
+  if (!pair.enclosed) pair.enclosed = enclosedAt(pair, b_.pose, work);
+  return *pair.enclosed;
 }
 
 /// Adds the records that one solid holds. @param found has the verdicts of the surfaces
-void Solids::add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const
+void Solids::add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& enclosed, FlagsResult& found) const
 {
-  addHeld(pair.solid, poseOfSolid(pair, pose), pair.content, poseOfContent(pair, pose), held, uncertain_,
-          pair.of_obstacle ? found.a : found.b, pair.of_obstacle ? found.b : found.a, &found.work);
+  addEnclosed(pair.solid, poseOfSolid(pair, pose), pair.queried, poseOfQueried(pair, pose), enclosed, uncertain_,
+              pair.of_obstacle ? found.a : found.b, pair.of_obstacle ? found.b : found.a, &found.work);
 }
 
 FlagsRequest Solids::request(FlagsRequest request) const
 {
-  if (uncertain_ && !none()) request.flagged = Side::both;
+  if (uncertain_ && !none()) request.flagged = Flagged::both;
   return request;
 }
 
@@ -84,7 +84,7 @@ void Solids::addTo(FlagsResult& found)
     FlagsResult of_pair;
     of_pair.a = a;
     of_pair.b = b;
-    add(pair, b_.pose, held(pair, found.work), of_pair);
+    add(pair, b_.pose, enclosed(pair, found.work), of_pair);
     found.work += of_pair.work;
     merge(found.a, of_pair.a);
     merge(found.b, of_pair.b);
@@ -96,18 +96,19 @@ void Solids::addTo(AnyResult& found, const Eigen::Isometry3d& pose)
 {
   for (const Pairing& pair : pairings_) {
     if (found.verdict == Verdict::colliding) return;
-    const Eigen::Isometry3d of_solid = poseOfSolid(pair, pose), of_content = poseOfContent(pair, pose);
+    const Eigen::Isometry3d of_solid = poseOfSolid(pair, pose), of_queried = poseOfQueried(pair, pose);
     std::optional<PointPair> met;
     if (uncertain_ && found.verdict == Verdict::undecided) {
-      const FlagsResult surface = flagsOfContent(pair, pose);
+      const FlagsResult surface = flagsOfQueried(pair, pose);
       found.work += surface.work;
-      const Records certain = certainlyHeld(heldAt(pair, pose, found.work), pair.of_obstacle ? surface.a : surface.b);
+      const Records certain =
+          certainlyEnclosed(enclosedAt(pair, pose, found.work), pair.of_obstacle ? surface.a : surface.b);
       if (!certain.empty())
         met = PointPair{certain.front(),
-                        holderOf(pair.solid, of_solid, pair.content, of_content, certain.front(), &found.work)};
+                        holderOf(pair.solid, of_solid, pair.queried, of_queried, certain.front(), &found.work)};
     }
     else {
-      met = findHeld(pair.solid, of_solid, pair.content, of_content, &found.work);
+      met = findEnclosed(pair.solid, of_solid, pair.queried, of_queried, &found.work);
     }
     if (!met) continue;
     found.verdict = Verdict::colliding;
@@ -116,17 +117,18 @@ void Solids::addTo(AnyResult& found, const Eigen::Isometry3d& pose)
   }
 }
 
-/// Returns the verdicts of the content against the surface of the solid.
-FlagsResult Solids::flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const
+/// Returns the verdicts of the queried thing against the surface of the solid.
+FlagsResult Solids::flagsOfQueried(const Pairing& pair, const Eigen::Isometry3d& pose) const
 {
-  return collisionFlags(a_, {b_.hierarchy(), pose},
-                        {question_.clearance.value_or(0.0), pair.of_obstacle ? Side::a : Side::b, question_.threads});
+  return collisionFlags(
+      a_, {b_.hierarchy(), pose},
+      {question_.clearance.value_or(0.0), pair.of_obstacle ? Flagged::a : Flagged::b, question_.threads});
 }
 
 Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
 {
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
-  if (!uncertain_ && pair.of_obstacle && !pair.content.isSurface()) {
+  if (!uncertain_ && pair.of_obstacle && !pair.queried.isSurface()) {
     PosesInside inside = findPosesInside(a_, pair.solid.whole(), poses, question_.threads);
     work += inside.work;
     return {inside.first, inside.first};
@@ -134,28 +136,28 @@ Solids::FirstPoses Solids::firstPoses(const Pairing& pair, Work& work) const
   const std::size_t count = a_.hierarchy().view().count;
   FirstPoses first = {std::vector<std::uint32_t>(count, kNothing), std::vector<std::uint32_t>(count, kNothing)};
   for (std::uint32_t k = 0; k < poses.size(); ++k) {
-    const Records held = heldAt(pair, poses[k], work);
-    if (held.empty()) continue;
-    Records certain = held;
+    const Records enclosed = enclosedAt(pair, poses[k], work);
+    if (enclosed.empty()) continue;
+    Records certain = enclosed;
     if (uncertain_) {
-      const FlagsResult surface = flagsOfContent(pair, poses[k]);
+      const FlagsResult surface = flagsOfQueried(pair, poses[k]);
       work += surface.work;
-      certain = certainlyHeld(held, pair.of_obstacle ? surface.a : surface.b);
+      certain = certainlyEnclosed(enclosed, pair.of_obstacle ? surface.a : surface.b);
     }
     const auto note = [&](const Records& records, std::vector<std::uint32_t>& poses_of) {
       const Records of_input =
-          pair.of_obstacle ? records : holdersOf(pair.solid, a_.pose, pair.content, poses[k], records, &work);
+          pair.of_obstacle ? records : holdersOf(pair.solid, a_.pose, pair.queried, poses[k], records, &work);
       for (const std::uint32_t record : of_input) poses_of[record] = std::min(poses_of[record], k);
     };
-    note(held, first.possible);
+    note(enclosed, first.possible);
     note(certain, first.certain);
   }
   return first;
 }
 
-/// Finds the other record of a pair, for records of the input. For a record that is held at its pose, it is a triangle
-/// of the body that holds it. For a triangle whose body holds something there, it is the first record of the obstacle
-/// that the body holds. Held records of a pose are found once.
+/// Finds the other record of a pair, for records of the input. For a record that is enclosed at its pose, it is a
+/// triangle of the body that holds it. For a triangle whose body holds something there, it is the first record of the
+/// obstacle that the body holds. Enclosed records of a pose are found once.
 /// @param at poses and records @param others of the records: set
 void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const std::vector<Eigen::Isometry3d>& poses,
                         std::vector<std::uint32_t>& others, Work& work) const
@@ -166,16 +168,16 @@ void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const s
     const auto last = std::find_if(first, at.end(), [&](const PoseRecord& other) { return other.first != pose; });
     if (pair.of_obstacle) {
       for (; first != last; ++first)
-        others[first->second] = holderOf(pair.solid, poses[pose], pair.content, a_.pose, first->second, &work);
+        others[first->second] = holderOf(pair.solid, poses[pose], pair.queried, a_.pose, first->second, &work);
       continue;
     }
     for (auto i = first; i != last; ++i) others[i->second] = kNothing;
     std::size_t left = static_cast<std::size_t>(last - first);
-    for (const std::uint32_t held : heldAt(pair, poses[pose], work)) {
-      const Records holders = holdersOf(pair.solid, a_.pose, pair.content, poses[pose], {held}, &work);
+    for (const std::uint32_t enclosed : enclosedAt(pair, poses[pose], work)) {
+      const Records holders = holdersOf(pair.solid, a_.pose, pair.queried, poses[pose], {enclosed}, &work);
       for (auto i = first; i != last; ++i) {
         if (others[i->second] != kNothing || !std::binary_search(holders.begin(), holders.end(), i->second)) continue;
-        others[i->second] = held;
+        others[i->second] = enclosed;
         --left;
       }
       if (left == 0) break;
@@ -186,9 +188,9 @@ void Solids::findOthers(const Pairing& pair, std::vector<PoseRecord> at, const s
 
 void Solids::addToPath(TrajectoryResult& found, Work& work, const Point3& pivot) const
 {
-  const auto takeFirst = [](std::vector<std::int32_t>& poses, std::size_t i, std::uint32_t held) {
-    if (!poses.empty() && (poses[i] < 0 || poses[i] > static_cast<std::int32_t>(held)))
-      poses[i] = static_cast<std::int32_t>(held);
+  const auto takeFirst = [](std::vector<std::int32_t>& poses, std::size_t i, std::uint32_t pose) {
+    if (!poses.empty() && (poses[i] < 0 || poses[i] > static_cast<std::int32_t>(pose)))
+      poses[i] = static_cast<std::int32_t>(pose);
   };
   if (none()) return;
   const std::vector<Eigen::Isometry3d> poses = question_.poses();
@@ -213,19 +215,19 @@ void Solids::addToPath(TrajectoryResult& found, Work& work, const Point3& pivot)
   for (std::size_t k = 0; k < found.poses.size(); ++k) addToSummary(found.poses[k], poses[k], at_poses[k], work);
 }
 
-/// Counts the union of records near the surface and records that are held. Only the flags of all records tell it.
+/// Counts the union of records near the surface and records that are enclosed. Only the flags of all records tell it.
 void Solids::addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const
 {
   if (depth > 0.0) summary.distance = std::min(summary.distance, -depth);
   bool any = false;
   FlagsResult joined;
   for (const Pairing& pair : pairings_) {
-    const Records held = heldAt(pair, pose, work);
-    any |= !held.empty();
-    if (held.empty()) continue;
+    const Records enclosed = enclosedAt(pair, pose, work);
+    any |= !enclosed.empty();
+    if (enclosed.empty()) continue;
     FlagsResult found = collisionFlags(a_, {b_.hierarchy(), pose},
-                                       request({question_.clearance.value_or(0.0), Side::a, question_.threads}));
-    add(pair, pose, held, found);
+                                       request({question_.clearance.value_or(0.0), Flagged::a, question_.threads}));
+    add(pair, pose, enclosed, found);
     work += found.work;
     if (joined.a.empty())
       joined.a = std::move(found.a);
@@ -254,13 +256,13 @@ void withSolids(const Question& question, Shape& input, Shape& obstacle, const A
 
 } // namespace
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found, const Point3& pivot)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, TrajectoryResult& found, const Point3& pivot)
 {
   withSolids(question, input, obstacle, [&](const Solids& solids) { solids.addToPath(found, found.work, pivot); });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-             std::vector<Verdict>& verdicts)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                 std::vector<Verdict>& verdicts)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) {
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
@@ -272,10 +274,10 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
   });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
-             std::vector<double>& distances, std::vector<PointPair>& pairs)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, const std::vector<Eigen::Isometry3d>& poses,
+                 std::vector<double>& distances, std::vector<PointPair>& pairs)
 {
-  if (pairs.empty()) return; // one of them has nothing that could be held
+  if (pairs.empty()) return; // one of them has nothing that could be enclosed
   withSolids(question, input, obstacle, [&](Solids& solids) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       DistanceResult closest;
@@ -288,12 +290,12 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, const std:
   });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, DistanceResult& closest)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.turn(closest); });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, PointDistances& distances)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) {
     SymmetricDistances both;
@@ -303,12 +305,12 @@ void addHeld(const Question& question, Shape& input, Shape& obstacle, PointDista
   });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, AnyResult& found)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, AnyResult& found)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.addTo(found); });
 }
 
-void addHeld(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found)
+void addEnclosed(const Question& question, Shape& input, Shape& obstacle, FlagsResult& found)
 {
   withSolids(question, input, obstacle, [&](Solids& solids) { solids.addTo(found); });
 }
@@ -327,7 +329,7 @@ DistanceResult closestPair(const Placed& a, const Placed& b, const SolidDistance
     return Shape(name, {std::shared_ptr<const void>(), &hierarchy});
   };
   Shape input = shape("a", a.hierarchy()), obstacle = shape("b", b.hierarchy());
-  addHeld(question, input, obstacle, closest);
+  addEnclosed(question, input, obstacle, closest);
   return closest;
 }
 

@@ -29,7 +29,7 @@ public:
   /// both.
   FlagsRequest request(FlagsRequest request) const;
 
-  /// Adds held records at one pose. Records that are undecided because places are uncertain stay so.
+  /// Adds enclosed records at one pose. Records that are undecided because places are uncertain stay so.
   /// @param found the result of such a request
   void addTo(FlagsResult& found);
   void addTo(AnyResult& found) { addTo(found, b_.pose); }
@@ -37,7 +37,7 @@ public:
   /// With the obstacle at some pose.
   void addTo(AnyResult& found, const Eigen::Isometry3d& pose);
 
-  /// Adds held records along the path. A record that is inside at a pose collides there. Its distance is the depth
+  /// Adds enclosed records along the path. A record that is inside at a pose collides there. Its distance is the depth
   /// where it is deepest: at a pose or, swept, on the motion between poses. @param pivot of that motion
   void addToPath(TrajectoryResult& found, Work& work, const Point3& pivot = {0, 0, 0}) const;
 
@@ -53,15 +53,15 @@ public:
 private:
   using Records = std::vector<std::uint32_t>;
 
-  /// A thing that is solid, and the other thing, its content.
+  /// A solid, and the thing that may be in it.
   struct Pairing {
     bool of_obstacle; ///< the obstacle is the solid
     const SolidBodies& solid;
-    const Content& content;
-    std::optional<Records> held; ///< at the one pose, once asked for
+    const QueriedRecords& queried;
+    std::optional<Records> enclosed; ///< at the one pose, once asked for
   };
 
-  /// For each record of the input, the first pose at which it is held, or its body holds something; or kNothing.
+  /// For each record of the input, the first pose at which it is enclosed, or its body holds something; or kNothing.
   struct FirstPoses {
     std::vector<std::uint32_t> possible, certain; ///< certain: wherever places truly are
   };
@@ -71,19 +71,19 @@ private:
   {
     return pair.of_obstacle ? pose : a_.pose;
   }
-  Eigen::Isometry3d poseOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const
+  Eigen::Isometry3d poseOfQueried(const Pairing& pair, const Eigen::Isometry3d& pose) const
   {
     return pair.of_obstacle ? a_.pose : pose;
   }
 
-  const Records& held(Pairing& pair, Work& work);
-  Records heldAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const;
-  void add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& held, FlagsResult& found) const;
+  const Records& enclosed(Pairing& pair, Work& work);
+  Records enclosedAt(const Pairing& pair, const Eigen::Isometry3d& pose, Work& work) const;
+  void add(const Pairing& pair, const Eigen::Isometry3d& pose, const Records& enclosed, FlagsResult& found) const;
   using PoseRecord = std::pair<std::uint32_t, std::uint32_t>; ///< numbers of a pose, and of a record
   void findOthers(const Pairing& pair, std::vector<PoseRecord> at, const std::vector<Eigen::Isometry3d>& poses,
                   std::vector<std::uint32_t>& others, Work& work) const;
   FirstPoses firstPoses(const Pairing& pair, Work& work) const;
-  FlagsResult flagsOfContent(const Pairing& pair, const Eigen::Isometry3d& pose) const;
+  FlagsResult flagsOfQueried(const Pairing& pair, const Eigen::Isometry3d& pose) const;
   void addToSummary(PoseSummary& summary, const Eigen::Isometry3d& pose, double depth, Work& work) const;
 
   /// The solid of a pair, at a pose of the obstacle.

@@ -4,7 +4,7 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/result.h>
-#include <pcl_bsh/question/model_stray.h>
+#include <pcl_bsh/question/model_shift.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/solid/labels.h>
 
@@ -115,7 +115,7 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
   FlagsRequest flags;
   flags.clearance = question.clearance.value_or(0.0);
   flags.threads = question.threads;
-  flags.flagged = Side::b;
+  flags.flagged = Flagged::b;
   UnseenRequest request;
   request.threads = question.threads;
   request.kinds = true;
@@ -130,7 +130,7 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (question.progress && !question.progress(1.0)) throw Cancelled(); // all but this is done
     const Eigen::Isometry3d in_scan = is_moved ? from_world * poses[k] : poses[k];
-    double moves = strayOf(question.input_pose_uncertainty, bounds, in_scan);
+    double moves = shiftOf(question.input_pose_uncertainty, bounds, in_scan);
     if (is_moved) // by rounding
       moves += 0x1p-44 * (in_scan.translation().lpNorm<1>() + bounds.ball.radius +
                           Eigen::Vector3d(bounds.ball.center.data()).lpNorm<1>() + poses[k].translation().lpNorm<1>() +

@@ -20,7 +20,7 @@ SceneSolids::Known& SceneSolids::known(const std::shared_ptr<SphereHierarchy>& h
   if (std::exchange(found.revision, now) != now) {
     found.bodies.reset();
     found.solid.reset();
-    found.content.reset();
+    found.queried.reset();
   }
   return found;
 }
@@ -38,27 +38,27 @@ void SceneSolids::follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool
 {
   if (solid) addSolid(hierarchy);
   Known& found = known(hierarchy);
-  if (!found.content) found.content = std::make_unique<const Content>(*hierarchy);
+  if (!found.queried) found.queried = std::make_unique<const QueriedRecords>(*hierarchy);
 }
 
 std::optional<PointPair> SceneSolids::find(const StandingPart& a, const StandingPart& b, std::optional<double> within,
                                            Work& work) const
 {
-  const auto held_by = [&](const StandingPart& solid, const StandingPart& other) -> std::optional<PointPair> {
+  const auto enclosed_by = [&](const StandingPart& solid, const StandingPart& other) -> std::optional<PointPair> {
     if (!solid.solid) return std::nullopt;
     const SolidBodies& bodies = bodiesOf(solid);
-    const Content& content = contentOf(other);
+    const QueriedRecords& queried = queriedOf(other);
     const Eigen::Isometry3d &of_solid = solid.placed.pose, &of_other = other.placed.pose;
-    if (!within) return findHeld(bodies, of_solid, content, of_other, &work);
-    const FlagsResult surface = collisionFlags(other.placed, solid.placed, {*within, Side::a});
+    if (!within) return findEnclosed(bodies, of_solid, queried, of_other, &work);
+    const FlagsResult surface = collisionFlags(other.placed, solid.placed, {*within, Flagged::a});
     work += surface.work;
-    const auto held = heldBy({bodies.whole(), of_solid}, content, of_other, 1, &work);
-    const auto certain = certainlyHeld(held, surface.a);
+    const auto enclosed = enclosedBy({bodies.whole(), of_solid}, queried, of_other, 1, &work);
+    const auto certain = certainlyEnclosed(enclosed, surface.a);
     if (certain.empty()) return std::nullopt;
-    return PointPair{certain.front(), holderOf(bodies, of_solid, content, of_other, certain.front(), &work)};
+    return PointPair{certain.front(), holderOf(bodies, of_solid, queried, of_other, certain.front(), &work)};
   };
-  if (const auto pair = held_by(b, a)) return pair;
-  if (const auto pair = held_by(a, b)) return PointPair{pair->b, pair->a};
+  if (const auto pair = enclosed_by(b, a)) return pair;
+  if (const auto pair = enclosed_by(a, b)) return PointPair{pair->b, pair->a};
   return std::nullopt;
 }
 
@@ -71,10 +71,10 @@ void SceneSolids::addTo(FlagsResult& found, const StandingPart& a, const Standin
                        std::vector<Verdict> surface_of_solid) {
     if (!solid.solid) return;
     const SolidBodies& bodies = bodiesOf(solid);
-    const Content& content = contentOf(other);
-    const auto held = heldBy({bodies.whole(), solid.placed.pose}, content, other.placed.pose, 1, &found.work);
-    addHeld(bodies, solid.placed.pose, content, other.placed.pose, held, uncertain, surface_of_other, surface_of_solid,
-            &found.work);
+    const QueriedRecords& queried = queriedOf(other);
+    const auto enclosed = enclosedBy({bodies.whole(), solid.placed.pose}, queried, other.placed.pose, 1, &found.work);
+    addEnclosed(bodies, solid.placed.pose, queried, other.placed.pose, enclosed, uncertain, surface_of_other,
+                surface_of_solid, &found.work);
     for (std::size_t i = 0; i < of_other.size(); ++i) of_other[i] = graver(of_other[i], surface_of_other[i]);
     for (std::size_t i = 0; i < of_solid.size(); ++i) of_solid[i] = graver(of_solid[i], surface_of_solid[i]);
   };
@@ -90,7 +90,7 @@ void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const Stand
 {
   const auto turn_by = [&](const StandingPart& solid, const StandingPart& other, bool solid_is_b) {
     if (!solid.solid) return;
-    deepen(found, {bodiesOf(solid).whole(), solid.placed.hierarchy(), solid.placed.pose}, solid_is_b, contentOf(other),
+    deepen(found, {bodiesOf(solid).whole(), solid.placed.hierarchy(), solid.placed.pose}, solid_is_b, queriedOf(other),
            other.placed.pose);
   };
   turn_by(b, a, true);
@@ -102,15 +102,15 @@ void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const Stand
 std::vector<std::uint32_t> SceneSolids::entered(const SweptPart& solid, const SweptPart& other, double tolerance,
                                                 Work& work) const
 {
-  const SphereHierarchy* places = &known_.at(&other.hierarchy).content->places();
-  std::optional<const SphereHierarchy> middles; // of balls, which are held where these are
+  const SphereHierarchy* places = &known_.at(&other.hierarchy).queried->places();
+  std::optional<const SphereHierarchy> middles; // of balls, which are enclosed where these are
   PointsView view = places->view();
   if (std::exchange(view.radii, nullptr)) places = &middles.emplace(view);
   const Reach reach(0.0, solid.hierarchy.storage().uncertainty, other.hierarchy.storage().uncertainty,
-                    Places::possible);
+                    MeantPlaces::possible);
   std::vector<Verdict> of_places(view.count), of_solid(solid.hierarchy.view().count);
-  flagContacts({*places, other.pose, other.motion}, solid, reach.most, tolerance, Places::measured, of_places, of_solid,
-               work);
+  flagContacts({*places, other.pose, other.motion}, solid, reach.most, tolerance, MeantPlaces::measured, of_places,
+               of_solid, work);
   std::vector<std::int32_t> met;
   for (std::size_t i = 0; i < of_places.size(); ++i)
     if (of_places[i] != Verdict::free) met.push_back(static_cast<std::int32_t>(i));

@@ -34,17 +34,17 @@ public:
   /// a scene has a solid. @throws InvalidInput
   void follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool solid);
 
-  /// A record of a and one of b of which the one is held, and the other is a triangle of a body that holds it, where
-  /// the surfaces are known not to touch.
-  /// @param within for parts whose places are uncertain, the clearance: only what is held wherever they truly are;
-  ///   none: what is held as measured
+  /// A record of a and one of b of which the one is enclosed, and the other is a triangle of a body that holds it,
+  /// where the surfaces are known not to touch.
+  /// @param within for parts whose places are uncertain, the clearance: only what is enclosed wherever they truly are;
+  ///   none: what is enclosed as measured
   std::optional<PointPair> find(const StandingPart& a, const StandingPart& b, std::optional<double> within,
                                 Work& work) const;
 
   /// To the verdicts of both surfaces, at a pose. @param found both sides' flags
   void addTo(FlagsResult& found, const StandingPart& a, const StandingPart& b) const;
 
-  /// The deepest that is held.
+  /// The deepest that is enclosed.
   void turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const;
 
   /// Triangles, ascending, of each body of a solid that may hold a place of the other at an instant of their motion.
@@ -59,12 +59,15 @@ private:
     std::uint64_t revision = 0;                 ///< of its points
     std::unique_ptr<const Solid> solid;
     std::unique_ptr<const SolidBodies> bodies;
-    std::unique_ptr<const Content> content;
+    std::unique_ptr<const QueriedRecords> queried;
   };
 
   Known& known(const std::shared_ptr<SphereHierarchy>& hierarchy);
   const SolidBodies& bodiesOf(const StandingPart& part) const { return *known_.at(&part.placed.hierarchy()).bodies; }
-  const Content& contentOf(const StandingPart& part) const { return *known_.at(&part.placed.hierarchy()).content; }
+  const QueriedRecords& queriedOf(const StandingPart& part) const
+  {
+    return *known_.at(&part.placed.hierarchy()).queried;
+  }
 
   bool any_ = false;
   std::unordered_map<const SphereHierarchy*, Known> known_;

@@ -114,9 +114,9 @@ public:
     return bodies[parts.a].object.parts[parts.part_a].solid || bodies[parts.b].object.parts[parts.part_b].solid;
   }
 
-  /// A held record of two standing parts whose surfaces have this verdict; nothing where the surfaces collide.
-  std::optional<PointPair> heldPair(const StandingPart& a, const StandingPart& b, Verdict surfaces, double clearance,
-                                    Work& work) const;
+  /// An enclosed record of two standing parts whose surfaces have this verdict; nothing where the surfaces collide.
+  std::optional<PointPair> enclosedPair(const StandingPart& a, const StandingPart& b, Verdict surfaces,
+                                        double clearance, Work& work) const;
   void followSolids(); ///< makes what queries of solids need
 
   EffectCost& cost(Effect effect) { return result.costs[static_cast<std::size_t>(effect)]; }
@@ -172,10 +172,10 @@ private:
   void findSwept(EffectCost& spent);
   void findSelf(EffectCost& spent);
 
-  void addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
-                       std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
-  void addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
-                 std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
+  void addEnclosedOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                           std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
+  void addEnclosedAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                     std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const;
 
   void decideAny(BroadPair& pair) const;
   bool remembersAny(BroadPair& pair) const;

@@ -2,7 +2,7 @@
 // The space that scanners saw to be empty: their beams passed through it. Is a ball in it, or did nobody look there?
 //
 //   SeenSpace seen({{origin_1, viewOf(scan_1, n)}, {origin_2, viewOf(scan_2, m)}});
-//   std::vector<Verdict> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Side::b}).b;
+//   std::vector<Verdict> verdicts = collisionFlags({scans}, {robot, T_scans_robot}, {0.05, Flagged::b}).b;
 //   UnseenResult found = markUnseen(seen, {robot, T_scans_robot}, {0.05}, verdicts); // what is free, but was not seen
 //
 // A direction lies between beams if beams lie on all sides of it: it is in a triangle of three beams within 1.2 angles.

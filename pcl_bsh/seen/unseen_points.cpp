@@ -143,10 +143,10 @@ private:
       }
       return false;
     };
-    const RecordSeen sight(model_, clearance_, sees);
-    if (!scans.empty() && sight(record)) return;
-    mark(record, request_.kinds &&
-                     sight.isInShadow(record, Shadow{*this}, request_.parts ? &result.kinds.parts : nullptr, frame_));
+    const RecordSeen seen_record(model_, clearance_, sees);
+    if (!scans.empty() && seen_record(record)) return;
+    mark(record, request_.kinds && seen_record.isInShadow(record, Shadow{*this},
+                                                          request_.parts ? &result.kinds.parts : nullptr, frame_));
   }
 
   /// As RecordSeen asks for it.

@@ -11,7 +11,7 @@
 
 #include <pcl_bsh/simd/sphere_lanes-inl.h>
 
-#include <pcl_bsh/simd/flat_triangle.h>
+#include <pcl_bsh/simd/flattened_triangle.h>
 
 #include <cstddef>
 #include <limits>

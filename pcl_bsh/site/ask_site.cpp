@@ -4,7 +4,7 @@
 #include <pcl_bsh/geometry/coordinate_spacing.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/warnings/hollow.h>
-#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/answers/question_part.h>
 #include <pcl_bsh/site/site_clashes.h>
 
 #include <algorithm>
@@ -21,10 +21,10 @@ struct NoAnswer {
   const char* remedy;
 };
 
-constexpr NoAnswer no_answers[] = {{"indices", &Wanted::indices, "ask for flags, which a sink gets"},
+constexpr NoAnswer no_answers[] = {{"indices", &Wanted::indices, "ask for flags, which a receiver gets"},
                                    {"obstacle_indices", &Wanted::obstacle_indices, "ask for flags of the obstacle"},
                                    {"both_ways", &Wanted::both_ways, "ask once more, with the roles exchanged"},
-                                   {"within", &Wanted::within, "ask for distances, which a sink gets"}};
+                                   {"within", &Wanted::within, "ask for distances, which a receiver gets"}};
 
 void requireAnswers(const Question& question, bool obstacle_is_site)
 {
@@ -80,10 +80,10 @@ class SiteAsking {
 public:
   SiteAsking(const Question& question, const Site& site, Shape* shape, const Site* other, const SiteMeans& means)
   : question_(question),
-    asked_{question, means, site, shape, other}
+    part_{question, means, site, shape, other}
   {
-    if (means.clashes) asked_.question.wanted.contacts = true;
-    requireAnswers(asked_.question, other != nullptr);
+    if (means.clashes) part_.question.wanted.contacts = true;
+    requireAnswers(part_.question, other != nullptr);
     if (visits() > 1 && means.answers && question.wanted.measures())
       throw InvalidInput(Input::result, "answers", "are kept of one visit to each tile", "ask for distances alone");
     if (!shape) return;
@@ -102,16 +102,16 @@ public:
     else if (wantsFlags())
       visit(flag);
     if (wantsFlagsOfSite()) {
-      asked_.means.answers = nullptr; // those are of the tiles of the input
+      part_.means.answers = nullptr; // those are of the tiles of the input
       visit(flagObstacle);
     }
     if (wanted.any) visit(findAny);
     if (wantsClosest()) visit(findClosest);
     if (wanted.distances) visit(measure);
-    asked_.question.progress = nullptr;
-    asked_.means.answers = nullptr;
-    if (question_.seen) lookAround(asked_, answer_);
-    if (asked_.shape) {
+    part_.question.progress = nullptr;
+    part_.means.answers = nullptr;
+    if (question_.seen) lookAround(part_, answer_);
+    if (part_.shape) {
       answer_.obstacle_colliding = countOf(answer_.obstacle_flags, Verdict::colliding);
       answer_.obstacle_undecided = countOf(answer_.obstacle_flags, Verdict::undecided);
     }
@@ -122,16 +122,16 @@ public:
 private:
   bool isAlongPath() const
   {
-    const Wanted& wanted = asked_.question.wanted;
+    const Wanted& wanted = part_.question.wanted;
     return wanted.contacts || wanted.poses || wanted.first_poses ||
            (question_.path && (wanted.flags || wanted.closest));
   }
   bool wantsFlags() const
   {
-    const bool of_obstacle = question_.wanted.obstacle_flags && asked_.shape && !question_.seen; // which tells them
+    const bool of_obstacle = question_.wanted.obstacle_flags && part_.shape && !question_.seen; // which tells them
     return question_.wanted.flags || of_obstacle;
   }
-  bool wantsFlagsOfSite() const { return question_.wanted.obstacle_flags && asked_.other; }
+  bool wantsFlagsOfSite() const { return question_.wanted.obstacle_flags && part_.other; }
   bool wantsClosest() const { return question_.wanted.closest && !isAlongPath(); }
 
   int visits() const
@@ -141,30 +141,30 @@ private:
   }
 
   /// Each visit has its share of the progress.
-  void visit(void (*part)(const Asked&, SiteAnswer&))
+  void visit(void (*answerPart)(const QuestionPart&, SiteAnswer&))
   {
     const double begun = begun_++, all = visits();
     if (question_.progress)
-      asked_.question.progress = [this, begun, all](double done) { return question_.progress((begun + done) / all); };
-    part(asked_, answer_);
+      part_.question.progress = [this, begun, all](double done) { return question_.progress((begun + done) / all); };
+    answerPart(part_, answer_);
   }
 
   void warn()
   {
-    const NamedCloud input = namedSite(asked_.site);
+    const NamedCloud input = namedSite(part_.site);
     const bool spacings = question_.wanted.spacings;
     answer_.warnings =
-        warningsOf(question_, input, asked_.shape ? asked_.shape->facts(spacings) : namedSite(*asked_.other));
+        warningsOf(question_, input, part_.shape ? part_.shape->facts(spacings) : namedSite(*part_.other));
     std::optional<double> nearest;
-    if (asked_.question.wanted.collisions())
-      nearest = nearestOf(asked_.question, answer_);
+    if (part_.question.wanted.collisions())
+      nearest = nearestOf(part_.question, answer_);
     else if (question_.wanted.closest)
       nearest = answer_.closest.distance;
-    if (auto hollow = warningOfHollow(asked_, input.name, nearest)) answer_.warnings.push_back(std::move(*hollow));
+    if (auto hollow = warningOfHollow(part_, input.name, nearest)) answer_.warnings.push_back(std::move(*hollow));
   }
 
   const Question& question_;
-  Asked asked_;
+  QuestionPart part_;
   int begun_ = 0; ///< visits that have
   SiteAnswer answer_;
 };

@@ -7,7 +7,7 @@
 //   question.pose = T_valley_robot;
 //   question.clearance = 0.05;
 //   question.wanted.closest = question.wanted.flags = true;
-//   site::SiteAnswer answer = site::ask(question, valley, robot, {.sink = sink}); // robot: a Shape
+//   site::SiteAnswer answer = site::ask(question, valley, robot, {.receiver = receiver}); // robot: a Shape
 //   site::SiteAnswer changes = site::ask(question, valley, site::readSite("before"));
 //
 // Only tiles that can matter are read, one at a time. Their boxes are compared with boxes about parts of the obstacle,
@@ -16,8 +16,8 @@
 // each. A tile of the obstacle may be read once for each tile of the input that it comes near to.
 //
 // In an MPI job (mpirun -n 4 ...), all ranks ask the same: the tiles are dealt to them, and each gets the whole answer.
-// Sinks are called on the rank that has the tile. An accuracy promises for the site what it promises for one cloud. A
-// level, a number of pairs or a time is that of each tile. Threads are those of each process.
+// Receivers are called on the rank that has the tile. An accuracy promises for the site what it promises for one cloud.
+// A level, a number of pairs or a time is that of each tile. Threads are those of each process.
 //
 // Unseen points of an obstacle (`seen`) are those of one SeenSpace over all points of the site. All tiles that have
 // beams near the directions of the obstacle are read once. Memory keeps the beams that look at the obstacle on its way.
@@ -45,7 +45,7 @@ public:
   /// Returns the answer about a tile, or null where the tile has to be asked about. All ranks return equal answers.
   virtual const std::vector<double>* known(std::size_t tile) const = 0;
 
-  /// Called by the rank that has the tile, after the sink.
+  /// Called by the rank that has the tile, after the receiver.
   virtual void keep(std::size_t tile, const std::vector<double>& numbers) = 0;
 };
 
@@ -54,17 +54,17 @@ class ClashFinder;
 /// Called for each tile that was read, with its points and the answer about them: vectors of the answer have an entry
 /// per point. A question that needs several visits calls it in each visit, with the answer of that visit. For distances
 /// to another site, the answer has the distances alone.
-using TileSink = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const Answer&)>;
+using TileReceiver = std::function<void(const Tile&, const pcl::PCLPointCloud2&, const Answer&)>;
 
 /// The means to answer a question about a site.
 struct SiteMeans {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< of each process, for a tile and its hierarchy
-  /// Answers of an earlier run about collisions or distances. Tiles with such an answer are not read, and the sink is
-  /// not called. ResultSite::answers() returns some.
+  /// Answers of an earlier run about collisions or distances. Tiles with such an answer are not read, and the receiver
+  /// is not called. ResultSite::answers() returns some.
   TileAnswers* answers = nullptr;
   ClashFinder* clashes = nullptr; ///< gets the points that collide along the path, or at the one pose
-  TileSink sink = nullptr;
-  TileSink obstacle_sink = nullptr; ///< with Wanted::obstacle_flags, of the tiles of an obstacle that is a site
+  TileReceiver receiver = nullptr;
+  TileReceiver obstacle_receiver = nullptr; ///< with Wanted::obstacle_flags, of the tiles of an obstacle that is a site
 };
 
 /// The cost of a tile, in seconds of the clock on the wall.
@@ -72,7 +72,7 @@ struct TileCost {
   std::uint32_t tile = 0;  ///< its number among the site's
   std::uint32_t place = 0; ///< in the order in which tiles are dealt to ranks
   double reading = 0.0;
-  double asking = 0.0; ///< its hierarchy, the question and the sink
+  double asking = 0.0; ///< its hierarchy, the question and the receiver
 };
 
 /// The tiles that a question has read of a site, in one visit or in several.
@@ -91,7 +91,7 @@ struct SitePair {
   SitePoint a, b;
 };
 
-/// The answer. Vectors about points of a site stay empty: sinks get them. Distances are counted in `distances.a`;
+/// The answer. Vectors about points of a site stay empty: receivers get them. Distances are counted in `distances.a`;
 /// `work`, the pair of `any`, `pose_pairs` and `unseen.inside` are not told.
 struct SiteAnswer : Answer {
   /// The pair of `closest`. Among equal pairs, it has the smallest (source, record) and, for this point, the smallest

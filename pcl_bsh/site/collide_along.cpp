@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of a question about a site that is along a path.
 #include <pcl_bsh/geometry/exact_distance.h>
-#include <pcl_bsh/site/answers/held.h>
-#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/enclosed_in_tile.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/obstacle_tiles.h>
 #include <pcl_bsh/site/tiles/records.h>
@@ -100,49 +100,49 @@ private:
 
 /// Asks about tiles of the site, adds up the answers, and returns the tiles read.
 template <typename Find>
-TilesRead visitTiles(const Asked& asked, Inquiry& inquiry, const std::vector<std::uint32_t>& tiles, PassageSum& sum,
-                     const Find& find)
+TilesRead visitTiles(const QuestionPart& part, TileQuery& tile_query, const std::vector<std::uint32_t>& tiles,
+                     PassageSum& sum, const Find& find)
 {
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy) {
     Answer of_tile;
     std::vector<MetPoint> met;
     of_tile.collisions = find(tile, hierarchy, met);
-    if (asked.means.sink) asked.means.sink(tile, cloud, of_tile);
-    return sum.numbersOf(tile, cloud, of_tile.collisions, asked.other ? &met : nullptr);
+    if (part.means.receiver) part.means.receiver(tile, cloud, of_tile);
+    return sum.numbersOf(tile, cloud, of_tile.collisions, part.other ? &met : nullptr);
   };
-  return inquiry.visitAndAdd(
-      tiles, ask, [&](const auto& numbers) { sum.add(numbers); }, asked.other != nullptr);
+  return tile_query.visitAndAdd(
+      tiles, ask, [&](const auto& numbers) { sum.add(numbers); }, part.other != nullptr);
 }
 
-void followPathOfCloud(const Asked& asked, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
+void followPathOfCloud(const QuestionPart& part, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
 {
-  const PlacedSite site = asked.input();
-  const SphereHierarchy& model = asked.model();
-  const TrajectoryRequest wanted = alongPath(asked);
+  const PlacedSite site = part.input();
+  const SphereHierarchy& model = part.model();
+  const TrajectoryRequest wanted = alongPath(part);
   refusePassage(site.site, model, poses, wanted);
-  Inquiry inquiry(asked, site);
+  TileQuery tile_query(part, site);
   const auto find = [&](const Tile&, const SphereHierarchy& hierarchy, std::vector<MetPoint>&) {
     TrajectoryResult found = collideAlong({hierarchy}, model, poses, wanted);
-    addHeldOf(asked, hierarchy, found);
+    addEnclosedOf(part, hierarchy, found);
     return found;
   };
   const std::vector<std::uint32_t> tiles =
-      tilesAlong(site.site, boxesOf(model.view(), asked.question.solid), poses, pathReach(wanted), site.uncertainty);
-  answer.tiles += visitTiles(asked, inquiry, tiles, sum, find);
+      tilesAlong(site.site, boxesOf(model.view(), part.question.solid), poses, pathReach(wanted), site.uncertainty);
+  answer.tiles += visitTiles(part, tile_query, tiles, sum, find);
 }
 
 /// Follows the path of a site. Reads the tiles of it that come near a tile of the input on their way.
-void followPathOfSite(const Asked& asked, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
+void followPathOfSite(const QuestionPart& part, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
 {
-  const PlacedSite site = asked.input();
-  const Site& model = *asked.other;
-  const TrajectoryRequest wanted = alongPath(asked);
+  const PlacedSite site = part.input();
+  const Site& model = *part.other;
+  const TrajectoryRequest wanted = alongPath(part);
   const std::vector<Point3> corners = cornersOf(model);
   refusePassage(site.site, SphereHierarchy(viewOf(corners.empty() ? nullptr : corners.front().data(), corners.size())),
                 poses, wanted);
-  Inquiry inquiry(asked, site);
-  const Uncertainty of_model = asked.question.uncertaintyOfObstacle();
-  ObstacleTiles models({model, Eigen::Isometry3d::Identity(), of_model}, inquiry.bytesLeft());
+  TileQuery tile_query(part, site);
+  const Uncertainty of_model = part.question.uncertaintyOfObstacle();
+  ObstacleTiles models({model, Eigen::Isometry3d::Identity(), of_model}, tile_query.bytesLeft());
   std::vector<std::vector<std::uint32_t>> near(site.site.tiles.size()); // those that may come near to each tile
   for (std::uint32_t j = 0; j < model.tiles.size(); ++j) {
     if (!model.tiles[j].bounds) continue;
@@ -161,31 +161,31 @@ void followPathOfSite(const Asked& asked, const Poses& poses, PassageSum& sum, S
     for (const std::uint32_t j : numbers) {
       const PointsView points = models.points(j);
       const TrajectoryResult of_model_tile =
-          collideAlong({hierarchy}, SphereHierarchy(points, inquiry.building()), poses, wanted);
+          collideAlong({hierarchy}, SphereHierarchy(points, tile_query.building()), poses, wanted);
       joined.add(of_model_tile, points, models.last());
       if (wanted.pose_summaries) joined_poses.add(of_model_tile.poses);
     }
     TrajectoryResult& found = joined.result(met);
     if (wanted.pose_summaries) {
       found.poses = joined_poses.joined(
-          [&](std::size_t m) { return SphereHierarchy(models.points(numbers[m]), inquiry.building()); });
+          [&](std::size_t m) { return SphereHierarchy(models.points(numbers[m]), tile_query.building()); });
     }
     return std::move(found);
   };
-  answer.tiles += visitTiles(asked, inquiry, tiles, sum, find);
+  answer.tiles += visitTiles(part, tile_query, tiles, sum, find);
   answer.obstacle_tiles += models.read();
 }
 
 } // namespace
 
-void followPath(const Asked& asked, SiteAnswer& answer)
+void followPath(const QuestionPart& part, SiteAnswer& answer)
 {
-  const Poses poses = asked.question.poses();
-  PassageSum sum(asked, poses.size());
-  if (asked.other)
-    followPathOfSite(asked, poses, sum, answer);
+  const Poses poses = part.question.poses();
+  PassageSum sum(part, poses.size());
+  if (part.other)
+    followPathOfSite(part, poses, sum, answer);
   else
-    followPathOfCloud(asked, poses, sum, answer);
+    followPathOfCloud(part, poses, sum, answer);
   sum.tell(answer);
 }
 

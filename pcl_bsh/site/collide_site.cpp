@@ -5,7 +5,7 @@
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/site/answers/comparison.h>
-#include <pcl_bsh/site/answers/held.h>
+#include <pcl_bsh/site/answers/enclosed_in_tile.h>
 #include <pcl_bsh/site/tiles/records.h>
 
 #include <algorithm>
@@ -68,21 +68,21 @@ struct Counts {
 /// Flags of the points of a comparison's tiles. @param told gets those of a tile, and their counts
 /// @param flags_of_cloud gets those of the cloud in memory; null: they are not asked for
 template <typename Told>
-Counts flags(const Asked& asked, Comparison& comparison, std::vector<Verdict>* flags_of_cloud, const Told& told,
+Counts flags(const QuestionPart& part, Comparison& comparison, std::vector<Verdict>* flags_of_cloud, const Told& told,
              TilesRead& read)
 {
-  auto wanted = wantedOf<FlagsRequest>(asked.question);
-  wanted.flagged = flags_of_cloud || asked.question.solid ? Side::both : Side::a;
+  auto wanted = wantedOf<FlagsRequest>(part.question);
+  wanted.flagged = flags_of_cloud || part.question.solid ? Flagged::both : Flagged::a;
   comparison.refuse([&](const Placed& x, const Placed& y) { collisionFlags(x, y, wanted); });
-  if (flags_of_cloud) flags_of_cloud->assign(asked.model().view().count, Verdict::free);
+  if (flags_of_cloud) flags_of_cloud->assign(part.model().view().count, Verdict::free);
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& a) {
     FlagsResult all, found;
     all.a.assign(a.hierarchy().view().count, Verdict::free);
     comparison.compareWithOther(
-        tile, [&] { return asked.clearance(); },
+        tile, [&] { return part.clearance(); },
         [&](const pcl::PCLPointCloud2&, const Placed& other) {
           collisionFlags(a, other, wanted, found);
-          addHeldOf(asked, a, found);
+          addEnclosedOf(part, a, found);
           join(all.a, found.a);
           all.work += found.work;
         });
@@ -99,7 +99,7 @@ Counts flags(const Asked& asked, Comparison& comparison, std::vector<Verdict>* f
     counts.undecided += static_cast<std::uint64_t>(numbers[1]);
     if (flags_of_cloud) addVerdicts(numbers, 2, *flags_of_cloud);
   };
-  read += comparison.visitAndAdd(asked.clearance(), find, add);
+  read += comparison.visitAndAdd(part.clearance(), find, add);
   counts = {sumOfAllRanks(counts.colliding), sumOfAllRanks(counts.undecided)};
   if (ranks() > 1 && flags_of_cloud) {
     std::vector<double> own;
@@ -111,27 +111,27 @@ Counts flags(const Asked& asked, Comparison& comparison, std::vector<Verdict>* f
 
 } // namespace
 
-void findAny(const Asked& asked, SiteAnswer& answer)
+void findAny(const QuestionPart& part, SiteAnswer& answer)
 {
-  const auto wanted = wantedOf<AnyRequest>(asked.question);
+  const auto wanted = wantedOf<AnyRequest>(part.question);
   const auto query = [&](const Placed& x, const Placed& y) {
     AnyResult found = anyCollision(x, y, wanted);
-    addHeldOf(asked, x, found);
+    addEnclosedOf(part, x, found);
     return found.verdict;
   };
-  Comparison comparison(asked, asked.input(), asked.obstacle());
+  Comparison comparison(part, part.input(), part.obstacle());
   comparison.refuse(query);
   bool collides = false, is_undecided = false;
   const auto ask = [&](const Tile& tile, const pcl::PCLPointCloud2&, const Placed& a) {
     comparison.compareWithOther(
-        tile, [&] { return collides ? -infinity : asked.clearance(); },
+        tile, [&] { return collides ? -infinity : part.clearance(); },
         [&](const pcl::PCLPointCloud2&, const Placed& other) {
           const Verdict verdict = query(a, other);
           collides = verdict == Verdict::colliding;
           is_undecided = is_undecided || verdict == Verdict::undecided;
         });
   };
-  answer.tiles += comparison.visit(asked.clearance(), ask, [&] {
+  answer.tiles += comparison.visit(part.clearance(), ask, [&] {
     collides = sumOfAllRanks(collides ? 1 : 0) > 0;
     return collides ? -infinity : infinity;
   });
@@ -139,51 +139,51 @@ void findAny(const Asked& asked, SiteAnswer& answer)
   answer.any.verdict = verdictOfAllRanks(collides, is_undecided);
 }
 
-void flag(const Asked& asked, SiteAnswer& answer)
+void flag(const QuestionPart& part, SiteAnswer& answer)
 {
-  const Wanted& wanted = asked.question.wanted;
-  Comparison comparison(asked, asked.input(), asked.obstacle());
-  const bool of_cloud = wanted.obstacle_flags && !asked.question.seen && !comparison.isOfSites(); // which tells them
+  const Wanted& wanted = part.question.wanted;
+  Comparison comparison(part, part.input(), part.obstacle());
+  const bool of_cloud = wanted.obstacle_flags && !part.question.seen && !comparison.isOfSites(); // which tells them
   const auto told = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, FlagsResult& found) {
-    if (!asked.means.sink) return;
+    if (!part.means.receiver) return;
     Answer of_tile;
     of_tile.collisions.flags = std::move(found.a);
     of_tile.collisions.colliding = found.colliding_a;
     of_tile.collisions.undecided = found.undecided_a;
     of_tile.work = found.work;
-    asked.means.sink(tile, cloud, of_tile);
+    part.means.receiver(tile, cloud, of_tile);
   };
-  const Counts counts = flags(asked, comparison, of_cloud ? &answer.obstacle_flags : nullptr, told, answer.tiles);
+  const Counts counts = flags(part, comparison, of_cloud ? &answer.obstacle_flags : nullptr, told, answer.tiles);
   answer.obstacle_tiles += comparison.readOfOther();
   answer.collisions.colliding = counts.colliding;
   answer.collisions.undecided = counts.undecided;
 }
 
-void flagObstacle(const Asked& asked, SiteAnswer& answer)
+void flagObstacle(const QuestionPart& part, SiteAnswer& answer)
 {
-  Comparison comparison(asked, *asked.obstacle(), asked.input());
+  Comparison comparison(part, *part.obstacle(), part.input());
   const auto told = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, FlagsResult& found) {
-    if (!asked.means.obstacle_sink) return;
+    if (!part.means.obstacle_receiver) return;
     Answer of_tile;
     of_tile.obstacle_flags = std::move(found.a);
     of_tile.work = found.work;
-    asked.means.obstacle_sink(tile, cloud, of_tile);
+    part.means.obstacle_receiver(tile, cloud, of_tile);
   };
-  const Counts counts = flags(asked, comparison, nullptr, told, answer.obstacle_tiles);
+  const Counts counts = flags(part, comparison, nullptr, told, answer.obstacle_tiles);
   answer.tiles += comparison.readOfOther();
   answer.obstacle_colliding = counts.colliding;
   answer.obstacle_undecided = counts.undecided;
 }
 
-void findClosest(const Asked& asked, SiteAnswer& answer)
+void findClosest(const QuestionPart& part, SiteAnswer& answer)
 {
-  auto wanted = wantedOf<DistanceRequest>(asked.question);
+  auto wanted = wantedOf<DistanceRequest>(part.question);
   const auto query = [&](const Placed& x, const Placed& y) {
     DistanceResult found = closestPair(x, y, wanted);
-    addHeldOf(asked, x, found);
+    addEnclosedOf(part, x, found);
     return found;
   };
-  Comparison comparison(asked, asked.measuredInput(), asked.measuredObstacle());
+  Comparison comparison(part, part.measuredInput(), part.measuredObstacle());
   comparison.refuse(query);
   double least = infinity, lower = infinity;
   std::vector<Candidate> candidates_a, candidates_b;
@@ -204,7 +204,7 @@ void findClosest(const Asked& asked, SiteAnswer& answer)
   };
   answer.tiles += comparison.visit(infinity, ask, [&] {
     least = leastOfAllRanks(least);
-    return asked.question.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
+    return part.question.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
   });
   answer.obstacle_tiles += comparison.readOfOther();
 
@@ -221,11 +221,11 @@ void findClosest(const Asked& asked, SiteAnswer& answer)
   if (comparison.isOfSites()) answer.pair->b = last_b.points[nearest.pair->b];
 }
 
-void measure(const Asked& asked, SiteAnswer& answer)
+void measure(const QuestionPart& part, SiteAnswer& answer)
 {
-  auto wanted = wantedOf<PointDistancesRequest>(asked.question);
-  wanted.max_distance = asked.question.max_distance.value_or(infinity);
-  Comparison comparison(asked, asked.measuredInput(), asked.measuredObstacle());
+  auto wanted = wantedOf<PointDistancesRequest>(part.question);
+  wanted.max_distance = part.question.max_distance.value_or(infinity);
+  Comparison comparison(part, part.measuredInput(), part.measuredObstacle());
   comparison.refuse([&](const Placed& x, const Placed& y) { pointDistances(x, y, wanted); });
   double greatest = -infinity;
   const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, const Placed& points) {
@@ -238,7 +238,7 @@ void measure(const Asked& asked, SiteAnswer& answer)
         tile, [&] { return nearer.max_distance; },
         [&](const pcl::PCLPointCloud2&, const Placed& others) {
           PointDistances found = pointDistances(points, others, nearer);
-          addHeldOf(asked, points, found);
+          addEnclosedOf(part, points, found);
           if (!comparison.isOfSites()) {
             all = std::move(found);
             return;
@@ -259,7 +259,7 @@ void measure(const Asked& asked, SiteAnswer& answer)
         all.greatest = std::fmax(all.greatest, distance);
       }
     }
-    if (asked.means.sink) asked.means.sink(tile, cloud, of_tile);
+    if (part.means.receiver) part.means.receiver(tile, cloud, of_tile);
     return std::vector<double>{static_cast<double>(all.measured), static_cast<double>(all.undecided), all.greatest};
   };
   PointDistances& sum = answer.distances.a;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/warnings/hollow.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/answers/question_part.h>
 
 #include <algorithm>
 #include <vector>
@@ -41,15 +41,15 @@ std::optional<Point3> placeWithin(Shape& surface, const Site& site,
 
 } // namespace
 
-std::optional<Warning> warningOfHollow(const Asked& asked, const std::string& name, std::optional<double> nearest)
+std::optional<Warning> warningOfHollow(const QuestionPart& part, const std::string& name, std::optional<double> nearest)
 {
-  if (!asked.shape || !asked.shape->isSurface() || asked.question.solid) return std::nullopt;
-  Shape& obstacle = *asked.shape;
+  if (!part.shape || !part.shape->isSurface() || part.question.solid) return std::nullopt;
+  Shape& obstacle = *part.shape;
   if (nearest && *nearest <= nearTo(obstacle)) return std::nullopt;
-  const std::optional<Point3> place = placeWithin(obstacle, asked.site, asked.question.poses());
+  const std::optional<Point3> place = placeWithin(obstacle, part.site, part.question.poses());
   if (!place) return std::nullopt;
   if (!nearest) {
-    Asked exact = asked;
+    QuestionPart exact = part;
     exact.question.accuracy = {};
     exact.question.progress = nullptr;
     SiteAnswer answer;

@@ -2,7 +2,7 @@
 // A question's answers about each point, as a site of the same tiles with more fields.
 //
 //   site::ResultSite out(valley, "marked", {{"collision", pcl::PCLPointField::UINT8, 0.0}});
-//   site::ask(question, valley, machine, {.sink = [&](const auto& tile, const auto& cloud, const Answer& found) {
+//   site::ask(question, valley, machine, {.receiver = [&](const auto& tile, const auto& cloud, const Answer& found) {
 //     out.write(tile, cloud, {found.collisions.flags.data()});
 //   }});
 //   site::Site marked = out.finish();

@@ -4,10 +4,10 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/ball_about_box.h>
-#include <pcl_bsh/question/model_stray.h>
+#include <pcl_bsh/question/model_shift.h>
 #include <pcl_bsh/seen/looked_at.h>
 #include <pcl_bsh/seen/unseen_points.h>
-#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 
 #include <algorithm>
@@ -27,15 +27,15 @@ struct Found {
   Verdict verdict;
 };
 
-TilesRead collide(const Asked& asked, const Poses& poses, VerdictsAtPoses& verdicts)
+TilesRead collide(const QuestionPart& part, const Poses& poses, VerdictsAtPoses& verdicts)
 {
-  const SphereHierarchy& model = asked.model();
+  const SphereHierarchy& model = part.model();
   PathReach reach;
-  reach.distance = asked.clearance();
-  const FlagsRequest wanted(asked.clearance(), Side::b, asked.question.threads);
+  reach.distance = part.clearance();
+  const FlagsRequest wanted(part.clearance(), Flagged::b, part.question.threads);
   std::vector<Found> own;
-  const PlacedSite site = asked.input();
-  Inquiry inquiry(asked, site);
+  const PlacedSite site = part.input();
+  TileQuery tile_query(part, site);
   const auto find = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
     FlagsResult found;
     for (std::uint32_t k = 0; k < poses.size(); ++k) {
@@ -46,8 +46,8 @@ TilesRead collide(const Asked& asked, const Poses& poses, VerdictsAtPoses& verdi
     return std::vector<double>();
   };
   const TilesRead read =
-      inquiry.visitAndAdd(tilesAlong(site.site, CloudBoxes(model.view()), poses, reach, site.uncertainty), find,
-                          [](const std::vector<double>&) {});
+      tile_query.visitAndAdd(tilesAlong(site.site, CloudBoxes(model.view()), poses, reach, site.uncertainty), find,
+                             [](const std::vector<double>&) {});
   for (const Found& found : gatheredFromAllRanks(own)) {
     Verdict& verdict = verdicts[found.pose][found.record];
     verdict = graver(verdict, found.verdict);
@@ -62,21 +62,21 @@ struct KeptBeam {
 };
 
 /// Radius of the balls about a model's points: more where the site's pose is uncertain.
-double ballAt(const Eigen::Isometry3d& pose, const CornerBox& model, const Asked& asked)
+double ballAt(const Eigen::Isometry3d& pose, const CornerBox& model, const QuestionPart& part)
 {
-  return asked.clearance() + strayOf(asked.question.input_pose_uncertainty, model, pose);
+  return part.clearance() + shiftOf(part.question.input_pose_uncertainty, model, pose);
 }
 
 /// The beams of all tiles that count, of each scan.
 class Beams {
 public:
-  Beams(const Asked& asked, const Poses& poses) : asked_(asked), site_(asked.site), origins_(asked.question.origin)
+  Beams(const QuestionPart& part, const Poses& poses) : part_(part), site_(part.site), origins_(part.question.origin)
   {
-    const SphereHierarchy& model = asked.model();
+    const SphereHierarchy& model = part.model();
     const CornerBox bounds(model.view());
     for (const ScanOrigins::Entry& entry : origins_.entries) {
       looked_.emplace_back(entry.origin, angle());
-      for (const Eigen::Isometry3d& pose : poses) looked_.back().add({model, pose}, ballAt(pose, bounds, asked));
+      for (const Eigen::Isometry3d& pose : poses) looked_.back().add({model, pose}, ballAt(pose, bounds, part));
     }
     collect();
   }
@@ -92,7 +92,7 @@ public:
     }
     SeenOptions options;
     options.angle = angle();
-    options.threads = asked_.question.threads;
+    options.threads = part_.question.threads;
     return SeenSpace(scans, options);
   }
 
@@ -105,7 +105,7 @@ public:
   TilesRead read;
 
 private:
-  double angle() const { return asked_.question.seen_angle.value_or(0.0); } ///< which is not measured here
+  double angle() const { return part_.question.seen_angle.value_or(0.0); } ///< which is not measured here
 
   void collect()
   {
@@ -129,11 +129,11 @@ private:
   {
     std::vector<KeptBeam> own;
     double uncertainty = 0.0;
-    Uncertainty of_ends = asked_.question.uncertaintyOfInput();
+    Uncertainty of_ends = part_.question.uncertaintyOfInput();
     of_ends.pose = {}; // beams and their scanner move together
-    TileVisitor visitor(site_, asked_.means.memory);
+    TileVisitor visitor(site_, part_.means.memory);
     visitor.visitAll(tiles, [&](const Tile& tile, const pcl::PCLPointCloud2& cloud) {
-      const PointsView view = Inquiry::pointsOf(cloud, site_, tile, of_ends);
+      const PointsView view = TileQuery::pointsOf(cloud, site_, tile, of_ends);
       uncertainty = view.uncertainty;
       const std::vector<ScanBeams> scans =
           scansOf(view, recordFields(cloud.fields), (site_.folder / tile.file).string(), origins_);
@@ -168,14 +168,14 @@ private:
   void requireMemory(std::uint64_t beams) const
   {
     constexpr std::uint64_t bytes = 2 * sizeof(KeptBeam); // with what SeenSpace holds
-    if (beams <= asked_.means.memory / bytes) return;
+    if (beams <= part_.means.memory / bytes) return;
     throw InvalidInput(Input::points, "memory",
                        counted(beams, "beam") + " at least look at the model on its way, which " +
-                           std::to_string(asked_.means.memory) + " bytes do not hold",
+                           std::to_string(part_.means.memory) + " bytes do not hold",
                        "give some " + std::to_string(bytes) + " bytes for each, or ask about a part of the path");
   }
 
-  const Asked& asked_;
+  const QuestionPart& part_;
   const Site& site_;
   const ScanOrigins& origins_;
   std::vector<LookedAt> looked_; ///< of each scan
@@ -186,16 +186,16 @@ private:
 
 } // namespace
 
-void lookAround(const Asked& asked, SiteAnswer& answer)
+void lookAround(const QuestionPart& part, SiteAnswer& answer)
 {
-  const Question& question = asked.question;
-  const SphereHierarchy& model = asked.model();
+  const Question& question = part.question;
+  const SphereHierarchy& model = part.model();
   const Poses poses = question.poses();
-  if (question.origin.empty()) scansOf(PointsView{}, {}, asked.site.folder.string(), question.origin); // refuses that
-  requireUncertainty(asked.site, question.uncertaintyOfInput());
+  if (question.origin.empty()) scansOf(PointsView{}, {}, part.site.folder.string(), question.origin); // refuses that
+  requireUncertainty(part.site, question.uncertaintyOfInput());
   VerdictsAtPoses verdicts(poses.size(), std::vector<Verdict>(model.view().count, Verdict::free));
-  const Beams beams(asked, poses);
-  answer.tiles += collide(asked, poses, verdicts);
+  const Beams beams(part, poses);
+  answer.tiles += collide(part, poses, verdicts);
   answer.beam_tiles = beams.read;
   answer.beams_kept = beams.count();
   const SeenSpace space = beams.space();
@@ -207,7 +207,7 @@ void lookAround(const Asked& asked, SiteAnswer& answer)
   wanted.parts = question.wanted.unseen_places;
   answer.obstacle_flags.assign(model.view().count, Verdict::free);
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    wanted.clearance = ballAt(poses[k], bounds, asked);
+    wanted.clearance = ballAt(poses[k], bounds, part);
     UnseenResult found = markUnseen(space, {model, poses[k]}, wanted, verdicts[k]);
     answer.unseen.addPose(verdicts[k], question.wanted.unseen_places, answer.obstacle_flags, std::move(found.kinds));
   }

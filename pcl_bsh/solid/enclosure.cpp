@@ -10,7 +10,7 @@
 namespace pcl_bsh {
 namespace {
 
-bool isHeld(std::uint8_t label)
+bool isEnclosed(std::uint8_t label)
 {
   return label != labelOf(Label::outside);
 }
@@ -23,7 +23,7 @@ SphereHierarchy partOf(PointsView view, const std::vector<std::int32_t>& places)
 
 } // namespace
 
-Content::Content(const SphereHierarchy& thing) : thing_(thing)
+QueriedRecords::QueriedRecords(const SphereHierarchy& thing) : thing_(thing)
 {
   if (!thing.view().triangles) return;
   const TrianglesView& triangles = *thing.view().triangles;
@@ -44,7 +44,7 @@ Content::Content(const SphereHierarchy& thing) : thing_(thing)
     shells_.push_back(triangles_[i]);
 }
 
-std::vector<std::int32_t> Content::placesOf(const std::vector<std::uint32_t>& records) const
+std::vector<std::int32_t> QueriedRecords::placesOf(const std::vector<std::uint32_t>& records) const
 {
   std::vector<std::int32_t> places;
   for (const std::uint32_t record : records) {
@@ -59,109 +59,112 @@ std::vector<std::int32_t> Content::placesOf(const std::vector<std::uint32_t>& re
   return places;
 }
 
-std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& content,
-                                  const Eigen::Isometry3d& T_world_content, unsigned threads, Work* work)
+std::vector<std::uint32_t> enclosedBy(const PlacedSolid& solid, const QueriedRecords& queried,
+                                      const Eigen::Isometry3d& T_world_queried, unsigned threads, Work* work)
 {
-  const LabelsResult found = labelPoints({content.places(), T_world_content}, solid, threads);
+  const LabelsResult found = labelPoints({queried.places(), T_world_queried}, solid, threads);
   if (work) *work += found.work;
-  std::vector<std::uint32_t> held;
-  if (found.inside + found.on_surface == 0) return held;
-  if (!content.isSurface()) {
+  std::vector<std::uint32_t> enclosed;
+  if (found.inside + found.on_surface == 0) return enclosed;
+  if (!queried.isSurface()) {
     for (std::uint32_t i = 0; i < found.labels.size(); ++i)
-      if (isHeld(found.labels[i])) held.push_back(i);
-    return held;
+      if (isEnclosed(found.labels[i])) enclosed.push_back(i);
+    return enclosed;
   }
-  for (const std::uint32_t i : content.triangles()) {
-    const Triangle corners = content.thing().view().triangles->cornersOf(i);
-    if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) { return isHeld(found.labels[corner]); }))
-      held.push_back(i);
+  for (const std::uint32_t i : queried.triangles()) {
+    const Triangle corners = queried.thing().view().triangles->cornersOf(i);
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](std::uint32_t corner) { return isEnclosed(found.labels[corner]); }))
+      enclosed.push_back(i);
   }
-  return held;
+  return enclosed;
 }
 
 std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
-                                     const Content& content, const Eigen::Isometry3d& T_world_content,
-                                     const std::vector<std::uint32_t>& held, Work* work)
+                                     const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
+                                     const std::vector<std::uint32_t>& enclosed, Work* work)
 {
   std::vector<std::uint32_t> holders;
-  if (held.empty()) return holders;
-  const PointsView& view = content.places().view();
-  const std::vector<std::int32_t> places = content.placesOf(held);
+  if (enclosed.empty()) return holders;
+  const PointsView& view = queried.places().view();
+  const std::vector<std::int32_t> places = queried.placesOf(enclosed);
   const SphereHierarchy near = partOf(view, places);
-  const LabelsResult labels = labelPoints({near, T_world_content}, {solid.whole(), T_world_solid});
+  const LabelsResult labels = labelPoints({near, T_world_queried}, {solid.whole(), T_world_solid});
   if (work) *work += labels.work;
   const std::vector<SolidBodies::Body>& bodies = solid.all();
   std::vector<std::int32_t> within; // a hollow of the solid is inside some of its bodies, too
   for (const std::int32_t place : places) {
     const std::uint8_t label = labels.labels[static_cast<std::size_t>(place)];
     // On the face of one body a place may be inside of another.
-    if (bodies.size() > 1 ? isHeld(label) : label == labelOf(Label::inside)) within.push_back(place);
+    if (bodies.size() > 1 ? isEnclosed(label) : label == labelOf(Label::inside)) within.push_back(place);
   }
   if (within.empty()) return holders;
   const SphereHierarchy part = partOf(view, within);
   for (const SolidBodies::Body& body : bodies) {
-    if (bodies.size() > 1 && !anyWithin({part, T_world_content}, {solid.solidOf(body), T_world_solid}, work)) continue;
+    if (bodies.size() > 1 && !anyWithin({part, T_world_queried}, {solid.solidOf(body), T_world_solid}, work)) continue;
     holders.insert(holders.end(), body.triangles.begin(), body.triangles.end());
   }
   std::sort(holders.begin(), holders.end());
   return holders;
 }
 
-std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
-                       const Eigen::Isometry3d& T_world_content, std::uint32_t held, Work* work)
+std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
+                       const Eigen::Isometry3d& T_world_queried, std::uint32_t enclosed, Work* work)
 {
-  const std::vector<std::int32_t> places = content.placesOf({held});
-  const SphereHierarchy part = partOf(content.places().view(), places);
+  const std::vector<std::int32_t> places = queried.placesOf({enclosed});
+  const SphereHierarchy part = partOf(queried.places().view(), places);
   const std::vector<SolidBodies::Body>& bodies = solid.all();
   const auto holder = std::find_if(bodies.begin(), bodies.end() - 1, [&](const SolidBodies::Body& body) {
-    return anyInside({part, T_world_content}, {solid.solidOf(body), T_world_solid}, work);
+    return anyInside({part, T_world_queried}, {solid.solidOf(body), T_world_solid}, work);
   });
   return holder->triangles.front(); // the last one, where it is no other
 }
 
-std::optional<PointPair> findHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
-                                  const Content& content, const Eigen::Isometry3d& T_world_content, Work* work)
+std::optional<PointPair> findEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                      const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
+                                      Work* work)
 {
   const PlacedSolid whole(solid.whole(), T_world_solid);
   std::optional<std::uint32_t> record;
-  if (!content.isSurface()) {
-    record = firstInside({content.thing(), T_world_content}, whole, work);
+  if (!queried.isSurface()) {
+    record = firstInside({queried.thing(), T_world_queried}, whole, work);
   }
   else {
-    const TrianglesView& triangles = *content.thing().view().triangles;
-    const auto shell = std::find_if(content.shells().begin(), content.shells().end(), [&](std::uint32_t triangle) {
-      return holdsAny(whole, triangles, {triangle}, T_world_content);
+    const TrianglesView& triangles = *queried.thing().view().triangles;
+    const auto shell = std::find_if(queried.shells().begin(), queried.shells().end(), [&](std::uint32_t triangle) {
+      return holdsAny(whole, triangles, {triangle}, T_world_queried);
     });
-    if (shell != content.shells().end()) record = *shell;
+    if (shell != queried.shells().end()) record = *shell;
   }
   if (!record) return std::nullopt;
-  return PointPair{*record, holderOf(solid, T_world_solid, content, T_world_content, *record, work)};
+  return PointPair{*record, holderOf(solid, T_world_solid, queried, T_world_queried, *record, work)};
 }
 
-std::vector<std::uint32_t> certainlyHeld(const std::vector<std::uint32_t>& held, const std::vector<Verdict>& of_content)
+std::vector<std::uint32_t> certainlyEnclosed(const std::vector<std::uint32_t>& enclosed,
+                                             const std::vector<Verdict>& of_queried)
 {
   std::vector<std::uint32_t> certain;
-  for (const std::uint32_t record : held)
-    if (of_content[record] == Verdict::free) certain.push_back(record);
+  for (const std::uint32_t record : enclosed)
+    if (of_queried[record] == Verdict::free) certain.push_back(record);
   return certain;
 }
 
-void addHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
-             const Eigen::Isometry3d& T_world_content, const std::vector<std::uint32_t>& held, bool uncertain,
-             std::vector<Verdict>& of_content, std::vector<Verdict>& of_solid, Work* work)
+void addEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
+                 const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& enclosed, bool uncertain,
+                 std::vector<Verdict>& of_queried, std::vector<Verdict>& of_solid, Work* work)
 {
   const auto holders = [&](const std::vector<std::uint32_t>& records) {
     return of_solid.empty() ? std::vector<std::uint32_t>()
-                            : holdersOf(solid, T_world_solid, content, T_world_content, records, work);
+                            : holdersOf(solid, T_world_solid, queried, T_world_queried, records, work);
   };
   if (uncertain)
-    for (const std::uint32_t triangle : holders(held))
+    for (const std::uint32_t triangle : holders(enclosed))
       of_solid[triangle] = graver(of_solid[triangle], Verdict::undecided);
-  for (const std::uint32_t triangle : holders(uncertain ? certainlyHeld(held, of_content) : held))
+  for (const std::uint32_t triangle : holders(uncertain ? certainlyEnclosed(enclosed, of_queried) : enclosed))
     of_solid[triangle] = Verdict::colliding;
-  if (of_content.empty()) return;
-  for (const std::uint32_t record : held)
-    if (!uncertain || of_content[record] == Verdict::free) of_content[record] = Verdict::colliding;
+  if (of_queried.empty()) return;
+  for (const std::uint32_t record : enclosed)
+    if (!uncertain || of_queried[record] == Verdict::free) of_queried[record] = Verdict::colliding;
 }
 
 } // namespace pcl_bsh

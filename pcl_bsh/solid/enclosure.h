@@ -2,9 +2,9 @@
 // Records of a thing, points or triangles, that a solid holds, and the bodies that hold them.
 //
 //   const SolidBodies tank(solid);
-//   const Content robot(robot_hierarchy);
-//   std::vector<std::uint32_t> held = heldBy({solid, T_world_tank}, robot, T_world_robot);
-//   std::vector<std::uint32_t> holders = holdersOf(tank, T_world_tank, robot, T_world_robot, held);
+//   const QueriedRecords robot(robot_hierarchy);
+//   std::vector<std::uint32_t> enclosed = enclosedBy({solid, T_world_tank}, robot, T_world_robot);
+//   std::vector<std::uint32_t> holders = holdersOf(tank, T_world_tank, robot, T_world_robot, enclosed);
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -23,10 +23,10 @@ namespace pcl_bsh {
 
 /// The thing that solids are asked about: its points, or the corners of its finite triangles; only those that its view
 /// names.
-class Content {
+class QueriedRecords {
 public:
   /// @param thing borrowed; of triangles, their corners are sorted into voxels here
-  explicit Content(const SphereHierarchy& thing);
+  explicit QueriedRecords(const SphereHierarchy& thing);
 
   const SphereHierarchy& thing() const noexcept { return thing_; }
   bool isSurface() const noexcept { return corners_ != nullptr; }
@@ -52,39 +52,41 @@ private:
 /// corner.
 /// @param threads 0: all of the machine's. @param work when given, what the query cost is added
 /// @throws std::invalid_argument when a pose is not rigid
-std::vector<std::uint32_t> heldBy(const PlacedSolid& solid, const Content& content,
-                                  const Eigen::Isometry3d& T_world_content, unsigned threads = 1, Work* work = nullptr);
+std::vector<std::uint32_t> enclosedBy(const PlacedSolid& solid, const QueriedRecords& queried,
+                                      const Eigen::Isometry3d& T_world_queried, unsigned threads = 1,
+                                      Work* work = nullptr);
 
 /// The triangles, ascending, of each body that holds a place of these records in its inside, not only on its surface:
 /// the place may be on the surface of another body. No body holds a place in a hollow of the solid.
-/// @param held the result of heldBy() @throws as heldBy()
+/// @param enclosed the result of enclosedBy() @throws as enclosedBy()
 std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
-                                     const Content& content, const Eigen::Isometry3d& T_world_content,
-                                     const std::vector<std::uint32_t>& held, Work* work = nullptr);
+                                     const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
+                                     const std::vector<std::uint32_t>& enclosed, Work* work = nullptr);
 
-/// A triangle of a body that holds a record, which is held.
-std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
-                       const Eigen::Isometry3d& T_world_content, std::uint32_t held, Work* work = nullptr);
+/// A triangle of a body that holds a record, which is enclosed.
+std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
+                       const Eigen::Isometry3d& T_world_queried, std::uint32_t enclosed, Work* work = nullptr);
 
-/// Whether the solid holds anything, where its surface is known to touch no triangle of the content: so of each shell
-/// one corner is looked at, and of points the first that is found.
-/// @return a record of the content that is held, and a triangle of a body that holds it. @throws as heldBy()
-std::optional<PointPair> findHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
-                                  const Content& content, const Eigen::Isometry3d& T_world_content,
-                                  Work* work = nullptr);
+/// Whether the solid holds anything, where its surface is known to touch no triangle of the queried thing: so of each
+/// shell one corner is looked at, and of points the first that is found.
+/// @return a record of the queried thing that is enclosed, and a triangle of a body that holds it. @throws as
+/// enclosedBy()
+std::optional<PointPair> findEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
+                                      const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
+                                      Work* work = nullptr);
 
-/// Selects the records that are held wherever places truly are: their surface verdicts say that they cannot meet the
-/// surface. @param of_content one per record of the content
-std::vector<std::uint32_t> certainlyHeld(const std::vector<std::uint32_t>& held,
-                                         const std::vector<Verdict>& of_content);
+/// Selects the records that are enclosed wherever places truly are: their surface verdicts say that they cannot meet
+/// the surface. @param of_queried one per record of the queried thing
+std::vector<std::uint32_t> certainlyEnclosed(const std::vector<std::uint32_t>& enclosed,
+                                             const std::vector<Verdict>& of_queried);
 
-/// Turns the verdicts of two surfaces into those of a solid and its content. Held records collide, and so do the
-/// triangles of holdersOf(). With uncertain places what is undecided stays so, and of the solid collides what certainly
-/// holds something; what else may hold something is undecided.
-/// @param of_content one per record, or empty where not asked for: not so where places are uncertain
+/// Turns the verdicts of two surfaces into those of a solid and a queried thing. Enclosed records collide, and so do
+/// the triangles of holdersOf(). With uncertain places what is undecided stays so, and of the solid collides what
+/// certainly holds something; what else may hold something is undecided.
+/// @param of_queried one per record, or empty where not asked for: not so where places are uncertain
 /// @param of_solid one per triangle, or empty
-void addHeld(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const Content& content,
-             const Eigen::Isometry3d& T_world_content, const std::vector<std::uint32_t>& held, bool uncertain,
-             std::vector<Verdict>& of_content, std::vector<Verdict>& of_solid, Work* work = nullptr);
+void addEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
+                 const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& enclosed, bool uncertain,
+                 std::vector<Verdict>& of_queried, std::vector<Verdict>& of_solid, Work* work = nullptr);
 
 } // namespace pcl_bsh

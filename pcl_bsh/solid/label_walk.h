@@ -37,17 +37,18 @@ public:
   /// The label of a child of a node above the voxels.
   Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
 
-  /// Tells the sink of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
+  /// Tells the receiver of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
   /// label). Asks it before: wants(smallest record) tells whether it cares about any such points; expect(first, last)
   /// names records that it may be told of soon.
-  template <class Sink>
-  void labelVoxel(std::uint32_t index, Sink& sink)
+  template <class Receiver>
+  void labelVoxel(std::uint32_t index, Receiver& receiver)
   {
     const Voxel& voxel = cloud_.voxels[index];
     const PointLabels::Frame frame = frameOf(voxel.frame);
-    if (voxel.state.load(std::memory_order_acquire) == Voxel::built) return labelNode(voxel, frame, 0, sink);
+    if (voxel.state.load(std::memory_order_acquire) == Voxel::built) return labelNode(voxel, frame, 0, receiver);
     ++work_.leaf_pairs;
-    cloud_.forEachRecord(index, [&](std::uint32_t record) { tell(frame, record, cloud_.view.point(record), sink); });
+    cloud_.forEachRecord(index,
+                         [&](std::uint32_t record) { tell(frame, record, cloud_.view.point(record), receiver); });
   }
 
 private:
@@ -80,22 +81,22 @@ private:
     return label == Label::outside ? Whole::outside : Whole::inside;
   }
 
-  template <class Sink>
-  void tell(const PointLabels::Frame& frame, std::uint32_t record, const Point3& p, Sink& sink)
+  template <class Receiver>
+  void tell(const PointLabels::Frame& frame, std::uint32_t record, const Point3& p, Receiver& receiver)
   {
-    if (!sink.wants(record)) return;
+    if (!receiver.wants(record)) return;
     pulse_.step();
     const Label label = labels_.label(frame, p, work_.exact_decisions);
-    if (label != Label::outside) sink.one(record, label);
+    if (label != Label::outside) receiver.one(record, label);
   }
 
   /// Labels a point by its stored place where that decides: the given one lies anywhere in memory. By the given one
   /// elsewhere.
-  template <class Sink>
-  void labelStored(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t i, Sink& sink)
+  template <class Receiver>
+  void labelStored(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t i, Receiver& receiver)
   {
     const std::uint32_t record = voxel.records()[i];
-    if (!sink.wants(record)) return;
+    if (!receiver.wants(record)) return;
     pulse_.step();
     const LocalFrame& local = voxel.frame;
     const Point3 at = labels_.seen(frame, {static_cast<double>(voxel.x()[i]) * local.unit,
@@ -105,33 +106,33 @@ private:
     const double slack = (local.slack(0) + local.slack(1) + local.slack(2)) * local.unit * (1.0 + 4e-6);
     const std::optional<Label> found = labels_.labelAround(at, frame.error + slack);
     const Label label = found ? *found : labels_.label(frame, voxel.point(cloud_.view, i), work_.exact_decisions);
-    if (label != Label::outside) sink.one(record, label);
+    if (label != Label::outside) receiver.one(record, label);
   }
 
-  template <class Sink>
-  void labelNode(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t index, Sink& sink)
+  template <class Receiver>
+  void labelNode(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t index, Receiver& receiver)
   {
     const Node& node = voxel.nodes[index];
     const std::uint32_t* records = voxel.records();
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      if (!sink.wants(node.lowest[i])) continue;
+      if (!receiver.wants(node.lowest[i])) continue;
       const Whole whole = of(frame, voxel.frame.unit, node, i);
       if (whole == Whole::outside) continue;
       const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
       if (whole == Whole::inside) {
-        sink.inside(records + begin, records + end);
+        receiver.inside(records + begin, records + end);
       }
       else if (node.isLeaf(i) && node.isCoincident(i)) {
         const Label label = labelOf(frame, records[begin]);
-        for (std::uint32_t j = begin; j < end && label != Label::outside; ++j) sink.one(records[j], label);
+        for (std::uint32_t j = begin; j < end && label != Label::outside; ++j) receiver.one(records[j], label);
       }
       else if (!node.isLeaf(i)) {
-        labelNode(voxel, frame, node.child[i], sink);
+        labelNode(voxel, frame, node.child[i], receiver);
       }
       else {
         ++work_.leaf_pairs;
-        sink.expect(records + begin, records + end);
-        for (std::uint32_t j = begin; j < end; ++j) labelStored(voxel, frame, j, sink);
+        receiver.expect(records + begin, records + end);
+        for (std::uint32_t j = begin; j < end; ++j) labelStored(voxel, frame, j, receiver);
       }
     }
   }

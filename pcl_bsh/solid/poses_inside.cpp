@@ -66,8 +66,8 @@ public:
     std::size_t left = cloud_.hierarchy().storage().voxels[open.voxel].count;
     for (const std::uint32_t pose : open.poses) {
       LabelWalk walk(cloud_, {solid_, poses_[pose]}, work);
-      Earlier sink{*this, pose, left};
-      walk.labelVoxel(open.voxel, sink);
+      Earlier receiver{*this, pose, left};
+      walk.labelVoxel(open.voxel, receiver);
       if (left == 0) return;
     }
   }

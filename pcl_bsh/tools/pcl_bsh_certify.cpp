@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Does every bounding sphere of a cloud's hierarchy hold its points, and how much larger is it than it need be?
 // The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
-#include <pcl_bsh/tools/certify/options.h>
-#include <pcl_bsh/tools/certify/report.h>
+#include <pcl_bsh/tools/certify/certify_options.h>
+#include <pcl_bsh/tools/certify/certify_report.h>
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/step.h>

@@ -4,10 +4,10 @@
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
+#include <pcl_bsh/tools/collide/collide_options.h>
+#include <pcl_bsh/tools/collide/collide_report.h>
 #include <pcl_bsh/tools/collide/listing.h>
 #include <pcl_bsh/tools/collide/loading.h>
-#include <pcl_bsh/tools/collide/options.h>
-#include <pcl_bsh/tools/collide/report.h>
 #include <pcl_bsh/tools/collide/summary.h>
 
 #include <pcl_bsh/base/counted.h>

@@ -3,7 +3,7 @@
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/step.h>
-#include <pcl_bsh/tools/gauge/options.h>
+#include <pcl_bsh/tools/gauge/gauge_options.h>
 #include <pcl_bsh/tools/gauge/scan.h>
 
 #include <pcl_bsh/base/counted.h>

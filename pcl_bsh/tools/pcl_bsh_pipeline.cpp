@@ -2,7 +2,7 @@
 // Runs a pipeline of point cloud filters, read from a JSON file.
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/program.h>
-#include <pcl_bsh/tools/pipeline/options.h>
+#include <pcl_bsh/tools/pipeline/pipeline_options.h>
 #include <pcl_bsh/tools/pipeline/run.h>
 
 #include <iostream>

@@ -6,7 +6,7 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/scene/cloud_names.h>
 #include <pcl_bsh/tools/scene/explain.h>
-#include <pcl_bsh/tools/scene/report.h>
+#include <pcl_bsh/tools/scene/scene_report.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>

@@ -5,7 +5,7 @@
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/site/collide.h>
-#include <pcl_bsh/tools/site/options.h>
+#include <pcl_bsh/tools/site/site_options.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/file_error.h>

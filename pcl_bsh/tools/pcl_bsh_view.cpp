@@ -2,7 +2,7 @@
 // Clouds, where they collide, and the spheres that find it: in a window, as a picture, or as files for ParaView.
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/viewer/content/view_content.h>
-#include <pcl_bsh/tools/viewer/options.h>
+#include <pcl_bsh/tools/viewer/view_options.h>
 #include <pcl_bsh/tools/viewer/viewer.h>
 
 #include <pcl_bsh/io/files/replace_file.h>

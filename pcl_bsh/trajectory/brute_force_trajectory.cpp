@@ -42,11 +42,11 @@ TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
   TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size());
   const bool uncertain = areUncertain(scan, {model});
   if (uncertain) result.certain_pose = result.first_pose;
-  const auto reachAt = [&](Places places) {
+  const auto reachAt = [&](MeantPlaces places) {
     return PairReach(scan.hierarchy().view(), model.view(), request.clearance, places);
   };
-  const PairReach possible = reachAt(uncertain ? Places::possible : Places::measured);
-  const PairReach surely = reachAt(uncertain ? Places::certain : Places::measured);
+  const PairReach possible = reachAt(uncertain ? MeantPlaces::possible : MeantPlaces::measured);
+  const PairReach surely = reachAt(uncertain ? MeantPlaces::certain : MeantPlaces::measured);
   std::vector<Closest> of_poses(model_poses.size());
   for (const FinitePoint& p : points) {
     Closest of_point;

@@ -104,7 +104,7 @@ Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& cente
 
 TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                                  const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                                 TrajectoryResult& into, Progress& progress, Places where, Wanted what)
+                                 TrajectoryResult& into, Progress& progress, MeantPlaces where, Wanted what)
 : scan(scan_at),
   model(model_of),
   given(model_poses),
@@ -116,7 +116,7 @@ TrajectoryQuery::TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& m
   of_points(arePoints(scan_at.hierarchy().view()) && arePoints(model_of.view())),
   reach(reachOf(asked, between)),
   path(pathOf(scan_at, model_poses, asked, boxes, reach, progress)),
-  certain(where == Places::certain),
+  certain(where == MeantPlaces::certain),
   witness(what == Wanted::witness),
   closest(asked.distances || asked.closest_poses),
   first(asked.first_poses || asked.swept.has_value())

@@ -37,7 +37,7 @@ struct TrajectoryQuery {
   /// @param model_boxes of the model. @param where the points are
   TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                   const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
-                  TrajectoryResult& into, Progress& progress, Places where = Places::measured,
+                  TrajectoryResult& into, Progress& progress, MeantPlaces where = MeantPlaces::measured,
                   Wanted what = Wanted::points);
 
   const Placed& scan;

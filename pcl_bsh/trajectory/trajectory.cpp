@@ -5,8 +5,8 @@
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/trajectory/check_trajectory.h>
+#include <pcl_bsh/trajectory/outliers.h>
 #include <pcl_bsh/trajectory/query.h>
-#include <pcl_bsh/trajectory/strays.h>
 #include <pcl_bsh/traversal/voxel_passes.h>
 
 #include <algorithm>
@@ -90,7 +90,7 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
 /// One walk, of points that are where `places` says. Nothing where floats cannot hold the lengths.
 std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierarchy& model,
                                           const std::vector<Eigen::Isometry3d>& model_poses,
-                                          const TrajectoryRequest& request, Places places,
+                                          const TrajectoryRequest& request, MeantPlaces places,
                                           TrajectoryResult&& memory = {})
 {
   TrajectoryResult result = allFree(request, scan.hierarchy().view().count, model_poses.size(), std::move(memory));
@@ -140,11 +140,11 @@ TrajectoryResult walkUncertain(const Placed& scan, const SphereHierarchy& model,
   };
   if (asked.progress) request.progress = share(0.0);
   std::optional<TrajectoryResult> possible =
-      walkAlong(scan, model, model_poses, request, Places::possible, std::move(memory));
+      walkAlong(scan, model, model_poses, request, MeantPlaces::possible, std::move(memory));
   if (!possible) return brute_force::collideAlong(scan, model, model_poses, asked);
   request.distances = request.closest_poses = false;
   if (asked.progress) request.progress = share(0.5);
-  const std::optional<TrajectoryResult> certain = walkAlong(scan, model, model_poses, request, Places::certain);
+  const std::optional<TrajectoryResult> certain = walkAlong(scan, model, model_poses, request, MeantPlaces::certain);
   if (!certain) return brute_force::collideAlong(scan, model, model_poses, asked);
 
   TrajectoryResult& result = *possible;
@@ -166,7 +166,7 @@ TrajectoryResult walk(const Placed& scan, const SphereHierarchy& model,
   if (areUncertain(scan, {model}) && asksForAnything(request))
     return walkUncertain(scan, model, model_poses, request, std::move(memory));
   std::optional<TrajectoryResult> result =
-      walkAlong(scan, model, model_poses, request, Places::measured, std::move(memory));
+      walkAlong(scan, model, model_poses, request, MeantPlaces::measured, std::move(memory));
   return result ? std::move(*result) : brute_force::collideAlong(scan, model, model_poses, request);
 }
 
@@ -177,21 +177,21 @@ SphereHierarchy hierarchyOf(const SphereHierarchy& of, const std::vector<std::in
   return SphereHierarchy(some, of.options());
 }
 
-/// Strays by themselves, and all other points by themselves.
+/// Outliers by themselves, and all other points by themselves.
 TrajectoryResult walkApart(const Placed& scan, const SphereHierarchy& model,
                            const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request,
-                           const Strays& strays)
+                           const Outliers& outliers)
 {
   const auto ask = [&](const std::vector<std::int32_t>& of_scan, const std::vector<std::int32_t>& of_model,
                        const TrajectoryRequest& asked) {
     const SphereHierarchy some_scan = hierarchyOf(scan.hierarchy(), of_scan);
     return walk(Placed(some_scan, scan.pose), hierarchyOf(model, of_model), model_poses, asked);
   };
-  TrajectoryResult result = ask(strays.ordinary_scan, strays.ordinary_model, request);
-  if (strays.stray_scan.empty() || strays.stray_model.empty()) return result;
+  TrajectoryResult result = ask(outliers.ordinary_scan, outliers.ordinary_model, request);
+  if (outliers.outlier_scan.empty() || outliers.outlier_model.empty()) return result;
   TrajectoryRequest quietly = request;
   quietly.progress = {};
-  addStrays(result, ask(strays.stray_scan, strays.stray_model, quietly), strays.stray_scan);
+  addOutliers(result, ask(outliers.outlier_scan, outliers.outlier_model, quietly), outliers.outlier_scan);
   return result;
 }
 
@@ -204,8 +204,8 @@ TrajectoryResult answer(const Placed& scan, const SphereHierarchy& model,
   const DefaultFloatEnvironment environment;
   // Swept motion refuses such coordinates, and what stops early has one budget for all points.
   if (!request.swept && !StopRule(request.accuracy).mayStop() && asksForAnything(request))
-    if (const std::optional<Strays> strays = findStrays(scan, model, model_poses, request.clearance))
-      return walkApart(scan, model, model_poses, request, *strays);
+    if (const std::optional<Outliers> outliers = findOutliers(scan, model, model_poses, request.clearance))
+      return walkApart(scan, model, model_poses, request, *outliers);
   return walk(scan, model, model_poses, request, std::move(memory));
 }
 

@@ -101,7 +101,7 @@ struct TrajectoryResult {
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< kNothing where free
-  /// With distances, where a solid was added that holds anything (question/held.h). An interval certainly holds the
+  /// With distances, where a solid was added that holds anything (question/enclosed.h). An interval certainly holds the
   /// distance of a record that a solid makes negative, or may; NaN for other records. Else empty.
   std::vector<Interval> interval;
   std::vector<std::int32_t> certain_pose; ///< with first_poses, where points are uncertain: the first pose at which a

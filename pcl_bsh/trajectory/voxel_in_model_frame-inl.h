@@ -9,7 +9,7 @@
 #endif
 
 #include <pcl_bsh/geometry/sphere_radius.h>
-#include <pcl_bsh/query/acceptance.h>
+#include <pcl_bsh/query/length_band.h>
 #include <pcl_bsh/simd/passing_points-inl.h>
 #include <pcl_bsh/trajectory/query.h>
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
@@ -66,8 +66,8 @@ public:
     // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
     const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
     error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
-    const Acceptance acceptance(query.between, query.request.accuracy);
-    band = acceptance.band([&](double distance) { return skewedBand(distance, error, skew); });
+    const LengthBand length_band(query.between, query.request.accuracy);
+    band = length_band.band([&](double distance) { return skewedBand(distance, error, skew); });
   }
 
   const Voxel& voxel; ///< sorted at least

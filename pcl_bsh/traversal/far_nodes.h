@@ -32,7 +32,7 @@ inline constexpr double kSupportError = 32 * kDoubleUnit;
 
 /// Error of the vector between two centres, relative to the sum of all terms: a product, the sum of three, the
 /// translation and the difference, 5 roundings.
-inline constexpr double kBetweenError = kFewDoubleRoundings;
+inline constexpr double kCenterDifferenceError = kFewDoubleRoundings;
 
 /// The support of a node: an upper bound of how far its points are from its sphere's centre along a direction. Two
 /// slabs bound the directions along which points vary least; the sphere bounds the rest.
@@ -95,12 +95,12 @@ inline NodeSupport nodeSupport(Voxel& voxel, const PointsView& view, const Node&
 }
 
 /// The vector from the centre of a to that of b, both posed, and a bound of its rounding error.
-struct Between {
-  Between(const Eigen::Isometry3d& pose_a, const Point3& a, const Eigen::Isometry3d& pose_b, const Point3& b)
+struct CenterDifference {
+  CenterDifference(const Eigen::Isometry3d& pose_a, const Point3& a, const Eigen::Isometry3d& pose_b, const Point3& b)
   {
     const Eigen::Map<const Eigen::Vector3d> in_a(a.data()), in_b(b.data());
     vector = pose_b * in_b - pose_a * in_a;
-    error = kBetweenError *
+    error = kCenterDifferenceError *
             (in_a.lpNorm<1>() + in_b.lpNorm<1>() + pose_a.translation().lpNorm<1>() + pose_b.translation().lpNorm<1>());
   }
 
@@ -121,10 +121,10 @@ inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometr
                              const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance,
                              std::uint64_t& exact_decisions)
 {
-  const Between between(pose_a, a.center(), pose_b, b.center());
-  const double length = between.vector.norm(), error = between.error;
+  const CenterDifference difference(pose_a, a.center(), pose_b, b.center());
+  const double length = difference.vector.norm(), error = difference.error;
   if (!(length > 0x1p-400 && length < 0x1p400)) return false; // squares are in range
-  const Eigen::Vector3d direction = between.vector / length;
+  const Eigen::Vector3d direction = difference.vector / length;
   const double off = error / length * error;
   const double support_a = a.along(pose_a.linear().transpose() * direction) + off;
   const double support_b = b.along(pose_b.linear().transpose() * direction) + off;

@@ -476,27 +476,28 @@ private:
     const LanePair child = childOf(pair, opened, out, 0);
     const Spaces &own = of_a ? a : b, &others = of_a ? b : a;
     const Lane &lane = of_a ? child.a : child.b, &other = of_a ? child.b : child.a;
-    const Facing facing{*out.frame,
-                        of_a,
-                        voxelOf(own, lane),
-                        nodeOf(own, lane),
-                        out.children,
-                        voxelOf(others, other),
-                        nodeOf(others, other),
-                        other.lane,
-                        out.center,
-                        out.radius,
-                        reach};
-    if (out.radius <= out.frame->bluntRadius() && facing.areInVoxels())
-      out.near &= ~separation_.asGiven(facing, out.near);
-    if (out.near != 0 && out.radius > kLargeLeaf * facing.radiusOf(0) && isLeafApart(pair, opened, reach)) out.near = 0;
+    const ChildrenAndSphere compared{*out.frame,
+                                     of_a,
+                                     voxelOf(own, lane),
+                                     nodeOf(own, lane),
+                                     out.children,
+                                     voxelOf(others, other),
+                                     nodeOf(others, other),
+                                     other.lane,
+                                     out.center,
+                                     out.radius,
+                                     reach};
+    if (out.radius <= out.frame->bluntRadius() && compared.areInVoxels())
+      out.near &= ~separation_.asGiven(compared, out.near);
+    if (out.near != 0 && out.radius > kLargeLeaf * compared.radiusOf(0) && isLeafApart(pair, opened, reach))
+      out.near = 0;
     if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b)) {
       if (kBounds) boundBySupports(child, out);
       if (out.near != 0)
-        out.near &= ~separation_.byExtent(facing, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
+        out.near &= ~separation_.byExtent(compared, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
     }
     if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
-      out.near &= ~separation_.byTriangles(facing, out.near, [this]() -> FlatRecords& { return flat(); });
+      out.near &= ~separation_.byTriangles(compared, out.near, [this]() -> FlatRecords& { return flat(); });
   }
 
   /// Whether the side of a pair that was not opened is a leaf much larger than the opened node, and has no point near

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh {
 
-inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Places places,
+inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, MeantPlaces places,
                           const PatchSpacings& patches_of_b = {})
 {
   return {clearance, a.hierarchy().storage().uncertainty, b.hierarchy().storage().uncertainty, places, patches_of_b};
@@ -17,7 +17,7 @@ inline Reach reachBetween(const Placed& a, const Placed& b, double clearance, Pl
 /// Decides pairs of records by the coordinates as given, in exact arithmetic.
 class PointPairs {
 public:
-  PointPairs(const Placed& a, const Placed& b, double clearance, Places places = Places::measured,
+  PointPairs(const Placed& a, const Placed& b, double clearance, MeantPlaces places = MeantPlaces::measured,
              const PatchSpacings& patches_of_b = {})
   : reach(reachBetween(a, b, clearance, places, patches_of_b)),
     distance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose),

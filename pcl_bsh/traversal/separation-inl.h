@@ -20,7 +20,7 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
 /// A node's children and a sphere of the other cloud, in the frame of b's space.
-struct Facing {
+struct ChildrenAndSphere {
   const RelativeFrame& frame;
   bool of_a;    ///< whether the children are a's
   Voxel* voxel; ///< that the node is in; null above the voxels
@@ -56,44 +56,46 @@ public:
   }
 
   /// Compares nodes as small as the float error, by their points as given. @pre both are in voxels
-  HWY_NOINLINE std::uint32_t asGiven(const Facing& facing, std::uint32_t near) const
+  HWY_NOINLINE std::uint32_t asGiven(const ChildrenAndSphere& compared, std::uint32_t near) const
   {
     alignas(32) float squared[kLanes];
-    centersSquared(facing.spheres, facing.center, squared);
+    centersSquared(compared.spheres, compared.center, squared);
     std::uint32_t apart = 0;
     GivenSphere other;
     for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const float radius = facing.radiusOf(lane);
-      if (radius > facing.frame.bluntRadius() ||
-          !facing.frame.isUndecided(squared[lane], radius + facing.radius + facing.frame.pruneReach(facing.reach)))
+      const float radius = compared.radiusOf(lane);
+      if (radius > compared.frame.bluntRadius() ||
+          !compared.frame.isUndecided(squared[lane],
+                                      radius + compared.radius + compared.frame.pruneReach(compared.reach)))
         continue;
       ++work_.exact_decisions;
       if (!other.isKnown())
-        other = givenSphereOf(others(facing).storage.view, *facing.other_voxel, facing.other_node, facing.other_lane);
-      const GivenSphere own = givenSphereOf(owners(facing).storage.view, *facing.voxel, facing.node, lane);
-      if (facing.of_a ? areApart(distance_.ofPoints(), own, other, facing.reach)
-                      : areApart(distance_.ofPoints(), other, own, facing.reach))
+        other = givenSphereOf(others(compared).storage.view, *compared.other_voxel, compared.other_node,
+                              compared.other_lane);
+      const GivenSphere own = givenSphereOf(owners(compared).storage.view, *compared.voxel, compared.node, lane);
+      if (compared.of_a ? areApart(distance_.ofPoints(), own, other, compared.reach)
+                        : areApart(distance_.ofPoints(), other, own, compared.reach))
         apart |= 1u << lane;
     }
     return apart;
   }
 
   /// Compares a leaf with a much smaller node that is no leaf, by the leaf's points.
-  HWY_NOINLINE std::uint32_t byLeafPoints(const Facing& facing, std::uint32_t near) const
+  HWY_NOINLINE std::uint32_t byLeafPoints(const ChildrenAndSphere& compared, std::uint32_t near) const
   {
-    const bool other_is_leaf = facing.otherIsLeaf();
+    const bool other_is_leaf = compared.otherIsLeaf();
     std::uint32_t apart = 0;
     for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      const float radius = facing.radiusOf(lane);
-      const Point center{facing.spheres.x[lane], facing.spheres.y[lane], facing.spheres.z[lane]};
+      const float radius = compared.radiusOf(lane);
+      const Point center{compared.spheres.x[lane], compared.spheres.y[lane], compared.spheres.z[lane]};
       bool is_apart = false;
-      if (!other_is_leaf && facing.isLeaf(lane) && radius > kLargeLeaf * facing.radius)
-        is_apart =
-            isLeafApart(facing.frame, facing.leaf(lane), facing.of_a, facing.center, facing.radius, facing.reach);
-      else if (other_is_leaf && !facing.isLeaf(lane) && facing.radius > kLargeLeaf * radius)
-        is_apart = isLeafApart(facing.frame, facing.otherLeaf(), !facing.of_a, center, radius, facing.reach);
+      if (!other_is_leaf && compared.isLeaf(lane) && radius > kLargeLeaf * compared.radius)
+        is_apart = isLeafApart(compared.frame, compared.leaf(lane), compared.of_a, compared.center, compared.radius,
+                               compared.reach);
+      else if (other_is_leaf && !compared.isLeaf(lane) && compared.radius > kLargeLeaf * radius)
+        is_apart = isLeafApart(compared.frame, compared.otherLeaf(), !compared.of_a, center, radius, compared.reach);
       if (is_apart) apart |= 1u << lane;
     }
     return apart;
@@ -103,26 +105,29 @@ public:
   /// points with a much smaller node, point by point.
   /// @param gap as spheresNear() gave it @param by_points whether to compare point by point
   /// @pre both are in voxels, and records are no balls
-  HWY_NOINLINE std::uint32_t byExtent(const Facing& facing, const float* gap, std::uint32_t near, bool by_points) const
+  HWY_NOINLINE std::uint32_t byExtent(const ChildrenAndSphere& compared, const float* gap, std::uint32_t near,
+                                      bool by_points) const
   {
-    std::uint32_t far = near & spheresFar(gap, facing.spheres.r, facing.spheres.stretch, facing.radius, kFarNodes);
+    std::uint32_t far =
+        near & spheresFar(gap, compared.spheres.r, compared.spheres.stretch, compared.radius, kFarNodes);
     if (far == 0) return 0;
-    const NodeSupport other =
-        nodeSupport(*facing.other_voxel, others(facing).storage.view, facing.other_node, facing.other_lane, work_);
-    const bool other_is_leaf = facing.otherIsLeaf();
+    const NodeSupport other = nodeSupport(*compared.other_voxel, others(compared).storage.view, compared.other_node,
+                                          compared.other_lane, work_);
+    const bool other_is_leaf = compared.otherIsLeaf();
     std::uint32_t apart = 0;
     for (; far != 0; far &= far - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
-      const float radius = facing.radiusOf(lane);
-      const NodeSupport own = nodeSupport(*facing.voxel, owners(facing).storage.view, facing.node, lane, work_);
-      bool is_apart = areFarApart(facing, facing.of_a ? own : other, facing.of_a ? other : own);
-      const bool own_points = by_points && !owners(facing).storage.view.triangles,
-                 other_points = by_points && !others(facing).storage.view.triangles;
-      if (!is_apart && own_points && !other_is_leaf && facing.isLeaf(lane) && radius > kLargeFarLeaf * facing.radius)
-        is_apart = isLeafFarApart(facing, facing.leaf(lane), facing.of_a, other);
-      else if (!is_apart && other_points && other_is_leaf && !facing.isLeaf(lane) &&
-               facing.radius > kLargeFarLeaf * radius)
-        is_apart = isLeafFarApart(facing, facing.otherLeaf(), !facing.of_a, own);
+      const float radius = compared.radiusOf(lane);
+      const NodeSupport own = nodeSupport(*compared.voxel, owners(compared).storage.view, compared.node, lane, work_);
+      bool is_apart = areFarApart(compared, compared.of_a ? own : other, compared.of_a ? other : own);
+      const bool own_points = by_points && !owners(compared).storage.view.triangles,
+                 other_points = by_points && !others(compared).storage.view.triangles;
+      if (!is_apart && own_points && !other_is_leaf && compared.isLeaf(lane) &&
+          radius > kLargeFarLeaf * compared.radius)
+        is_apart = isLeafFarApart(compared, compared.leaf(lane), compared.of_a, other);
+      else if (!is_apart && other_points && other_is_leaf && !compared.isLeaf(lane) &&
+               compared.radius > kLargeFarLeaf * radius)
+        is_apart = isLeafFarApart(compared, compared.otherLeaf(), !compared.of_a, own);
       if (is_apart) apart |= 1u << lane;
     }
     return apart;
@@ -131,26 +136,26 @@ public:
   /// Compares leaves of triangles with nodes much smaller than their largest ball, by the triangles.
   /// @param flat returns b's triangles laid flat as FlatRecords&; called where they are needed
   template <class Flat>
-  HWY_NOINLINE std::uint32_t byTriangles(const Facing& facing, std::uint32_t near, const Flat& flat) const
+  HWY_NOINLINE std::uint32_t byTriangles(const ChildrenAndSphere& compared, std::uint32_t near, const Flat& flat) const
   {
     std::uint32_t apart = 0;
-    if (others(facing).storage.view.triangles && facing.otherIsLeaf())
-      apart =
-          apartFromTriangles(facing.otherLeaf(), !facing.of_a, facing.frame, facing.spheres, near, facing.reach, flat);
-    if (!owners(facing).storage.view.triangles) return apart;
-    alignas(32) float x[kLanes] = {facing.center.x}, y[kLanes] = {facing.center.y}, z[kLanes] = {facing.center.z},
-                      r[kLanes] = {facing.radius};
+    if (others(compared).storage.view.triangles && compared.otherIsLeaf())
+      apart = apartFromTriangles(compared.otherLeaf(), !compared.of_a, compared.frame, compared.spheres, near,
+                                 compared.reach, flat);
+    if (!owners(compared).storage.view.triangles) return apart;
+    alignas(32) float x[kLanes] = {compared.center.x}, y[kLanes] = {compared.center.y}, z[kLanes] = {compared.center.z},
+                      r[kLanes] = {compared.radius};
     for (std::uint32_t bits = near & ~apart; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      if (facing.isLeaf(lane) && apartFromTriangles(facing.leaf(lane), facing.of_a, facing.frame, {x, y, z, r, 1.0f}, 1,
-                                                    facing.reach, flat) != 0)
+      if (compared.isLeaf(lane) && apartFromTriangles(compared.leaf(lane), compared.of_a, compared.frame,
+                                                      {x, y, z, r, 1.0f}, 1, compared.reach, flat) != 0)
         apart |= 1u << lane;
     }
     return apart;
   }
 
   /// Whether none of a leaf's points is near a sphere of the other cloud, in the frame of b's space.
-  /// @param radius stretched. @param reach as Facing has it
+  /// @param radius stretched. @param reach as ChildrenAndSphere has it
   bool isLeafApart(const RelativeFrame& frame, const LeafRange& leaf, bool leaf_is_a, const Point& center, float radius,
                    double reach) const
   {
@@ -202,23 +207,24 @@ private:
     return apart;
   }
 
-  const Spaces& owners(const Facing& facing) const { return facing.of_a ? a_ : b_; }
-  const Spaces& others(const Facing& facing) const { return facing.of_a ? b_ : a_; }
+  const Spaces& owners(const ChildrenAndSphere& compared) const { return compared.of_a ? a_ : b_; }
+  const Spaces& others(const ChildrenAndSphere& compared) const { return compared.of_a ? b_ : a_; }
 
-  bool areFarApart(const Facing& facing, const NodeSupport& a, const NodeSupport& b) const
+  bool areFarApart(const ChildrenAndSphere& compared, const NodeSupport& a, const NodeSupport& b) const
   {
-    return areFarNodesApart(distance_.ofPoints(), a_.pose, a, b_.pose, b, facing.reach, work_.exact_decisions);
+    return areFarNodesApart(distance_.ofPoints(), a_.pose, a, b_.pose, b, compared.reach, work_.exact_decisions);
   }
 
   /// Whether a node is apart from each point of a leaf of the other cloud: a leaf of a cylinder bends by more than the
   /// points near its axis differ in their distance.
-  bool isLeafFarApart(const Facing& facing, const LeafRange& leaf, bool leaf_is_a, const NodeSupport& node) const
+  bool isLeafFarApart(const ChildrenAndSphere& compared, const LeafRange& leaf, bool leaf_is_a,
+                      const NodeSupport& node) const
   {
     const PointsView& view = leaf_is_a ? a_.storage.view : b_.storage.view;
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       const NodeSupport point(view.point(leaf.record(i)));
       ++work_.node_pairs;
-      if (!areFarApart(facing, leaf_is_a ? point : node, leaf_is_a ? node : point)) return false;
+      if (!areFarApart(compared, leaf_is_a ? point : node, leaf_is_a ? node : point)) return false;
     }
     return true;
   }

@@ -193,7 +193,7 @@ void askItself(const Rows& rows, const Mesh& mesh)
                                                 SphereHierarchy(viewOf(mesh.mesh.trianglesView()))};
         },
         [&](const std::array<SphereHierarchy, 2>& both) {
-          collisionFlags({both[0]}, {both[1], pose}, FlagsRequest(d, Side::both));
+          collisionFlags({both[0]}, {both[1], pose}, FlagsRequest(d, Flagged::both));
         });
   }
 }

@@ -8,8 +8,8 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/question/uncertainty.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 

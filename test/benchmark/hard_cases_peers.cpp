@@ -41,7 +41,7 @@ std::size_t countOurs(const Question& c)
   const SphereHierarchy obstacle(b.view());
   FlagsRequest request;
   request.clearance = c.clearance;
-  request.flagged = Side::b;
+  request.flagged = Flagged::b;
   std::size_t pairs = 0;
   for (const Point3& p : c.a.points) {
     const test::Cloud one({p}, {c.a.scalar});

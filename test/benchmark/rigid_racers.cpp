@@ -6,9 +6,9 @@
 #include "peer/fcl_boxes.h"
 #endif
 
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <optional>

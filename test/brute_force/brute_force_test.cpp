@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The oracle itself, against answers known beforehand.
 #include <pcl_bsh/brute_force/brute_force.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 
-#include "support/brute_force/roadmap.h"
+#include "support/brute_force/many_poses.h"
 #include "support/question.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
@@ -23,7 +23,7 @@ using test::Cloud;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-test::Question within(double clearance, Side flagged = Side::a)
+test::Question within(double clearance, Flagged flagged = Flagged::a)
 {
   test::Question request;
   request.clearance = clearance;
@@ -46,11 +46,11 @@ TEST_F(BruteForce, FlagsTheSideAskedFor)
   EXPECT_TRUE(of_a.b.empty());
   EXPECT_EQ(of_a.colliding_a, 3u);
   EXPECT_EQ(of_a.colliding_b, 0u);
-  const FlagsResult of_b = brute_force::collisionFlags(pa_, pb_, within(0, Side::b));
+  const FlagsResult of_b = brute_force::collisionFlags(pa_, pb_, within(0, Flagged::b));
   EXPECT_TRUE(of_b.a.empty());
   EXPECT_EQ(of_b.b, test::verdictsOf({0, 1, 0, 0}));
   EXPECT_EQ(of_b.colliding_b, 1u);
-  const FlagsResult of_both = brute_force::collisionFlags(pa_, pb_, within(5, Side::both));
+  const FlagsResult of_both = brute_force::collisionFlags(pa_, pb_, within(5, Flagged::both));
   EXPECT_EQ(of_both.a, of_a.a);
   EXPECT_EQ(of_both.b, test::verdictsOf({1, 1, 0, 1}));
   EXPECT_EQ(of_both.work.exact_decisions, 12u);

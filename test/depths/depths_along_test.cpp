@@ -35,17 +35,17 @@ protected:
 
   std::map<std::uint32_t, DepthAlong> along(const SphereHierarchy& thing, const DepthPath& path)
   {
-    const ContentPart part(thing, all(thing));
+    const QueriedPart part(thing, all(thing));
     std::map<std::uint32_t, DepthAlong> found;
     work = {};
     for (const DepthAlong& depth : depthsAlong({solid, surface}, part, path, work)) found[depth.record] = depth;
     return found;
   }
 
-  DepthsResult bruteForce(const Content& content, const DepthPath& path, const Eigen::Isometry3d& pose) const
+  DepthsResult bruteForce(const QueriedRecords& queried, const DepthPath& path, const Eigen::Isometry3d& pose) const
   {
     const DeepSolid placed{solid, surface, path.solid_moves ? pose : path.at_rest};
-    return brute_force::depthsIn(placed, content, path.solid_moves ? path.at_rest : pose, 16);
+    return brute_force::depthsIn(placed, queried, path.solid_moves ? path.at_rest : pose, 16);
   }
 
   test::ClosedMesh mesh = test::boxMesh();
@@ -82,7 +82,7 @@ TEST_F(DepthsAlongTest, PointsAndBallsAreThoseOfBruteForceAtEachPose)
     PointsView view = viewOf(points[0].data(), points.size());
     if (i % 2 == 1) view.radii = radii.data();
     const SphereHierarchy cloud(view);
-    const Content content(cloud);
+    const QueriedRecords queried(cloud);
     Poses poses;
     Eigen::Isometry3d pose = at(-0.5);
     for (int k = 0; k < 30; ++k) {
@@ -93,7 +93,7 @@ TEST_F(DepthsAlongTest, PointsAndBallsAreThoseOfBruteForceAtEachPose)
     const auto found = along(cloud, path);
     std::map<std::uint32_t, std::pair<double, std::uint32_t>> expected;
     for (std::uint32_t k = 0; k < poses.size(); ++k)
-      for (const Depth& depth : bruteForce(content, path, poses[k]).depths) {
+      for (const Depth& depth : bruteForce(queried, path, poses[k]).depths) {
         const auto [best, is_new] = expected.try_emplace(depth.record, depth.told, k);
         if (!is_new && depth.told > best->second.first) best->second = {depth.told, k};
       }
@@ -124,7 +124,7 @@ TEST_F(DepthsAlongTest, SweptDepthsHoldThoseAtManyInstants)
     if (i % 4 == 1) view.radii = radii.data();
     if (of_triangles) view = viewOf(TrianglesView{view, corners[0].data(), corners.size()});
     const SphereHierarchy cloud(view);
-    const Content content(cloud);
+    const QueriedRecords queried(cloud);
     const Poses poses = {at(-1.5, random.uniform(-0.5, 0.5)), at(0.2, 0, 0, random.uniform(-2, 2)), at(1.7, 0.4)};
     const DepthPath path{poses, at(0.1, 0.2), i % 3 != 0, 0.02, {random.uniform(-1, 1), 0, 0}};
     const auto found = along(cloud, path);
@@ -133,7 +133,7 @@ TEST_F(DepthsAlongTest, SweptDepthsHoldThoseAtManyInstants)
       const RigidMotion motion(poses[k], poses[k + 1], {path.pivot[0], path.pivot[1], path.pivot[2]},
                                shorterTurn(poses[k].linear(), poses[k + 1].linear()));
       for (int j = 0; j <= (of_triangles ? 24 : 100); ++j)
-        for (const Depth& depth : bruteForce(content, path, motion.at(j / (of_triangles ? 24.0 : 100.0))).depths)
+        for (const Depth& depth : bruteForce(queried, path, motion.at(j / (of_triangles ? 24.0 : 100.0))).depths)
           if (depth.depth.lower > 0.0) expected[depth.record] = std::max(expected[depth.record], depth.told);
     }
     for (const auto& [record, depth] : expected) {
@@ -151,7 +151,7 @@ TEST_F(DepthsAlongTest, SweptDepthsHoldThoseAtManyInstants)
   EXPECT_GT(deeper, 5u);
 }
 
-/// A long path of which few poses hold anything, and a cloud of which few points are ever held; and one that stands
+/// A long path of which few poses hold anything, and a cloud of which few points are ever enclosed; and one that stands
 /// still inside.
 TEST_F(DepthsAlongTest, CostsWhatIsInside)
 {
@@ -166,11 +166,11 @@ TEST_F(DepthsAlongTest, CostsWhatIsInside)
   EXPECT_GT(found.size(), 5u);
   EXPECT_LT(work.leaf_pairs, 2000u * 20u); // of 4,000,000 pairs of a pose and a point
   const std::vector<Point3> inside(200, Point3{0.5, 0.5, 0.25});
-  const SphereHierarchy held(viewOf(inside[0].data(), inside.size()));
+  const SphereHierarchy enclosed(viewOf(inside[0].data(), inside.size()));
   const Poses still(500, at(0));
-  along(held, {{still}, at(0)});
+  along(enclosed, {{still}, at(0)});
   const std::uint64_t of_many = work.exact_decisions;
-  along(held, {{Poses(2, at(0))}, at(0)});
+  along(enclosed, {{Poses(2, at(0))}, at(0)});
   EXPECT_LT(of_many, 1000 + 260 * work.exact_decisions);
 }
 

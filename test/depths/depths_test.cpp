@@ -82,10 +82,10 @@ TEST(Depths, OfPointsAndBallsAreThoseOfBruteForce)
     PointsView view = viewOf(points[0].data(), points.size());
     if (i % 2 == 1) view.radii = radii.data();
     const SphereHierarchy cloud(view);
-    const Content content(cloud);
+    const QueriedRecords queried(cloud);
     const Eigen::Isometry3d pose = i % 3 == 0 ? randomPose(random, 0.2) : Eigen::Isometry3d::Identity();
-    const DepthsResult found = depthsIn(tank.at(pose), content, pose, 2);
-    const DepthsResult expected = brute_force::depthsIn(tank.at(pose), content, pose);
+    const DepthsResult found = depthsIn(tank.at(pose), queried, pose, 2);
+    const DepthsResult expected = brute_force::depthsIn(tank.at(pose), queried, pose);
     ASSERT_EQ(found.depths.size(), expected.depths.size());
     for (std::size_t k = 0; k < found.depths.size(); ++k) {
       const Depth &f = found.depths[k], &e = expected.depths[k];
@@ -144,13 +144,13 @@ TEST(Depths, OfTrianglesAreIntervalsThatHoldThoseOfBruteForce)
       plates.triangle(corners[0], corners[1], corners[2]);
     }
     const SphereHierarchy cloud(viewOf(plates.view()));
-    const Content content(cloud);
+    const QueriedRecords queried(cloud);
     const Eigen::Isometry3d pose = far > 0.0 ? Eigen::Isometry3d::Identity() : randomPose(random, 0.2);
     const Eigen::Isometry3d moved = pose * Eigen::Translation3d(0.1 * scale, 0, 0);
-    const DepthsResult found = depthsIn(tank.at(moved), content, pose);
-    expectHeldBetween(found, brute_force::depthsIn(tank.at(moved), content, pose, 16), 1e-4 * scale + 1e-12 * far);
+    const DepthsResult found = depthsIn(tank.at(moved), queried, pose);
+    expectHeldBetween(found, brute_force::depthsIn(tank.at(moved), queried, pose, 16), 1e-4 * scale + 1e-12 * far);
     for (const Depth& depth : found.depths) crossing += depth.told > 0.0;
-    const DepthsResult deepest = depthsIn(tank.at(moved), content, pose, 1, true);
+    const DepthsResult deepest = depthsIn(tank.at(moved), queried, pose, 1, true);
     const Depth *const one = deepestOf(found.depths), *const other = deepestOf(deepest.depths);
     ASSERT_EQ(one == nullptr, other == nullptr);
     if (one) {
@@ -186,7 +186,7 @@ TEST(Depths, OfTrianglesInACube)
     for (const Point3& p : cases[i].triangle) plate.vertex(p[0], p[1], p[2]);
     plate.triangle(0, 1, 2);
     const SphereHierarchy cloud(viewOf(plate.view()));
-    const DepthsResult found = depthsIn(tank.at(), Content(cloud), Eigen::Isometry3d::Identity());
+    const DepthsResult found = depthsIn(tank.at(), QueriedRecords(cloud), Eigen::Isometry3d::Identity());
     ASSERT_EQ(found.depths.size(), 1u);
     EXPECT_LE(found.depths[0].depth.lower, cases[i].depth);
     EXPECT_GE(found.depths[0].depth.upper, cases[i].depth);
@@ -210,7 +210,7 @@ TEST(Depths, WhatTouchesFromOutsideIsNotDeep)
     for (const Point3& p : triangle) plate.vertex(p[0], p[1], p[2]);
     plate.triangle(0, 1, 2);
     const SphereHierarchy cloud(viewOf(plate.view()));
-    const DepthsResult found = depthsIn(tank.at(), Content(cloud), Eigen::Isometry3d::Identity());
+    const DepthsResult found = depthsIn(tank.at(), QueriedRecords(cloud), Eigen::Isometry3d::Identity());
     ASSERT_EQ(found.depths.size(), 1u);
     EXPECT_EQ(found.depths[0].depth.lower, 0.0);
     EXPECT_EQ(found.depths[0].told, 0.0);

@@ -51,7 +51,7 @@ protected:
   {
     test::Question request;
     request.clearance = clearance;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     request.threads = 2;
     return request;
   }

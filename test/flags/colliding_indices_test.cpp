@@ -19,7 +19,8 @@ using test::Random;
 using test::Scene;
 using test::Shape;
 
-FlagsRequest within(double clearance, Side flagged = Side::both, const Accuracy& accuracy = {}, unsigned threads = 1)
+FlagsRequest within(double clearance, Flagged flagged = Flagged::both, const Accuracy& accuracy = {},
+                    unsigned threads = 1)
 {
   return {clearance, flagged, {accuracy, threads}};
 }
@@ -46,7 +47,7 @@ void expectSameAsFlags(const Scene& scene, const Accuracy& accuracy, const Hiera
   const SphereHierarchy a(scene.a.view(), options), b(scene.b.view(), options);
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
   CollidingIndices found;
-  for (const Side side : {Side::a, Side::b, Side::both})
+  for (const Flagged side : {Flagged::a, Flagged::b, Flagged::both})
     for (const unsigned threads : {1u, 4u}) {
       const FlagsRequest request = within(scene.clearance, side, accuracy, threads);
       collisionFlags(placed_a, placed_b, request); // builds voxels, which are work
@@ -125,8 +126,8 @@ TEST(CollidingIndices, CostNothingForPointsThatAreFar)
   options.voxel_edge = 0.5;
   const SphereHierarchy large(all.view(), options), small(few.view(), options), obstacle(near_cloud.view(), options);
   CollidingIndices of_large, of_small;
-  collidingIndices({large}, {obstacle}, within(0.05, Side::a), of_large);
-  collidingIndices({small}, {obstacle}, within(0.05, Side::a), of_small);
+  collidingIndices({large}, {obstacle}, within(0.05, Flagged::a), of_large);
+  collidingIndices({small}, {obstacle}, within(0.05, Flagged::a), of_small);
   EXPECT_EQ(of_large.a, of_small.a);
   EXPECT_GT(of_large.a.size(), 10u);
   EXPECT_LT(of_large.a.capacity(), 4 * of_large.a.size() + 64); // no memory for each point
@@ -144,7 +145,7 @@ TEST(CollidingIndices, OfEmptyCloudsAndRefusals)
   CollidingIndices found = collidingIndices({point}, {point}, within(1));
   EXPECT_EQ(found.a.size() + found.b.size(), 2u);
   for (const Accuracy& accuracy : {Accuracy::exact(), Accuracy::level(0), Accuracy::nodePairs(0)}) {
-    collidingIndices({nothing}, {point}, within(1, Side::both, accuracy), found);
+    collidingIndices({nothing}, {point}, within(1, Flagged::both, accuracy), found);
     EXPECT_EQ(found.a.size() + found.b.size() + found.undecided_a.size() + found.undecided_b.size(), 0u);
   }
   EXPECT_THROW(collidingIndices({point}, {point}, within(-1)), std::invalid_argument);

@@ -35,7 +35,7 @@ const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads = 1)
+FlagsRequest within(double clearance, Flagged flagged = Flagged::a, unsigned threads = 1)
 {
   FlagsRequest request;
   request.clearance = clearance;
@@ -74,20 +74,20 @@ void expectSameAsBruteForce(const Scene& scene)
   SCOPED_TRACE(scene.name);
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
-  const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both));
+  const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::both));
   for (const unsigned threads : {1u, 2u, 4u}) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
-    const FlagsResult both = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both, threads));
+    const FlagsResult both = collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::both, threads));
     ASSERT_EQ(both.a, expected.a);
     ASSERT_EQ(both.b, expected.b);
     EXPECT_EQ(both.colliding_a, expected.colliding_a);
     EXPECT_EQ(both.colliding_b, expected.colliding_b);
   }
-  const FlagsResult of_a = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a));
+  const FlagsResult of_a = collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::a));
   EXPECT_EQ(of_a.a, expected.a);
   EXPECT_TRUE(of_a.b.empty());
   EXPECT_EQ(of_a.colliding_b, 0u);
-  const FlagsResult of_b = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::b));
+  const FlagsResult of_b = collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::b));
   EXPECT_EQ(of_b.b, expected.b);
   EXPECT_TRUE(of_b.a.empty());
   EXPECT_EQ(of_b.colliding_a, 0u);
@@ -190,8 +190,8 @@ TEST(CollisionFlags, PointsAtTheClearanceOfLargeTriangles)
     triangles.setTriangles(mesh.corners);
     const SphereHierarchy a(points.view()), b(triangles.view());
     const Eigen::Isometry3d pose = random.chance(0.5) ? identity : random.pose(far);
-    const FlagsResult expected = brute_force::collisionFlags({a, pose}, {b, pose}, within(clearance, Side::both));
-    const FlagsResult found = collisionFlags({a, pose}, {b, pose}, within(clearance, Side::both));
+    const FlagsResult expected = brute_force::collisionFlags({a, pose}, {b, pose}, within(clearance, Flagged::both));
+    const FlagsResult found = collisionFlags({a, pose}, {b, pose}, within(clearance, Flagged::both));
     ASSERT_EQ(found.a, expected.a) << i;
     ASSERT_EQ(found.b, expected.b) << i;
     hits += ones(found.a), all += found.a.size();
@@ -311,7 +311,7 @@ TEST(CollisionFlags, RecordNamedTwiceCountsOnce)
   twice.restrictTo({1, 1, 2, 1});
   const Cloud origin({{0, 0, 0}});
   const SphereHierarchy a(twice.view()), b(origin.view());
-  const FlagsResult result = collisionFlags({a}, {b}, within(1, Side::both));
+  const FlagsResult result = collisionFlags({a}, {b}, within(1, Flagged::both));
   EXPECT_EQ(result.a, test::verdictsOf({0, 1, 0}));
   EXPECT_EQ(result.colliding_a, 1u);
 }
@@ -394,7 +394,7 @@ TEST(CollisionFlags, SameInAnyFloatingPointEnvironmentOfTheCaller) // H25
     SCOPED_TRACE(scene.name);
     const auto flags = [&] { // built and asked in the environment of the moment
       const SphereHierarchy a(scene.a.view()), b(scene.b.view());
-      return collisionFlags({a, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Side::both, 2));
+      return collisionFlags({a, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Flagged::both, 2));
     };
     const FlagsResult expected = flags();
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
@@ -427,7 +427,7 @@ TEST(CollisionFlags, WorkIsTheSameForAnyNumberOfThreads)
   Work expected;
   for (const unsigned threads : {1u, 2u, 4u, 0u}) {
     const SphereHierarchy ha(a.view()), hb(b.view());
-    const Work work = collisionFlags({ha}, {hb, pose}, within(0.05, Side::both, threads)).work;
+    const Work work = collisionFlags({ha}, {hb, pose}, within(0.05, Flagged::both, threads)).work;
     if (threads == 1) expected = work;
     EXPECT_EQ(test::countsOf(work), test::countsOf(expected)) << threads;
   }
@@ -482,7 +482,7 @@ void expectSameAsKdTree(const Cloud& a, const Eigen::Isometry3d& pose_a, const C
 {
   SCOPED_TRACE(clearance);
   const SphereHierarchy ha(a.view()), hb(b.view());
-  const FlagsResult result = collisionFlags({ha, pose_a}, {hb, pose_b}, within(clearance, Side::both, 2));
+  const FlagsResult result = collisionFlags({ha, pose_a}, {hb, pose_b}, within(clearance, Flagged::both, 2));
   EXPECT_TRUE(result.a == test::flagsByKdTree(a.view(), pose_a, b.view(), pose_b, clearance));
   EXPECT_TRUE(result.b == test::flagsByKdTree(b.view(), pose_b, a.view(), pose_a, clearance));
   EXPECT_GT(result.colliding_a, 0u);
@@ -523,13 +523,14 @@ TEST(CollisionFlags, ManyThreadsOnOneFreshHierarchy)
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < results.size(); ++i) {
     threads.emplace_back([&, i] {
-      results[i] = collisionFlags({hall_shared}, {tool_shared, pose(i)}, within(0.02, Side::both, 1 + i % 2));
+      results[i] = collisionFlags({hall_shared}, {tool_shared, pose(i)}, within(0.02, Flagged::both, 1 + i % 2));
     });
   }
   for (std::thread& thread : threads) thread.join();
   std::uint64_t built = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const FlagsResult expected = collisionFlags({hall_reference}, {tool_reference, pose(i)}, within(0.02, Side::both));
+    const FlagsResult expected =
+        collisionFlags({hall_reference}, {tool_reference, pose(i)}, within(0.02, Flagged::both));
     EXPECT_EQ(results[i].a, expected.a);
     EXPECT_EQ(results[i].b, expected.b);
     EXPECT_EQ(results[i].work.node_pairs, expected.work.node_pairs);
@@ -544,8 +545,8 @@ TEST(CollisionFlags, SameIntoAResultUsedBefore)
   const Scene large = test::anyScene(7, 400), small = test::anyScene(8, 60);
   const SphereHierarchy a(large.a.view()), b(large.b.view()), c(small.a.view()), d(small.b.view());
   FlagsResult result;
-  collisionFlags({a, large.pose_a}, {b, large.pose_b}, within(large.clearance, Side::both), result);
-  for (const Side side : {Side::a, Side::both, Side::b}) {
+  collisionFlags({a, large.pose_a}, {b, large.pose_b}, within(large.clearance, Flagged::both), result);
+  for (const Flagged side : {Flagged::a, Flagged::both, Flagged::b}) {
     const FlagsRequest request = within(small.clearance, side);
     collisionFlags({c, small.pose_a}, {d, small.pose_b}, request, result);
     const FlagsResult expected = collisionFlags({c, small.pose_a}, {d, small.pose_b}, request);
@@ -586,7 +587,7 @@ TEST(CollisionFlags, BySlabsOfFacingSheetsToTheLastBit)
     const Placed placed_a{a, sheets.pose_a}, placed_b{b, sheets.pose_b};
     const double least = closestPair(placed_a, placed_b).distance; // fits slabs
     for (const double clearance : {std::nextafter(least, 0.0), least, 1.01 * least, 1.2 * least, 2 * least}) {
-      const FlagsRequest request = within(clearance, Side::both);
+      const FlagsRequest request = within(clearance, Flagged::both);
       const FlagsResult found = collisionFlags(placed_a, placed_b, request);
       const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, request);
       EXPECT_EQ(found.a, expected.a) << clearance;
@@ -606,11 +607,11 @@ TEST(CollisionFlags, SlabsOfEarlierQueriesSpareHalfTheCostOfFacingSheets)
   b.buildAll();
   const auto cost = [](const FlagsResult& result) { return result.work.node_pairs + 16 * result.work.leaf_pairs; };
   for (const double clearance : {0.9 * gap, 1.01 * gap}) {
-    const FlagsRequest request = within(clearance, Side::both);
+    const FlagsRequest request = within(clearance, Flagged::both);
     const FlagsResult by_spheres = collisionFlags({unasked_a, sheets.pose_a}, {unasked_b, sheets.pose_b}, request);
     Work one_thread;
     for (const unsigned threads : {1u, 4u}) {
-      const FlagsResult found = collisionFlags(placed_a, placed_b, within(clearance, Side::both, threads));
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(clearance, Flagged::both, threads));
       EXPECT_EQ(found.a, by_spheres.a);
       EXPECT_EQ(found.b, by_spheres.b);
       EXPECT_LT(2 * cost(found), cost(by_spheres));
@@ -644,7 +645,7 @@ TEST(CollisionFlags, BySlabsOfWhatLiesAcrossOtherAxes)
     const Placed placed_a{a}, placed_b{b, Eigen::Isometry3d(Eigen::Translation3d(0.11, 0.02, 0.13))};
     closestPair(placed_a, placed_b); // fits slabs
     for (const double clearance : {0.112, 0.135, 0.16}) {
-      const FlagsRequest request = within(clearance, Side::both);
+      const FlagsRequest request = within(clearance, Flagged::both);
       const FlagsResult found = collisionFlags(placed_a, placed_b, request);
       const FlagsResult expected = brute_force::collisionFlags(placed_a, placed_b, request);
       EXPECT_EQ(found.a, expected.a) << clearance;
@@ -692,7 +693,7 @@ TEST(CollisionFlags, OtherThanExactDoNotDependOnEarlierQueries)
   a.buildAll();
   b.buildAll();
   const std::vector<Accuracy> accuracies = {Accuracy::tolerance(0.1), Accuracy::level(2), Accuracy::nodePairs(3000)};
-  FlagsRequest request = within(0.1, Side::both);
+  FlagsRequest request = within(0.1, Flagged::both);
   std::vector<FlagsResult> before;
   for (const Accuracy& accuracy : accuracies) {
     request.accuracy = accuracy;

@@ -26,7 +26,7 @@ using test::Random;
 
 constexpr std::size_t kRow = 48;
 
-FlagsRequest within(double clearance, Side flagged = Side::a, unsigned threads = 1)
+FlagsRequest within(double clearance, Flagged flagged = Flagged::a, unsigned threads = 1)
 {
   return {clearance, flagged, threads};
 }
@@ -59,7 +59,7 @@ FlagsResult withTrees(const Placed& a, const Placed& b, double clearance)
   const SphereHierarchy ha(a.hierarchy().view()), hb(b.hierarchy().view());
   ha.buildAll();
   hb.buildAll();
-  return collisionFlags({ha, a.pose}, {hb, b.pose}, within(clearance, Side::both));
+  return collisionFlags({ha, a.pose}, {hb, b.pose}, within(clearance, Flagged::both));
 }
 
 /// First and later queries are as brute force has them. @return voxels of a that the first query did not build
@@ -225,7 +225,7 @@ TEST(FlagRuns, WithinOneCloudNeedItsTree)
   for (const unsigned threads : {1u, 2u, 4u}) {
     const SphereHierarchy ha(a.view(), withEdge(12));
     const Placed other(ha, Eigen::Isometry3d(Eigen::Translation3d(15, 0, 3)));
-    const FlagsResult found = collisionFlags({ha}, other, within(4, Side::both, threads));
+    const FlagsResult found = collisionFlags({ha}, other, within(4, Flagged::both, threads));
     const FlagsResult right = withTrees({ha}, other, 4);
     EXPECT_EQ(found.a, right.a);
     EXPECT_EQ(found.b, right.b);
@@ -242,7 +242,7 @@ TEST(FlagRuns, CostTheSameForAnyNumberOfThreads)
   for (const unsigned threads : {1u, 2u, 4u, 0u}) {
     const SphereHierarchy ha(a.view(), withEdge(12)), hb(b.view(), withEdge(12));
     const Placed at_b(hb, Eigen::Isometry3d(Eigen::Translation3d(15, 5, 3)));
-    const Work work = collisionFlags({ha}, at_b, within(4, Side::both, threads)).work;
+    const Work work = collisionFlags({ha}, at_b, within(4, Flagged::both, threads)).work;
     if (threads == 1) expected = work;
     EXPECT_EQ(test::countsOf(work), test::countsOf(expected)) << threads;
   }
@@ -284,8 +284,8 @@ TEST(FlagRuns, OfBothCloudsAtOnce)
   for (int round = 0; round < 15; ++round) {
     const SphereHierarchy ha(a.view(), withEdge(8)), hb(b.view(), withEdge(8));
     FlagsResult of_a, of_b;
-    std::thread other([&] { collisionFlags({hb, pose}, {ha}, within(4, Side::a, 2), of_b); });
-    collisionFlags({ha}, {hb, pose}, within(4, Side::a, 2), of_a);
+    std::thread other([&] { collisionFlags({hb, pose}, {ha}, within(4, Flagged::a, 2), of_b); });
+    collisionFlags({ha}, {hb, pose}, within(4, Flagged::a, 2), of_a);
     other.join();
     if (round == 0) {
       const FlagsResult right = withTrees({ha}, {hb, pose}, 4);

@@ -73,7 +73,7 @@ Eigen::Isometry3d shifted(const Eigen::Vector3d& by)
 
 FlagsRequest bothWithin(double clearance)
 {
-  return {clearance, Side::both};
+  return {clearance, Flagged::both};
 }
 
 TEST(LongTriangles, HaveTheFlagsOfBruteForce)
@@ -138,18 +138,18 @@ TEST(LongTriangles, TakeWorkThatGrowsWithThem)
   const Question questions[] = {
       {"points",
        [](const SphereHierarchy& mesh, const SphereHierarchy& scan, const Point3&) {
-         return collisionFlags({scan}, {mesh}, {0.01, Side::a}).work;
+         return collisionFlags({scan}, {mesh}, {0.01, Flagged::a}).work;
        }},
       {"near points",
        [](const SphereHierarchy& mesh, const SphereHierarchy& scan, const Point3&) {
-         return collisionFlags({scan}, {mesh}, {0.01, Side::b}).work;
+         return collisionFlags({scan}, {mesh}, {0.01, Flagged::b}).work;
        }},
       {"a copy that crosses it",
        [](const SphereHierarchy& mesh, const SphereHierarchy&, const Point3&) {
-         return collisionFlags({mesh}, {mesh, shifted({0.015, 0.01, 0.05})}, {0.0, Side::both}).work;
+         return collisionFlags({mesh}, {mesh, shifted({0.015, 0.01, 0.05})}, {0.0, Flagged::both}).work;
        }},
       {"a copy beside it", [](const SphereHierarchy& mesh, const SphereHierarchy&, const Point3&) {
-         return collisionFlags({mesh}, {mesh, shifted({0.0, 0.0, 0.7})}, {0.01, Side::both}).work;
+         return collisionFlags({mesh}, {mesh, shifted({0.0, 0.0, 0.7})}, {0.01, Flagged::both}).work;
        }}};
   for (const Point3& at : {kNear, kFar})
     for (const Question& question : questions) {
@@ -178,7 +178,7 @@ TEST(LongTriangles, AFewOfManyNeedlesSettleAPoint)
     scan.vertices.push_back({length * std::cos(turn), length * std::sin(turn), random.uniform(-0.03, 0.03)});
   }
   const SphereHierarchy triangles(viewOf(mesh.trianglesView())), points(scan.view());
-  const FlagsResult found = collisionFlags({points}, {triangles}, {0.01, Side::a});
+  const FlagsResult found = collisionFlags({points}, {triangles}, {0.01, Flagged::a});
   EXPECT_GT(found.colliding_a, 1200u);
   EXPECT_LT(found.work.leaf_pairs, 7000u);
   EXPECT_LT(found.work.node_pairs, 1300000u);
@@ -194,8 +194,8 @@ TEST(LongTriangles, FacingGridsTakeFewExactDecisions)
     for (const double aside : {0.0, 1.0 / 160, 0.01}) {
       const TestMesh below = gridAt(0.0, 0.0), above = gridAt(gap, aside);
       const SphereHierarchy a(viewOf(below.trianglesView())), b(viewOf(above.trianglesView()));
-      const FlagsResult beyond = collisionFlags({a}, {b}, {std::nextafter(gap, 0.0), Side::a}),
-                        tied = collisionFlags({a}, {b}, {gap, Side::a});
+      const FlagsResult beyond = collisionFlags({a}, {b}, {std::nextafter(gap, 0.0), Flagged::a}),
+                        tied = collisionFlags({a}, {b}, {gap, Flagged::a});
       EXPECT_EQ(beyond.colliding_a, 0u);
       EXPECT_LE(beyond.work.exact_decisions, 2 * below.triangles.size());
       EXPECT_GT(tied.colliding_a, below.triangles.size() * 9 / 10);

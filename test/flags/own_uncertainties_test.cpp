@@ -129,7 +129,7 @@ TEST(OwnUncertainties, AtTheEdgesOfPairs)
       a.buildAll();
       b.buildAll();
     }
-    const FlagsRequest request{edge.clearance, Side::both, seed % 5 == 0 ? 2u : 1u};
+    const FlagsRequest request{edge.clearance, Flagged::both, seed % 5 == 0 ? 2u : 1u};
     expectBruteForce(a, {b, edge.pose}, request);
     if (HasFatalFailure()) return;
     EXPECT_TRUE(a.validate().none());
@@ -147,7 +147,7 @@ TEST(OwnUncertainties, FollowWhatChanges)
     SCOPED_TRACE(seed);
     Edge edge(1000 + seed);
     edge.b.setRadii({});
-    const FlagsRequest request{edge.clearance, Side::both};
+    const FlagsRequest request{edge.clearance, Flagged::both};
     SphereHierarchy a(edge.a.view()), b(edge.b.view());
     for (int change = 0; change < 6; ++change) {
       a.buildAll();
@@ -180,7 +180,7 @@ TEST(OwnUncertainties, LessThanExactClaimsNothingFalse)
     SCOPED_TRACE(seed);
     const Edge edge(2000 + seed);
     const SphereHierarchy a(edge.a.view()), b(edge.b.view());
-    FlagsRequest request{edge.clearance, Side::both};
+    FlagsRequest request{edge.clearance, Flagged::both};
     const FlagsResult truth = brute_force::collisionFlags({a}, {b, edge.pose}, request);
     for (const Accuracy& accuracy : {Accuracy::level(1), Accuracy::level(2), Accuracy::nodePairs(30),
                                      Accuracy::nodePairs(300), Accuracy::time(1.0)}) {
@@ -224,7 +224,7 @@ FlagsResult flagsOfSheets(double of_all, double own, double clearance = 20.0)
   const SphereHierarchy of_a(a.view()), of_b(b.view());
   of_a.buildAll();
   of_b.buildAll();
-  const FlagsRequest request{clearance, Side::both};
+  const FlagsRequest request{clearance, Flagged::both};
   collisionFlags({of_a}, {of_b}, request); // fits what queries share
   return collisionFlags({of_a}, {of_b}, request);
 }
@@ -251,7 +251,7 @@ TEST(OwnUncertainties, CostNothingWhereNoneIsGiven)
   of_a.buildAll();
   of_b.buildAll();
   const std::size_t bytes = of_a.statistics().bytes;
-  collisionFlags({of_a}, {of_b}, {0.5, Side::both});
+  collisionFlags({of_a}, {of_b}, {0.5, Flagged::both});
   EXPECT_EQ(of_a.statistics().bytes, bytes);
 }
 

@@ -20,7 +20,7 @@ using test::TiedPair;
 
 void expectAsBruteForce(const Placed& a, const Placed& b, double clearance)
 {
-  FlagsRequest request(clearance, Side::both);
+  FlagsRequest request(clearance, Flagged::both);
   const FlagsResult expected = brute_force::collisionFlags(a, b, request);
   const Work work = collisionFlags(a, b, request).work; // what it fits is there for those that follow
   for (const unsigned threads : {1u, 2u}) {
@@ -107,7 +107,7 @@ TEST(TiedFlags, TakeWorkInProportion)
           view.uncertainty = uncertainty;
           const SphereHierarchy a(view), b(viewOf(pair.b.trianglesView()));
           const double clearance = 0.3 * (1 - 1e-9) - uncertainty;
-          const FlagsResult found = collisionFlags({a, pose}, {b, pose}, {clearance, Side::both});
+          const FlagsResult found = collisionFlags({a, pose}, {b, pose}, {clearance, Flagged::both});
           const std::size_t triangles = pair.a.triangles.size() + pair.b.triangles.size();
           EXPECT_EQ(found.colliding_a + found.undecided_a, 0u) << tied.name;
           EXPECT_LE(found.work.exact_decisions, 60 * triangles) << tied.name << ", " << n;

@@ -87,7 +87,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 
   const Placed placed_a{*first, fuzz::anyPose(bytes)}, placed_b{*second, fuzz::anyPose(bytes)};
   test::Question request;
-  request.flagged = static_cast<Side>(1 + bytes.below(3));
+  request.flagged = static_cast<Flagged>(1 + bytes.below(3));
   request.threads = 1 + bytes.below(2);
   request.clearance = fuzz::anyClearance(bytes, placed_a, placed_b);
   fuzz::compareAnswers(placed_a, placed_b, request);

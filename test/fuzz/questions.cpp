@@ -181,7 +181,7 @@ void Questions::ask(const Placed& a, const Placed& b, double unit, unsigned kind
 {
   test::Question request;
   request.clearance = anyClearance(a, b, unit, random);
-  request.flagged = static_cast<Side>(random.integer(1, 3));
+  request.flagged = static_cast<Flagged>(random.integer(1, 3));
   request.threads = static_cast<unsigned>(random.integer(1, 3));
   request.accuracy = anyAccuracy(unit, random);
   const bool of_triangles = a.hierarchy().view().triangles; // what is asked of points alone is refused of them

@@ -56,7 +56,7 @@ public:
     std::size_t colliding = 0, near = 0, touching = 0;
     test::Question request;
     request.clearance = clearance_;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     for (ObjectId i = 0; i < size(); ++i)
       for (ObjectId j = i + 1; j < size(); ++j) {
         const Placed a = placed(i), b = placed(j);

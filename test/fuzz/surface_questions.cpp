@@ -119,7 +119,7 @@ void requireDepths(const Placed& a, const Placed& b, const PlacedSolid& solid, c
 {
   constexpr unsigned steps = 6;
   const DeepSolid deep{*solid.solid, b.hierarchy(), solid.pose};
-  for (const Depth& depth : brute_force::depthsIn(deep, Content(a.hierarchy()), a.pose, steps).depths) {
+  for (const Depth& depth : brute_force::depthsIn(deep, QueriedRecords(a.hierarchy()), a.pose, steps).depths) {
     if (!(found.distance[depth.record] < 0.0) && depth.depth.lower == 0.0) continue; // it may meet the surface or not
     require(!found.interval.empty(), "solid obstacle: no intervals of triangles");
     const Interval& interval = found.interval[depth.record];
@@ -135,7 +135,7 @@ void requireDepths(const Placed& a, const Placed& b, const PlacedSolid& solid, c
 void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, const Question& question)
 {
   const std::vector<std::uint8_t> labels = expectedLabels(a, solid);
-  const auto held = [&](std::size_t i) { return labels[i] != labelOf(Label::outside); };
+  const auto enclosed = [&](std::size_t i) { return labels[i] != labelOf(Label::outside); };
   Shape input("input", a.hierarchy().view()), obstacle("obstacle", b.hierarchy().view());
   const Answer answer = ask(question, input, obstacle);
   FlagsRequest request;
@@ -143,7 +143,7 @@ void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, 
   const FlagsResult surface = brute_force::collisionFlags(a, b, request);
   require(answer.collisions.flags.size() == surface.a.size(), "solid obstacle: number of flags");
   for (std::size_t i = 0; i < surface.a.size(); ++i)
-    require((answer.collisions.flags[i] == Verdict::colliding) == (held(i) || surface.a[i] == Verdict::colliding),
+    require((answer.collisions.flags[i] == Verdict::colliding) == (enclosed(i) || surface.a[i] == Verdict::colliding),
             "solid obstacle: another flag");
   PointDistances expected = brute_force::pointDistances(a, b);
   if (a.hierarchy().view().triangles)
@@ -151,7 +151,7 @@ void requireAnswers(const Placed& a, const Placed& b, const PlacedSolid& solid, 
   else
     for (std::size_t i = 0; i < labels.size(); ++i) { // of a ball, the depth is that of its far side
       const double depth = expected.distance[i] + 2.0 * a.hierarchy().view().ownRadius(static_cast<std::uint32_t>(i));
-      if (held(i) && depth > 0.0) expected.distance[i] = -depth;
+      if (enclosed(i) && depth > 0.0) expected.distance[i] = -depth;
     }
   requireSame(answer.distances.a.distance, expected.distance, "solid obstacle: other distances");
 }
@@ -182,8 +182,8 @@ void askDistances(const Placed& a, const Placed& b, double unit, Random& random)
   const PointDistances roughly = pointDistances(a, b, without_limit);
   for (std::size_t i = 0; i < both.a.distance.size(); ++i) {
     if (std::isnan(both.a.distance[i])) continue;
-    const Interval& held = roughly.interval[i];
-    require(held.lower <= both.a.distance[i] && both.a.distance[i] <= held.upper,
+    const Interval& enclosed = roughly.interval[i];
+    require(enclosed.lower <= both.a.distance[i] && both.a.distance[i] <= enclosed.upper,
             "distances: not in the interval that the accuracy grants");
   }
 }
@@ -207,8 +207,8 @@ void askSolid(const Placed& a, const Placed& b, double unit, Random& random)
   const LabelsResult found = labelPoints(a, placed, threads), expected = brute_force::labelPoints(a, placed);
   require(found.labels == expected.labels, "labels: differ");
   require(found.inside == expected.inside && found.on_surface == expected.on_surface, "labels: counts");
-  const auto held = [](std::uint8_t label) { return label != labelOf(Label::outside); };
-  const auto first = std::find_if(expected.labels.begin(), expected.labels.end(), held);
+  const auto enclosed = [](std::uint8_t label) { return label != labelOf(Label::outside); };
+  const auto first = std::find_if(expected.labels.begin(), expected.labels.end(), enclosed);
   const std::optional<std::uint32_t> inside = firstInside(a, placed);
   require(inside.has_value() == (first != expected.labels.end()), "first inside: differs");
   if (inside) require(*inside == first - expected.labels.begin(), "first inside: another");
@@ -224,7 +224,7 @@ void askSolid(const Placed& a, const Placed& b, double unit, Random& random)
   for (std::uint32_t k = 0; k < count; ++k) {
     const LabelsResult there = brute_force::labelPoints(a, {*solid, pose});
     for (std::size_t i = 0; i < first_pose.size(); ++i)
-      if (held(there.labels[i])) first_pose[i] = std::min(first_pose[i], k);
+      if (enclosed(there.labels[i])) first_pose[i] = std::min(first_pose[i], k);
     poses.push_back(pose);
     pose.pretranslate(Eigen::Vector3d{unit / 8 * random.integer(-2, 2), unit / 8 * random.integer(-2, 2), 0});
     if (random.chance(0.2)) pose.linear() = random.rotation().toRotationMatrix();

@@ -58,7 +58,7 @@ void compareAnswers(const Placed& a, const Placed& b, double clearance, unsigned
 {
   FlagsRequest flags;
   flags.clearance = clearance;
-  flags.flagged = Side::both;
+  flags.flagged = Flagged::both;
   flags.threads = threads;
   const FlagsResult found = collisionFlags(a, b, flags), expected = brute_force::collisionFlags(a, b, flags);
   require(found.a == expected.a && found.b == expected.b, "collisionFlags differs from brute force");

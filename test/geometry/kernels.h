@@ -2,7 +2,7 @@
 // The float kernels as they are compiled for the instruction set in use: for tests that judge their rounding.
 #pragma once
 
-#include <pcl_bsh/simd/flat_triangle.h>
+#include <pcl_bsh/simd/flattened_triangle.h>
 
 namespace pcl_bsh::test {
 

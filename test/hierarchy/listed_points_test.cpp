@@ -52,7 +52,7 @@ void expectAnswers(const SphereHierarchy& hierarchy)
   const SphereHierarchy other(viewOf(few.data(), 3));
   FlagsRequest request;
   request.clearance = 1.5;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   const FlagsResult found = collisionFlags({hierarchy}, {other}, request);
   const FlagsResult right = brute_force::collisionFlags({hierarchy}, {other}, request);
   EXPECT_EQ(found.a, right.a);

@@ -63,7 +63,7 @@ TEST(HierarchyRefit, OfACrowdThatMovesOntoAnother)
     SCOPED_TRACE(clearance);
     FlagsRequest request;
     request.clearance = clearance;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     const FlagsResult found = collisionFlags(moving, resting, request),
                       truth = brute_force::collisionFlags(moving, resting, request);
     EXPECT_GT(truth.colliding_a, 20u);

@@ -92,7 +92,7 @@ TEST(VoxelEdge, AnswersAreRightWhateverItIs)
     const SphereHierarchy b(other.view());
     FlagsRequest request;
     request.clearance = 0.25;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     for (const double edge : {0.0, 1e-308, 1e-3, 1.0, 1e30, 1e308}) {
       const SphereHierarchy a(cloud.view(), edgeOf(edge));
       EXPECT_THAT(a.validate().lines, testing::IsEmpty()) << edge;

@@ -21,7 +21,7 @@ auto answerOf(const SphereHierarchy& hierarchy)
   static const SphereHierarchy other(cloud.view());
   FlagsRequest request;
   request.clearance = 0.05;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   const FlagsResult found = collisionFlags({hierarchy}, {other}, request);
   return std::tuple(hierarchy.size(), found.a, found.b);
 }

@@ -5,11 +5,11 @@
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/solid/labels.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
@@ -48,7 +48,7 @@ std::unique_ptr<FreshPair> freshPair()
   return std::make_unique<FreshPair>(scan(), model());
 }
 
-test::Question request(unsigned threads = 1, Side flagged = Side::both)
+test::Question request(unsigned threads = 1, Flagged flagged = Flagged::both)
 {
   test::Question request;
   request.clearance = 0.05;
@@ -167,7 +167,7 @@ TEST(AllocationFailure, OfCollidingIndices)
     asked.accuracy = accuracy;
     failEachAllocation([] { return Subject(); }, [&](Subject& subject) { return ask(subject, asked); });
   }
-  failEachAllocation([] { return Subject(); }, [&](Subject& subject) { return ask(subject, request(2, Side::a)); });
+  failEachAllocation([] { return Subject(); }, [&](Subject& subject) { return ask(subject, request(2, Flagged::a)); });
 }
 
 TEST(AllocationFailure, OfContactsLeavesAUsableResult)
@@ -191,7 +191,7 @@ TEST(AllocationFailure, OfContactsLeavesAUsableResult)
 
 TEST(AllocationFailure, OfFlagsInThreads)
 {
-  for (const Side side : {Side::a, Side::b})
+  for (const Flagged side : {Flagged::a, Flagged::b})
     failEachAllocation(freshPair, [&](const auto& pair) {
       return answerOf(collisionFlags(pair->placedA(), pair->placedB(), request(2, side)));
     });

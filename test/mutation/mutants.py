@@ -40,7 +40,7 @@ OPERATORS = [
     ("lanes", r"\bhn::Sub\(", "hn::Add("),
     ("side", r"(?<=\W)a(?=\.(?:pose|hierarchy|view|cloud)\b)", "b"),
     ("side", r"(?<=\W)b(?=\.(?:pose|hierarchy|view|cloud)\b)", "a"),
-    ("side", r"\bSide::a\b", "Side::b"),
+    ("side", r"\bFlagged::a\b", "Flagged::b"),
     ("index", r"(?<=\[)([a-z]\w*)(?=\])(?!\s*\()", r"\1 + 1"),
     ("rounding", r"\broundUp\(", "roundDown("),
     ("rounding", r"\broundDown\(", "roundUp("),

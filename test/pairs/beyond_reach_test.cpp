@@ -167,7 +167,7 @@ std::vector<std::uint32_t> recordsBelow(const SphereHierarchy& cloud, const Node
 /// Two clouds, and all pairs of records that are beyond the reach.
 struct Asked {
   Asked(const PointsView& view_a, const Eigen::Isometry3d& pose_a, const PointsView& view_b,
-        const Eigen::Isometry3d& pose_b, double clearance, Places places, const PatchSpacings& patches = {})
+        const Eigen::Isometry3d& pose_b, double clearance, MeantPlaces places, const PatchSpacings& patches = {})
   : of_a(view_a),
     of_b(view_b),
     a(of_a, pose_a),
@@ -231,7 +231,7 @@ TEST(BeyondReach, KnowsOfNodesWhatIsTrue)
     if (is_uncertain) view_a.uncertainty = 0.0625, view_b.uncertainty = 0.03125;
     const double clearance = std::max(0.0, test::clearanceAbout(pair.gap, random) - (is_uncertain ? 0.09375 : 0));
     Asked asked(view_a, pair.pose_a, view_b, pair.pose_b, clearance,
-                is_uncertain ? random.pick({Places::possible, Places::certain}) : Places::measured);
+                is_uncertain ? random.pick({MeantPlaces::possible, MeantPlaces::certain}) : MeantPlaces::measured);
     const int found = asked.find(random, 2000);
     known += found;
     of_uncertain += is_uncertain ? found : 0;
@@ -247,27 +247,28 @@ TEST(BeyondReach, KnowsNothingWherePairsDiffer)
   const TiedPair pair = test::tied()[0].make(30);
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
   const PointsView plain_a = viewOf(pair.a.trianglesView()), plain_b = viewOf(pair.b.trianglesView());
-  const auto known = [&](const PointsView& a, const PointsView& b, Places places, const PatchSpacings& patches = {}) {
+  const auto known = [&](const PointsView& a, const PointsView& b, MeantPlaces places,
+                         const PatchSpacings& patches = {}) {
     Asked asked(a, identity, b, identity, 0.2, places, patches);
     EXPECT_GT(asked.apart.size(), 500u);
     const int found = asked.find(random, 2000);
     EXPECT_EQ(found > 0, asked.is_asked);
     return found;
   };
-  EXPECT_GT(known(plain_a, plain_b, Places::measured), 0);
+  EXPECT_GT(known(plain_a, plain_b, MeantPlaces::measured), 0);
   const std::vector<float> some(64, 0.01f);
   PointsView uncertain = plain_a;
   uncertain.uncertainties = some.data();
-  EXPECT_EQ(known(uncertain, plain_b, Places::possible), 0);
-  EXPECT_EQ(known(plain_b, uncertain, Places::certain), 0);
-  EXPECT_GT(known(uncertain, plain_b, Places::measured), 0);
-  EXPECT_EQ(known(plain_a, plain_b, Places::covered, {some.data(), plain_b.count}), 0);
+  EXPECT_EQ(known(uncertain, plain_b, MeantPlaces::possible), 0);
+  EXPECT_EQ(known(plain_b, uncertain, MeantPlaces::certain), 0);
+  EXPECT_GT(known(uncertain, plain_b, MeantPlaces::measured), 0);
+  EXPECT_EQ(known(plain_a, plain_b, MeantPlaces::covered, {some.data(), plain_b.count}), 0);
   PointsView balls = pair.b.view();
-  EXPECT_GT(known(plain_a, balls, Places::measured), 0);
+  EXPECT_GT(known(plain_a, balls, MeantPlaces::measured), 0);
   balls.radii = some.data();
-  EXPECT_EQ(known(plain_a, balls, Places::measured), 0);
-  EXPECT_EQ(known(balls, plain_a, Places::measured), 0);
-  EXPECT_EQ(known(pair.a.view(), pair.b.view(), Places::measured), 0);
+  EXPECT_EQ(known(plain_a, balls, MeantPlaces::measured), 0);
+  EXPECT_EQ(known(balls, plain_a, MeantPlaces::measured), 0);
+  EXPECT_EQ(known(pair.a.view(), pair.b.view(), MeantPlaces::measured), 0);
 }
 
 /// Two discs, shifted, so that planes of the first pair cut both; and one triangle of b that faces a.
@@ -295,7 +296,7 @@ struct Shifted {
 
   const test::TestMesh a = test::tied()[1].make(64).a, b = shifted();
   const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
-  Asked asked{viewOf(a.trianglesView()), identity, viewOf(b.trianglesView()), identity, 0.2, Places::measured};
+  Asked asked{viewOf(a.trianglesView()), identity, viewOf(b.trianglesView()), identity, 0.2, MeantPlaces::measured};
 };
 
 TEST(BeyondReach, PlanesAreOfTheNearestPair)

@@ -221,7 +221,7 @@ TEST(Contacts, BallsNeedHardlyAnExactDecision)
   EXPECT_LT(anyCollision({a}, {b}, {0.4, {}}).work.exact_decisions, 10u);
   FlagsRequest request;
   request.clearance = 0.4;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   EXPECT_LT(collisionFlags({a}, {b}, request).work.exact_decisions, 10u);
   expectSameAsOracle({low, high, identity, identity, 0.27, "sheets of balls"});
 }

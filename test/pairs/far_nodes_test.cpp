@@ -138,9 +138,9 @@ double betweenFraction(const Numbers& n)
     const RealVector at(p[0], p[1], p[2]);
     return pose.linear().cast<Real>() * at + pose.translation().cast<Real>();
   };
-  const Between between(pose_a, a, pose_b, b);
-  const Real off = (posed(pose_b, b) - posed(pose_a, a) - between.vector.cast<Real>()).norm();
-  return between.error > 0x1p-500 && between.error < 0x1p500 ? static_cast<double>(off / between.error) : 0.0;
+  const CenterDifference difference(pose_a, a, pose_b, b);
+  const Real off = (posed(pose_b, b) - posed(pose_a, a) - difference.vector.cast<Real>()).norm();
+  return difference.error > 0x1p-500 && difference.error < 0x1p500 ? static_cast<double>(off / difference.error) : 0.0;
 }
 
 constexpr double kUnit = 4.0; ///< of the frame: lengths of nodes are in it, those of supports in the cloud's
@@ -187,11 +187,11 @@ TEST(FarNodes, BoundsHoldUnderAttack)
       return n;
     };
   };
-  const double between = test::climbFromMany(start(20), betweenFraction, 60, 600, random),
+  const double difference = test::climbFromMany(start(20), betweenFraction, 60, 600, random),
                support = test::climbFromMany(start(16), supportFraction, 60, 600, random);
-  std::printf("  between: %.4f, support: %.4f of the bound\n", between, support);
-  EXPECT_LE(between, 1.0);
-  EXPECT_GE(between, 0.2);
+  std::printf("  difference: %.4f, support: %.4f of the bound\n", difference, support);
+  EXPECT_LE(difference, 1.0);
+  EXPECT_GE(difference, 0.2);
   EXPECT_LE(support, 1.0);
   EXPECT_GE(support, 0.05);
 }
@@ -208,7 +208,7 @@ void expectExact(const SphereHierarchy& a, const SphereHierarchy& b, const Eigen
   for (const double clearance : {expected.distance, std::nextafter(expected.distance, 0.0),
                                  expected.distance * (1.0 - 1e-6), expected.distance * (1.0 + 1e-7)}) {
     if (!(clearance >= 0.0)) continue;
-    const FlagsRequest request{clearance, Side::both};
+    const FlagsRequest request{clearance, Flagged::both};
     const FlagsResult flags = brute_force::collisionFlags(at_a, at_b, request),
                       own = collisionFlags(at_a, at_b, request);
     ASSERT_EQ(own.a, flags.a) << what << ", " << clearance;

@@ -81,7 +81,7 @@ constexpr auto kAny = [](const Placed& a, const Placed& b, double clearance) {
 };
 constexpr auto kClosest = [](const Placed& a, const Placed& b, double) { return closestPair(a, b, {}); };
 constexpr auto kFlags = [](const Placed& a, const Placed& b, double clearance) {
-  return collisionFlags(a, b, {clearance, Side::both});
+  return collisionFlags(a, b, {clearance, Flagged::both});
 };
 constexpr auto kWithin = [](const Placed& a, const Placed& b, double clearance) {
   return pairsWithin(a, b, {clearance, 1000});
@@ -119,13 +119,13 @@ TEST(PairWork, FlagsWithManyCandidatesOfBallsAreThoseOfPointsThatReachAsFar)
   for (Point3& p : pair.b) p[2] += random.uniform(-1e-3, 1e-3);
   test::Cloud a(pair.a), b(pair.b);
   const SphereHierarchy points_a(a.view()), points_b(b.view());
-  const FlagsResult expected = collisionFlags({points_a}, {points_b}, {10.0, Side::both});
+  const FlagsResult expected = collisionFlags({points_a}, {points_b}, {10.0, Flagged::both});
   EXPECT_GT(expected.colliding_a, 10u);
   EXPECT_LT(expected.colliding_a, 3990u);
   a.setRadii(std::vector<float>(pair.a.size(), 0.25f));
   b.setRadii(std::vector<float>(pair.b.size(), 0.25f));
   const SphereHierarchy balls_a(a.view()), balls_b(b.view());
-  const FlagsResult found = collisionFlags({balls_a}, {balls_b}, {9.5, Side::both});
+  const FlagsResult found = collisionFlags({balls_a}, {balls_b}, {9.5, Flagged::both});
   EXPECT_EQ(found.a, expected.a);
   EXPECT_EQ(found.b, expected.b);
 }
@@ -142,7 +142,7 @@ TEST(PairWork, FlagsWithManyCandidatesAreThoseOfSearchesForNeighbors)
     const SphereHierarchy of_a(a.view()), of_b(b.view());
     std::size_t most = 0;
     for (const double beyond : {-1.5 * rough, -0.5 * rough, 0.0, 2e-6}) {
-      const FlagsResult flags = collisionFlags(of_a, of_b, {10 + beyond, Side::both});
+      const FlagsResult flags = collisionFlags(of_a, of_b, {10 + beyond, Flagged::both});
       EXPECT_EQ(numbersOf(flags.a), flagAnyInRadius(of_b, a.view(), 10 + beyond)) << rough << ", " << beyond;
       EXPECT_EQ(numbersOf(flags.b), flagAnyInRadius(of_a, b.view(), 10 + beyond)) << rough << ", " << beyond;
       most = std::max(most, flags.colliding_a);

@@ -104,7 +104,7 @@ std::array<double, 3> stepsOf(const Recipe& recipe, std::size_t n)
   const DistanceResult closest = closestPair(of_a, posed);
   const double clearance = std::max(0.0, closest.distance * (1.0 - std::pow(10.0, recipe.below)));
   return {stepsOf(anyCollision(of_a, posed, {clearance, {}}).work), stepsOf(closest.work),
-          stepsOf(collisionFlags(of_a, posed, {clearance, Side::both}).work)};
+          stepsOf(collisionFlags(of_a, posed, {clearance, Flagged::both}).work)};
 }
 
 struct Growth {

@@ -48,7 +48,7 @@ public:
   {
     test::Question request;
     request.clearance = scene.clearance;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     request.accuracy = accuracy;
     return request;
   }
@@ -294,7 +294,7 @@ TEST(Accuracy, LevelZeroBuildsNothingForFlags)
   const TwoSurfaces scene;
   test::Question request;
   request.clearance = 0.25;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   request.accuracy = Accuracy::level(0);
   const FlagsResult flags = collisionFlags({scene.a}, {scene.b, scene.pose}, request);
   EXPECT_EQ(flags.work.voxels_built, 0u);

@@ -26,7 +26,7 @@ using test::Shape;
 
 constexpr Verdict kUndecided = Verdict::undecided;
 
-test::Question asking(const Accuracy& accuracy, double clearance, Side flagged = Side::both)
+test::Question asking(const Accuracy& accuracy, double clearance, Flagged flagged = Flagged::both)
 {
   test::Question request;
   request.accuracy = accuracy;
@@ -129,20 +129,20 @@ TEST(Budget, BothSidesShareIt)
 {
   const TwoSurfaces scene;
   const SphereHierarchy a(scene.a_points.view()), b(scene.b_points.view());
-  const auto flagsAt = [&](const Accuracy& accuracy, Side flagged) {
+  const auto flagsAt = [&](const Accuracy& accuracy, Flagged flagged) {
     return collisionFlags({a}, {b, scene.pose}, asking(accuracy, 0.1, flagged));
   };
-  const FlagsResult exact = flagsAt(Accuracy::exact(), Side::both);
+  const FlagsResult exact = flagsAt(Accuracy::exact(), Flagged::both);
   const std::uint64_t all = exact.work.node_pairs;
   for (const std::uint64_t budget : {all / 100, all / 10, all / 2}) {
-    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::both).work.node_pairs, budget + 4000) << budget;
-    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Side::a).work.node_pairs, budget + 4000) << budget;
+    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Flagged::both).work.node_pairs, budget + 4000) << budget;
+    EXPECT_LE(flagsAt(Accuracy::nodePairs(budget), Flagged::a).work.node_pairs, budget + 4000) << budget;
   }
   // The budget that one side does not need is the other's.
-  const FlagsResult enough = flagsAt(Accuracy::nodePairs(4 * all), Side::both);
+  const FlagsResult enough = flagsAt(Accuracy::nodePairs(4 * all), Flagged::both);
   EXPECT_EQ(enough.a, exact.a);
   EXPECT_EQ(enough.b, exact.b);
-  const FlagsResult timed = flagsAt(Accuracy::time(3600), Side::both);
+  const FlagsResult timed = flagsAt(Accuracy::time(3600), Flagged::both);
   EXPECT_EQ(timed.a, exact.a);
   EXPECT_EQ(timed.b, exact.b);
   EXPECT_EQ(timed.colliding_b, exact.colliding_b);
@@ -176,15 +176,15 @@ TEST(Budget, WhatASmallCloudLeavesIsTheOthers)
   Random random(78);
   const Cloud few({{0.9, 0.1, 0.0}}), many(test::makePoints(Shape::sphere, 20000, 1, random));
   const SphereHierarchy a(few.view()), b(many.view());
-  const auto flagsAt = [&](std::uint64_t budget, Side flagged) {
+  const auto flagsAt = [&](std::uint64_t budget, Flagged flagged) {
     return collisionFlags({a}, {b}, asking(Accuracy::nodePairs(budget), 0.5, flagged));
   };
   std::uint64_t need = 100;
-  while (flagsAt(need, Side::b).undecided_b != 0) need += need / 8;
-  const std::uint64_t needs_a = flagsAt(1u << 30, Side::a).work.node_pairs;
+  while (flagsAt(need, Flagged::b).undecided_b != 0) need += need / 8;
+  const std::uint64_t needs_a = flagsAt(1u << 30, Flagged::a).work.node_pairs;
   ASSERT_LT(8 * needs_a, need);
-  EXPECT_EQ(flagsAt(need + needs_a, Side::both).undecided_b, 0u);
-  EXPECT_GT(flagsAt(need / 2, Side::b).undecided_b, 0u) << "else half would be enough";
+  EXPECT_EQ(flagsAt(need + needs_a, Flagged::both).undecided_b, 0u);
+  EXPECT_GT(flagsAt(need / 2, Flagged::b).undecided_b, 0u) << "else half would be enough";
 }
 
 /// A cloud that is built has nothing to take time for, whichever side it is.

@@ -5,11 +5,11 @@
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/flags/collision_flags.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/pairs/any_collision.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/progress.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/made_meshes.h"
@@ -63,11 +63,11 @@ std::vector<NamedQuery> queries(double reach)
        }},
       {"flags",
        [reach](const Placed& a, const Placed& b, const Report& r) {
-         return collisionFlags(a, b, {reach, Side::both, {1, r}}).work;
+         return collisionFlags(a, b, {reach, Flagged::both, {1, r}}).work;
        }},
       {"indices",
        [reach](const Placed& a, const Placed& b, const Report& r) {
-         return collidingIndices(a, b, {reach, Side::both, {1, r}}).work;
+         return collidingIndices(a, b, {reach, Flagged::both, {1, r}}).work;
        }},
       {"distances",
        [](const Placed& a, const Placed& b, const Report& r) {

@@ -24,7 +24,7 @@ TEST(CellSplit, ChangesNoAnswer)
     const Placed as_octree_a{octree_a, scene.pose_a}, as_octree_b{octree_b, scene.pose_b};
     FlagsRequest flags;
     flags.clearance = scene.clearance;
-    flags.flagged = Side::both;
+    flags.flagged = Flagged::both;
     const FlagsResult expected = collisionFlags(placed_a, placed_b, flags);
     const FlagsResult found = collisionFlags(as_octree_a, as_octree_b, flags);
     EXPECT_EQ(found.a, expected.a);

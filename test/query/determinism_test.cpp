@@ -53,7 +53,7 @@ void addAnswers(const Scene& scene, unsigned threads, BuildOrder order, Hash& ha
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
   test::Question request;
   request.clearance = scene.clearance;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   request.threads = threads;
   if (order == BuildOrder::flags_first) collisionFlags(placed_b, placed_a, request);
   if (order == BuildOrder::closest_first) closestPair(placed_a, placed_b, request);

@@ -3,12 +3,12 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "support/random_clouds.h"
@@ -104,19 +104,19 @@ double within(const Lattices& of, const Effort& effort)
 }
 double flags(const Lattices& of, const Effort& effort)
 {
-  const FlagsResult found = collisionFlags({of.a}, {of.b}, {0.9, Side::both, effort});
+  const FlagsResult found = collisionFlags({of.a}, {of.b}, {0.9, Flagged::both, effort});
   return sum(found.a) + sum(found.b);
 }
 double guardedFlags(const Lattices& of, const Effort& effort)
 {
   static const std::vector<float> spacings(4096, 1.0f);
-  FlagsRequest request(0.5, Side::a, effort);
+  FlagsRequest request(0.5, Flagged::a, effort);
   request.spacings_of_b = spacings.data();
   return sum(collisionFlags({of.a}, {of.b}, request).a);
 }
 double indices(const Lattices& of, const Effort& effort)
 {
-  return static_cast<double>(collidingIndices({of.a}, {of.b}, {0.9, Side::both, effort}).a.size());
+  return static_cast<double>(collidingIndices({of.a}, {of.b}, {0.9, Flagged::both, effort}).a.size());
 }
 double traced(const Lattices& of, const Effort& effort)
 {

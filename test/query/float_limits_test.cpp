@@ -58,7 +58,7 @@ TEST(FloatLimits, EveryRoundingInTheSameDirection)
     for (int i = -60; i <= 60; ++i) {
       test::Question request;
       request.clearance = i == 0 && side > 0 ? clearance : gap + i * 1e-8;
-      request.flagged = Side::both;
+      request.flagged = Flagged::both;
       const FlagsResult expected = brute_force::collisionFlags(at_a, at_b, request);
       const FlagsResult found = collisionFlags(at_a, at_b, request);
       EXPECT_EQ(found.a, expected.a) << side << " " << i;

@@ -2,8 +2,8 @@
 // Costs of every query about two clouds on pairs that are hard for bounding volumes, as they grow. All pairs are at
 // nearly one distance, a few points spoil the bounds of all, or floats hardly tell points apart.
 #include <pcl_bsh/collide.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/pairs/contacts.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/adversarial_clouds.h"
@@ -88,11 +88,11 @@ const std::vector<Query>& queries()
        }},
       {"flags",
        [](const Placed& a, const SphereHierarchy& b, const Pose& at, double clearance) {
-         return collisionFlags(a, Placed(b, at), {clearance, Side::both}).work;
+         return collisionFlags(a, Placed(b, at), {clearance, Flagged::both}).work;
        }},
       {"flags, 1 % more",
        [](const Placed& a, const SphereHierarchy& b, const Pose& at, double clearance) {
-         return collisionFlags(a, Placed(b, at), {1.01 * clearance, Side::both}).work;
+         return collisionFlags(a, Placed(b, at), {1.01 * clearance, Flagged::both}).work;
        }},
       {"path", [](const Placed& a, const SphereHierarchy& b, const Pose& at,
                   double clearance) { return along(a, b, wayPast(at, 0.01 * clearance), clearance, false, {}); }},

@@ -35,7 +35,7 @@ test::Question within(double clearance, unsigned threads)
 {
   test::Question request;
   request.clearance = clearance;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   request.threads = threads;
   return request;
 }

@@ -72,7 +72,7 @@ void expectOrdinaryWork(std::size_t count, const std::function<Point3(std::size_
   onSmallStack([&] {
     const SphereHierarchy ha(a.view()), hb(b.view());
     test::Question request;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     const FlagsResult itself = collisionFlags({ha}, {ha}, request);
     EXPECT_EQ(itself.colliding_a, count);
     EXPECT_EQ(itself.colliding_b, count);

@@ -64,7 +64,7 @@ TEST_P(HardSurfaces, EqualExactArithmetic)
       const Placed a(ha), b(hb, pose);
       FlagsRequest flags;
       flags.clearance = clearance;
-      flags.flagged = Side::both;
+      flags.flagged = Flagged::both;
       flags.threads = threads;
       const FlagsResult found = collisionFlags(a, b, flags);
       EXPECT_EQ(recordsOf(found.a), of_input);

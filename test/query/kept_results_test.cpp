@@ -4,10 +4,10 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/pairs/contacts.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/random_clouds.h"
@@ -72,7 +72,7 @@ protected:
 
 TEST_F(KeptResults, OfTwoClouds)
 {
-  const FlagsRequest flags(0.3, Side::both);
+  const FlagsRequest flags(0.3, Flagged::both);
   PCL_BSH_KEPT(collisionFlags, flags, found.a);
   PCL_BSH_KEPT(collisionFlags, flags, found.b);
   PCL_BSH_KEPT(collidingIndices, flags, found.a);

@@ -34,8 +34,10 @@ TEST(PairReach, IsAroundItsSum)
     b.setUncertainties(unit * random.uniform(0, 0.1), lengths(random, unit));
     const PointsView view_a = a.view(), view_b = b.view();
     const std::vector<float> spacings = lengths(random, unit);
-    for (const Places places : {Places::measured, Places::certain, Places::possible, Places::covered}) {
-      const PatchSpacings patches = places == Places::covered ? PatchSpacings(spacings.data(), 8) : PatchSpacings();
+    for (const MeantPlaces places :
+         {MeantPlaces::measured, MeantPlaces::certain, MeantPlaces::possible, MeantPlaces::covered}) {
+      const PatchSpacings patches =
+          places == MeantPlaces::covered ? PatchSpacings(spacings.data(), 8) : PatchSpacings();
       const PairReach reach(view_a, view_b, unit * random.uniform(0, 1), places, patches);
       const Reach of_all(reach.of({0, 0})[0], UncertaintyRange(view_a), UncertaintyRange(view_b), places, patches);
       for (std::uint32_t i = 0; i < 8; ++i) {
@@ -62,11 +64,11 @@ TEST(PairReach, IsOneWhereNoRecordHasItsOwn)
   own.setUncertainties(0.0, lengths(random));
   const PointsView none = plain.view(), some = own.view();
   const std::vector<float> spacings(8, 0.5f);
-  EXPECT_TRUE(PairReach(none, none, 1.0, Places::possible).isOne());
-  EXPECT_FALSE(PairReach(some, none, 1.0, Places::possible).isOne());
-  EXPECT_FALSE(PairReach(none, some, 1.0, Places::certain).isOne());
-  EXPECT_FALSE(PairReach(none, none, 1.0, Places::covered, PatchSpacings(spacings.data(), 8)).isOne());
-  EXPECT_TRUE(PairReach(some, some, 1.0, Places::measured).isOne());
+  EXPECT_TRUE(PairReach(none, none, 1.0, MeantPlaces::possible).isOne());
+  EXPECT_FALSE(PairReach(some, none, 1.0, MeantPlaces::possible).isOne());
+  EXPECT_FALSE(PairReach(none, some, 1.0, MeantPlaces::certain).isOne());
+  EXPECT_FALSE(PairReach(none, none, 1.0, MeantPlaces::covered, PatchSpacings(spacings.data(), 8)).isOne());
+  EXPECT_TRUE(PairReach(some, some, 1.0, MeantPlaces::measured).isOne());
 }
 
 } // namespace

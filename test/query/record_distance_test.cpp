@@ -100,7 +100,7 @@ TEST(RecordDistance, OfEveryKindEqualsTheDefinition)
               EXPECT_EQ(distance.compare(distance.pair(pair), clearance), sign);
               EXPECT_EQ(distance.compare(pair, RecordDistance::Sum{clearance, a.radius(i), 0.5, b.radius(j), -0.5}),
                         sign);
-              const PairReach reach(a.view, b.view, clearance, Places::measured);
+              const PairReach reach(a.view, b.view, clearance, MeantPlaces::measured);
               if (clearance >= 0.0) {
                 EXPECT_EQ(reach.holds(distance, pair), sign <= 0);
               }

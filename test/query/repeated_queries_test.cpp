@@ -71,7 +71,7 @@ TEST_F(RepeatedQueries, OfFlagsAllocateNothing)
   FlagsResult result;
   std::size_t colliding = 0;
   EXPECT_EQ(allocationsOf([&](const Placed& a, const Placed& b) {
-              collisionFlags(a, b, {0.02, Side::both}, result);
+              collisionFlags(a, b, {0.02, Flagged::both}, result);
               colliding += result.colliding_a + result.colliding_b;
             }),
             0u);
@@ -83,7 +83,7 @@ TEST_F(RepeatedQueries, OfCollidingIndicesAllocateNothing)
   CollidingIndices result;
   std::size_t colliding = 0;
   EXPECT_EQ(allocationsOf([&](const Placed& a, const Placed& b) {
-              collidingIndices(a, b, {0.02, Side::both}, result);
+              collidingIndices(a, b, {0.02, Flagged::both}, result);
               colliding += result.a.size() + result.b.size();
             }),
             0u);

@@ -58,14 +58,14 @@ TEST(RequestCombinations, AnyFlagsAndClosestPair)
     test::Question request;
     request.clearance = random.integer(0, 4) / 8.0;
     for (const Accuracy& accuracy : accuracies)
-      for (const Side side : {Side::a, Side::b, Side::both})
+      for (const Flagged side : {Flagged::a, Flagged::b, Flagged::both})
         for (const unsigned threads : {1u, 2u}) {
           request.accuracy = accuracy;
           request.flagged = side;
           request.threads = threads;
           try {
             questions.askFlags({scan}, {model, shifted}, request);
-            if (side != Side::a || threads != 1) continue; // options of flags alone
+            if (side != Flagged::a || threads != 1) continue; // options of flags alone
             questions.askAny({scan}, {model, shifted}, request);
             questions.askClosest({scan}, {model, shifted}, request);
           }

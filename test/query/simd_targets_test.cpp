@@ -42,7 +42,7 @@ Answers answersOn(std::int64_t target, const test::Scene& scene)
   const test::OnTarget on_target(target);
   test::Question request;
   request.clearance = scene.clearance;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   const SphereHierarchy a(scene.a.view()), b(scene.b.view());
   const Placed placed_a{a, scene.pose_a}, placed_b{b, scene.pose_b};
   return {anyCollision(placed_a, placed_b, request),

@@ -8,14 +8,14 @@
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 
-#include "support/brute_force/roadmap.h"
+#include "support/brute_force/many_poses.h"
 #include "support/meshes.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ FlagsRequest flagsWithin(double clearance, const Accuracy& accuracy = {})
 {
   FlagsRequest request;
   request.clearance = clearance;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   request.accuracy = accuracy;
   return request;
 }

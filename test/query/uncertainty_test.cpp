@@ -5,10 +5,10 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
 #include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 
-#include "support/brute_force/roadmap.h"
+#include "support/brute_force/many_poses.h"
 #include "support/random_clouds.h"
 #include "support/verdicts.h"
 #include "support/work_counts.h"
@@ -33,7 +33,7 @@ using Rational = boost::multiprecision::cpp_rational;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-FlagsRequest within(double clearance, Side flagged, unsigned threads = 1, const Accuracy& accuracy = {})
+FlagsRequest within(double clearance, Flagged flagged, unsigned threads = 1, const Accuracy& accuracy = {})
 {
   return {clearance, flagged, {accuracy, threads}};
 }
@@ -94,7 +94,7 @@ TEST(Uncertainty, BothEdgesToTheLastBit)
               const Verdict expected =
                   verdictOf(judge(cloud_a.view(), cloud_b.view(), Eigen::Vector3d::Zero(), clearance));
               ASSERT_EQ(anyCollision({a}, {b}, {clearance, {}}).verdict, expected) << distance;
-              ASSERT_EQ(collisionFlags({a}, {b}, within(clearance, Side::a)).a[0], expected) << distance;
+              ASSERT_EQ(collisionFlags({a}, {b}, within(clearance, Flagged::a)).a[0], expected) << distance;
               ++verdicts[test::numberOf(expected)];
             }
   for (const std::size_t count : verdicts) EXPECT_GT(count, 100u);
@@ -109,18 +109,19 @@ TEST(Uncertainty, SameAsBruteForceForAnyThreads)
     const SphereHierarchy a(scene.a.view()), b(scene.b.view());
     const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
     const AnyResult brute = brute_force::anyCollision(placed_a, placed_b, {scene.clearance, {}});
-    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both));
+    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::both));
     for (const unsigned threads : {1u, 2u}) {
       const AnyResult any = anyCollision(placed_a, placed_b, {scene.clearance, threads});
       ASSERT_EQ(any.verdict, brute.verdict);
       ASSERT_EQ(any.pair.has_value(), any.verdict == Verdict::colliding);
-      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::both, threads));
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::both, threads));
       ASSERT_EQ(found.a, all.a);
       ASSERT_EQ(found.b, all.b);
       ASSERT_EQ(found.colliding_a, all.colliding_a);
       ASSERT_EQ(found.undecided_a, all.undecided_a);
       ASSERT_EQ(found.undecided_b, all.undecided_b);
-      const CollidingIndices lists = collidingIndices(placed_a, placed_b, within(scene.clearance, Side::both, threads));
+      const CollidingIndices lists =
+          collidingIndices(placed_a, placed_b, within(scene.clearance, Flagged::both, threads));
       ASSERT_EQ(lists.a.size(), all.colliding_a);
       ASSERT_EQ(lists.undecided_b.size(), all.undecided_b);
       for (const std::int32_t i : lists.undecided_a) ASSERT_EQ(all.a[static_cast<std::size_t>(i)], Verdict::undecided);
@@ -139,7 +140,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
     const Scene scene = uncertainScene(seed, 300);
     const SphereHierarchy a(scene.a.view()), b(scene.b.view());
     const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
-    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a));
+    const FlagsResult all = brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::a));
     const Verdict truth = brute_force::anyCollision(placed_a, placed_b, {scene.clearance, {}}).verdict;
     for (const Accuracy& accuracy : {Accuracy::level(0), Accuracy::level(2), Accuracy::nodePairs(40),
                                      Accuracy::nodePairs(4000), Accuracy::time(1.0)}) {
@@ -149,7 +150,7 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
         ASSERT_EQ(any.verdict, truth);
       }
       ASSERT_EQ(any.pair.has_value(), any.verdict == Verdict::colliding);
-      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, accuracy));
+      const FlagsResult found = collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::a, 1, accuracy));
       for (std::size_t i = 0; i < all.a.size(); ++i) {
         if (found.a[i] == Verdict::undecided) continue;
         ASSERT_EQ(found.a[i], all.a[i]) << i;
@@ -159,9 +160,9 @@ TEST(Uncertainty, LessThanExactClaimsNothingFalse)
     // Pairs within the tolerance beyond each edge may go either way.
     const double tolerance = 0.1 * scene.clearance;
     const FlagsResult wider =
-        brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance + tolerance, Side::a));
+        brute_force::collisionFlags(placed_a, placed_b, within(scene.clearance + tolerance, Flagged::a));
     const FlagsResult loose =
-        collisionFlags(placed_a, placed_b, within(scene.clearance, Side::a, 1, Accuracy::tolerance(tolerance)));
+        collisionFlags(placed_a, placed_b, within(scene.clearance, Flagged::a, 1, Accuracy::tolerance(tolerance)));
     for (std::size_t i = 0; i < all.a.size(); ++i) {
       ASSERT_TRUE(loose.a[i] == all.a[i] || loose.a[i] == wider.a[i] ||
                   (all.a[i] == Verdict::free && loose.a[i] == Verdict::undecided))
@@ -196,8 +197,8 @@ TEST(Uncertainty, OfManyPointsAtOnePlace)
   const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
   EXPECT_TRUE(a.validate().none());
   for (const double clearance : {0.0, 0.5, 0.75, 0.8, 1.0, 1.25, 2.0}) {
-    const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Side::both));
-    const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Side::both));
+    const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Flagged::both));
+    const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Flagged::both));
     EXPECT_EQ(found.a, expected.a) << clearance;
     EXPECT_EQ(found.b, expected.b) << clearance;
   }
@@ -217,7 +218,7 @@ TEST(Uncertainty, WholeNodesAreTakenAtTheLeastReach)
   cloud_a.setUncertainties(0.0, own);
   const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
   for (const unsigned threads : {1u, 2u}) EXPECT_EQ(anyCollision({a}, {b}, {0.9, threads}).verdict, Verdict::undecided);
-  const FlagsResult found = collisionFlags({a}, {b}, within(0.9, Side::both));
+  const FlagsResult found = collisionFlags({a}, {b}, within(0.9, Flagged::both));
   EXPECT_EQ(found.undecided_a, 500u);
   EXPECT_EQ(found.undecided_b, 500u);
 }
@@ -228,9 +229,10 @@ TEST(Uncertainty, NoneIsThePlainQuery)
   Cloud zero = scene.a;
   zero.setUncertainties(0.0, std::vector<float>(scene.a.view().count, 0.0f));
   const SphereHierarchy a(scene.a.view()), b(scene.b.view()), of_zeros(zero.view());
-  const FlagsResult plain = collisionFlags({a, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Side::both));
+  const FlagsResult plain =
+      collisionFlags({a, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Flagged::both));
   const FlagsResult found =
-      collisionFlags({of_zeros, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Side::both));
+      collisionFlags({of_zeros, scene.pose_a}, {b, scene.pose_b}, within(scene.clearance, Flagged::both));
   EXPECT_EQ(found.a, plain.a);
   EXPECT_EQ(found.b, plain.b);
   EXPECT_EQ(found.undecided_a, 0u);
@@ -245,7 +247,7 @@ TEST(Uncertainty, CostsAtMostTwoQueries)
   const double clearance = 0.02;
   const auto tests = [&](const SphereHierarchy& a) {
     a.buildAll();
-    return collisionFlags({a}, {b}, within(clearance, Side::a)).work.node_pairs;
+    return collisionFlags({a}, {b}, within(clearance, Flagged::a)).work.node_pairs;
   };
   b.buildAll();
   cloud_a.setUncertainties(0.002, {});
@@ -257,7 +259,7 @@ TEST(Uncertainty, CostsAtMostTwoQueries)
   const SphereHierarchy a(cloud_a.view()), uncertain_b(cloud_b.view());
   uncertain_b.buildAll();
   a.buildAll();
-  const FlagsResult found = collisionFlags({a}, {uncertain_b}, within(clearance, Side::a));
+  const FlagsResult found = collisionFlags({a}, {uncertain_b}, within(clearance, Flagged::a));
   EXPECT_GT(found.undecided_a, 100u);
   EXPECT_LE(found.work.node_pairs, 1.5 * static_cast<double>(tests(plain)));
   EXPECT_LT(found.work.exact_decisions, 20u); // floats decide the rest
@@ -289,8 +291,8 @@ TEST(Uncertainty, OfManyLeavesAtOnce)
     ASSERT_EQ(b.statistics().voxels, 1u);
     if (!listed) a.buildAll();
     for (const double clearance : {0.88, 0.9, 0.92, 0.94, 1.0, 1.02, 1.04, 1.06}) {
-      const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Side::both));
-      const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Side::both));
+      const FlagsResult found = collisionFlags({a}, {b}, within(clearance, Flagged::both));
+      const FlagsResult expected = brute_force::collisionFlags({a}, {b}, within(clearance, Flagged::both));
       ASSERT_EQ(found.a, expected.a) << clearance;
       ASSERT_EQ(found.b, expected.b) << clearance;
       ASSERT_EQ(found.undecided_a, expected.undecided_a) << clearance;
@@ -398,7 +400,7 @@ TEST(DensityGuard, SameAsBruteForce)
     const SphereHierarchy a(scene.a.view()), b(scene.b.view());
     const Placed placed_a(a, scene.pose_a), placed_b(b, scene.pose_b);
     for (const unsigned threads : {1u, 2u}) {
-      FlagsRequest request = within(scene.clearance, Side::both, threads);
+      FlagsRequest request = within(scene.clearance, Flagged::both, threads);
       const FlagsResult without = collisionFlags(placed_a, placed_b, request);
       request.spacings_of_b = spacings.data();
       const FlagsResult truth = brute_force::collisionFlags(placed_a, placed_b, request);
@@ -429,7 +431,7 @@ TEST(DensityGuard, TiesAreSparse)
 {
   const Cloud cloud_a({{0, 0, 0}}), cloud_b({{1.75, 0, 0}, {9, 9, 9}});
   const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
-  FlagsRequest request = within(1.0, Side::a);
+  FlagsRequest request = within(1.0, Flagged::a);
   for (const float spacing : {1.5f, std::nextafter(1.5f, 0.0f), std::nextafter(1.5f, 9.0f)}) {
     const std::vector<float> spacings = {spacing, 0.0f};
     request.spacings_of_b = spacings.data();
@@ -441,7 +443,7 @@ TEST(DensityGuard, RefusesWhatIsNoSpacing)
 {
   const Cloud cloud({{0, 0, 0}, {1, 1, 1}});
   const SphereHierarchy a(cloud.view());
-  FlagsRequest request = within(1.0, Side::a);
+  FlagsRequest request = within(1.0, Flagged::a);
   for (const double wrong : {-1.0, kInfinity, std::nan("")})
     for (const std::size_t place : {0u, 1u}) {
       std::vector<float> spacings = {0.0f, 0.0f};

@@ -10,12 +10,12 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/neighbors/patch_spacings.h>
 #include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/solid/enclosure.h>
@@ -153,12 +153,12 @@ public:
   void flags()
   {
     for (const Accuracy& accuracy : kAccuracies)
-      for (const Side side : {Side::a, Side::both}) {
-        const std::string name = std::string(side == Side::a ? "flags " : "flags of both ") + accuracy.text();
+      for (const Flagged side : {Flagged::a, Flagged::both}) {
+        const std::string name = std::string(side == Flagged::a ? "flags " : "flags of both ") + accuracy.text();
         ask(name, [&](auto& a, auto& b) { return collisionFlags(a, b, {scene_.clearance, side, {accuracy}}).work; });
       }
     if (!scene_.b.view().triangles) guardedFlags();
-    ask("indices", [&](auto& a, auto& b) { return collidingIndices(a, b, {scene_.clearance, Side::both}).work; });
+    ask("indices", [&](auto& a, auto& b) { return collidingIndices(a, b, {scene_.clearance, Flagged::both}).work; });
   }
 
   void guardedFlags()
@@ -469,15 +469,15 @@ TEST(WorkCounts, OfSolids)
       const Eigen::Isometry3d pose = turned ? random.pose(1.0) : Eigen::Isometry3d::Identity();
       const SphereHierarchy points(cloud.view());
       table.add("labels", labelPoints({points, pose}, solid).work);
-      Work first, inside, within, held, holders;
+      Work first, inside, within, enclosed, holders;
       firstInside({points, pose}, solid, &first);
       anyInside({points, pose}, solid, &inside);
       anyWithin({points, pose}, solid, &within);
-      const Content content(points);
-      const std::vector<std::uint32_t> records = heldBy(solid, content, pose, 1, &held);
-      holdersOf(bodies, Eigen::Isometry3d::Identity(), content, pose, records, &holders);
+      const QueriedRecords queried(points);
+      const std::vector<std::uint32_t> records = enclosedBy(solid, queried, pose, 1, &enclosed);
+      holdersOf(bodies, Eigen::Isometry3d::Identity(), queried, pose, records, &holders);
       table.add("first", first), table.add("inside", inside), table.add("within", within);
-      table.add("held", held), table.add("holders", holders);
+      table.add("enclosed", enclosed), table.add("holders", holders);
     }
   table.check("solids");
 }

@@ -100,7 +100,7 @@ TEST_F(Ask, FlagsAtOnePose)
   EXPECT_THAT(found.obstacle_flags, IsEmpty());
   question.wanted.obstacle_flags = true;
   FlagsRequest both = within(*question.clearance);
-  both.flagged = Side::both;
+  both.flagged = Flagged::both;
   EXPECT_EQ(answer().obstacle_flags, collisionFlags({a}, {b, question.pose}, both).b);
   question.wanted.flags = false;
   EXPECT_EQ(answer().obstacle_flags, collisionFlags({a}, {b, question.pose}, both).b);
@@ -312,10 +312,10 @@ TEST_F(Ask, WhetherAnythingCollidesAndListsOfWhatDoes)
   EXPECT_EQ(found.any.verdict, Verdict::colliding);
   EXPECT_EQ(found.any.pair, any.pair);
   EXPECT_EQ(found.work.node_pairs, any.work.node_pairs);
-  for (const Side side : {Side::a, Side::b, Side::both}) {
+  for (const Flagged side : {Flagged::a, Flagged::b, Flagged::both}) {
     question.wanted = {};
-    question.wanted.indices = side != Side::b;
-    question.wanted.obstacle_indices = side != Side::a;
+    question.wanted.indices = side != Flagged::b;
+    question.wanted.obstacle_indices = side != Flagged::a;
     const CollidingIndices lists = collidingIndices({a}, {b, question.pose}, {*question.clearance, side});
     found = answer();
     EXPECT_EQ(found.indices.a, lists.a);
@@ -422,7 +422,7 @@ TEST_F(Ask, PosesInAWorldAreThoseOfTheQuery)
   question.limits.most = question.clearance.emplace(distances.distance[0]); // touches
   const Answer found = answer();
   FlagsRequest request = within(*question.clearance);
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   const FlagsResult expected = collisionFlags(input_there, obstacle_there, request);
   EXPECT_EQ(found.collisions.flags, expected.a);
   EXPECT_EQ(found.obstacle_flags, expected.b);

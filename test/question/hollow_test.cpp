@@ -122,9 +122,9 @@ TEST_F(HollowTest, CopiesShareWhatTheyEnclose)
   obstacle.hierarchy({}, 1);
   Shape one = obstacle.named("one"), other = obstacle.named("other");
   EXPECT_EQ(&one.solid(), &other.solid());
-  EXPECT_EQ(&one.content(), &other.content());
+  EXPECT_EQ(&one.queried(), &other.queried());
   one.hierarchy({0.5}, 1); // built anew
-  EXPECT_NE(&one.content(), &other.content());
+  EXPECT_NE(&one.queried(), &other.queried());
 }
 
 TEST_F(HollowTest, ToldOfAnInputThatClosesRoundTheObstacle)
@@ -377,21 +377,21 @@ TEST(Hollow, SamplesAreSpread)
       }
       Shape surface("a tank", viewOf(mesh.view()));
       surface.hierarchy({}, 1);
-      const SphereHierarchy content(viewOf(points[0].data(), count), one_voxel);
-      const auto place = placeWithin(surface, content, here);
+      const SphereHierarchy queried(viewOf(points[0].data(), count), one_voxel);
+      const auto place = placeWithin(surface, queried, here);
       ASSERT_TRUE(place) << count << ' ' << part;
       EXPECT_TRUE(isInOctahedron(Eigen::Vector3d(place->data())));
     }
   }
   const Point3 point{0.1, 0.1, 0.1};
-  const SphereHierarchy content(viewOf(point.data(), 1));
+  const SphereHierarchy queried(viewOf(point.data(), 1));
   for (const std::size_t count : {1u, 16u, 17u, 160u}) {
     for (std::size_t part = 0; part < std::min<std::size_t>(count, 16); ++part) {
       std::vector<Eigen::Isometry3d> poses(count, Eigen::Isometry3d(Eigen::Translation3d(0.8, 0.8, 0.8)));
       for (std::size_t k = part * count / 16; k < std::min(count, (part + 1) * count / 16 + 1); ++k) poses[k] = here[0];
       Shape surface("a tank", viewOf(mesh.view()));
       surface.hierarchy({}, 1);
-      EXPECT_TRUE(placeWithin(surface, content, poses)) << count << ' ' << part;
+      EXPECT_TRUE(placeWithin(surface, queried, poses)) << count << ' ' << part;
     }
   }
 }
@@ -407,9 +407,9 @@ TEST(Hollow, WhatIsOnTheSurfaceIsNotInside)
                                                          : Eigen::Vector3d(way / length * share);
       Shape surface("a tank", viewOf(mesh.view()));
       surface.hierarchy({}, 1);
-      const SphereHierarchy content(viewOf(place.data(), 1));
+      const SphereHierarchy queried(viewOf(place.data(), 1));
       for (const char* const when : {"at first", "later"})
-        EXPECT_EQ(placeWithin(surface, content, {Eigen::Isometry3d::Identity()}).has_value(), isInOctahedron(place))
+        EXPECT_EQ(placeWithin(surface, queried, {Eigen::Isometry3d::Identity()}).has_value(), isInOctahedron(place))
             << when << ' ' << place.transpose();
     }
   }

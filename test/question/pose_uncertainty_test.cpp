@@ -2,8 +2,8 @@
 #include <pcl_bsh/question/pose_uncertainty.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
 
 #include "support/random_clouds.h"
 

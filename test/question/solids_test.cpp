@@ -4,7 +4,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/clashes/clashes.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
-#include <pcl_bsh/question/held.h>
+#include <pcl_bsh/question/enclosed.h>
 #include <pcl_bsh/question/options.h>
 
 #include <pcl_bsh/flags/collision_flags.h>
@@ -261,30 +261,30 @@ TEST_F(SolidsTest, OnlyWhatAQueryToldIsAddedTo)
   question.path = {Eigen::Isometry3d(Eigen::Translation3d(30, 0, 0)), Eigen::Isometry3d::Identity()};
   const SphereHierarchy scan(viewOf(points[0].data(), points.size())), tank(viewOf(view()));
   Shape input("the scan", viewOf(points[0].data(), points.size())), obstacle("the tank", viewOf(view()));
-  const auto held = [&](bool flags, bool distances, bool closest_poses, bool first_poses) {
+  const auto enclosed = [&](bool flags, bool distances, bool closest_poses, bool first_poses) {
     TrajectoryRequest request;
     request.flags = flags;
     request.distances = distances;
     request.closest_poses = closest_poses;
     request.first_poses = first_poses;
     TrajectoryResult found = collideAlong({scan}, tank, *question.path, request);
-    addHeld(question, input, obstacle, found);
+    addEnclosed(question, input, obstacle, found);
     return found;
   };
-  EXPECT_EQ(held(true, false, false, false).flags, test::verdictsOf({1, 0, 0}));
-  TrajectoryResult found = held(false, true, false, false);
+  EXPECT_EQ(enclosed(true, false, false, false).flags, test::verdictsOf({1, 0, 0}));
+  TrajectoryResult found = enclosed(false, true, false, false);
   EXPECT_TRUE(found.flags.empty() && found.closest_pose.empty() && found.first_pose.empty());
   EXPECT_EQ(found.distance[0], -1.0f);
   EXPECT_TRUE(std::isnan(found.distance[1]));
   EXPECT_LT(found.closest_point[0], 12u);
   EXPECT_EQ(found.closest_point[1], std::uint32_t{kNothing});
-  found = held(false, false, false, true);
+  found = enclosed(false, false, false, true);
   EXPECT_THAT(found.first_pose, ElementsAre(1, -1, -1));
-  found = held(true, true, true, true);
+  found = enclosed(true, true, true, true);
   EXPECT_THAT(found.closest_pose, ElementsAre(1, -1, -1));
   found = collideAlong({scan}, tank, *question.path, {});
   found.distance = {NAN, NAN, NAN}; // of a program that keeps these alone
-  addHeld(question, input, obstacle, found);
+  addEnclosed(question, input, obstacle, found);
   EXPECT_EQ(found.distance[0], -1.0f);
   EXPECT_TRUE(found.closest_pose.empty() && found.closest_point.empty());
 }
@@ -443,7 +443,7 @@ TEST_F(SolidsTest, DepthsOfBallsAreComparedExactly)
   EXPECT_GT(above, 5u);
 }
 
-/// The first contact that is certain is that of points which are held wherever they truly are.
+/// The first contact that is certain is that of points which are enclosed wherever they truly are.
 TEST_F(SolidsTest, OnAWayWhatIsCertainlyInsideMeetsForCertain)
 {
   const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
@@ -507,16 +507,16 @@ protected:
   }
 
   /// Records with a place inside, or on the surface.
-  static std::vector<std::uint32_t> held(const test::ClosedMesh& content, const test::ClosedMesh& solid,
-                                         const Eigen::Isometry3d& pose_of_content,
-                                         const Eigen::Isometry3d& pose_of_solid)
+  static std::vector<std::uint32_t> enclosed(const test::ClosedMesh& queried, const test::ClosedMesh& solid,
+                                             const Eigen::Isometry3d& pose_of_queried,
+                                             const Eigen::Isometry3d& pose_of_solid)
   {
-    const SphereHierarchy corners(content.view().vertices);
+    const SphereHierarchy corners(queried.view().vertices);
     const auto labels =
-        brute_force::labelPoints({corners, pose_of_content}, {Solid(solid.view()), pose_of_solid}).labels;
+        brute_force::labelPoints({corners, pose_of_queried}, {Solid(solid.view()), pose_of_solid}).labels;
     std::vector<std::uint32_t> records;
-    for (std::uint32_t i = 0; i < content.view().count; ++i) {
-      const Triangle t = content.view().cornersOf(i);
+    for (std::uint32_t i = 0; i < queried.view().count; ++i) {
+      const Triangle t = queried.view().cornersOf(i);
       if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return labels[v] != 0; })) records.push_back(i);
     }
     return records;
@@ -526,15 +526,15 @@ protected:
   Verdicts bruteForce(const Eigen::Isometry3d& pose) const
   {
     const SphereHierarchy a(viewOf(first.view())), b(viewOf(second.view()));
-    FlagsResult surfaces = collisionFlags({a, question.pose_of_input}, {b, pose}, {*question.clearance, Side::both});
+    FlagsResult surfaces = collisionFlags({a, question.pose_of_input}, {b, pose}, {*question.clearance, Flagged::both});
     Verdicts all{surfaces.a, surfaces.b};
-    const auto add = [](const std::vector<std::uint32_t>& content, std::vector<Verdict>& of_content,
+    const auto add = [](const std::vector<std::uint32_t>& queried, std::vector<Verdict>& of_queried,
                         std::vector<Verdict>& of_solid) {
-      for (const std::uint32_t record : content) of_content[record] = Verdict::colliding;
-      if (!content.empty()) std::fill(of_solid.begin(), of_solid.end(), Verdict::colliding);
+      for (const std::uint32_t record : queried) of_queried[record] = Verdict::colliding;
+      if (!queried.empty()) std::fill(of_solid.begin(), of_solid.end(), Verdict::colliding);
     };
-    if (question.solid) add(held(first, second, question.pose_of_input, pose), all.a, all.b);
-    if (question.input_solid) add(held(second, first, pose, question.pose_of_input), all.b, all.a);
+    if (question.solid) add(enclosed(first, second, question.pose_of_input, pose), all.a, all.b);
+    if (question.input_solid) add(enclosed(second, first, pose, question.pose_of_input), all.b, all.a);
     return all;
   }
 
@@ -548,7 +548,7 @@ TEST_F(TwoSolidsTest, FlagsListsAndAnyAreThoseOfBruteForce)
   question.clearance = 0.01;
   question.wanted.flags = question.wanted.obstacle_flags = question.wanted.any = true;
   question.wanted.indices = question.wanted.obstacle_indices = true;
-  std::size_t held_only = 0;
+  std::size_t enclosed_only = 0;
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     question.solid = i % 3 != 0;
@@ -571,10 +571,10 @@ TEST_F(TwoSolidsTest, FlagsListsAndAnyAreThoseOfBruteForce)
     if (found.any.pair) {
       EXPECT_EQ(expected.a[found.any.pair->a], Verdict::colliding);
       EXPECT_EQ(expected.b[found.any.pair->b], Verdict::colliding);
-      held_only += found.any.interval.lower < 0.0;
+      enclosed_only += found.any.interval.lower < 0.0;
     }
   }
-  EXPECT_GT(held_only, 5u); // else the surfaces tell all
+  EXPECT_GT(enclosed_only, 5u); // else the surfaces tell all
 }
 
 TEST_F(TwoSolidsTest, FlagsOfOneSideTakeLessWorkThanOfBoth)
@@ -613,7 +613,7 @@ void expectGreatest(const PointDistances& found)
   EXPECT_EQ(*found.greatest_pair, (PointPair{*greatest, found.closest_point[*greatest]}));
 }
 
-/// A caller of the queries gets the answers of ask() with addHeld(), whichever of the two is solid, or neither.
+/// A caller of the queries gets the answers of ask() with addEnclosed(), whichever of the two is solid, or neither.
 TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
 {
   test::Random random(9);
@@ -643,9 +643,9 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
 
     question.wanted.flags = question.wanted.obstacle_flags = question.wanted.any = true;
     Answer expected = ask(question, input, obstacle);
-    FlagsResult flags = collisionFlags(a, b, {clearance, Side::both});
+    FlagsResult flags = collisionFlags(a, b, {clearance, Flagged::both});
     const FlagsResult of_surfaces = flags;
-    addHeld(question, input, obstacle, flags);
+    addEnclosed(question, input, obstacle, flags);
     EXPECT_EQ(flags.a, expected.collisions.flags);
     EXPECT_EQ(flags.b, expected.obstacle_flags);
     EXPECT_EQ(flags.colliding_a, countOf(flags.a, Verdict::colliding));
@@ -654,7 +654,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
     EXPECT_EQ(flags.undecided_b, countOf(flags.b, Verdict::undecided));
     changed += flags.a != of_surfaces.a || flags.b != of_surfaces.b;
     AnyResult any = anyCollision(a, b, {clearance, {}});
-    addHeld(question, input, obstacle, any);
+    addEnclosed(question, input, obstacle, any);
     EXPECT_EQ(any.verdict, expected.any.verdict);
     EXPECT_EQ(any.pair, expected.any.pair);
 
@@ -665,7 +665,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
       each.push_back(ask(question, input, obstacle).any.verdict);
     }
     question.pose = b.pose;
-    addHeld(question, input, obstacle, poses, verdicts);
+    addEnclosed(question, input, obstacle, poses, verdicts);
     EXPECT_EQ(verdicts, each);
 
     question.path = poses;
@@ -676,7 +676,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
     along.distances = along.first_poses = along.closest_poses = true;
     TrajectoryResult path = collideAlong(a, tank, poses, along);
     expected = ask(question, input, obstacle);
-    addHeld(question, input, obstacle, path);
+    addEnclosed(question, input, obstacle, path);
     EXPECT_EQ(path.flags, expected.collisions.flags);
     EXPECT_EQ(path.first_pose, expected.collisions.first_pose);
     EXPECT_EQ(path.colliding, expected.collisions.colliding);
@@ -689,7 +689,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
     const Placed sure(input.hierarchy({}, 1), question.pose_of_input);
     expected = ask(question, input, obstacle);
     DistanceResult closest = closestPair(sure, b);
-    addHeld(question, input, obstacle, closest);
+    addEnclosed(question, input, obstacle, closest);
     EXPECT_EQ(closest.distance, expected.closest.distance);
     EXPECT_EQ(closest.pair, expected.closest.pair);
     const PointDistances &of_a = expected.distances.a, &of_b = expected.distances.b;
@@ -699,7 +699,7 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
         (of_b.distance[closest.pair->b] == closest.distance && of_b.closest_point[closest.pair->b] == closest.pair->a));
     PointDistances distances = pointDistances(sure, b);
     const bool input_solid = std::exchange(question.input_solid, false); // of which these distances are none
-    addHeld(question, input, obstacle, distances);
+    addEnclosed(question, input, obstacle, distances);
     question.input_solid = input_solid;
     EXPECT_EQ(distances.distance, expected.distances.a.distance);
     EXPECT_EQ(distances.closest_point, expected.distances.a.closest_point);
@@ -719,13 +719,13 @@ TEST_F(TwoSolidsTest, WhatIsAddedToAQueryMakesItTheAnswer)
     }
     std::vector<PointPair> none;
     std::vector<double> unchanged = at_poses;
-    addHeld(question, input, obstacle, poses, unchanged, none); // as of a cloud that is empty
+    addEnclosed(question, input, obstacle, poses, unchanged, none); // as of a cloud that is empty
     EXPECT_EQ(unchanged, at_poses);
-    addHeld(question, input, obstacle, poses, at_poses, pairs);
+    addEnclosed(question, input, obstacle, poses, at_poses, pairs);
     EXPECT_EQ(at_poses, each_distance);
     EXPECT_EQ(pairs, each_pair);
   }
-  EXPECT_GT(changed, 4u); // else nothing was held
+  EXPECT_GT(changed, 4u); // else nothing was enclosed
 }
 
 TEST_F(TwoSolidsTest, AlongAPathEachPoseIsThatOfBruteForce)
@@ -778,12 +778,12 @@ TEST_F(TwoSolidsTest, AlongAPathEachBodyOfTheInputHasItsOwn)
   const TrajectoryResult found = ask(question, input, obstacle).collisions;
   std::vector<std::int32_t> poses(24, 0);
   poses.insert(poses.end(), 12, 1);
-  std::vector<std::uint32_t> held(12, 2);
-  held.insert(held.end(), 12, 1);
-  held.insert(held.end(), 12, 0);
+  std::vector<std::uint32_t> enclosed(12, 2);
+  enclosed.insert(enclosed.end(), 12, 1);
+  enclosed.insert(enclosed.end(), 12, 0);
   EXPECT_EQ(found.first_pose, poses);
   EXPECT_EQ(found.closest_pose, poses);
-  EXPECT_EQ(found.closest_point, held);
+  EXPECT_EQ(found.closest_point, enclosed);
 }
 
 /// Distances of the obstacle that nobody asked for are not turned.
@@ -872,14 +872,14 @@ TEST_F(TwoSolidsTest, SummariesOfPosesCountWhatEitherHolds)
   question.path = {Eigen::Isometry3d::Identity()};
   second = test::ClosedMesh();
   add(second, 4.0);
-  for (const auto& [edges, held] :
+  for (const auto& [edges, enclosed] :
        {std::pair(std::vector<double>{1.0}, 12u), {{9.0}, 12u}, {{1.0, 9.0}, 24u}, {{9.0, 1.0}, 24u}}) {
     first = test::ClosedMesh();
     for (const double edge : edges) add(first, edge);
     const Answer found = answer();
     const PoseSummary& pose = found.collisions.poses.at(0);
     EXPECT_TRUE(pose.colliding);
-    EXPECT_EQ(pose.colliding_points, held);
+    EXPECT_EQ(pose.colliding_points, enclosed);
     EXPECT_LT(pose.distance, 0.0);
   }
   for (const double uncertainty : {0.25, 1.75, 9.0}) {

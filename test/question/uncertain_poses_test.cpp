@@ -2,10 +2,10 @@
 // A hundred thousand poses within the bound of each kind of question: none contradicts what was called free or
 // colliding.
 #include <pcl_bsh/brute_force/brute_force.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/question/pose_uncertainty.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include "support/random_clouds.h"

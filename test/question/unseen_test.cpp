@@ -5,7 +5,7 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/question/model_stray.h>
+#include <pcl_bsh/question/model_shift.h>
 #include <pcl_bsh/seen/unseen_points.h>
 
 #include "solid/meshes.h"
@@ -135,7 +135,7 @@ TEST_F(Unseen, IsNotOfPointsThatAreNotFinite)
   EXPECT_EQ(flags, test::verdictsOf({0, 0, 0}));
   model_ = {NAN, 3, 1.5};
   EXPECT_EQ(asked(first_).obstacle_flags, test::verdictsOf({0}));
-  EXPECT_EQ(strayOf({0.1, 0.0}, CornerBox(viewOf(model_.data(), 1)), Eigen::Isometry3d::Identity()), 0.0);
+  EXPECT_EQ(shiftOf({0.1, 0.0}, CornerBox(viewOf(model_.data(), 1)), Eigen::Isometry3d::Identity()), 0.0);
   model_ = {};
   EXPECT_EQ(asked(first_).unseen.at_poses, std::vector<std::size_t>{0});
 }
@@ -386,7 +386,7 @@ TEST_F(Unseen, TheInsideOfASolidIsThatOfItsCubes)
     std::vector<double> inside;
     for (const Eigen::Isometry3d& pose : *question.path) {
       FlagsRequest touching;
-      touching.flagged = Side::b;
+      touching.flagged = Flagged::b;
       FlagsResult found = collisionFlags({scan, question.pose_of_input}, {balls, pose}, touching);
       UnseenRequest request;
       request.clearance = clearance;

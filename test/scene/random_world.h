@@ -141,7 +141,7 @@ inline Question within(double clearance)
 {
   Question request;
   request.clearance = clearance;
-  request.flagged = Side::both;
+  request.flagged = Flagged::both;
   return request;
 }
 

@@ -89,7 +89,7 @@ TEST(SceneOfTriangles, EffectsAreThoseOfTheQueries)
     const Placed at_a{*a, made.pose_a}, at_b{*b, made.pose_b};
     FlagsRequest request;
     request.clearance = made.clearance;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     const FlagsResult flags = brute_force::collisionFlags(at_a, at_b, request);
     EXPECT_EQ(result.any.size(), flags.colliding_a > 0 ? 1u : 0u);
     for (const FlaggedPart& part : result.flags) EXPECT_EQ(part.flags, part.object == 0 ? flags.a : flags.b);

@@ -50,8 +50,8 @@ protected:
   }
 
   /// Whether a place of one is inside of the other, or on it.
-  bool isHeld(const PointsView& places, const Eigen::Isometry3d& pose, std::size_t mesh,
-              const Eigen::Isometry3d& pose_of_mesh) const
+  bool isEnclosed(const PointsView& places, const Eigen::Isometry3d& pose, std::size_t mesh,
+                  const Eigen::Isometry3d& pose_of_mesh) const
   {
     const SphereHierarchy cloud(places);
     const LabelsResult labels = brute_force::labelPoints({cloud, pose}, {Solid(meshes[mesh].view()), pose_of_mesh});
@@ -66,7 +66,7 @@ protected:
 TEST_F(SceneOfSolids, AnyFlagsAndDistancesOfRandomBodies)
 {
   Random random(11);
-  int held_only = 0, free = 0;
+  int enclosed_only = 0, free = 0;
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     meshes.clear();
@@ -82,11 +82,11 @@ TEST_F(SceneOfSolids, AnyFlagsAndDistancesOfRandomBodies)
     Scene scene(options);
     scene.add(objectOf("a", a, solid_a, pose_a));
     scene.add(objectOf("b", b, solid_b));
-    FlagsResult surfaces = collisionFlags({*a, pose_a}, {*b}, {options.clearance, Side::both});
-    const bool b_holds = solid_b && isHeld(meshes[0].view().vertices, pose_a, 1, at(0, 0, 0));
-    const bool a_holds = solid_a && isHeld(meshes[1].view().vertices, at(0, 0, 0), 0, pose_a);
+    FlagsResult surfaces = collisionFlags({*a, pose_a}, {*b}, {options.clearance, Flagged::both});
+    const bool b_holds = solid_b && isEnclosed(meshes[0].view().vertices, pose_a, 1, at(0, 0, 0));
+    const bool a_holds = solid_a && isEnclosed(meshes[1].view().vertices, at(0, 0, 0), 0, pose_a);
     const bool collide = surfaces.colliding_a > 0 || a_holds || b_holds;
-    held_only += surfaces.colliding_a == 0 && (a_holds || b_holds);
+    enclosed_only += surfaces.colliding_a == 0 && (a_holds || b_holds);
     free += !collide;
     for (int again = 0; again < 2; ++again) {
       const SceneResult found = scene.query();
@@ -102,7 +102,7 @@ TEST_F(SceneOfSolids, AnyFlagsAndDistancesOfRandomBodies)
       }
     }
   }
-  EXPECT_GT(held_only, 3);
+  EXPECT_GT(enclosed_only, 3);
   EXPECT_GT(free, 3);
 }
 
@@ -114,8 +114,8 @@ TEST_F(SceneOfSolids, FlagsOfWhatIsOutsideAreThoseOfTheSurface)
   int some = 0;
   for (int i = 0; i < 200; ++i) {
     const auto probe = shelf.add(std::vector<Point3>{random.point([&] { return random.uniform(-0.2, 1.2); })});
-    const FlagsResult expected = collisionFlags({*tank}, {*probe}, {0.1, Side::both});
-    if (expected.colliding_a == 0 || isHeld(probe->view(), at(0, 0, 0), 0, at(0, 0, 0))) continue;
+    const FlagsResult expected = collisionFlags({*tank}, {*probe}, {0.1, Flagged::both});
+    if (expected.colliding_a == 0 || isEnclosed(probe->view(), at(0, 0, 0), 0, at(0, 0, 0))) continue;
     some += expected.colliding_a < expected.a.size();
     options = SceneOptions();
     options.clearance = 0.1;
@@ -151,7 +151,7 @@ TEST_F(SceneOfSolids, TheDeeperOfTwoCountsInEitherOrder)
   EXPECT_EQ(depth(false, true, true), std::max(of_fine, of_coarse));
 }
 
-/// As of questions: its middle is held, and its far side is told.
+/// As of questions: its middle is enclosed, and its far side is told.
 TEST_F(SceneOfSolids, ABallIsAsDeepAsItsFarSide)
 {
   options.effects.distance = std::numeric_limits<double>::infinity();

@@ -105,10 +105,10 @@ public:
     }
     passed += holds_.size();
     for (std::uint32_t i = 0; i < flags_of_solid.size(); ++i) {
-      const auto held = holds_.find(bodyOf(i));
-      if (held != holds_.end()) {
+      const auto enclosed = holds_.find(bodyOf(i));
+      if (enclosed != holds_.end()) {
         EXPECT_EQ(flags_of_solid[i], Verdict::colliding)
-            << "triangle " << i << ", whose body holds something at " << held->second;
+            << "triangle " << i << ", whose body holds something at " << enclosed->second;
       }
       const bool may_be = near_of_solid_.count(i) > 0 || about_.count(bodyOf(i)) > 0;
       EXPECT_TRUE(may_be || flags_of_solid[i] == Verdict::free) << "triangle " << i;
@@ -159,7 +159,7 @@ private:
   {
     const double step = 12.0 / instants; // nothing is faster
     FlagsRequest request;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     request.clearance = options_.clearance + tolerance + step;
     const FlagsResult wide = collisionFlags({*other_, of_other}, {*solid_, of_solid}, request);
     for (std::uint32_t i = 0; i < wide.a.size(); ++i)
@@ -172,7 +172,7 @@ private:
     for (std::size_t k = 0; k < labels.size(); ++k) {
       if (labels[k] == labelOf(Label::outside)) continue;
       near_of_other_.insert(record_of_place_[k]);
-      EXPECT_NE(flags_of_other[record_of_place_[k]], Verdict::free) << "which is held at " << s;
+      EXPECT_NE(flags_of_other[record_of_place_[k]], Verdict::free) << "which is enclosed at " << s;
       ASSERT_FALSE(result.first_contact.empty());
       EXPECT_LE(result.first_contact[0].fraction, s);
     }
@@ -180,11 +180,11 @@ private:
       const auto in_body = brute_force::labelPoints(places, {solids_[body], of_solid}).labels;
       const auto from_body = pointDistances(places, {*surfaces_[body], of_solid}).distance;
       for (std::size_t k = 0; k < labels.size(); ++k) {
-        const bool inside = in_body[k] == labelOf(Label::inside), held = labels[k] == labelOf(Label::inside);
+        const bool inside = in_body[k] == labelOf(Label::inside), enclosed = labels[k] == labelOf(Label::inside);
         const double near = tolerance + step;
         if ((inside || from_body[k] <= near) && (labels[k] != labelOf(Label::outside) || distances[k] <= near))
           about_.insert(body);
-        if (inside && held) holds_.emplace(body, s);
+        if (inside && enclosed) holds_.emplace(body, s);
       }
     }
   }
@@ -283,7 +283,7 @@ TEST_F(Plate, IsUndecidedWhereAnUncertainPointMayPassIt)
   EXPECT_EQ(near.swept[0].undecided, 12u);
 }
 
-/// A ball is held where its middle is.
+/// A ball is enclosed where its middle is.
 TEST_F(Plate, IsNotHeldByABallsRim)
 {
   test::Cloud ball({{0, 0, 0}}, test::Layout{Scalar::float64, 0, 0});

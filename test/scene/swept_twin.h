@@ -274,8 +274,8 @@ private:
   {
     const PointsView &view_a = *at_a.view, &view_b = *at_b.view;
     const bool uncertain = view_a.isUncertain() || view_b.isUncertain();
-    const PairReach possible(view_a, view_b, clearance, uncertain ? Places::possible : Places::measured),
-        surely(view_a, view_b, clearance, uncertain ? Places::certain : Places::measured);
+    const PairReach possible(view_a, view_b, clearance, uncertain ? MeantPlaces::possible : MeantPlaces::measured),
+        surely(view_a, view_b, clearance, uncertain ? MeantPlaces::certain : MeantPlaces::measured);
     const RecordDistance exact(view_a, at_a.world, view_b, at_b.world);
     const auto told = [&](const std::vector<PartFirstContact>& list) {
       const PartFirstContact* contact = contactOf(list, a.first, b.first);
@@ -320,9 +320,9 @@ private:
                      &view_b = scene_[contact.b].parts[contact.part_b].hierarchy->view();
     const bool uncertain = view_a.isUncertain() || view_b.isUncertain();
     const PairReach reach(view_a, view_b, *clearance,
-                          !uncertain ? Places::measured
-                          : certain  ? Places::certain
-                                     : Places::possible);
+                          !uncertain ? MeantPlaces::measured
+                          : certain  ? MeantPlaces::certain
+                                     : MeantPlaces::possible);
     const auto place = [&](ObjectId id, std::uint32_t part, const PointsView& view, std::uint32_t record) {
       const Point3 p = view.point(record);
       return Eigen::Vector3d(worldAt(id, part, contact.fraction) * Eigen::Vector3d(p[0], p[1], p[2]));

@@ -67,7 +67,8 @@ public:
             if (!of_triangles) near = std::min(near, gap);
             if (!(gap <= rounding)) continue;
             const bool uncertain = a.view->isUncertain() || b.view->isUncertain();
-            const PairReach of_pairs(*a.view, *b.view, clearance, uncertain ? Places::possible : Places::measured);
+            const PairReach of_pairs(*a.view, *b.view, clearance,
+                                     uncertain ? MeantPlaces::possible : MeantPlaces::measured);
             if (of_pairs.holds(RecordDistance(*a.view, a.pose, *b.view, b.pose),
                                {a.view->record(i), b.view->record(j)}))
               return true;

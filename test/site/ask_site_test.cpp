@@ -72,7 +72,7 @@ TEST_F(AskSite, AnswersAllThatIsWantedAsMemoryDoes)
   std::vector<Verdict> flags(points.size(), Verdict::free);
   std::vector<double> distances(points.size(), -1.0);
   SiteMeans means;
-  means.sink = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const Answer& found) {
+  means.receiver = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const Answer& found) {
     for (std::uint32_t i = 0; i < cloud.width; ++i) {
       const auto record = static_cast<std::size_t>(io::valueOf(cloud, i, record_field_name));
       if (found.distances.a.distance.empty())

@@ -108,11 +108,11 @@ protected:
 
       FlagsRequest flags_request;
       flags_request.clearance = scene.clearance;
-      flags_request.flagged = Side::both;
+      flags_request.flagged = Flagged::both;
       const FlagsResult flags = pcl_bsh::collisionFlags({all}, b, flags_request);
       Answers found;
       const SiteAnswer of_site =
-          collisionFlags(site, b, Side::both, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
+          collisionFlags(site, b, Flagged::both, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
             for (std::uint32_t i = 0; i < cloud.width; ++i)
               found[name(cloud, i)] = {static_cast<double>(result.collisions.flags[i])};
           });
@@ -211,18 +211,18 @@ TEST_F(CollideSite, ReadsOnlyTilesThatMatter)
   const SphereHierarchy other(viewOf(scene.b.front().data(), scene.b.size()));
   SiteQuestion request;
   request.clearance = 0.05;
-  const TilesRead flags = collisionFlags(site, {other, scene.pose}, Side::a, request).tiles;
+  const TilesRead flags = collisionFlags(site, {other, scene.pose}, Flagged::a, request).tiles;
   EXPECT_GT(flags.tiles, 150U);
   EXPECT_LT(flags.needed, 40U);
   EXPECT_EQ(flags.read, flags.needed);
   const TilesRead closest = closestPair(site, {other, scene.pose}, request).tiles;
   EXPECT_LT(closest.read, 40U);
   const TilesRead none =
-      collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, Side::a, request).tiles;
+      collisionFlags(site, {other, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 50))}, Flagged::a, request).tiles;
   EXPECT_EQ(none.needed, 0U);
   // A tile that is not read may be missing its points; one that is read must not.
   for (const Tile& tile : site.tiles) std::ofstream(site.folder / tile.file) << "damaged";
-  EXPECT_THROW(collisionFlags(site, {other, scene.pose}, Side::a, request), std::runtime_error);
+  EXPECT_THROW(collisionFlags(site, {other, scene.pose}, Flagged::a, request), std::runtime_error);
 }
 
 /// Along a path, at its poses or swept, on tiles of very different sizes.

@@ -97,7 +97,7 @@ protected:
     const SphereHierarchy all_a(view_a), all_b(view_b);
     FlagsRequest wanted;
     wanted.clearance = clearance;
-    wanted.flagged = Side::both;
+    wanted.flagged = Flagged::both;
     const FlagsResult flags = pcl_bsh::collisionFlags({all_a}, {all_b, pose}, wanted);
     const AnyResult any = pcl_bsh::anyCollision({all_a}, {all_b, pose}, {clearance, 1});
     const DistanceResult nearest = pcl_bsh::closestPair({measured_a}, {measured_b, pose});
@@ -532,7 +532,7 @@ TEST_F(SitePairProgram, WritesWhatCollidesOfBoth)
   const Eigen::Isometry3d pose(Eigen::Translation3d(0.1, 0, 0));
   FlagsRequest wanted;
   wanted.clearance = 0.08;
-  wanted.flagged = Side::both;
+  wanted.flagged = Flagged::both;
   const FlagsResult right = pcl_bsh::collisionFlags({of_a}, {of_b, pose}, wanted);
   const std::string asked =
       "--clearance 0.08 --pose 0.1,0,0,0,0,0 --out now_found --obstacle-out before_found --report r.json";

@@ -114,7 +114,7 @@ TEST_F(SiteResults, AreThoseOfMemory)
   const SphereHierarchy a(viewOf(scan)), b(viewOf(machine));
   FlagsRequest flags;
   flags.clearance = 0.3;
-  flags.flagged = Side::a;
+  flags.flagged = Flagged::a;
   const FlagsResult in_memory = collisionFlags({a}, {b}, flags);
   ASSERT_GT(in_memory.colliding_a, 0u);
   ASSERT_EQ(collide("--clearance 0.3 --out " + in("flags")), 0) << err;

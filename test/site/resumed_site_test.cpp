@@ -80,7 +80,7 @@ protected:
   }
 
   /// The answer about a path, with its clashes as lines.
-  struct Asked : SiteAnswer {
+  struct QuestionPart : SiteAnswer {
     std::vector<std::string> clashes;
   };
 
@@ -101,8 +101,8 @@ protected:
 
   /// Asks about the path, on a site of results. @param kill the tile, counted as they are asked, at which this process
   /// dies
-  Asked ask(const fs::path& out, bool goes_on, At at = At::nowhere, std::uint64_t kill = 0,
-            const std::string& question = "where?")
+  QuestionPart ask(const fs::path& out, bool goes_on, At at = At::nowhere, std::uint64_t kill = 0,
+                   const std::string& question = "where?")
   {
     const SphereHierarchy model(viewOf(body.front().data(), body.size()));
     ResultSite results(site, out,
@@ -139,7 +139,7 @@ protected:
     return !files::endsInAFork([&] { ask(out, goes_on, at, kill); });
   }
 
-  static void expectSame(const Asked& a, const Asked& b)
+  static void expectSame(const QuestionPart& a, const QuestionPart& b)
   {
     EXPECT_EQ(a.clashes, b.clashes);
     EXPECT_EQ(a.collisions.colliding, b.collisions.colliding);
@@ -164,7 +164,7 @@ protected:
 
 TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
 {
-  const Asked whole = ask(folder / "whole", false);
+  const QuestionPart whole = ask(folder / "whole", false);
   const auto files = contentsOf(folder / "whole");
   ASSERT_GT(whole.clashes.size(), 4u);
   ASSERT_GT(whole.tiles.read, 5u);
@@ -174,7 +174,7 @@ TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
       SCOPED_TRACE(std::to_string(static_cast<int>(at)) + " " + std::to_string(kill));
       ASSERT_TRUE(askAndDie(folder / "out", false, at, kill));
       EXPECT_THROW(readSite(folder / "out"), files::FileError);
-      const Asked resumed = ask(folder / "out", true);
+      const QuestionPart resumed = ask(folder / "out", true);
       expectSame(resumed, whole);
       EXPECT_EQ(resumed.tiles.read, whole.tiles.read - kill + (at == At::after_tile ? 0 : 1));
       EXPECT_EQ(contentsOf(folder / "out"), files);
@@ -185,7 +185,7 @@ TEST_F(ResumedSite, SaysTheSameAfterAKillAnywhere)
 
 TEST_F(ResumedSite, MayBeKilledAgain)
 {
-  const Asked whole = ask(folder / "whole", false);
+  const QuestionPart whole = ask(folder / "whole", false);
   std::uint64_t kills = 0;
   while (askAndDie(folder / "out", kills > 0, At::after_tile, 2)) ASSERT_LT(++kills, whole.tiles.read);
   EXPECT_EQ(kills, whole.tiles.read / 2);
@@ -194,9 +194,9 @@ TEST_F(ResumedSite, MayBeKilledAgain)
 
 TEST_F(ResumedSite, AsksAgainWhatIsNotItsOwnAnswer)
 {
-  const Asked whole = ask(folder / "whole", false);
+  const QuestionPart whole = ask(folder / "whole", false);
   const auto expectRead = [&](std::uint64_t tiles, const std::string& question = "where?", bool goes_on = true) {
-    const Asked resumed = ask(folder / "out", goes_on, At::nowhere, 0, question);
+    const QuestionPart resumed = ask(folder / "out", goes_on, At::nowhere, 0, question);
     expectSame(resumed, whole);
     EXPECT_EQ(resumed.tiles.read, tiles);
     EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
@@ -367,7 +367,7 @@ TEST_F(ResumedSite, ByTheProgramAboutTwoSites)
 
 TEST_F(ResumedSite, LeavesWhatItFoundOfARunThatFails)
 {
-  const Asked whole = ask(folder / "whole", false);
+  const QuestionPart whole = ask(folder / "whole", false);
   const fs::path last = site.folder / site.tiles.back().file;
   const std::string content = files::contentOf(last);
   std::ofstream(last) << "damaged";
@@ -375,7 +375,7 @@ TEST_F(ResumedSite, LeavesWhatItFoundOfARunThatFails)
   EXPECT_THROW(ask(folder / "out", true), std::runtime_error);
   EXPECT_GT(answersIn(folder / "out"), 0U);
   std::ofstream(last) << content;
-  const Asked resumed = ask(folder / "out", true);
+  const QuestionPart resumed = ask(folder / "out", true);
   expectSame(resumed, whole);
   EXPECT_LE(resumed.tiles.read, 1u);
   EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));
@@ -394,10 +394,10 @@ TEST_F(ResumedSite, LeavesNothingOfARunThatFailsAtOnce)
 /// Killed while it ends: tiles and answers are there, and an overview.
 TEST_F(ResumedSite, GoesOnFromTheEnd)
 {
-  const Asked whole = ask(folder / "whole", false);
+  const QuestionPart whole = ask(folder / "whole", false);
   ASSERT_TRUE(askAndDie(folder / "out", false, At::after_tile, whole.tiles.read));
   std::ofstream(folder / "out/overview.pcd") << "half";
-  const Asked resumed = ask(folder / "out", true);
+  const QuestionPart resumed = ask(folder / "out", true);
   expectSame(resumed, whole);
   EXPECT_EQ(resumed.tiles.read, 0u);
   EXPECT_EQ(contentsOf(folder / "out"), contentsOf(folder / "whole"));

@@ -9,7 +9,7 @@
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/question/model_stray.h>
+#include <pcl_bsh/question/model_shift.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/site/make_site.h>
 
@@ -103,7 +103,7 @@ protected:
     const SphereHierarchy scan(view), model(viewOf(machine.front().data(), machine.size()));
     FlagsRequest flags;
     flags.clearance = *request.clearance;
-    flags.flagged = Side::b;
+    flags.flagged = Flagged::b;
     UnseenRequest asked;
     asked.kinds = true;
     Answer::Unseen unseen;
@@ -111,7 +111,7 @@ protected:
     for (const Eigen::Isometry3d& pose : poses) {
       FlagsResult found = pcl_bsh::collisionFlags({scan}, {model, pose}, flags);
       asked.clearance = *request.clearance + // beams and their scanner move together
-                        strayOf(request.input_pose_uncertainty, CornerBox(model.view()), pose);
+                        shiftOf(request.input_pose_uncertainty, CornerBox(model.view()), pose);
       UnseenResult left = markUnseen(space, {model, pose}, asked, found.b);
       unseen.addPose(found.b, true, gravest, std::move(left.kinds));
     }

@@ -67,7 +67,7 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
   constexpr double clearance = 0.15, tolerance = 0.05;
   FlagsRequest wanted;
   wanted.clearance = clearance;
-  wanted.flagged = Side::both;
+  wanted.flagged = Flagged::both;
   const FlagsResult truth = pcl_bsh::collisionFlags({all}, {other}, wanted);
   wanted.clearance = clearance + tolerance;
   const FlagsResult wider = pcl_bsh::collisionFlags({all}, {other}, wanted);
@@ -85,10 +85,9 @@ TEST_F(SiteAccuracy, KeepsItsPromises)
       const bool exact = request.accuracy.isExact(), stops = request.accuracy.stopsEarly();
 
       std::vector<Verdict> flags(a.size(), Verdict::free), along(a.size(), Verdict::free);
-      const SiteAnswer found =
-          collisionFlags(site, other, Side::both, request, [&](const Tile&, const Cloud& cloud, const Answer& result) {
-            put(flags, cloud, result.collisions.flags);
-          });
+      const SiteAnswer found = collisionFlags(
+          site, other, Flagged::both, request,
+          [&](const Tile&, const Cloud& cloud, const Answer& result) { put(flags, cloud, result.collisions.flags); });
       const SiteAnswer passage = collideAlong(
           site, other, {Eigen::Isometry3d::Identity()}, request,
           [&](const Tile&, const Cloud& cloud, const Answer& result) { put(along, cloud, result.collisions.flags); });

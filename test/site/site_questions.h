@@ -39,11 +39,11 @@ inline SiteQuestion forAny(SiteQuestion question)
   return question;
 }
 
-inline SiteQuestion forFlags(SiteQuestion question, Side flagged, TileSink sink)
+inline SiteQuestion forFlags(SiteQuestion question, Flagged flagged, TileReceiver receiver)
 {
-  question.wanted.flags = flagged != Side::b;
-  question.wanted.obstacle_flags = flagged != Side::a;
-  (flagged == Side::b ? question.obstacle_sink : question.sink) = std::move(sink);
+  question.wanted.flags = flagged != Flagged::b;
+  question.wanted.obstacle_flags = flagged != Flagged::a;
+  (flagged == Flagged::b ? question.obstacle_receiver : question.receiver) = std::move(receiver);
   return question;
 }
 
@@ -53,20 +53,20 @@ inline SiteQuestion forClosest(SiteQuestion question)
   return question;
 }
 
-inline SiteQuestion forDistances(SiteQuestion question, double most, TileSink sink)
+inline SiteQuestion forDistances(SiteQuestion question, double most, TileReceiver receiver)
 {
   question.wanted.distances = question.wanted.intervals = true;
   question.max_distance = most;
-  question.sink = std::move(sink);
+  question.receiver = std::move(receiver);
   return question;
 }
 
-inline SiteQuestion forPath(SiteQuestion question, const std::vector<Eigen::Isometry3d>& poses, TileSink sink)
+inline SiteQuestion forPath(SiteQuestion question, const std::vector<Eigen::Isometry3d>& poses, TileReceiver receiver)
 {
   question.wanted.flags = true;
   question.wanted.contacts = !question.accuracy.stopsEarly();
   question.path = poses;
-  question.sink = std::move(sink);
+  question.receiver = std::move(receiver);
   return question;
 }
 
@@ -80,22 +80,22 @@ inline SiteAnswer anyCollision(const Site& site, const StandingSite& b, const Si
   return asked(site, b, forAny(question));
 }
 
-inline SiteAnswer collisionFlags(const Site& site, const Placed& b, Side flagged, const SiteQuestion& question,
-                                 const TileSink& sink = nullptr)
+inline SiteAnswer collisionFlags(const Site& site, const Placed& b, Flagged flagged, const SiteQuestion& question,
+                                 const TileReceiver& receiver = nullptr)
 {
-  return asked(site, b, forFlags(question, flagged, sink));
+  return asked(site, b, forFlags(question, flagged, receiver));
 }
 
 inline SiteAnswer collisionFlags(const Site& site, const StandingSite& b, const SiteQuestion& question,
-                                 const TileSink& sink = nullptr)
+                                 const TileReceiver& receiver = nullptr)
 {
-  return asked(site, b, forFlags(question, Side::a, sink));
+  return asked(site, b, forFlags(question, Flagged::a, receiver));
 }
 
 inline SiteAnswer collisionFlagsOfB(const Site& site, const StandingSite& b, const SiteQuestion& question,
-                                    const TileSink& sink = nullptr)
+                                    const TileReceiver& receiver = nullptr)
 {
-  return asked(site, b, forFlags(question, Side::b, sink));
+  return asked(site, b, forFlags(question, Flagged::b, receiver));
 }
 
 inline SiteAnswer closestPair(const Site& site, const Placed& b, const SiteQuestion& question)
@@ -109,29 +109,29 @@ inline SiteAnswer closestPair(const Site& site, const StandingSite& b, const Sit
 }
 
 inline SiteAnswer pointDistances(const Site& site, const Placed& b, double most, const SiteQuestion& question,
-                                 const TileSink& sink = nullptr)
+                                 const TileReceiver& receiver = nullptr)
 {
-  return asked(site, b, forDistances(question, most, sink));
+  return asked(site, b, forDistances(question, most, receiver));
 }
 
 inline SiteAnswer pointDistances(const Site& site, const StandingSite& b, double most, const SiteQuestion& question,
-                                 const TileSink& sink = nullptr)
+                                 const TileReceiver& receiver = nullptr)
 {
-  return asked(site, b, forDistances(question, most, sink));
+  return asked(site, b, forDistances(question, most, receiver));
 }
 
 inline SiteAnswer collideAlong(const Site& site, const SphereHierarchy& model,
                                const std::vector<Eigen::Isometry3d>& poses, const SiteQuestion& question,
-                               const TileSink& sink = nullptr)
+                               const TileReceiver& receiver = nullptr)
 {
-  return asked(site, Placed(model), forPath(question, poses, sink));
+  return asked(site, Placed(model), forPath(question, poses, receiver));
 }
 
 inline SiteAnswer collideAlong(const Site& site, const Site& model, const Uncertainty& of_model,
                                const std::vector<Eigen::Isometry3d>& poses, const SiteQuestion& question,
-                               const TileSink& sink = nullptr)
+                               const TileReceiver& receiver = nullptr)
 {
-  return asked(site, {model, Eigen::Isometry3d::Identity(), of_model}, forPath(question, poses, sink));
+  return asked(site, {model, Eigen::Isometry3d::Identity(), of_model}, forPath(question, poses, receiver));
 }
 
 } // namespace pcl_bsh::site

@@ -259,7 +259,7 @@ TEST_F(SurfaceSite, WhatASolidHoldsOfUncertainPointsIsThatOfMemory)
   question.solid = true;
   std::vector<Verdict> flags(scan.width);
   SiteMeans means;
-  means.sink = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const Answer& found) {
+  means.receiver = [&](const Tile&, const pcl::PCLPointCloud2& cloud, const Answer& found) {
     for (std::uint32_t i = 0; i < cloud.width; ++i)
       flags[static_cast<std::size_t>(io::valueOf(cloud, i, "record"))] = found.collisions.flags[i];
   };

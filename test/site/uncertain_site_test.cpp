@@ -107,10 +107,10 @@ TEST_F(UncertainSite, VerdictsAreThoseOfMemory)
           saw_any[static_cast<std::size_t>(verdict)] = true;
           FlagsRequest wanted;
           wanted.clearance = 0.3;
-          wanted.flagged = Side::both;
+          wanted.flagged = Flagged::both;
           const FlagsResult expected = pcl_bsh::collisionFlags({a}, {b, pose}, wanted);
           std::vector<Verdict> flags(scan.width, Verdict::free);
-          const SiteAnswer found = collisionFlags(site, {b, pose}, Side::both, request,
+          const SiteAnswer found = collisionFlags(site, {b, pose}, Flagged::both, request,
                                                   [&](const Tile&, const Cloud& cloud, const Answer& result) {
                                                     for (std::uint32_t i = 0; i < cloud.width; ++i)
                                                       flags[recordOf(cloud, i)] = result.collisions.flags[i];
@@ -145,7 +145,7 @@ TEST_F(UncertainSite, CollidingWinsOverUndecided)
     io::writeCloud(folder / "scan.pcd", scan);
     const Site site = makeSite({folder / "scan.pcd"}, folder / (side < 0 ? "left" : "right"), options);
     ASSERT_EQ(site.tiles.size(), 3U);
-    const SiteAnswer found = collisionFlags(site, {b}, Side::both, request);
+    const SiteAnswer found = collisionFlags(site, {b}, Flagged::both, request);
     EXPECT_EQ(found.obstacle_flags, test::verdictsOf({1}));
     EXPECT_EQ(found.obstacle_colliding, 1U);
     EXPECT_EQ(found.obstacle_undecided, 0U);
@@ -286,9 +286,9 @@ TEST_F(UncertainSite, ReadsTheTilesThatMayMatter)
   SiteQuestion request;
   request.clearance = 0.3;
   const Placed placed(b, poses[0]);
-  const std::uint64_t measured = collisionFlags(site, placed, Side::a, request).tiles.needed;
+  const std::uint64_t measured = collisionFlags(site, placed, Flagged::a, request).tiles.needed;
   request.uncertainty = Uncertainty("sigma", 3.0);
-  const TilesRead uncertain = collisionFlags(site, placed, Side::a, request).tiles;
+  const TilesRead uncertain = collisionFlags(site, placed, Flagged::a, request).tiles;
   EXPECT_GT(uncertain.needed, measured);
   EXPECT_LT(uncertain.needed, uncertain.tiles);
 }
@@ -305,7 +305,7 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
     for (int query = 0; query < 3; ++query) {
       try {
         if (query == 0) anyCollision(of, {b, far_away}, request);
-        if (query == 1) collisionFlags(of, {b, far_away}, Side::a, request);
+        if (query == 1) collisionFlags(of, {b, far_away}, Flagged::a, request);
         if (query == 2) collideAlong(of, b, {far_away}, request);
         return "none";
       }
@@ -345,7 +345,7 @@ TEST_F(UncertainSite, RefusesWhatItCannotKnow)
   const Site wrong = makeSite({folder / "scan.pcd"}, folder / "wrong", {});
   SiteQuestion request;
   request.uncertainty = Uncertainty("sigma", 1.0);
-  EXPECT_THROW(collisionFlags(wrong, {b}, Side::a, request), std::invalid_argument);
+  EXPECT_THROW(collisionFlags(wrong, {b}, Flagged::a, request), std::invalid_argument);
 }
 
 TEST_F(UncertainSite, OfThePrograms)

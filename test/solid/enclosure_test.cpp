@@ -59,30 +59,30 @@ std::vector<std::uint8_t> labelsByHand(const TrianglesView& solid, const Isometr
 }
 
 /// Corners of a triangle, or the point.
-Records placesOf(const PointsView& content, std::uint32_t record)
+Records placesOf(const PointsView& queried, std::uint32_t record)
 {
-  if (!content.triangles) return {record};
-  const Triangle t = content.triangles->cornersOf(record);
+  if (!queried.triangles) return {record};
+  const Triangle t = queried.triangles->cornersOf(record);
   return {t.begin(), t.end()};
 }
 
-void expectExact(const Mesh& solid_mesh, const PointsView& content, const Isometry3d& pose_of_solid = identity,
-                 const Isometry3d& pose_of_content = identity)
+void expectExact(const Mesh& solid_mesh, const PointsView& queried, const Isometry3d& pose_of_solid = identity,
+                 const Isometry3d& pose_of_queried = identity)
 {
   const TrianglesView view = solid_mesh.view();
   const Solid solid(view);
   const SolidBodies bodies(solid);
-  const SphereHierarchy hierarchy(content);
-  const Content held_content(hierarchy);
-  const PointsView& places = content.triangles ? content.triangles->vertices : content;
+  const SphereHierarchy hierarchy(queried);
+  const QueriedRecords queried(hierarchy);
+  const PointsView& places = queried.triangles ? queried.triangles->vertices : queried;
 
-  const std::vector<std::uint8_t> labels = labelsByHand(view, pose_of_solid, places, pose_of_content);
-  Records held; // of what the view names
-  for (std::size_t k = 0; k < content.size(); ++k)
-    for (const std::uint32_t place : placesOf(content, content.record(k)))
-      if (labels[place] != labelOf(Label::outside)) held.push_back(content.record(k));
-  std::sort(held.begin(), held.end());
-  held.erase(std::unique(held.begin(), held.end()), held.end());
+  const std::vector<std::uint8_t> labels = labelsByHand(view, pose_of_solid, places, pose_of_queried);
+  Records enclosed; // of what the view names
+  for (std::size_t k = 0; k < queried.size(); ++k)
+    for (const std::uint32_t place : placesOf(queried, queried.record(k)))
+      if (labels[place] != labelOf(Label::outside)) enclosed.push_back(queried.record(k));
+  std::sort(enclosed.begin(), enclosed.end());
+  enclosed.erase(std::unique(enclosed.begin(), enclosed.end()), enclosed.end());
 
   const std::vector<std::size_t> body_of = bodiesByHand(view);
   Records holders;
@@ -92,9 +92,9 @@ void expectExact(const Mesh& solid_mesh, const PointsView& content, const Isomet
       if (body_of[i] == body) own.push_back(view.cornersOf(i));
     if (own.empty()) continue;
     const TrianglesView own_view{view.vertices, own.front().data(), own.size()};
-    const std::vector<std::uint8_t> of_body = labelsByHand(own_view, pose_of_solid, places, pose_of_content);
-    const bool holds = std::any_of(held.begin(), held.end(), [&](std::uint32_t record) {
-      const Records all = placesOf(content, record);
+    const std::vector<std::uint8_t> of_body = labelsByHand(own_view, pose_of_solid, places, pose_of_queried);
+    const bool holds = std::any_of(enclosed.begin(), enclosed.end(), [&](std::uint32_t record) {
+      const Records all = placesOf(queried, record);
       return std::any_of(all.begin(), all.end(), [&](std::uint32_t place) {
         return labels[place] != labelOf(Label::outside) && of_body[place] == labelOf(Label::inside);
       });
@@ -104,17 +104,17 @@ void expectExact(const Mesh& solid_mesh, const PointsView& content, const Isomet
   }
   std::sort(holders.begin(), holders.end());
 
-  EXPECT_EQ(heldBy({solid, pose_of_solid}, held_content, pose_of_content), held);
-  EXPECT_EQ(holdersOf(bodies, pose_of_solid, held_content, pose_of_content, held), holders);
-  const std::optional<PointPair> any = findHeld(bodies, pose_of_solid, held_content, pose_of_content);
-  if (!content.triangles) {
-    ASSERT_EQ(any.has_value(), !held.empty());
+  EXPECT_EQ(enclosedBy({solid, pose_of_solid}, queried, pose_of_queried), enclosed);
+  EXPECT_EQ(holdersOf(bodies, pose_of_solid, queried, pose_of_queried, enclosed), holders);
+  const std::optional<PointPair> any = findEnclosed(bodies, pose_of_solid, queried, pose_of_queried);
+  if (!queried.triangles) {
+    ASSERT_EQ(any.has_value(), !enclosed.empty());
     if (any) {
-      EXPECT_EQ(any->a, held.front());
+      EXPECT_EQ(any->a, enclosed.front());
     }
   }
   else if (any) {
-    EXPECT_TRUE(std::binary_search(held.begin(), held.end(), any->a));
+    EXPECT_TRUE(std::binary_search(enclosed.begin(), enclosed.end(), any->a));
   }
 }
 
@@ -146,19 +146,19 @@ TEST(Enclosure, AHollowHoldsNothing)
   const Solid solid(tank.view());
   const SolidBodies bodies(solid);
   ASSERT_EQ(bodies.all().size(), 3u);
-  const auto held = [&](std::size_t i) {
+  const auto enclosed = [&](std::size_t i) {
     const SphereHierarchy cloud(viewOf(points.data() + 3 * i, 1));
-    return heldBy(solid, Content(cloud), identity);
+    return enclosedBy(solid, QueriedRecords(cloud), identity);
   };
   const auto holders = [&](std::size_t i) {
     const SphereHierarchy cloud(viewOf(points.data() + 3 * i, 1));
-    return holdersOf(bodies, identity, Content(cloud), identity, held(i));
+    return holdersOf(bodies, identity, QueriedRecords(cloud), identity, enclosed(i));
   };
-  EXPECT_THAT(held(0), IsEmpty());
-  EXPECT_THAT(held(1), ElementsAre(0u));
+  EXPECT_THAT(enclosed(0), IsEmpty());
+  EXPECT_THAT(enclosed(1), ElementsAre(0u));
   EXPECT_EQ(holders(1).size(), 36u); // it is inside all three, and the hollow turns none off
   EXPECT_EQ(holders(2), bodies.all()[0].triangles);
-  EXPECT_THAT(held(3), ElementsAre(0u)); // on the surface
+  EXPECT_THAT(enclosed(3), ElementsAre(0u)); // on the surface
   EXPECT_THAT(holders(3), IsEmpty());
   expectExact(tank, viewOf(points.data(), 4));
 }
@@ -183,7 +183,7 @@ TEST(Enclosure, BodiesOfTrianglesWithOtherNumbersBetweenThem)
   ASSERT_EQ(bodies.all().size(), 2u);
   const std::vector<double> point = {3.5, 0.5, 0.5};
   const SphereHierarchy cloud(viewOf(point.data(), 1));
-  EXPECT_EQ(holdersOf(bodies, identity, Content(cloud), identity, Records{0}), bodies.all()[1].triangles);
+  EXPECT_EQ(holdersOf(bodies, identity, QueriedRecords(cloud), identity, Records{0}), bodies.all()[1].triangles);
 }
 
 TEST(Enclosure, SoupOfTrianglesIsOfBodiesByItsPlaces)
@@ -208,7 +208,7 @@ TEST(Enclosure, SoupOfTrianglesIsOfBodiesByItsPlaces)
   EXPECT_EQ(bodies.all()[1].triangles.front(), 12u);
   const std::vector<double> point = {3.5, 0.5, 0.5};
   const SphereHierarchy cloud(viewOf(point.data(), 1));
-  EXPECT_EQ(findHeld(bodies, identity, Content(cloud), identity)->b, 12u);
+  EXPECT_EQ(findEnclosed(bodies, identity, QueriedRecords(cloud), identity)->b, 12u);
 }
 
 TEST(Enclosure, WhatHasNoPlaceIsHeldByNothing)
@@ -220,9 +220,9 @@ TEST(Enclosure, WhatHasNoPlaceIsHeldByNothing)
   const std::uint32_t nan = nothing.vertex(NAN, 0, 0), loose = nothing.vertex(0.5, 0.5, 0.5);
   nothing.triangle(nan, nan, loose);
   const SphereHierarchy hierarchy(viewOf(nothing.view()));
-  const Content content(hierarchy);
-  EXPECT_THAT(heldBy(solid, content, identity), IsEmpty());
-  EXPECT_FALSE(findHeld(bodies, identity, content, identity));
+  const QueriedRecords queried(hierarchy);
+  EXPECT_THAT(enclosedBy(solid, queried, identity), IsEmpty());
+  EXPECT_FALSE(findEnclosed(bodies, identity, queried, identity));
 }
 
 TEST(Enclosure, VerdictsOfUncertainPlaces)
@@ -232,17 +232,17 @@ TEST(Enclosure, VerdictsOfUncertainPlaces)
   const SolidBodies bodies(solid);
   const std::vector<double> points = {0.5, 0.5, 0.5, 0.9, 0.5, 0.5, 2, 2, 2};
   const SphereHierarchy cloud(viewOf(points.data(), 3));
-  const Content content(cloud);
-  const Records held = heldBy(solid, content, identity);
+  const QueriedRecords queried(cloud);
+  const Records enclosed = enclosedBy(solid, queried, identity);
   std::vector<Verdict> of_points = test::verdictsOf({0, 2, 0}), of_box(12, Verdict::free);
-  addHeld(bodies, identity, content, identity, held, true, of_points, of_box);
+  addEnclosed(bodies, identity, queried, identity, enclosed, true, of_points, of_box);
   EXPECT_EQ(of_points, test::verdictsOf({1, 2, 0}));
   EXPECT_EQ(of_box, std::vector<Verdict>(12, Verdict::colliding));
   of_points = test::verdictsOf({2, 2, 0}), of_box.assign(12, Verdict::free);
-  addHeld(bodies, identity, content, identity, held, true, of_points, of_box);
+  addEnclosed(bodies, identity, queried, identity, enclosed, true, of_points, of_box);
   EXPECT_EQ(of_points, test::verdictsOf({2, 2, 0}));
   EXPECT_EQ(of_box, std::vector<Verdict>(12, Verdict::undecided));
-  addHeld(bodies, identity, content, identity, held, false, of_points, of_box);
+  addEnclosed(bodies, identity, queried, identity, enclosed, false, of_points, of_box);
   EXPECT_EQ(of_points, test::verdictsOf({1, 1, 0}));
   EXPECT_EQ(of_box, std::vector<Verdict>(12, Verdict::colliding));
 }

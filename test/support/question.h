@@ -8,7 +8,7 @@ namespace pcl_bsh::test {
 /// A question that a test asks of several queries: the request of each.
 struct Question {
   double clearance = 0.0;
-  Side flagged = Side::a;
+  Flagged flagged = Flagged::a;
   unsigned threads = 1;
   Accuracy accuracy;
 

@@ -4,10 +4,10 @@
 #include <pcl_bsh/clusters/clusters.h>
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/many_poses/collide_at_poses.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/neighbors/neighbors.h>
 #include <pcl_bsh/question/ask.h>
-#include <pcl_bsh/roadmap/collide_at_poses.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ void askPair(const Instance& instance, const Placed& a, const Placed& b, Answers
   answers.any = static_cast<std::uint8_t>(anyCollision(a, b, {clearance, instance.threads}).verdict);
   FlagsRequest flags;
   flags.clearance = clearance;
-  flags.flagged = Side::both;
+  flags.flagged = Flagged::both;
   flags.threads = instance.threads;
   const FlagsResult flagged = collisionFlags(a, b, flags);
   answers.flags_a = numbersOf(flagged.a);

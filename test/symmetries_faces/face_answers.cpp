@@ -205,7 +205,7 @@ Answers askSite(const Instance& instance, const std::filesystem::path& folder, s
   told.asked_path_flags.assign(count, 0);
   told.first_poses.assign(count, -1);
   site::SiteMeans means;
-  means.sink = [&](const site::Tile&, const Cloud& cloud, const Answer& found) {
+  means.receiver = [&](const site::Tile&, const Cloud& cloud, const Answer& found) {
     const auto of = fieldOf<std::uint32_t>(cloud, site::record_field_name);
     const std::vector<Verdict>& flags = found.collisions.flags;
     for (std::size_t i = 0; i < of.size(); ++i) {

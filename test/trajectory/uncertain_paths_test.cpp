@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Along a path, points that may be elsewhere than they were measured: against brute force, and at both edges.
 #include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/roadmap/collide_on_motions.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 #include <pcl_bsh/trajectory/trajectory.h>
 
 #include "support/journeys.h"

@@ -9,7 +9,7 @@
 #include <pcl_bsh/geometry/distance_band.h>
 #include <pcl_bsh/geometry/local_frame.h>
 #include <pcl_bsh/geometry/triangle/triangle3.h>
-#include <pcl_bsh/simd/flat_triangle.h>
+#include <pcl_bsh/simd/flattened_triangle.h>
 
 namespace pcl_bsh {
 

@@ -8,9 +8,9 @@
 #include <pcl_bsh/geometry/exact/rough_root_less.h>
 #include <pcl_bsh/geometry/exact/rounded_length.h>
 #include <pcl_bsh/geometry/triangle/double_distance.h>
-#include <pcl_bsh/geometry/triangle/facing.h>
 #include <pcl_bsh/geometry/triangle/nearest_features.h>
 #include <pcl_bsh/geometry/triangle/ordinary_length.h>
+#include <pcl_bsh/geometry/triangle/plane_overlap.h>
 
 #include <algorithm>
 #include <cmath>
@@ -250,31 +250,31 @@ std::optional<LongNumber> TriangleDistance::acrossAxis(const Pair& pair) const
 
 /// How they lie to each other if their planes are parallel.
 template <class Pair>
-Facing TriangleDistance::facing(const Pair& pair) const
+PlaneOverlap TriangleDistance::overlap(const Pair& pair) const
 {
   if constexpr (std::is_same_v<Pair, PointPair>) {
-    return Facing::unknown;
+    return PlaneOverlap::unknown;
   }
   else {
-    if (pair.known == nullptr) return findFacing(pair);
-    if (!pair.known->facing) pair.known->facing = findFacing(pair);
-    return *pair.known->facing;
+    if (pair.known == nullptr) return findOverlap(pair);
+    if (!pair.known->overlap) pair.known->overlap = findOverlap(pair);
+    return *pair.known->overlap;
   }
 }
 
-Facing TriangleDistance::findFacing(const TrianglePair& pair) const
+PlaneOverlap TriangleDistance::findOverlap(const TrianglePair& pair) const
 {
-  if (shareCorner(pair)) return Facing::unknown;
+  if (shareCorner(pair)) return PlaneOverlap::unknown;
   std::optional<bool> parallel = areParallelAsGiven(pair);
   const LongCorners a = longCorners(a_, pair.a), b = longCorners(b_, pair.b);
   if (!parallel) parallel = areParallel(a, b);
-  if (parallel == false) return Facing::unknown;
-  const Facing facing = facingOf(a, b);
-  if (parallel || facing == Facing::unknown) return facing;
+  if (parallel == false) return PlaneOverlap::unknown;
+  const PlaneOverlap overlap = overlapOf(a, b);
+  if (parallel || overlap == PlaneOverlap::unknown) return overlap;
   const auto corners = [this](const Pose& pose, const Triangle3& t) -> std::array<Vector3<Dyadic>, 3> {
     return {placed<Dyadic>(pose, t[0]), placed<Dyadic>(pose, t[1]), placed<Dyadic>(pose, t[2])};
   };
-  return *areParallel(corners(a_, pair.a), corners(b_, pair.b)) ? facing : Facing::unknown;
+  return *areParallel(corners(a_, pair.a), corners(b_, pair.b)) ? overlap : PlaneOverlap::unknown;
 }
 
 /// Whether planes are parallel, in the given coordinates: those of one pose have short numbers there. Nothing where
@@ -323,20 +323,20 @@ Features TriangleDistance::nearestFeatures(const Pair& pair, bool& by_integers) 
   if constexpr (std::is_same_v<Pair, TrianglePair>) {
     Known* const known = pair.known;
     if (known != nullptr && known->has_features) return {static_cast<Features::Kind>(known->kind), known->i, known->j};
-    const Features found = findFeatures(pair, facing(pair), by_integers);
-    if (known != nullptr) *known = {known->facing, found.kind, found.i, found.j, true};
+    const Features found = findFeatures(pair, overlap(pair), by_integers);
+    if (known != nullptr) *known = {known->overlap, found.kind, found.i, found.j, true};
     return found;
   }
   else {
-    return findFeatures(pair, Facing::unknown, by_integers);
+    return findFeatures(pair, PlaneOverlap::unknown, by_integers);
   }
 }
 
 template <class Pair>
-Features TriangleDistance::findFeatures(const Pair& pair, Facing facing, bool& by_integers) const
+Features TriangleDistance::findFeatures(const Pair& pair, PlaneOverlap overlap, bool& by_integers) const
 {
   if (shareCorner(pair)) return {Features::meeting, 0, 0};
-  if (facing == Facing::over) return kPlanes;
+  if (overlap == PlaneOverlap::over) return kPlanes;
   const Seen at = seen(pair.a, pair.b);
   if (isFinite(at.a) && isFinite(at.b) && std::isfinite(at.error)) {
     const auto rough = [&](const Triangle3& t) {
@@ -422,16 +422,16 @@ int TriangleDistance::settleOrder(const Pair& first, const TriangleDistance& oth
     sure = true, ++stages.integers;
     return compareFractions(squared<Dyadic>(first, of_first), other.squared<Dyadic>(second, of_second), sure);
   };
-  const Facing faces_first = facing(first), faces_second = other.facing(second);
-  if (first.radius == second.radius && faces_first != Facing::unknown && faces_second != Facing::unknown) {
+  const PlaneOverlap faces_first = overlap(first), faces_second = other.overlap(second);
+  if (first.radius == second.radius && faces_first != PlaneOverlap::unknown && faces_second != PlaneOverlap::unknown) {
     std::optional<int> as_given;
     if constexpr (std::is_same_v<Pair, TrianglePair>)
       if (this == &other) as_given = comparePlanesAsGiven(first, second);
     if (as_given) ++stages.long_numbers;
     const int side = as_given ? *as_given : compareSquares(kPlanes, kPlanes);
-    if (faces_first == Facing::over && faces_second == Facing::over) return side;
-    if (faces_second == Facing::over && side >= 0) return 1;
-    if (faces_first == Facing::over && side <= 0) return -1;
+    if (faces_first == PlaneOverlap::over && faces_second == PlaneOverlap::over) return side;
+    if (faces_second == PlaneOverlap::over && side >= 0) return 1;
+    if (faces_first == PlaneOverlap::over && side <= 0) return -1;
   }
   const Features of_second = other.nearestFeatures(second, by_integers);
   if constexpr (std::is_same_v<Pair, TrianglePair>) {

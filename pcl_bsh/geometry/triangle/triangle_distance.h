@@ -24,7 +24,7 @@ namespace pcl_bsh {
 class ExactPlane;
 struct Features;
 class LongNumber;
-enum class Facing : std::uint8_t;
+enum class PlaneOverlap : std::uint8_t;
 template <class Number>
 struct Fraction;
 template <class Number>
@@ -64,7 +64,7 @@ public:
   };
   /// Keeps the facing and the nearest features of two triangles under one pair of poses.
   struct Known {
-    std::optional<Facing> facing;
+    std::optional<PlaneOverlap> overlap;
     std::uint8_t kind = 0, i = 0, j = 0; ///< of the nearest features
     bool has_features = false;
   };
@@ -126,8 +126,8 @@ private:
   template <class Pair>
   std::optional<LongNumber> acrossAxis(const Pair& pair) const;
   template <class Pair>
-  Facing facing(const Pair& pair) const;
-  Facing findFacing(const TrianglePair& pair) const;
+  PlaneOverlap overlap(const Pair& pair) const;
+  PlaneOverlap findOverlap(const TrianglePair& pair) const;
   std::optional<bool> areParallelAsGiven(const TrianglePair& pair) const;
   std::optional<int> comparePlanesAsGiven(const TrianglePair& first, const TrianglePair& second) const;
   template <class Pair>
@@ -135,7 +135,7 @@ private:
   template <class Pair>
   Features nearestFeatures(const Pair& pair, bool& by_integers) const;
   template <class Pair>
-  Features findFeatures(const Pair& pair, Facing facing, bool& by_integers) const;
+  Features findFeatures(const Pair& pair, PlaneOverlap overlap, bool& by_integers) const;
   template <class Pair>
   int compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const;
   template <class Pair>

@@ -32,18 +32,18 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t most)
   return places;
 }
 
-/// Records of the content that are in the surface's box, at most so many.
-std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const SphereHierarchy& content,
-                                     const Eigen::Isometry3d& T_surface_content)
+/// Records of the queried thing that are in the surface's box, at most so many.
+std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const SphereHierarchy& queried,
+                                     const Eigen::Isometry3d& T_surface_queried)
 {
-  const SphereHierarchy::Storage& storage = content.storage();
+  const SphereHierarchy::Storage& storage = queried.storage();
   std::vector<std::uint32_t> voxels;
   for (std::uint32_t v = 0; v < storage.voxel_count; ++v) {
     const LocalFrame& frame = storage.voxels[v].frame;
     const Eigen::Vector3d middle = Eigen::Map<const Eigen::Vector3d>(frame.origin.data());
     const Eigen::Vector3d reach = frame.unit * Eigen::Map<const Eigen::Vector3d>(frame.reach.data());
-    const Eigen::Vector3d turned = T_surface_content.linear().cwiseAbs() * reach;
-    const Eigen::Vector3d at = T_surface_content * middle;
+    const Eigen::Vector3d turned = T_surface_queried.linear().cwiseAbs() * reach;
+    const Eigen::Vector3d at = T_surface_queried * middle;
     if (box.intersects(Eigen::AlignedBox3d(at - turned, at + turned))) voxels.push_back(v);
   }
   std::vector<std::uint32_t> records;
@@ -56,13 +56,13 @@ std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const Spher
     storage.forEachRecord(v, [&](std::uint32_t record) {
       if (place++ % step != 0) return;
       const Point3 p = storage.view.point(record);
-      if (box.contains(T_surface_content * Eigen::Vector3d(p[0], p[1], p[2]))) records.push_back(record);
+      if (box.contains(T_surface_queried * Eigen::Vector3d(p[0], p[1], p[2]))) records.push_back(record);
     });
   }
   return records;
 }
 
-/// A place of the content.
+/// A place of the queried thing.
 struct Sample {
   Point3 given, at; ///< at: as the surface sees it, rounded: what is deep inside stays so
   int turns = 0;    ///< of the surface round it
@@ -104,19 +104,19 @@ std::optional<Point3> enclosed(std::vector<Sample>& samples, Shape& surface, std
 
 } // namespace
 
-std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& content,
-                                  const std::vector<Eigen::Isometry3d>& T_surface_content)
+std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& queried,
+                                  const std::vector<Eigen::Isometry3d>& T_surface_queried)
 {
   const Eigen::AlignedBox3d box = surface.facts(false).box;
-  if (box.isEmpty() || content.empty()) return std::nullopt;
+  if (box.isEmpty() || queried.empty()) return std::nullopt;
   const DefaultFloatEnvironment environment;
   std::vector<Sample> samples;
-  const std::vector<std::size_t> poses = spread(T_surface_content.size(), most_poses);
+  const std::vector<std::size_t> poses = spread(T_surface_queried.size(), most_poses);
   for (const std::size_t k : poses) {
-    const Eigen::Isometry3d& pose = T_surface_content[k];
-    const std::vector<std::uint32_t> records = recordsIn(box, content, pose);
+    const Eigen::Isometry3d& pose = T_surface_queried[k];
+    const std::vector<std::uint32_t> records = recordsIn(box, queried, pose);
     for (const std::size_t i : spread(records.size(), std::max<std::size_t>(1, most_samples / poses.size()))) {
-      const Point3 p = content.view().point(records[i]);
+      const Point3 p = queried.view().point(records[i]);
       const Eigen::Vector3d q = pose * Eigen::Vector3d(p[0], p[1], p[2]);
       samples.push_back({p, {q[0], q[1], q[2]}});
     }
@@ -133,9 +133,9 @@ double nearTo(const Shape& surface)
   return box.isEmpty() ? 0.0 : 0.01 * box.diagonal().norm();
 }
 
-Warning warningOfHollow(const std::string& surface, const char* option, const std::string& content, const Point3& place)
+Warning warningOfHollow(const std::string& surface, const char* option, const std::string& queried, const Point3& place)
 {
-  return {WarningKind::hollow, plainText(surface, ": its faces close round places of ", content, ", as (", place[0],
+  return {WarningKind::hollow, plainText(surface, ": its faces close round places of ", queried, ", as (", place[0],
                                          ", ", place[1], ", ", place[2], "), with none near them: without `", option,
                                          "` what a mesh encloses is free: give it if this is not hollow")};
 }
@@ -180,7 +180,7 @@ double nearestOf(const Question& question, const Answer& answer)
 std::vector<Warning> warningsOfHollow(const Question& question, double nearest, Shape& input, Shape& obstacle)
 {
   std::vector<Warning> warnings;
-  const auto look = [&](Shape& surface, bool solid, const char* option, const Shape& content, bool is_obstacle) {
+  const auto look = [&](Shape& surface, bool solid, const char* option, const Shape& queried, bool is_obstacle) {
     if (!surface.isSurface() || solid || !(nearest > 0.0)) return;
     if (nearest <= nearTo(surface)) return;
     std::vector<Eigen::Isometry3d> poses = question.poses();
@@ -188,8 +188,8 @@ std::vector<Warning> warningsOfHollow(const Question& question, double nearest, 
       pose = pose.inverse() * question.pose_of_input;
       if (!is_obstacle) pose = pose.inverse();
     }
-    if (const auto place = placeWithin(surface, content.hierarchy(), poses))
-      warnings.push_back(warningOfHollow(surface.name(), option, content.name(), *place));
+    if (const auto place = placeWithin(surface, queried.hierarchy(), poses))
+      warnings.push_back(warningOfHollow(surface.name(), option, queried.name(), *place));
   };
   look(obstacle, question.solid, "solid", input, true);
   if (!question.wanted.oneWay()) // which it would change nothing of

@@ -17,16 +17,16 @@ namespace pcl_bsh {
 /// poses, of voxels that meet the surface's box, some 256 records are looked at, 511 at most, and 8 are samples, or one
 /// of each pose. The first question about a surface passes all of its triangles, which takes some 160 instructions
 /// each; the second finds out whether they close. Where they are known not to, nothing is looked at.
-/// @param T_surface_content where the content is, of one pose or more @return in the content's own frame
+/// @param T_surface_queried where the queried thing is, of one pose or more @return in the queried thing's own frame
 /// @pre hierarchy() of the surface was called, and isSurface()
-std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& content,
-                                  const std::vector<Eigen::Isometry3d>& T_surface_content);
+std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& queried,
+                                  const std::vector<Eigen::Isometry3d>& T_surface_queried);
 
 /// Returns the distance below which a user surely looks at the surface: a hundredth of its size. @pre as placeWithin()
 double nearTo(const Shape& surface);
 
 /// Returns the warning about such a place. @param option by which the surface counts with what it encloses
-Warning warningOfHollow(const std::string& surface, const char* option, const std::string& content,
+Warning warningOfHollow(const std::string& surface, const char* option, const std::string& queried,
                         const Point3& place);
 
 /// Returns the smallest distance between the two things that an answer tells: 0 where anything collides or the answer

@@ -171,22 +171,22 @@ private:
     if (meeting.empty()) return std::nullopt;
     Shape& surface = shapes_.at(part.cloud);
     for (const NamedObject::Part& other : objects_[j].parts) {
-      const SphereHierarchy& content = shapes_.at(other.cloud).hierarchy();
+      const SphereHierarchy& queried = shapes_.at(other.cloud).hierarchy();
       for (const std::size_t k : meeting) {
-        const Eigen::Isometry3d of_surface = at(poses_[i], k) * part.pose, of_content = at(poses_[j], k) * other.pose;
-        const auto place = placeWithin(surface, content, {of_surface.inverse() * of_content});
+        const Eigen::Isometry3d of_surface = at(poses_[i], k) * part.pose, of_queried = at(poses_[j], k) * other.pose;
+        const auto place = placeWithin(surface, queried, {of_surface.inverse() * of_queried});
         if (!place) continue;
-        if (isNear(surface, of_surface, content, of_content)) return std::nullopt; // which its effects tell of
+        if (isNear(surface, of_surface, queried, of_queried)) return std::nullopt; // which its effects tell of
         return warningOfHollow("'" + objects_[i].name + "'", "solid", "'" + objects_[j].name + "'", *place);
       }
     }
     return std::nullopt;
   }
 
-  bool isNear(const Shape& surface, const Eigen::Isometry3d& of_surface, const SphereHierarchy& content,
-              const Eigen::Isometry3d& of_content) const
+  bool isNear(const Shape& surface, const Eigen::Isometry3d& of_surface, const SphereHierarchy& queried,
+              const Eigen::Isometry3d& of_queried) const
   {
-    return closestPair({content, of_content}, {surface.hierarchy(), of_surface}).distance <=
+    return closestPair({queried, of_queried}, {surface.hierarchy(), of_surface}).distance <=
            std::max(clearance_, nearTo(surface));
   }
 

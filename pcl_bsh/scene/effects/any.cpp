@@ -51,8 +51,8 @@ void Scene::State::decideAny(BroadPair& pair) const
       memory.work += found.work;
       const std::optional<PointPair> witness =
           found.pair || !areSolid(parts) ? found.pair
-                                         : heldPair(standing(pair.a, parts.part_a), standing(pair.b, parts.part_b),
-                                                    found.verdict, clearance, memory.work);
+                                         : enclosedPair(standing(pair.a, parts.part_a), standing(pair.b, parts.part_b),
+                                                        found.verdict, clearance, memory.work);
       if (found.verdict == Verdict::undecided && !memory.undecided) memory.undecided = parts;
       if (!witness) return true;
       memory.undecided.reset();
@@ -85,8 +85,8 @@ void Scene::State::decideAny(BroadPair& pair) const
   memory.colliding = memory.has_witness = ask(pair.clearance);
 }
 
-std::optional<PointPair> Scene::State::heldPair(const StandingPart& a, const StandingPart& b, Verdict surfaces,
-                                                double clearance, Work& work) const
+std::optional<PointPair> Scene::State::enclosedPair(const StandingPart& a, const StandingPart& b, Verdict surfaces,
+                                                    double clearance, Work& work) const
 {
   const bool uncertain = surfaces == Verdict::undecided && areUncertain(a.placed, b.placed);
   return solids.find(a, b, uncertain ? std::optional(clearance) : std::nullopt, work);
@@ -137,7 +137,7 @@ void Scene::State::findSelf(EffectCost& spent)
           const auto in_object = [&](std::uint32_t part) {
             return StandingPart{{*whole.parts[part].hierarchy, whole.parts[part].pose}, whole.parts[part].solid};
           };
-          witness = heldPair(in_object(i), in_object(j), found.verdict, options.clearance, spent.work);
+          witness = enclosedPair(in_object(i), in_object(j), found.verdict, options.clearance, spent.work);
         }
         if (witness)
           result.self.push_back({object, i, j, *witness});

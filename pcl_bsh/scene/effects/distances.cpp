@@ -62,31 +62,31 @@ void Scene::State::findFirstContacts(EffectCost& spent)
 {
   using Contacts = std::vector<std::optional<PartFirstContact>>;
   Contacts possible(grid.pairs().size()), certain(grid.pairs().size());
-  eachSweptPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a,
-                           const SweptPart& b) {
-    const auto find = [&](Places places) {
-      return firstContactOf(a, b, pair.clearance, options.tolerance, places, pair.memory.work);
-    };
-    const auto keepEarlier = [&](std::optional<PartFirstContact>& first, const std::optional<PairContact>& met) {
-      if (met && (!first || met->s < first->fraction)) first = PartFirstContact{parts, met->s, met->pair};
-    };
-    const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
-    std::optional<PairContact> met = find(uncertain ? Places::possible : Places::measured);
-    std::optional<PairContact> surely = met && uncertain ? find(Places::certain) : met;
-    if (areSolid(parts) && !(surely && surely->s == 0.0)) { // a motion that begins inside meets at once
-      const StandingPart at_a{a.at(0), bodies[parts.a].object.parts[parts.part_a].solid};
-      const StandingPart at_b{b.at(0), bodies[parts.b].object.parts[parts.part_b].solid};
-      const bool touching = met && met->s == 0.0; // then it is the surfaces that may
-      if (const auto held =
-              heldPair(at_a, at_b, touching ? Verdict::undecided : Verdict::free, pair.clearance, pair.memory.work)) {
-        surely = PairContact{0.0, *held};
-        if (!touching) met = surely;
-      }
-    }
-    keepEarlier(possible[k], met);
-    keepEarlier(possible[k], surely); // of the two searches, either may halt earlier, within the tolerance
-    keepEarlier(certain[k], surely);
-  });
+  eachSweptPair(
+      spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts, const SweptPart& a, const SweptPart& b) {
+        const auto find = [&](MeantPlaces places) {
+          return firstContactOf(a, b, pair.clearance, options.tolerance, places, pair.memory.work);
+        };
+        const auto keepEarlier = [&](std::optional<PartFirstContact>& first, const std::optional<PairContact>& met) {
+          if (met && (!first || met->s < first->fraction)) first = PartFirstContact{parts, met->s, met->pair};
+        };
+        const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
+        std::optional<PairContact> met = find(uncertain ? MeantPlaces::possible : MeantPlaces::measured);
+        std::optional<PairContact> surely = met && uncertain ? find(MeantPlaces::certain) : met;
+        if (areSolid(parts) && !(surely && surely->s == 0.0)) { // a motion that begins inside meets at once
+          const StandingPart at_a{a.at(0), bodies[parts.a].object.parts[parts.part_a].solid};
+          const StandingPart at_b{b.at(0), bodies[parts.b].object.parts[parts.part_b].solid};
+          const bool touching = met && met->s == 0.0; // then it is the surfaces that may
+          if (const auto enclosed = enclosedPair(at_a, at_b, touching ? Verdict::undecided : Verdict::free,
+                                                 pair.clearance, pair.memory.work)) {
+            surely = PairContact{0.0, *enclosed};
+            if (!touching) met = surely;
+          }
+        }
+        keepEarlier(possible[k], met);
+        keepEarlier(possible[k], surely); // of the two searches, either may halt earlier, within the tolerance
+        keepEarlier(certain[k], surely);
+      });
   for (const auto& contact : possible)
     if (contact) result.first_contact.push_back(*contact);
   for (const auto& contact : certain)

@@ -50,10 +50,11 @@ std::vector<FlaggedPart> mergedFlags(const std::vector<Body>& bodies, const std:
 void flagSwept(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, PairFlags& flags, Work& work)
 {
   const bool uncertain = areUncertain({a.hierarchy}, {b.hierarchy});
-  flagContacts(a, b, clearance, tolerance, uncertain ? Places::possible : Places::measured, flags.a, flags.b, work);
+  flagContacts(a, b, clearance, tolerance, uncertain ? MeantPlaces::possible : MeantPlaces::measured, flags.a, flags.b,
+               work);
   if (!uncertain || std::none_of(flags.a.begin(), flags.a.end(), isNotFree)) return;
   std::vector<Verdict> certain_a(flags.a.size()), certain_b(flags.b.size());
-  flagContacts(a, b, clearance, tolerance, Places::certain, certain_a, certain_b, work);
+  flagContacts(a, b, clearance, tolerance, MeantPlaces::certain, certain_a, certain_b, work);
   std::size_t colliding = 0, undecided = 0; // counted once all pairs are known
   withhold(flags.a, certain_a, colliding, undecided);
   withhold(flags.b, certain_b, colliding, undecided);
@@ -66,7 +67,7 @@ void Scene::State::findFlags(EffectCost& spent)
   std::vector<std::vector<PairFlags>> found(near.size());
   eachNearPair(spent, [&](std::size_t k, BroadPair& pair, const PartPair& parts) {
     FlagsResult flags = collisionFlags(placed(pair.a, parts.part_a), placed(pair.b, parts.part_b),
-                                       {pair.clearance, Side::both, ofParts()});
+                                       {pair.clearance, Flagged::both, ofParts()});
     if (areSolid(parts)) solids.addTo(flags, standing(pair.a, parts.part_a), standing(pair.b, parts.part_b));
     pair.memory.work += flags.work;
     const std::size_t not_free = flags.colliding_a + flags.colliding_b + flags.undecided_a + flags.undecided_b;
@@ -76,14 +77,14 @@ void Scene::State::findFlags(EffectCost& spent)
 }
 
 /// Adds the points that a solid holds at an instant of the motion.
-void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
-                             std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
+void Scene::State::addEnclosedAt(double s, const SweptPart& a, const SweptPart& b, const PartPair& parts,
+                                 BroadPair& pair, std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
 {
   const StandingPart at_a{a.at(s), bodies[parts.a].object.parts[parts.part_a].solid};
   const StandingPart at_b{b.at(s), bodies[parts.b].object.parts[parts.part_b].solid};
   FlagsResult found;
   if (areUncertain(at_a.placed, at_b.placed)) {
-    found = collisionFlags(at_a.placed, at_b.placed, {pair.clearance, Side::both});
+    found = collisionFlags(at_a.placed, at_b.placed, {pair.clearance, Flagged::both});
   }
   else {
     found.a.resize(flags_a.size());
@@ -96,8 +97,8 @@ void Scene::State::addHeldAt(double s, const SweptPart& a, const SweptPart& b, c
 }
 
 /// Adds the points held at the motion's beginning and end, and the bodies that something passes through on the way.
-void Scene::State::addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
-                                   std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
+void Scene::State::addEnclosedOnTheWay(const SweptPart& a, const SweptPart& b, const PartPair& parts, BroadPair& pair,
+                                       std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b) const
 {
   const Verdict verdict = areUncertain({a.hierarchy}, {b.hierarchy}) ? Verdict::undecided : Verdict::colliding;
   const auto add_entered = [&](const SweptPart& solid, const SweptPart& other, std::vector<Verdict>& of_solid) {
@@ -105,7 +106,7 @@ void Scene::State::addHeldOnTheWay(const SweptPart& a, const SweptPart& b, const
       of_solid[triangle] = graver(of_solid[triangle], verdict);
   };
   const bool met = std::any_of(flags_a.begin(), flags_a.end(), isNotFree);
-  for (const double s : {0.0, 1.0}) addHeldAt(s, a, b, parts, pair, flags_a, flags_b);
+  for (const double s : {0.0, 1.0}) addEnclosedAt(s, a, b, parts, pair, flags_a, flags_b);
   if (!met) return;
   if (bodies[parts.a].object.parts[parts.part_a].solid) add_entered(a, b, flags_a);
   if (bodies[parts.b].object.parts[parts.part_b].solid) add_entered(b, a, flags_b);
@@ -119,7 +120,7 @@ void Scene::State::findSwept(EffectCost& spent)
                   PairFlags flags{parts, std::vector<Verdict>(a.hierarchy.view().count),
                                   std::vector<Verdict>(b.hierarchy.view().count)};
                   flagSwept(a, b, pair.clearance, options.tolerance, flags, pair.memory.work);
-                  if (areSolid(parts)) addHeldOnTheWay(a, b, parts, pair, flags.a, flags.b);
+                  if (areSolid(parts)) addEnclosedOnTheWay(a, b, parts, pair, flags.a, flags.b);
                   if (std::any_of(flags.a.begin(), flags.a.end(), isNotFree)) found[k].push_back(std::move(flags));
                 });
   result.swept = mergedFlags(bodies, found);

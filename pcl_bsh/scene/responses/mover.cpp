@@ -202,7 +202,7 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
       const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);
-      const Places places = possiblePlaces(mine, others);
+      const MeantPlaces places = possiblePlaces(mine, others);
       const Reach farthest(clearance, mine.hierarchy().storage().uncertainty, others.hierarchy().storage().uncertainty,
                            places);
       const double reach =
@@ -233,15 +233,16 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
         encounters_.push_back(e);
       }
     }
-  outcome.stuck = isHeldWith(other);
+  outcome.stuck = isInside(other);
   return true;
 }
 
 /// Whether the object begins inside of the other one, or round it. It has not met its surface since, so it is asked
 /// once.
-bool Mover::isHeldWith(ObjectId other)
+bool Mover::isInside(ObjectId other)
 {
-  if (state_.solids.none() || std::find(unheld_.begin(), unheld_.end(), other) != unheld_.end()) return false;
+  if (state_.solids.none() || std::find(outside_of_.begin(), outside_of_.end(), other) != outside_of_.end())
+    return false;
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
       if (!state_.areSolid({object_, other, i, j})) continue;
@@ -251,7 +252,7 @@ bool Mover::isHeldWith(ObjectId other)
       outcome.against = other;
       return true;
     }
-  unheld_.push_back(other);
+  outside_of_.push_back(other);
   return false;
 }
 

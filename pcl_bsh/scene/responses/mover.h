@@ -52,7 +52,7 @@ private:
   bool collect(Box3 swept, double length, std::size_t most);
   bool collectMore(Box3 swept, double length, std::size_t most);
   bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);
-  bool isHeldWith(ObjectId other);
+  bool isInside(ObjectId other);
   bool accept(const Eigen::Isometry3d& target);
   bool go(const Eigen::Isometry3d& target);
   std::optional<double> contactOn(const RigidMotion& motion, const Encounter& encounter, double begin,
@@ -75,7 +75,7 @@ private:
   std::vector<ObjectId> around_;
   std::vector<ObjectId> collected_; ///< whose points are among the encounters
   std::vector<Encounter> encounters_;
-  std::vector<ObjectId> unheld_; ///< of whose solids it is outside
+  std::vector<ObjectId> outside_of_; ///< of whose solids it is outside
 };
 
 } // namespace pcl_bsh

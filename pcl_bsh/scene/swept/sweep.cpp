@@ -16,7 +16,7 @@ namespace {
 
 class Sweep {
 public:
-  Sweep(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places, Work& work)
+  Sweep(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, MeantPlaces places, Work& work)
   : a_(a),
     b_(b),
     clearance_(clearance),
@@ -124,7 +124,7 @@ private:
   {
     FlagsRequest wide;
     wide.clearance = wideClearance(begin, end);
-    wide.flagged = Side::both;
+    wide.flagged = Flagged::both;
     const FlagsResult near = collisionFlags(a_.at(begin), b_.at(begin), wide);
     work_ += near.work;
     take(near.a, *flags_a_);
@@ -149,13 +149,13 @@ private:
   void take(const std::vector<Verdict>& verdicts, std::vector<Verdict>& flags) const
   {
     for (std::size_t i = 0; i < verdicts.size(); ++i)
-      if (verdicts[i] == Verdict::colliding || (verdicts[i] == Verdict::undecided && places_ == Places::possible))
+      if (verdicts[i] == Verdict::colliding || (verdicts[i] == Verdict::undecided && places_ == MeantPlaces::possible))
         flags[i] = Verdict::colliding;
   }
 
   const SweptPart &a_, &b_;
   const double clearance_;
-  const Places places_;
+  const MeantPlaces places_;
   const PairReach reach_of_pairs_;
   const double farthest_; ///< any pair's reach, less its radii
   const double tolerance_, angle_;
@@ -172,12 +172,12 @@ double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length)
 }
 
 std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                          Places places, Work& work)
+                                          MeantPlaces places, Work& work)
 {
   return Sweep(a, b, clearance, tolerance, places, work).first();
 }
 
-void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, MeantPlaces places,
                   std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b, Work& work)
 {
   Sweep(a, b, clearance, tolerance, places, work).flag(flags_a, flags_b);

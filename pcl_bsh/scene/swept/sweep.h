@@ -43,11 +43,11 @@ double closingReach(const ObjectMotion& a, const ObjectMotion& b, double length)
 /// Returns the first s in [0, 1] at which two points, placed as `places` says, are within clearance + tolerance and
 /// come nearer; at no smaller s do any collide.
 std::optional<PairContact> firstContactOf(const SweptPart& a, const SweptPart& b, double clearance, double tolerance,
-                                          Places places, Work& work);
+                                          MeantPlaces places, Work& work);
 
 /// Flags, one per record, the points that collide with one of the other part at some s in [0, 1], placed as `places`
 /// says. A point farther than clearance + tolerance at all s is not flagged.
-void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, Places places,
+void flagContacts(const SweptPart& a, const SweptPart& b, double clearance, double tolerance, MeantPlaces places,
                   std::vector<Verdict>& flags_a, std::vector<Verdict>& flags_b, Work& work);
 
 } // namespace pcl_bsh

@@ -2,7 +2,7 @@
 // Compares a site, tile by tile, with a cloud in memory or with another site.
 #pragma once
 
-#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/obstacle_tiles.h>
 
@@ -44,14 +44,14 @@ private:
 class Comparison {
 public:
   /// @param visited whose tiles are visited, with its uncertainty. @param other none: the obstacle in memory
-  Comparison(const Asked& asked, const PlacedSite& visited, const std::optional<PlacedSite>& other)
+  Comparison(const QuestionPart& part, const PlacedSite& visited, const std::optional<PlacedSite>& other)
   : visited_(visited),
-    inquiry_(asked, visited)
+    tile_query_(part, visited)
   {
     if (other)
-      tiles_.emplace(*other, inquiry_.bytesLeft());
+      tiles_.emplace(*other, tile_query_.bytesLeft());
     else
-      cloud_.emplace(Placed(asked.model(), asked.question.pose), asked.question.solid);
+      cloud_.emplace(Placed(part.model(), part.question.pose), part.question.solid);
     if (other) pose_of_other_ = other->pose;
   }
 
@@ -75,19 +75,19 @@ public:
   TilesRead visit(double distance, const Ask& ask, const Least& least)
   {
     const auto tiles = tilesNear(distance);
-    return inquiry_.visit(numbersOf(tiles), placed(ask), [&](std::size_t visited) {
+    return tile_query_.visit(numbersOf(tiles), placed(ask), [&](std::size_t visited) {
       const double most = least();
       return visited < tiles.size() && tiles[visited].first <= most;
     });
   }
 
-  /// As Inquiry::visitAndAdd(), with points where they stand, in the order of the site's tiles.
+  /// As TileQuery::visitAndAdd(), with points where they stand, in the order of the site's tiles.
   template <typename Find, typename Add>
   TilesRead visitAndAdd(double distance, const Find& find, const Add& add)
   {
     std::vector<std::uint32_t> numbers = numbersOf(tilesNear(distance));
     std::sort(numbers.begin(), numbers.end());
-    return inquiry_.visitAndAdd(numbers, placed(find), add, isOfSites());
+    return tile_query_.visitAndAdd(numbers, placed(find), add, isOfSites());
   }
 
   /// Calls compare(tile, near points where they stand) for tiles of the other site, the nearest first, while they are
@@ -96,7 +96,7 @@ public:
   void compareWithOther(const Tile& tile, const Reach& reach, const Compare& compare)
   {
     if (tiles_)
-      tiles_->compare(boxOf(tile), reach, inquiry_.building(), compare);
+      tiles_->compare(boxOf(tile), reach, tile_query_.building(), compare);
     else
       compare(pcl::PCLPointCloud2(), cloud_->cloud);
   }
@@ -143,7 +143,7 @@ private:
   }
 
   const PlacedSite visited_;
-  Inquiry inquiry_;
+  TileQuery tile_query_;
   std::optional<ObstacleCloud> cloud_; ///< in memory, or:
   std::optional<ObstacleTiles> tiles_;
   Eigen::Isometry3d pose_of_other_ = Eigen::Isometry3d::Identity();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/flags/collision_flags.h>
-#include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/joined_poses.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 
 #include <algorithm>
 
@@ -54,7 +54,7 @@ std::vector<PoseSummary> JoinedPoses::joined(const std::function<SphereHierarchy
 void JoinedPoses::count(const std::vector<std::size_t>& poses,
                         const std::function<SphereHierarchy(std::size_t)>& model_of)
 {
-  const FlagsRequest wanted(request_.clearance, Side::a, {request_.accuracy, request_.threads});
+  const FlagsRequest wanted(request_.clearance, Flagged::a, {request_.accuracy, request_.threads});
   std::vector<std::vector<Verdict>> flags(poses.size());
   for (auto& of_pose : flags) of_pose.assign(scan_.view().count, Verdict::free);
   FlagsResult found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/site/answers/inquiry.h>
 #include <pcl_bsh/site/answers/passage_sum.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 
 #include <algorithm>
 #include <utility>
@@ -62,9 +62,9 @@ std::vector<Point3> cornersOf(const Site& site)
   return {site.bounds->low, site.bounds->high};
 }
 
-TrajectoryRequest alongPath(const Asked& asked)
+TrajectoryRequest alongPath(const QuestionPart& part)
 {
-  const Question& question = asked.question;
+  const Question& question = part.question;
   const Wanted& of_all = question.wanted;
   auto wanted = wantedOf<TrajectoryRequest>(question);
   const bool closest = of_all.closest && !question.accuracy.stopsEarly(); // which knows no distances
@@ -96,14 +96,14 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b)
   return std::pair(b.pose, b.fraction) < std::pair(a.pose, a.fraction) ? b : a;
 }
 
-PassageSum::PassageSum(const Asked& asked, std::size_t poses)
-: clashes_(asked.means.clashes),
+PassageSum::PassageSum(const QuestionPart& part, std::size_t poses)
+: clashes_(part.means.clashes),
   least_(infinity),
   first_(infinity),
   contact_(no_contact),
   certain_(no_contact)
 {
-  if (asked.question.wanted.poses) poses_.resize(poses);
+  if (part.question.wanted.poses) poses_.resize(poses);
 }
 
 std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,

@@ -2,7 +2,7 @@
 // The request for each tile of a site along a path, and the sum of the answers.
 #pragma once
 
-#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/answers/question_part.h>
 #include <pcl_bsh/site/site_clashes.h>
 #include <pcl_bsh/site/tiles/path_boxes.h>
 
@@ -12,7 +12,7 @@
 namespace pcl_bsh::site {
 
 /// The request for each tile: flags and, where they are wanted, distances and poses of points that collide.
-TrajectoryRequest alongPath(const Asked& asked);
+TrajectoryRequest alongPath(const QuestionPart& part);
 
 /// Returns the reach of the model: a tile within it may collide.
 PathReach pathReach(const TrajectoryRequest& request);
@@ -31,7 +31,7 @@ FirstContact earlier(const FirstContact& a, const FirstContact& b);
 class PassageSum {
 public:
   /// @param poses how many there are
-  PassageSum(const Asked& asked, std::size_t poses);
+  PassageSum(const QuestionPart& part, std::size_t poses);
 
   /// Returns the answer about a tile as numbers.
   /// @param met the points that closest_point numbers, where the model is a site

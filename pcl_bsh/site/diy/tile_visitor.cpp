@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dealer.h"
+#include "shared_counter.h"
 
 #include <pcl_bsh/site/tiles/tile_visitor.h>
 
@@ -140,20 +140,20 @@ catch (...) {
 void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run)
 {
   const diy::mpi::communicator comm = world();
-  Dealer dealer;
+  SharedCounter shared_counter;
   diy::Master master(comm, 1, -1, makeBlock, destroyBlock); // all ranks make it together
   std::exception_ptr failure;
   const auto visit_block = [&](Block* block, const diy::Master::ProxyWithLink&) {
     failure = visit(block->tile, block->place, use);
   };
   const std::size_t runs = (tiles.size() + run - 1) / run;
-  for (std::size_t number = dealer.next(); number < runs; number = dealer.next()) {
+  for (std::size_t number = shared_counter.next(); number < runs; number = shared_counter.next()) {
     for (std::size_t place = number * run; place < std::min((number + 1) * run, tiles.size()) && !failure; ++place) {
       master.clear();
       master.add(0, new Block{tiles[place], static_cast<std::uint32_t>(place)}, new diy::Link);
       master.foreach (visit_block);
     }
-    if (failure) dealer.end(runs);
+    if (failure) shared_counter.end(runs);
   }
   throwOfAnyRank(failure);
 }

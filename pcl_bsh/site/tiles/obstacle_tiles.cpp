@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/site/answers/inquiry.h>
+#include <pcl_bsh/site/answers/tile_query.h>
 #include <pcl_bsh/site/tiles/cloud_boxes.h>
 #include <pcl_bsh/site/tiles/needed_tiles.h>
 #include <pcl_bsh/site/tiles/obstacle_tiles.h>
@@ -57,7 +57,7 @@ const pcl::PCLPointCloud2& ObstacleTiles::load(std::uint32_t i)
 PointsView ObstacleTiles::points(std::uint32_t i)
 {
   needed_.insert(i);
-  return Inquiry::pointsOf(load(i), site_.site, tile(i), site_.uncertainty);
+  return TileQuery::pointsOf(load(i), site_.site, tile(i), site_.uncertainty);
 }
 
 PointsView ObstacleTiles::cut(std::uint32_t i, const Bounds& box, double distance)

@@ -2,7 +2,7 @@
 // The tiles of a site that another is compared with, read when they are needed, and cut to the points that are near.
 #pragma once
 
-#include <pcl_bsh/site/answers/asked.h>
+#include <pcl_bsh/site/answers/question_part.h>
 
 #include <cstdint>
 #include <list>

@@ -33,7 +33,7 @@ PathBoxes::PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3
 /// turns about the pivot by an angle at a constant speed; linear interpolation of a function errs by an eighth of its
 /// second derivative, which here is the arm times the angle squared. Poses are rigid within 1e-6 only; this error
 /// changes during the step.
-double PathBoxes::strayOf(std::size_t step) const
+double PathBoxes::shiftOf(std::size_t step) const
 {
   const Eigen::Matrix3d turn = poses_[step].linear().transpose() * poses_[step + 1].linear();
   // From the chord |R - 1|_F = 2 sqrt(2) sin(angle / 2): the angle is at most pi / 2 times twice the sine of its half.
@@ -45,7 +45,7 @@ double PathBoxes::strayOf(std::size_t step) const
 Bounds PathBoxes::boxOf(const Bounds& part, std::size_t step) const
 {
   if (!reach_.moves || step + 1 >= poses_.size()) return moved(part, poses_[step], reach_.distance);
-  const double reach = reach_.distance + strayOf(step);
+  const double reach = reach_.distance + shiftOf(step);
   return joined(moved(part, poses_[step], reach), moved(part, poses_[step + 1], reach));
 }
 

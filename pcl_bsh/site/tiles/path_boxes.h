@@ -28,7 +28,7 @@ public:
 
 private:
   Bounds boxOf(const Bounds& part, std::size_t step) const;
-  double strayOf(std::size_t step) const;
+  double shiftOf(std::size_t step) const;
   bool mayReach(const Bounds& box, std::size_t level, std::size_t index) const;
 
   const CloudBoxes& model_;

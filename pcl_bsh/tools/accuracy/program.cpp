@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program.h"
 
-#include "report.h"
+#include "accuracy_report.h"
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
-#include <pcl_bsh/tools/collide/options.h>
+#include <pcl_bsh/tools/collide/collide_options.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/output_folder.h>

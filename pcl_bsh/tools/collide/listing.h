@@ -2,8 +2,8 @@
 // The list of clashes that a comparison writes, and the earlier one that it is compared with.
 #pragma once
 
-#include "options.h"
-#include "report.h"
+#include "collide_options.h"
+#include "collide_report.h"
 
 #include <pcl_bsh/io/reports/clash_report.h>
 

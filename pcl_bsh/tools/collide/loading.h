@@ -2,7 +2,7 @@
 // From files to the two things of a question, and back. Each step adds its seconds.
 #pragma once
 
-#include "options.h"
+#include "collide_options.h"
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/question/ask.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "options.h"
-#include "report.h"
+#include "collide_options.h"
+#include "collide_report.h"
 
 #include <pcl_bsh/io/reports/distance_report.h>
 

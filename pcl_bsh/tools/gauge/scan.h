@@ -2,7 +2,7 @@
 // The scan of a gauging run, batch by batch: more than once, and larger than memory where nothing wants it whole.
 #pragma once
 
-#include "options.h"
+#include "gauge_options.h"
 
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>

@@ -2,7 +2,7 @@
 // Runs a pipeline and reports its progress.
 #pragma once
 
-#include "options.h"
+#include "pipeline_options.h"
 
 namespace pcl_bsh::cli {
 

@@ -2,8 +2,8 @@
 // pcl_bsh_site collide --clashes: the places of a site that collide, as pcl_bsh_collide lists them.
 #pragma once
 
-#include "options.h"
-#include "report.h"
+#include "site_options.h"
+#include "site_report.h"
 
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/site/site_clashes.h>

@@ -20,7 +20,7 @@
 
 #include "clashes.h"
 #include "output.h"
-#include "report.h"
+#include "site_report.h"
 
 #include <algorithm>
 #include <chrono>
@@ -49,7 +49,7 @@ public:
     warnings = droppedBy(*out_, "--obstacle-out", options.obstacle_out, obstacle, fields);
   }
 
-  site::TileSink sink()
+  site::TileReceiver receiver()
   {
     return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const Answer& found) {
       out_->write(tile, cloud, {found.obstacle_flags.data()});
@@ -118,8 +118,8 @@ int answer(SiteOptions options, bool& keeps)
   else {
     report["points_of_obstacle"] = other->points;
   }
-  const site::SiteMeans means = {options.memory, output.answers(), clashes.finder(), output.sink(),
-                                 obstacle_out ? obstacle_out->sink() : nullptr};
+  const site::SiteMeans means = {options.memory, output.answers(), clashes.finder(), output.receiver(),
+                                 obstacle_out ? obstacle_out->receiver() : nullptr};
   site::SiteAnswer found = cli::named(
       [&] { return file ? site::ask(question, site, shape, means) : site::ask(question, site, *other, means); },
       question, {options.trajectory.empty() ? "--pose" : "--trajectory"});

@@ -2,7 +2,7 @@
 // pcl_bsh_site collide: a question about a site, answered on all ranks, and told by the first.
 #pragma once
 
-#include "options.h"
+#include "site_options.h"
 
 namespace pcl_bsh::cli {
 

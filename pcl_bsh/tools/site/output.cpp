@@ -154,7 +154,7 @@ SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, dou
   warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
 }
 
-site::TileSink SiteOutput::sink()
+site::TileReceiver SiteOutput::receiver()
 {
   if (!out_) return nullptr;
   return [this](const site::Tile& tile, const pcl::PCLPointCloud2& cloud, const Answer& found) {

@@ -2,7 +2,7 @@
 // pcl_bsh_site collide --out: the answer about each point, as a site.
 #pragma once
 
-#include "options.h"
+#include "site_options.h"
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/site/ask_site.h>
@@ -45,7 +45,7 @@ std::vector<std::string> droppedBy(const site::ResultSite& out, const std::strin
                                    const std::filesystem::path& folder, const site::Site& site,
                                    const std::vector<site::ResultField>& fields);
 
-/// The site of results, where it is asked for; else its sink is null.
+/// The site of results, where it is asked for; else its receiver is null.
 class SiteOutput {
 public:
   /// @param obstacle null where that is a site, too
@@ -59,7 +59,7 @@ public:
   /// Returns the answers of an earlier run, to which this run adds its own; null: nothing is kept.
   site::TileAnswers* answers() { return out_ ? out_->answers() : nullptr; }
 
-  site::TileSink sink();
+  site::TileReceiver receiver();
 
   /// After the question. To be called by all ranks.
   void finish();

@@ -17,7 +17,7 @@ namespace {
 constexpr double farther = std::numeric_limits<double>::infinity();
 
 struct Place {
-  bool held;
+  bool enclosed;
   double distance; ///< to the surface
   std::uint32_t nearest;
 };
@@ -51,24 +51,24 @@ std::vector<Place> lookAt(const PointsView& places, const Eigen::Isometry3d& pos
 
 } // namespace
 
-DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
+DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
                       unsigned steps)
 {
   DepthsResult result;
-  const PointsView& view = content.thing().view();
-  if (!content.isSurface()) {
+  const PointsView& view = queried.thing().view();
+  if (!queried.isSurface()) {
     std::vector<float> radii;
-    const std::vector<Place> places = lookAt(sunk(view, radii), T_world_content, solid, result.work);
+    const std::vector<Place> places = lookAt(sunk(view, radii), T_world_queried, solid, result.work);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto [held, depth, nearest] = places[i];
+      const auto [enclosed, depth, nearest] = places[i];
       const double low = depth == 0.0 ? 0.0 : std::nextafter(depth, 0.0);
-      if (held)
+      if (enclosed)
         result.depths.push_back(
             {view.record(i), {low, depth == 0.0 ? 0.0 : std::nextafter(depth, farther)}, depth, nearest});
     }
     return result;
   }
-  for (const std::uint32_t record : content.triangles()) {
+  for (const std::uint32_t record : queried.triangles()) {
     const std::array<Point3, 3> t = view.triangles->triangle(record);
     std::vector<Point3> grid;
     for (unsigned i = 0; i <= steps; ++i)
@@ -87,9 +87,9 @@ DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eige
     depth.record = record;
     depth.depth.lower = 0.0;
     double signed_upper = -farther;
-    for (const Place& place : lookAt(viewOf(grid.front().data(), grid.size()), T_world_content, solid, result.work)) {
-      signed_upper = std::max(signed_upper, place.held ? place.distance : -place.distance);
-      if (!place.held || place.distance < depth.depth.lower) continue;
+    for (const Place& place : lookAt(viewOf(grid.front().data(), grid.size()), T_world_queried, solid, result.work)) {
+      signed_upper = std::max(signed_upper, place.enclosed ? place.distance : -place.distance);
+      if (!place.enclosed || place.distance < depth.depth.lower) continue;
       depth.depth.lower = depth.told = place.distance;
       depth.nearest = place.nearest;
     }

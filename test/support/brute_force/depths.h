@@ -9,7 +9,7 @@ namespace pcl_bsh::brute_force {
 /// For points and balls, its contract is that of its namesake in depths.h. Triangles are looked at in the places of a
 /// grid: no deeper than between these is what lies among them.
 /// @param steps of the grid, along each side of a triangle
-DepthsResult depthsIn(const DeepSolid& solid, const Content& content, const Eigen::Isometry3d& T_world_content,
+DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
                       unsigned steps = 64);
 
 } // namespace pcl_bsh::brute_force

@@ -132,13 +132,13 @@ UnseenResult markUnseen(const std::vector<ScanBeams>& scans, double angle, const
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
     if (!isFinite(view.point(record)) || verdicts[record] != Verdict::free) continue;
-    const RecordSeen sight(model, request.clearance, sees_ball);
-    if (sight(record)) continue;
+    const RecordSeen seen_record(model, request.clearance, sees_ball);
+    if (seen_record(record)) continue;
     verdicts[record] = Verdict::unseen;
     ++result.unseen;
     if (!request.kinds) continue;
     result.kinds.in_shadow[record] =
-        sight.isInShadow(record, shadow, request.parts ? &result.kinds.parts : nullptr, frame);
+        seen_record.isInShadow(record, shadow, request.parts ? &result.kinds.parts : nullptr, frame);
     result.in_shadow += result.kinds.in_shadow[record] ? 1 : 0;
   }
   return result;

@@ -6,8 +6,8 @@
 
 #include <pcl_bsh/tools/viewer/actors/palette.h>
 #include <pcl_bsh/tools/viewer/content/view_content.h>
-#include <pcl_bsh/tools/viewer/options.h>
 #include <pcl_bsh/tools/viewer/render_view.h>
+#include <pcl_bsh/tools/viewer/view_options.h>
 
 #include <pcl_bsh/vtk/display.h>
 #include <pcl_bsh/vtk/offscreen_window.h>

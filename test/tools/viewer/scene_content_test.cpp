@@ -48,7 +48,7 @@ protected:
   {
     FlagsRequest request;
     request.clearance = clearance;
-    request.flagged = Side::both;
+    request.flagged = Flagged::both;
     const FlagsResult flags = collisionFlags({*content.viewedClouds()[0].hierarchy, content.poseOf(0, step)},
                                              {*content.viewedClouds()[1].hierarchy, content.poseOf(1, step)}, request);
     return static_cast<std::size_t>(std::count(flags.a.begin(), flags.a.end(), Verdict::colliding) +

@@ -32,7 +32,7 @@ pcl::PCLPointCloud2 withFields()
 }
 
 /// Names places by number, in the order in which they first come.
-class Places {
+class NumberedPlaces {
 public:
   std::uint32_t numberOf(const Place& place)
   {
@@ -89,7 +89,7 @@ bool isText(std::string_view file)
   return text.nextLine() && keyword(text) == "solid" && withoutEndMarks(file).find('\0') == std::string_view::npos;
 }
 
-void readBinary(std::string_view file, Places& places, std::vector<Triangle>& triangles)
+void readBinary(std::string_view file, NumberedPlaces& places, std::vector<Triangle>& triangles)
 {
   const auto count = countOf(file);
   if (!count) throw FormatError("is not an STL file: it is shorter than a header, and does not start with 'solid'");
@@ -110,7 +110,7 @@ void expect(TextCursor& text, std::string_view word)
   if (keyword(text) != word) text.fail("has no '" + std::string(word) + "' where a facet needs one");
 }
 
-void readText(std::string_view file, Places& places, std::vector<Triangle>& triangles)
+void readText(std::string_view file, NumberedPlaces& places, std::vector<Triangle>& triangles)
 {
   bool in_solid = false;
   for (TextCursor text(file); text.nextLine();) {
@@ -149,7 +149,7 @@ void readText(std::string_view file, Places& places, std::vector<Triangle>& tria
 
 pcl::PCLPointCloud2 parseStl(std::string_view file, std::vector<Triangle>* triangles)
 {
-  Places places;
+  NumberedPlaces places;
   std::vector<Triangle> found;
   if (isText(file))
     readText(withoutEndMarks(file), places, found);

@@ -14,11 +14,11 @@ namespace pcl_bsh::viewer {
 namespace {
 
 /// A side from which a box is looked at.
-struct Side {
+struct ViewSide {
   Eigen::Vector3d toward_eye, up;
 };
 
-Side sideOf(Camera::Kind kind)
+ViewSide sideOf(Camera::Kind kind)
 {
   if (kind == Camera::Kind::top) return {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY()};
   if (kind == Camera::Kind::front) return {-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
@@ -27,11 +27,11 @@ Side sideOf(Camera::Kind kind)
 }
 
 /// Slanted, the same turned about z, from above; then the same from below.
-std::vector<Side> allSides()
+std::vector<ViewSide> allSides()
 {
   constexpr int turns = 8;
-  const Side slanted = sideOf(Camera::Kind::slanted), top = sideOf(Camera::Kind::top);
-  std::vector<Side> sides;
+  const ViewSide slanted = sideOf(Camera::Kind::slanted), top = sideOf(Camera::Kind::top);
+  std::vector<ViewSide> sides;
   for (const double height : {1.0, -1.0}) {
     const Eigen::Vector3d flip(1.0, 1.0, height);
     for (int turn = 0; turn < turns; ++turn) {
@@ -44,7 +44,7 @@ std::vector<Side> allSides()
 }
 
 /// Where the whole box is seen from.
-Gaze gazeAt(const Side& side, const vtkBoundingBox& seen, double tall, double aspect, double free_width)
+Gaze gazeAt(const ViewSide& side, const vtkBoundingBox& seen, double tall, double aspect, double free_width)
 {
   Gaze gaze;
   gaze.toward = side.toward_eye;
@@ -82,11 +82,11 @@ void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& see
     return;
   }
   const double tall = std::tan(view.GetViewAngle() * std::numbers::pi / 360.0);
-  Side side = sideOf(camera.kind);
+  ViewSide side = sideOf(camera.kind);
   if (camera.kind == Camera::Kind::colliding) {
     constexpr double clearly = 1.1;
     double most = 0.0;
-    for (const Side& other : allSides()) {
+    for (const ViewSide& other : allSides()) {
       const double share = shareSeen(gazeAt(other, seen, tall, aspect, free_width), things);
       if (!(share > clearly * most)) continue;
       most = share;

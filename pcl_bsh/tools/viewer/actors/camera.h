@@ -3,7 +3,7 @@
 
 #include "visibility.h"
 
-#include <pcl_bsh/tools/viewer/options.h>
+#include <pcl_bsh/tools/viewer/view_options.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkRenderer.h>

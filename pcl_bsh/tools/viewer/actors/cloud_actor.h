@@ -4,7 +4,7 @@
 #include "palette.h"
 #include <pcl_bsh/tools/viewer/content/view_content.h>
 #include <pcl_bsh/tools/viewer/content/viewed_cloud.h>
-#include <pcl_bsh/tools/viewer/options.h>
+#include <pcl_bsh/tools/viewer/view_options.h>
 
 #include <pcl_bsh/hierarchy/points_view.h>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "viewed_cloud.h"
-#include <pcl_bsh/tools/viewer/options.h>
+#include <pcl_bsh/tools/viewer/view_options.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/pairs/trace.h>

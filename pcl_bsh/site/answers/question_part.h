@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of a question about a site. Each visits tiles once, and adds its results to the answer.
+#pragma once
+
+#include <pcl_bsh/site/ask_site.h>
+
+#include <optional>
+
+namespace pcl_bsh::site {
+
+/// A site where it stands, with how uncertain its points are.
+struct PlacedSite {
+  const Site& site;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Uncertainty uncertainty = {};
+};
+
+/// A part of a question. The obstacle is a thing in memory whose hierarchy is built, or another site.
+struct QuestionPart {
+  Question question; ///< its progress is that of the part
+  SiteMeans means;
+  const Site& site;
+  Shape* shape = nullptr;
+  const Site* other = nullptr;
+
+  double clearance() const { return question.clearance.value_or(0.0); }
+  const SphereHierarchy& model() const { return shape->hierarchy(); } ///< @pre it is in memory
+
+  /// The input, and the obstacle where it is a site, as they stand: with their uncertainties, or as they were measured.
+  PlacedSite input() const { return {site, Eigen::Isometry3d::Identity(), question.uncertaintyOfInput()}; }
+  PlacedSite measuredInput() const { return {site}; }
+  std::optional<PlacedSite> obstacle() const
+  {
+    return other ? std::optional(PlacedSite{*other, question.pose, question.uncertaintyOfObstacle()}) : std::nullopt;
+  }
+  std::optional<PlacedSite> measuredObstacle() const
+  {
+    return other ? std::optional(PlacedSite{*other, question.pose}) : std::nullopt;
+  }
+};
+
+void findAny(const QuestionPart& part, SiteAnswer& answer);
+void flag(const QuestionPart& part, SiteAnswer& answer);         ///< the input's points, and the obstacle's in memory
+void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< of another site
+void findClosest(const QuestionPart& part, SiteAnswer& answer);
+void measure(const QuestionPart& part, SiteAnswer& answer);
+void followPath(const QuestionPart& part, SiteAnswer& answer);
+void lookAround(const QuestionPart& part, SiteAnswer& answer); ///< the unseen records of the obstacle
+
+/// Returns the warning of question/warnings/hollow.h about an obstacle in memory that is no solid, and whose faces
+/// close round a place of the site while no point of the site is near them. Reads up to four of the tiles that meet its
+/// box at some pose.
+/// @param name of the site.
+/// @param nearest the smallest distance that the answer tells; none: it tells none, and where there is such a place,
+///   the smallest distance is computed
+std::optional<Warning> warningOfHollow(const QuestionPart& part, const std::string& name,
+                                       std::optional<double> nearest);
+
+} // namespace pcl_bsh::site

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gauge_options.h"
+
+#include <pcl_bsh/tools/cli/command_line.h>
+
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/text/parse_number.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_bsh::cli {
+namespace {
+
+constexpr auto gauge_footer =
+    R"(A point's chainage is that of the axis' nearest place in plan. Its offset is to the right of the axis, its height above
+it, both in the plane that cant turns. Its clearance is its distance from the profile's outline in that section, below 0
+inside. A part of the axis without points has no data, and is not clear. TRACKS.md has the forms of all files.
+INPUT may be any file of points that pcl_bsh_collide reads. Without OUTPUT a .las, .laz or binary .pcd is read part by
+part, and may be larger than memory.
+Exit code: 0 done, infringed or not; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
+
+Example: what of a scan reaches into a structure gauge along a line?
+  pcl_bsh_gauge scan.las --axis line.xml --profile gauge.dxf --table table.csv --page gauging.html
+Example: the same with two profiles, of which one is a vehicle's that widens in curves, and sections
+  pcl_bsh_gauge scan.las marked.las --axis line.csv --profile gauge.csv --profile wagon.csv --vehicle wagon=19,3.7 \
+      --sections sections --at 1200 --at 1350
+Example: poses of a wagon whose pivots are 19 m apart, for pcl_bsh_collide
+  pcl_bsh_gauge --axis line.axis --pivots 19 --step 0.5 --poses-out poses.txt)";
+
+/// NAME=VALUE, or VALUE for all profiles.
+void forProfiles(std::vector<ProfileOptions>& profiles, const std::string& option, const std::string& given,
+                 const std::function<void(ProfileOptions&, const std::string&)>& use)
+{
+  const std::size_t equals = given.find('=');
+  const std::string name = equals == std::string::npos ? "" : given.substr(0, equals);
+  const std::string value = equals == std::string::npos ? given : given.substr(equals + 1);
+  bool used = false;
+  std::string names;
+  for (ProfileOptions& profile : profiles) {
+    names += (names.empty() ? "" : ", ") + profile.name;
+    if (!name.empty() && profile.name != name) continue;
+    use(profile, value);
+    used = true;
+  }
+  if (!used) throw UsageError(option + ": " + given + ": no profile is called '" + name + "': give one of " + names);
+}
+
+/// Two numbers with that character between them.
+std::pair<double, double> twoNumbers(const std::string& option, const std::string& text, char between,
+                                     const std::string& form)
+{
+  const std::size_t at = text.find(between);
+  try {
+    if (at == std::string::npos) throw io::FormatError("'" + text + "' is no pair");
+    return {io::parseNumber<double>(text.substr(0, at)), io::parseNumber<double>(text.substr(at + 1))};
+  }
+  catch (const io::FormatError& error) {
+    throw UsageError(option + ": " + error.what() + ": give " + form);
+  }
+}
+
+void requireTogether(const GaugeOptions& options)
+{
+  const auto refuse = [](const std::string& option, const std::string& wrong) {
+    throw UsageError(option + ": " + wrong);
+  };
+  const bool poses = !options.poses.empty();
+  if (poses != (options.pivots > 0.0))
+    refuse(poses ? "--poses-out" : "--pivots",
+           poses ? "needs the vehicle: give --pivots L" : "makes poses: give --poses-out FILE");
+  if (options.input.empty()) {
+    if (!poses) refuse("command line", std::string("INPUT is required: see ") + gauge_program + " --help");
+    if (!options.profiles.empty()) refuse("--profile", "is compared with a scan: give INPUT");
+    for (const auto& [option, file] : {std::pair{"--table", &options.table},
+                                       {"--infringements", &options.infringements},
+                                       {"--report", &options.report},
+                                       {"--page", &options.page},
+                                       {"--sections", &options.sections}})
+      if (!file->empty()) refuse(option, "is about a scan: give INPUT");
+    return;
+  }
+  if (options.profiles.empty())
+    refuse("command line", std::string("--profile is required: see ") + gauge_program + " --help");
+  for (std::size_t i = 0; i < options.profiles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (options.profiles[i].name == options.profiles[j].name)
+        refuse("--profile", options.profiles[i].file.string() + ": another is called '" + options.profiles[i].name +
+                                "', too: rename a file");
+  if (!options.at.empty() && !options.draws())
+    refuse("--at", "draws sections: give --sections FOLDER or --page FILE.html");
+}
+
+} // namespace
+
+std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
+{
+  GaugeOptions options;
+  std::vector<std::filesystem::path> profiles;
+  std::vector<std::string> ranges, widenings, vehicles;
+  bool in_place = false;
+  const auto positive = [] {
+    return number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); });
+  };
+  const auto finite = [] { return number<double>("give a finite number", [](double d) { return std::isfinite(d); }); };
+  CLI::App app("Tables by chainage how far a scan is from profiles along an axis, and where it infringes them.",
+               gauge_program);
+  app.footer(gauge_footer);
+  app.add_option("INPUT", options.input, "the scan")->type_name("");
+  app.add_option("OUTPUT", options.output,
+                 "INPUT's points with all their fields, and chainage, offset, height,\n"
+                 "clearance, envelope (its number, -1: none) and place (0 at one place of\n"
+                 "the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite)")
+      ->type_name("");
+  app.add_option("--axis", options.axis, "points as .csv, an alignment of LandXML as .xml, or elements as text")
+      ->type_name("FILE")
+      ->required();
+  app.add_option("--alignment", options.axis_settings.alignment, "name of the alignment, where a LandXML holds several")
+      ->type_name("NAME");
+  app.add_option("--cant-unit", options.axis_settings.cant_unit,
+                 "cant is in so many of the clouds' units (default: 0.001 in LandXML, else 1)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--gauge", options.axis_settings.gauge,
+                 "between the rails' heads, whose heights cant tells (default: the file's, or 1.5)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option(
+         "--pivot", options.axis_settings.pivot,
+         "what cant turns about: low_rail, whose height is the axis', or centre\n(default: the file's, or low_rail)")
+      ->type_name("WHICH")
+      ->transform(choice<CantPivot>({{"low_rail", CantPivot::low_rail}, {"centre", CantPivot::centre}}));
+  app.add_option("--profile", profiles,
+                 "outline that must be free, as .csv (offset, height) or .dxf; its name is\n"
+                 "the file's, without extension; may be given more than once")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--profile-unit", options.profile_unit,
+                 "profiles are in so many of the clouds' units (default: as a .dxf says, or 1)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--range", ranges, "chainages where a profile counts; may be given more than once")
+      ->type_name("[NAME=]FROM:TO")
+      ->allow_extra_args(false);
+  app.add_option("--widening", widenings, "how a profile widens: a table of chainage, left, right")
+      ->type_name("[NAME=]FILE.csv")
+      ->allow_extra_args(false);
+  app.add_option("--vehicle", vehicles,
+                 "a profile widens by the overthrow of a vehicle with pivots P apart, and\n"
+                 "an overhang O beyond them, by the axis' radius")
+      ->type_name("[NAME=]P,O")
+      ->allow_extra_args(false);
+  app.add_option("--limit", options.limit, "clearances up to this infringe (default: 0)")
+      ->type_name("D")
+      ->transform(finite());
+  app.add_option("--step", options.step, "length of a part of the table, and between poses (default: 1)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--reach", options.reach.offset, "how far beside the axis points belong to it (default: 10)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--below", options.reach.below, "how far below it (default: 5)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--above", options.reach.above, "how far above it (default: 15)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--cluster-distance", options.cluster_distance,
+                 "infringing points no farther apart are one infringement (default: 0.5)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--table", options.table, "smallest clearances of each part of the axis")->type_name("FILE.csv");
+  app.add_option("--infringements", options.infringements, "the infringements, the worst first")->type_name("FILE.csv");
+  app.add_option("--report", options.report, "both, and the counts, as JSON; - is standard output")->type_name("FILE");
+  app.add_option("--page", options.page, "page for browsers: infringements, charts, maps, sections")
+      ->type_name("FILE.html");
+  app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
+      ->type_name("FOLDER");
+  app.add_option("--at", options.at, "chainage of a section to draw; may be given more than once")
+      ->type_name("C")
+      ->allow_extra_args(false)
+      ->transform(finite());
+  app.add_option("--thickness", options.thickness, "of sections, along the axis (default: 0.1)")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--pivots", options.pivots, "distance of a vehicle's two pivots, which both stand on the axis")
+      ->type_name("L")
+      ->transform(positive());
+  app.add_option("--poses-out", options.poses,
+                 "the vehicle's poses along the axis, for pcl_bsh_collide --trajectory; its\n"
+                 "own frame is midway between the pivots, x ahead, y to the left, z up")
+      ->type_name("FILE");
+  app.add_option("--unit", options.unit, "name of the clouds' unit, for reports")->type_name("NAME");
+  app.add_option("--threads", options.threads, "threads, 0: all of the machine's (default)")
+      ->type_name("N")
+      ->transform(number<unsigned>(give_threads));
+  ReadOptions reading;
+  reading.addTo(app);
+  app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
+  if (!understood(app, gauge_program, argc, argv)) return std::nullopt;
+
+  for (const std::filesystem::path& file : profiles)
+    options.profiles.push_back({file.stem().string(), file, {}, {}, {}});
+  for (const std::string& range : ranges)
+    forProfiles(options.profiles, "--range", range, [](ProfileOptions& profile, const std::string& value) {
+      const auto [from, to] = twoNumbers("--range", value, ':', "FROM:TO, such as 1200:1350");
+      profile.ranges.push_back({from, to});
+    });
+  for (const std::string& widening : widenings)
+    forProfiles(options.profiles, "--widening", widening,
+                [](ProfileOptions& profile, const std::string& value) { profile.widening = value; });
+  for (const std::string& vehicle : vehicles)
+    forProfiles(options.profiles, "--vehicle", vehicle, [](ProfileOptions& profile, const std::string& value) {
+      const auto [pivots, overhang] = twoNumbers("--vehicle", value, ',', "P,O, such as 19,3.7");
+      profile.vehicle = Vehicle{pivots, overhang};
+    });
+  requireTogether(options);
+  if (!options.input.empty()) options.reading = reading.read({options.input});
+
+  CommandFiles& files = options.files;
+  files.reads("INPUT", options.input).reads("--axis", options.axis);
+  for (const ProfileOptions& profile : options.profiles)
+    files.reads("--profile", profile.file).reads("--widening", profile.widening);
+  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "").writes("--report", options.report);
+  files.writes("--table", options.table).writes("--infringements", options.infringements);
+  files.writes("--page", options.page).writes("--poses-out", options.poses);
+  return options;
+}
+
+} // namespace pcl_bsh::cli
