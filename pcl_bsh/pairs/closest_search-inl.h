@@ -9,12 +9,10 @@
 #define PCL_BSH_PAIRS_CLOSEST_SEARCH_INL_H_
 #endif
 
-#include <pcl_bsh/pairs/closest_goal.h>
-#include <pcl_bsh/pairs/nearest.h>
+#include <pcl_bsh/pairs/best_pair-inl.h>
 #include <pcl_bsh/pairs/opening-inl.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/pair_queue-inl.h>
-#include <pcl_bsh/traversal/planes_between.h>
 #include <pcl_bsh/traversal/shared_stack.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
@@ -53,21 +51,14 @@ inline constexpr std::uint64_t kPairsBeforePoints = 48;
 ///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
 ///   is nearer; `allow(pause)`: until when not to stop
 template <class Others>
-class ClosestSearch : public PairVisitor {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
+class ClosestSearch : public PairVisitor, private BestPair {
 public:
   ClosestSearch(const Placed& a, const Placed& b, const ClosestGoal& goal, Others others, const Watch& by = {})
   : PairVisitor(by),
-    goal_(goal),
-    walk_(a, b),
-    pairs_(a, b, 0.0),
+    BestPair(a, b, goal),
     stop_check_(goal_.rule, walk_.work.node_pairs),
     others_(std::move(others))
   {
-    walk_.makeWholes();
-    best_.to_beat = goal_.most();
-    sharp_ = 0x1p-36 * smallerRadius();
     if (goal_.rule.isTimed()) walk_.pairs_before_points = kPairsBeforePoints;
   }
 
@@ -110,13 +101,7 @@ public:
     return {gap, best_.pair, intervalOf(gap), work};
   }
 
-  /// Of the search that run() has made, whether the distance exceeds the goal's clearance; with the nearest pair.
-  AnyResult verdict(const DistanceResult& found) const
-  {
-    const bool is_free = static_cast<double>(left_over_) > goal_.clearance;
-    const Verdict verdict = settled_ ? Verdict::colliding : is_free ? Verdict::free : Verdict::undecided;
-    return {verdict, found.pair, found.interval, found.work};
-  }
+  using BestPair::verdict;
 
   // As visitPairs() asks.
 
@@ -321,42 +306,6 @@ private:
     consider(one);
   }
 
-  /// Orders children that may be at a distance of 0, below that: by how far spheres overlap for their size.
-  static float overlapOf(const PairWalk::Step& step, std::uint32_t lane)
-  {
-    const float radius = step.children.r[lane] * step.children.stretch;
-    const float overlap = (step.gap[lane] + radius) / (radius + step.radius); // 0: one centre, 1: they touch
-    return overlap < 2.0f ? overlap - 2.0f : 0.0f;
-  }
-
-  /// No pair is nearer, as none was found.
-  double leastBeyond() const
-  {
-    const bool is_empty = walk_.a.storage.size == 0 || walk_.b.storage.size == 0;
-    return is_empty ? kInfinity : std::min(static_cast<double>(left_over_), goal_.max_distance);
-  }
-
-  /// Nothing was passed over but what is no nearer than the best less the tolerance.
-  Interval intervalOf(double gap) const
-  {
-    const double lower = std::nextafter(gap, -kInfinity) - goal_.tolerance;
-    const double known =
-        goal_.tolerance > 0.0 ? std::nextafter(lower, -kInfinity)
-        : goal_.rule.mayStop()
-            ? std::min({std::max(lower, best_lower_), static_cast<double>(left_over_), goal_.clearance})
-            : lower;
-    return {std::max(known, static_cast<double>(lowest_key_)), std::min(best_.high, std::nextafter(gap, kInfinity))};
-  }
-
-  /// A pair is worth a visit if it may be nearer, or as near with smaller record numbers.
-  bool canImprove(const LanePair& pair) const
-  {
-    const double bound = std::max(pair.key, lowest_key_);
-    if (bound < best_.to_beat) return true;
-    if (bound > best_.to_beat || goal_.tolerance > 0.0 || !best_.pair) return false;
-    return walk_.lowest(pair) < *best_.pair;
-  }
-
   /// The same of a pair whose turn has come.
   bool mayImprove(const LanePair& pair)
   {
@@ -409,16 +358,6 @@ private:
     return !(first < *best_.pair);
   }
 
-  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. What touches b's
-  /// only where the record does that was looked at beside all of a is as near as that one at most, and so no better.
-  PointPair firstAmong(const PlanesBetween::Touching& touching) const
-  {
-    const auto& [of_a, of_b] = touching;
-    if (of_a.lowest >= best_.pair->a) return {of_a.lowest, of_b.lowest};
-    if (of_b.elsewhere != BehindPlane::kNoRecord) return {of_a.lowest, of_b.elsewhere};
-    return {best_.pair->a, of_b.lowest};
-  }
-
   /// Of the children that the last step found near, those that can.
   std::uint32_t improvingOf(const WaitingChildren& children) const
   {
@@ -437,98 +376,17 @@ private:
 
   void consider(PointPair candidate)
   {
-    const bool none_nearer = none_nearer_ || (best_.high == 0.0 && !pairs_.mayOverlap()); // as nothing is than at 0
-    if (none_nearer && *best_.pair < candidate) return;
-    const RecordDistance::Pair posed = pairs_.posed(candidate);
-    ++walk_.work.exact_decisions;
-    ++steps_in_vain_;
-    planes_.policy.decidedInVain();
-    const double most = best_.pair ? best_.high : goal_.max_distance;
-    if (pairs_.ofTriangles() && pairs_.distance.isSurelyBeyond(posed, most)) return;
-    if (planes_.areBeyond(candidate)) return;
-    if (best_.pair) {
-      if (!(best_posed_.records == *best_.pair)) best_posed_ = pairs_.posed(*best_.pair);
-      const int sign = pairs_.distance.compareGaps(posed, best_posed_);
-      if (sign > 0 || (sign == 0 && *best_.pair < candidate)) return;
-      if (sign == 0) {
-        best_lower_ = std::max(best_lower_, static_cast<double>(at_least_));
-        best_.pair = candidate;
-        others_.tell(best_, pairs_);
-        return;
-      }
-    }
-    else if (goal_.max_distance < kInfinity && pairs_.distance.compare(posed, goal_.max_distance) > 0) {
-      return;
-    }
-    best_.pair = candidate;
-    best_posed_ = posed;
-    steps_in_vain_ = 0, has_looked_round_ = false;
-    planes_.clear(), planes_of_ = kInfinity;
-    best_lower_ = static_cast<double>(at_least_);
-    const auto [low, high] = boundGap(posed);
-    best_.low = low;
-    best_.high = low <= 0.0 && pairs_.distance.compare(posed, 0.0) == 0 ? 0.0 : high;
-    if (low <= goal_.clearance && goal_.clearance < kInfinity && pairs_.distance.compare(posed, goal_.clearance) <= 0) {
-      settled_ = true;
-      best_.high = std::min(best_.high, goal_.clearance);
-    }
-    best_.to_beat = goal_.tolerance > 0.0 ? std::nextafter(best_.high - goal_.tolerance, -kInfinity)
-                                          : std::min(best_.high, std::nextafter(goal_.clearance, kInfinity));
-    others_.tell(best_, pairs_);
+    if (take(candidate)) others_.tell(best_, pairs_);
   }
 
-  /// Of a pair's gap: what double arithmetic tells at once, if that is as good as nothing beside the clouds' size, so
-  /// that no more pairs are looked at. Rounding it takes ten times as long.
-  RecordDistance::Enclosure boundGap(const RecordDistance::Pair& posed) const
-  {
-    if (!pairs_.ofTriangles()) {
-      const auto [low, high] = pairs_.distance.enclose(posed);
-      const double radii = posed.radius_p + posed.radius_q, rounding = kFewDoubleRoundings * (high + radii);
-      if (high - low + rounding < sharp_) return {low - radii - rounding, high - radii + rounding};
-    }
-    const double gap = pairs_.distance.gap(posed);
-    return {std::nextafter(gap, -kInfinity), std::nextafter(gap, kInfinity)};
-  }
-
-  /// Of both clouds as wholes, that of the smaller one. @pre makeWholes()
-  double smallerRadius() const
-  {
-    const auto radiusOf = [](const Spaces& side) {
-      return side.storage.size == 0 ? 0.0 : side.node(kAboveVoxels, side.whole()).r[0] * side.storage.frame.unit;
-    };
-    return std::min(radiusOf(walk_.a), radiusOf(walk_.b));
-  }
-
-  const ClosestGoal goal_;
-  PairWalk walk_;
-  PointPairs pairs_;
-  /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
-  const float lowest_key_ = pairs_.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
   const ScratchLease<PairStack> kept_stack_;
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of what is depth first; before that, of a step's children
   PairWalk::Step step_;
   PairQueue queue_{lowest_key_};
-  alignas(32) float keys_[kLanes] = {};                      ///< of the children that the last step tested
-  float left_over_ = std::numeric_limits<float>::infinity(); ///< no pair that was left is nearer
-  float at_least_ = -std::numeric_limits<float>::infinity(); ///< the gaps that are considered
-  double best_lower_ = -kInfinity;                           ///< so much of the best one
-  double sharp_ = 0.0; ///< intervals of gaps that are narrower are taken for the gap
+  alignas(32) float keys_[kLanes] = {}; ///< of the children that the last step tested
   bool diving_ = false;
-  bool settled_ = false; ///< a pair is within the goal's clearance
   StopCheck stop_check_;
   Others others_;
-  Nearest best_;
-  RecordDistance::Pair best_posed_; ///< of the best pair, or of one before it
-
-  static constexpr std::uint64_t kDecisionsBeforePlanes = 256;
-  PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage,
-                        kDecisionsBeforePlanes}; ///< of the best pair
-  double planes_of_ = kInfinity;                 ///< Nearest::high of the pair they are of
-  std::uint64_t steps_in_vain_ = 0;              ///< since a nearer pair was found: decisions and pairs of leaves
-  const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
-  bool has_looked_round_ = false;
-  std::uint32_t looked_round_ = BehindPlane::kNoRecord; ///< of b: the best is no later than it beside all of a
-  bool none_nearer_ = false;                            ///< than the best below the pair that is visited
 };
 
 } // namespace HWY_NAMESPACE

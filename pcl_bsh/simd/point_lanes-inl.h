@@ -8,7 +8,7 @@
 #define PCL_BSH_SIMD_POINT_LANES_INL_H_
 #endif
 
-#include <pcl_bsh/simd/sphere_lanes-inl.h>
+#include <pcl_bsh/simd/slab_lanes-inl.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -17,21 +17,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Entries of the whole first grid, about; a finer one is made where a column has more than kCrowded.
-std::size_t mostEntries(std::size_t triangles)
-{
-  return 6 * triangles + (1 << 14);
-}
+constexpr auto mostEntries = [](std::size_t triangles) { return 6 * triangles + (1 << 14); };
 /// Entries added where these make few columns: for long thin triangles, each of which meets many.
-std::size_t moreEntries(std::size_t triangles)
-{
-  return std::min<std::size_t>(40 * triangles, 1 << 21);
-}
+constexpr auto moreEntries = [](std::size_t triangles) { return std::min<std::size_t>(40 * triangles, 1 << 21); };
 constexpr double kFewColumns = 1.0 / 16; ///< for each triangle
 /// Bytes of all grids. A finer one takes up to 128 for each of its triangles.
-std::size_t mostBytes(std::size_t triangles)
-{
-  return 32 * triangles + (1 << 17);
-}
+constexpr auto mostBytes = [](std::size_t triangles) { return 32 * triangles + (1 << 17); };
 constexpr std::size_t kFinerEntries = 16, kFinerCells = 8;
 constexpr std::uint32_t kCrowded = 128;
 constexpr std::uint32_t kTooCrowded = 4096;  ///< for a column without strips

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/simd/segment_lanes-inl.h>
+#include <pcl_bsh/simd/slab_lanes-inl.h>
 #include <pcl_bsh/simd/triangle_lanes-inl.h>
 #include <pcl_bsh/simd/triangle_pair_lanes-inl.h>
 
