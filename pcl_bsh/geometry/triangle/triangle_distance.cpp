@@ -38,7 +38,7 @@ int compareRoot(const Fraction<Number>& squared, const Number& length, bool& sur
 /// Its root, rounded to the nearest double; NaN where that is in doubt.
 ///
 /// The quotient q of the values is corrected by what is left of the numerator, n - q d, as LongNumber has it, over d.
-/// That correction is rounded by v twice, and taken over d's value, which is v of d off: 4 v of the correction; what n
+/// The correction is rounded by v twice, and taken over d's value, which is v of d off: 4 v of the correction; what n
 /// - q d errs by stays as it is.
 double nearestRoot(const Fraction<LongNumber>& squared)
 {
@@ -285,8 +285,8 @@ std::optional<bool> TriangleDistance::areParallelAsGiven(const TrianglePair& pai
   return areParallel(asGiven(pair.a), asGiven(pair.b));
 }
 
-/// Sign of the distance of the planes of the first pair less that of the second, which are all parallel. Of one pose,
-/// in the given coordinates: the pose stretches all gaps alike. Nothing where that is not known.
+/// Sign of the distance of the planes of the first pair less that of the second, which are all parallel. Compares
+/// pairs of one pose in the given coordinates: the pose stretches all gaps alike. Nothing where that is not known.
 std::optional<int> TriangleDistance::comparePlanesAsGiven(const TrianglePair& first, const TrianglePair& second) const
 {
   if (a_ != b_) return std::nullopt;
