@@ -46,7 +46,7 @@ struct NoOthers {
 /// finds near pairs late; each dive that finds none doubles the steps to the next one.
 inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
-/// What a search with a time compares of leaves before it may take long steps: most searches come to no more.
+/// Pairs that a search with a time compares of leaves before it may take long steps. Most searches come to no more.
 inline constexpr std::uint64_t kPairsBeforePoints = 48;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
@@ -101,7 +101,7 @@ public:
 
   const std::vector<LanePair>& left() const { return stack_; }
 
-  /// Of what is known by now.
+  /// The result as far as it is known by now.
   DistanceResult result(const Work& work)
   {
     others_.hear(best_);
@@ -110,7 +110,7 @@ public:
     return {gap, best_.pair, intervalOf(gap), work};
   }
 
-  /// Of the search that run() has made, whether the distance exceeds the goal's clearance; with the nearest pair.
+  /// Whether the distance exceeds the goal's clearance, as run() has found; with the nearest pair.
   AnyResult verdict(const DistanceResult& found) const
   {
     const bool is_free = static_cast<double>(left_over_) > goal_.clearance;
@@ -202,7 +202,7 @@ private:
         }
         if (queue_.isEmpty()) return;
         next = queue_.pop();
-        if (!mayImprove(*next)) { // and of those left, none but for its numbers
+        if (!mayImprove(*next)) { // those left may, at most, by their record numbers
           if (next->key <= best_.to_beat && !queue_.isEmpty()) {
             next.reset();
             continue;
@@ -244,8 +244,8 @@ private:
     return walk_.radiiOf(pair) <= widthBefore(pair);
   }
 
-  /// Whether a dive for a nearer pair than the one considered has come to where less is to be gained than by raising
-  /// the interval's lower end: a budget may end before a leaf is reached. (The factor: intervals after the same work,
+  /// Whether a dive for a nearer pair than the one considered is so deep that raising the interval's lower end gains
+  /// more. A budget may end before a leaf is reached. (The factor: intervals after the same work,
   /// of 2 to 16.)
   bool isDeepEnough(const LanePair& pair) const
   {
@@ -273,7 +273,7 @@ private:
     return one;
   }
 
-  /// Opens a pair and queues its children, but for one that comes next.
+  /// Opens a pair and queues its children, except one that comes next.
   std::optional<LanePair> openNearestNext(const LanePair& pair)
   {
     const Opened which = walk_.choose(pair);
@@ -300,15 +300,15 @@ private:
     return goes_on ? std::optional(nearest) : std::nullopt;
   }
 
-  /// On the first dive, which a budget may not let end.
+  /// Considers a pair on the first dive, which a budget may not let end.
   void considerIfMuchNearer(const LanePair& pair, float between_centers)
   {
     const double between = static_cast<double>(between_centers) * walk_.b.frame(pair.b.space).unit;
     if (between < 0.7 * best_.high) considerOneOf(pair);
   }
 
-  /// A bound from above, of any pair below. One that doubles do not tell from the best is none: ties, of which a cloud
-  /// and its copy have thousands, are for leaves to decide.
+  /// Considers one of the pairs below, for a bound from above. It is passed over where doubles do not tell it from the
+  /// best: ties, of which a cloud and its copy have thousands, are for leaves to decide.
   void considerOneOf(const LanePair& pair)
   {
     const PointPair one = walk_.lowest(pair);
@@ -329,14 +329,14 @@ private:
     return overlap < 2.0f ? overlap - 2.0f : 0.0f;
   }
 
-  /// No pair is nearer, as none was found.
+  /// No pair is nearer than this, where none was found.
   double leastBeyond() const
   {
     const bool is_empty = walk_.a.storage.size == 0 || walk_.b.storage.size == 0;
     return is_empty ? kInfinity : std::min(static_cast<double>(left_over_), goal_.max_distance);
   }
 
-  /// Nothing was passed over but what is no nearer than the best less the tolerance.
+  /// Holds the smallest distance: all pairs that were passed over are no nearer than the best less the tolerance.
   Interval intervalOf(double gap) const
   {
     const double lower = std::nextafter(gap, -kInfinity) - goal_.tolerance;
@@ -357,7 +357,7 @@ private:
     return walk_.lowest(pair) < *best_.pair;
   }
 
-  /// The same of a pair whose turn has come.
+  /// Whether a pair whose turn has come can improve; looks closer where steps were in vain.
   bool mayImprove(const LanePair& pair)
   {
     none_nearer_ = false;
@@ -365,14 +365,14 @@ private:
     return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
   }
 
-  /// The same where bounds tell little: of ties, and what doubles hardly tell from them.
+  /// Whether a pair can improve where bounds tell little: among ties, and what doubles hardly tell from them.
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
     return canImprove(pair) && !(planes_.policy.mayAsk() && isSettledByPlanes(pair));
   }
 
-  /// For what is nearer to one of the best pair, among all of the other cloud: half of what was done in vain before.
+  /// Compares each of the best pair with all of the other cloud. It costs half of what was done in vain before.
   void lookRound()
   {
     has_looked_round_ = true;
@@ -409,8 +409,8 @@ private:
     return !(first < *best_.pair);
   }
 
-  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. What touches b's
-  /// only where the record does that was looked at beside all of a is as near as that one at most, and so no better.
+  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. A record of
+  /// b that touches only where the one looked at beside all of a does is as near as that one at most, and so no better.
   PointPair firstAmong(const PlanesBetween::Touching& touching) const
   {
     const auto& [of_a, of_b] = touching;
@@ -419,7 +419,7 @@ private:
     return {best_.pair->a, of_b.lowest};
   }
 
-  /// Of the children that the last step found near, those that can.
+  /// The children that can improve, among those that the last step found near.
   std::uint32_t improvingOf(const WaitingChildren& children) const
   {
     std::uint32_t improving = 0, unsure = step_.near;
@@ -477,8 +477,8 @@ private:
     others_.tell(best_, pairs_);
   }
 
-  /// Of a pair's gap: what double arithmetic tells at once, if that is as good as nothing beside the clouds' size, so
-  /// that no more pairs are looked at. Rounding it takes ten times as long.
+  /// Bounds of a pair's gap: those of double arithmetic, if they are so narrow beside the clouds' size that no more
+  /// pairs are looked at. Rounding the gap takes ten times as long.
   RecordDistance::Enclosure boundGap(const RecordDistance::Pair& posed) const
   {
     if (!pairs_.ofTriangles()) {
@@ -490,7 +490,7 @@ private:
     return {std::nextafter(gap, -kInfinity), std::nextafter(gap, kInfinity)};
   }
 
-  /// Of both clouds as wholes, that of the smaller one. @pre makeWholes()
+  /// The radius of the smaller one of both clouds as wholes. @pre makeWholes()
   double smallerRadius() const
   {
     const auto radiusOf = [](const Spaces& side) {
