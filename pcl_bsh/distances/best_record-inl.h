@@ -46,7 +46,7 @@ public:
     take(found, pair, gap);
   }
 
-  /// The nearest of those considered; `voxel` is null where there is none.
+  /// The nearest of those considered; `voxel` is null where no record was near enough.
   const NearestFound& found() const { return best_; }
 
   /// The gap is at most this, in the clouds' unit.

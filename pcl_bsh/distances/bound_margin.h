@@ -5,9 +5,9 @@
 
 namespace pcl_bsh {
 
-/// Of bounds of distances between spheres, relative to the sum of their centres' distance, radii and reach: the root of
-/// a squared distance has two and a half roundings and its own, radii have three; then come two sums and a factor.
-/// Proved in test/proof/distances.g.
+/// Roundings of bounds of distances between spheres, relative to the sum of their centres' distance, radii and reach.
+/// The root of a squared distance has two and a half roundings and its own; radii have three. Two sums and a factor
+/// follow. Proved in test/proof/distances.g.
 inline constexpr int kBoundRoundings = 7;
 inline constexpr float kBoundMargin = static_cast<float>(relativeError(kBoundRoundings));
 

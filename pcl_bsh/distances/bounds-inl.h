@@ -36,7 +36,7 @@ struct DistanceObstacle {
   float normal_scale;                 ///< of normals that the frame has carried, to make them of length 1
   bool is_plain;                      ///< whether float distances in the frame can be compared with those in others
   const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where it has triangles
-  const Slabs* cross_slabs = nullptr; ///< likewise, where they are long
+  const Slabs* cross_slabs = nullptr; ///< second ones of these, where the triangles are long
 
   /// @param unit of the walk, in the clouds' unit @param unit_a of a's voxel
   DistanceObstacle(const Voxel* entered, const LocalFrame& in, const RelativeFrame& from_a, double unit, double unit_a)
@@ -101,8 +101,8 @@ HWY_INLINE Vector atLeast(const DistanceObstacle& obstacle, Vector near)
   return hn::Min(hn::Mul(near, hn::Set(d, obstacle.least)), hn::Mul(near, hn::Set(d, obstacle.most)));
 }
 
-/// Lower bounds of the distances from each of eight spheres to one other; lowers each `cut` to an upper bound of the
-/// distances from any point of that sphere to its nearest one in the other.
+/// Sets lower bounds of the distances from each of eight spheres to one other. Lowers each `cut` to an upper bound of
+/// the distances from any point of that sphere to its nearest one in the other.
 ///
 /// In the frame, centres are sqrt(s) apart within its error, which slack includes. kBoundMargin covers what
 /// rounding takes (test/proof/distances.g). Squares that overflow stand for lengths above 2^63. NaN bounds nothing.
@@ -189,7 +189,7 @@ HWY_INLINE void raiseByBothSlabs(const CarriedNode& own, const DistanceObstacle&
 }
 
 /// Lower bounds of the distances from a box to eight spheres in its frame, as boundDistances() has them; minus infinity
-/// where there is none.
+/// where floats tell no bound.
 HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle& obstacle, const float* low,
                              const float* high, float* lower)
 {
@@ -211,7 +211,7 @@ HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle&
 }
 
 /// The least of upper bounds of the distances from any point of a box to all of each of some spheres, eight at most:
-/// as boundDistances() has them. Infinite where there is none.
+/// as boundDistances() has them. Infinite where floats tell no bound.
 HWY_INLINE float farthestFromBox(const SphereLanes& spheres, const DistanceObstacle& obstacle, const float* low,
                                  const float* high, std::uint32_t count)
 {
@@ -244,9 +244,9 @@ HWY_INLINE std::uint32_t notAbove(const float* values, const float* limits)
   return bits ^ ((1u << kLanes) - 1);
 }
 
-/// The squared distances of eight places from a triangle as lengths in the walk's unit, with spheres around the places:
-/// of all that is in one, at least, and of its farthest, at most. @param error of the triangle and of what is carried,
-/// in the obstacle's unit
+/// Bounds the distances of spheres around eight places from a triangle, in the walk's unit. `low` is for the nearest
+/// point of a sphere, `high` for its farthest. @param squared distances of the places, in the obstacle's unit
+/// @param error of the triangle and of the carried places, in the obstacle's unit
 template <class Tag>
 HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, float error,
                              const DistanceObstacle& obstacle, hn::Vec<Tag>& low, hn::Vec<Tag>& high)

@@ -5,8 +5,8 @@
 //
 // p lies within `radius` of c, and q and q* are `extent` apart at most, and at least `nearest` from p. Where p moves,
 // the difference |p - q| - |p - q*| changes by at most the difference of two unit vectors, which is extent / nearest at
-// most: if |c - q| exceeds |c - q*| by more than radius * extent / nearest, q* is nearer to all p. Of bounds that hold
-// for the whole sphere, lower <= |c - q| - radius and upper >= |c - q*| + radius, that is
+// most. If |c - q| exceeds |c - q*| by more than radius * extent / nearest, q* is nearer to all p. For bounds of the
+// whole sphere, lower <= |c - q| - radius and upper >= |c - q*| + radius. The condition then is
 //   lower > upper - radius * (2 - extent / nearest).
 // Balls of b shift their distances by their radii, which cancel out.
 #pragma once

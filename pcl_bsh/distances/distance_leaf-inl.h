@@ -99,7 +99,7 @@ public:
     writeAll(visit, lane);
   }
 
-  /// The same of a leaf of triangles, each of which goes down from the list by itself.
+  /// Measures all triangles of a leaf. Each of them goes down from the list by itself.
   /// @param below as TriangleDescent::nearest() has it
   template <class Below>
   void measureTriangles(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, float cut,

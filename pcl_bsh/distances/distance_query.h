@@ -12,7 +12,7 @@
 
 namespace pcl_bsh {
 
-/// What the walks through all voxels of a have in common. The pairs' reach is the request's max_distance.
+/// The input that the walks through all voxels of a share. The pairs' reach is the request's max_distance.
 struct DistancesQuery {
   const Placed& a;
   const Placed& b;
@@ -20,8 +20,8 @@ struct DistancesQuery {
   RelativeRotation rotation;
   double unit;            ///< of lengths as floats, in the clouds' unit
   double tolerance = 0.0; ///< how much farther than the nearest a point may be
-  /// Where only the greatest distance is asked for: what is nearer than this one need not be measured. Null: all are.
-  /// @pre not null: no max_distance, the accuracy exact; else bounds are not those of the nearest
+  /// The greatest distance so far, where only the greatest is asked for: nearer points need not be measured. Null: all
+  /// points are. @pre if not null: no max_distance, and the accuracy is exact; else bounds are not those of the nearest
   ReachedDistance* reached = nullptr;
 
   /// Whether a greater distance than the bound has been measured, where only the greatest is asked for.
@@ -49,10 +49,10 @@ struct DistanceSheet {
   }
 };
 
-/// What one walk through a voxel came to.
+/// The outcome of one walk through a voxel of a.
 struct MeasuredVoxel {
   Work work;
-  bool undecided = false; ///< whether points were left so
+  bool undecided = false; ///< whether the walk left points undecided
 };
 
 } // namespace pcl_bsh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a walk that measures points keeps of one node of a: how near and how far each of its children may be from the
+// The state of one node of a in a walk that measures points: how near and how far each of its children may be from the
 // spheres of b that can hold the nearest points. Bounds are floats in one unit for all frames, rounded outward.
 
 #if defined(PCL_BSH_DISTANCES_DISTANCE_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -92,7 +92,7 @@ HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
     const LaneVector far = hn::LoadU(d, upper + i), cut = hn::LoadU(d, visit.cut + i),
                      limit = hn::LoadU(d, visit.limit + i);
     hn::StoreU(hn::IfThenElse(hn::Lt(far, cut), far, cut), d, visit.cut + i);
-    // What is added is above what the product and the difference round off.
+    // The factor adds more than the product and the difference round off.
     const LaneVector now = hn::Sub(hn::Mul(far, hn::Set(d, 1.0f + 0x1p-22f)), hn::LoadU(d, visit.turn + i));
     hn::StoreU(hn::IfThenElse(hn::Lt(now, limit), now, limit), d, visit.limit + i);
   }
@@ -124,8 +124,8 @@ HWY_NOINLINE inline void boundByPoints(DistanceVisit& visit, const CarriedNode& 
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) lower[lane] = std::max(orNone(lower[lane]), least[lane]);
 }
 
-/// The same as boundByPoints() of a leaf of triangles. @param lower null: of some of them, which tell `cut` alone
-/// @param triangle(j) laid flat
+/// Sharpens such bounds by `count` triangles of the sphere's leaf. @param lower null where these are not all triangles
+/// of the leaf: then they lower `cut` alone @param triangle(j) laid flat
 template <class Triangles>
 HWY_NOINLINE void boundByTriangles(DistanceVisit& visit, const CarriedNode& own, const DistanceObstacle& obstacle,
                                    std::uint32_t count, bool has_limit, float* lower, const Triangles& triangle)
@@ -168,10 +168,10 @@ struct DistanceScratch {
   std::vector<CarriedLeaf> leaves;         ///< by obstacle
   std::vector<std::uint32_t> obstacle_of;  ///< by voxel of b: its obstacle, 0 where it has none yet
   FlatRecords flat;                        ///< where b is of triangles
-  std::vector<MaybeNearest> maybe_nearest; ///< likewise
+  std::vector<MaybeNearest> maybe_nearest; ///< where b is of triangles
   GatheredSpheres gathered;
   std::vector<NearLeaf> near_leaves; ///< of one leaf of a: what it is compared with
-  LongTriangles long_triangles;      ///< likewise
+  LongTriangles long_triangles;      ///< of b, in long numbers
 
   std::size_t bytes() const noexcept
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The walk that measures the points of one voxel of a. A node's list holds the spheres of b that can hold the nearest
-// point of one of its points: their lower bounds do not exceed the least upper bound of all, because every sphere holds
-// a point. The list begins with the spheres above the voxels of b, and becomes finer as the nodes of a become smaller.
+// point of one of its points. Every sphere holds a point, so their lower bounds do not exceed the least upper bound of
+// all. The list begins with the spheres above the voxels of b, and becomes finer as the nodes of a become smaller.
 
 #if defined(PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_DISTANCES_DISTANCE_WALK_INL_H_
@@ -148,10 +148,10 @@ private:
     return !rule_.isSpent(found.work.node_pairs) && rule_.mayEnter([this] { return a_.storage.pointsToBuild(voxel_); });
   }
 
-  /// Of the voxels of b, from the voxel of a.
+  /// Finds bounds of the distances from the voxel of a to the voxels of b.
   VoxelBounds bounds() { return {spaces_[EnteredSpaces::kAbove], b_, found.work}; }
 
-  /// How near and how far they are from the sphere of the whole voxel of a.
+  /// How near and how far the voxels of b are from the sphere of the whole voxel of a.
   VoxelBounds::Range boundVoxel(float cut)
   {
     ++found.work.volumes_carried;
@@ -233,8 +233,8 @@ private:
     return sphere.leaf(voxel).largestRadius() > kLargeBall * smallest * a_voxel_->frame.unit;
   }
 
-  /// Whether both slabs of a leaf are thinner than what its distance from a child may be: then one of its triangles
-  /// tells how far it is at most, and the others tell little more than slabs.
+  /// Whether both slabs of a leaf are thinner than the least upper bound of a child's distance. Then one triangle of
+  /// the leaf tells how far the leaf is at most, and the others tell little more than its slabs.
   static bool isThin(const DistanceVisit& visit, const DistanceObstacle& obstacle, const CrossedSlabs& held)
   {
     return obstacle.cross_slabs &&
@@ -353,8 +353,8 @@ private:
     known = {std::max(known.lower, interval.lower), std::min(known.upper, interval.upper)};
   }
 
-  /// Of points that have not been measured: what is beyond max_distance has not been looked at, and may be
-  /// the nearest all the same.
+  /// The interval of points that have not been measured. Points of b beyond max_distance have not been looked at, and
+  /// may be the nearest all the same.
   Interval certain(float lower, float upper) const
   {
     const double low = double{lower} * unit_, high = double{upper} * unit_;

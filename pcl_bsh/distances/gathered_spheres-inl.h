@@ -75,7 +75,7 @@ public:
     return {&x_[place], &y_[place], &z_[place], &r_[place], stretch};
   }
 
-  /// Of the distances from the leaf, first those of the list; kDone where there is no sphere, or it is done.
+  /// Lower bounds of the distances from the leaf, at first the list's; kDone where no sphere is, or it is done.
   float* lower() { return lower_.data(); }
 
   /// Places that have a lower bound.

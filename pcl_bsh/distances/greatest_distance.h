@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What follows from the distances of single points: the greatest, and of both directions the Hausdorff distance.
+// Finds the greatest of the distances of single points, and the Hausdorff distance from both directions.
 #pragma once
 
 #include <pcl_bsh/distances/point_distances.h>
@@ -13,7 +13,7 @@ void findGreatest(const Placed& a, const Placed& b, PointDistances& result);
 /// Sets the greatest of both directions and its pair from those of each, of which one may be missing.
 void findGreatestOfBoth(const Placed& a, const Placed& b, SymmetricDistances& result);
 
-/// The same where every point has a distance; otherwise it is not known.
+/// Does findGreatestOfBoth() where every point has a distance; otherwise the Hausdorff distance is not known, so NaN.
 void findHausdorff(const Placed& a, const Placed& b, SymmetricDistances& result);
 
 } // namespace pcl_bsh

@@ -24,7 +24,7 @@ struct NearestFound {
   const Voxel* voxel = nullptr;                            ///< null: none
   std::uint32_t point = 0;                                 ///< in the voxel
   double least = -std::numeric_limits<double>::infinity(); ///< of the distance, less the radius of b's point alone
-  double most = std::numeric_limits<double>::infinity();   ///< likewise
+  double most = std::numeric_limits<double>::infinity();   ///< of that distance
 };
 
 inline std::uint32_t recordOf(const NearestFound& found)

@@ -51,7 +51,7 @@ public:
   /// Takes the spheres that the leaves go through.
   void gather(const std::vector<NearSphere>& list) { gathered_.gather(list); }
 
-  /// Of what is below the gathered spheres, as find() does.
+  /// Finds what find() does among all points below the gathered spheres. Their lower bounds need not be known.
   bool findBelow(float cut)
   {
     limit_ = cut;
@@ -71,7 +71,7 @@ public:
   /// The points that another one than was found may be the nearest to.
   std::uint32_t undecided() const { return leaf_.largest_radius > 0.0 ? ambiguous<true>() : ambiguous<false>(); }
 
-  /// What float arithmetic found for point i.
+  /// The point of b that float arithmetic found for point i; with a greatest distance, also bounds of theirs.
   NearestFound named(std::uint32_t i) const
   {
     if (two_.name[i] < 0) return {};
@@ -215,12 +215,12 @@ private:
 
   static constexpr std::uint32_t kHalf = (1u << kLanes) - 1;
 
-  /// In which halves points of the leaf may be as near as `most_` to what is in a sphere of b: where b is far, its
-  /// points are all near the box around the leaf, and yet near none of its points. Halves, for vectors of any size.
+  /// The halves of the leaf whose points may be as near as `most_` to points in a sphere of b. Where b is far, all its
+  /// points are near the box around the leaf, and yet near none of the leaf's points. Halves suit vectors of any size.
   ///
-  /// A reach of terms >= 0 has three roundings (test/proof/distances.g). Within balls `most_` may be below 0: what the
-  /// terms lose then, while they cancel, doubtOf() pays for. A reach below 0 is near nothing; its square says so of
-  /// less.
+  /// A reach of terms >= 0 has three roundings (test/proof/distances.g). Within balls `most_` may be below 0: doubtOf()
+  /// pays for what the terms then lose, while they cancel. A reach below 0 is near nothing; its square leaves out
+  /// fewer points.
   std::uint32_t pointsNearSphere(const LeafPoints& points, const DistanceObstacle& obstacle, const Node& node,
                                  std::uint32_t lane) const
   {
@@ -276,8 +276,8 @@ private:
     return (kBalls ? double{value} : length) - (error_ + (kMargin + 2 * skew_) * (length + error_));
   }
 
-  /// What is farther than this is of no interest once all points of the leaf have one so near. Points keep theirs out
-  /// of the tolerance until it is certain that they have any.
+  /// Farther points of b are of no interest once all points of the leaf have one within `found`. The tolerance is taken
+  /// off only where `found` is certainly within max_distance: a point must not lose the only one that it has.
   float beyond(double found) const
   {
     const bool all_within = found * leaf_.unit * (1.0 + kMargin) <= leaf_.max;
@@ -301,17 +301,17 @@ private:
     return bits & firstBits(leaf_.range.count);
   }
 
-  /// What float arithmetic found, as a length, less the other point's radius.
+  /// A value that float arithmetic found as a length, less the other point's radius.
   template <bool kBalls>
   static HWY_INLINE LaneVector lengthOf(LaneVector value)
   {
     return kBalls ? value : hn::Sqrt(value);
   }
 
-  /// What it errs by, at most: mostOf() and leastOf() in float, with twice the margin. Of the (32 u + 2 skew)
-  /// (|value| + 2 R), R the largest of b's radii, the value takes 7 u + skew, and float arithmetic here 6 u. The rest
-  /// pays for what pointsNearSphere() does with a value below 0, which is not below -R: times 1 + 2 u + 2 skew it loses
-  /// (2 u + 2 skew) |value|, and products and sums of terms that cancel round by 3 u (R + |value|).
+  /// The error of lengthOf(), at most: mostOf() and leastOf() in float, with twice the margin. The value takes
+  /// 7 u + skew of the (32 u + 2 skew) (|value| + 2 R), R the largest of b's radii, and float arithmetic here 6 u. The
+  /// rest pays for what pointsNearSphere() does with a value below 0, which is not below -R. Times 1 + 2 u + 2 skew it
+  /// loses (2 u + 2 skew) |value|; products and sums of terms that cancel round by 3 u (R + |value|).
   template <bool kBalls>
   HWY_INLINE LaneVector doubtOf(LaneVector value, float error, float share) const
   {
@@ -324,7 +324,7 @@ private:
   GatheredSpheres& gathered_;
   std::vector<NearLeaf>& near_leaves_;
   const float own_radii_; ///< the largest of a's points, in the walk's unit
-  const float balls_;     ///< two of the largest of b's, likewise
+  const float balls_;     ///< two of the largest of b's, in the walk's unit
 
   alignas(64) float most_[kLeafPoints]; ///< that points are away from what is nearest, in the walk's unit
   NearestTwo two_;

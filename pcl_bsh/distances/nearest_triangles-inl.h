@@ -128,7 +128,7 @@ private:
     return ~far & firstBits(leaf_.range.count);
   }
 
-  /// What is known of the triangle that is the nearest to a point, of those that were looked at.
+  /// The triangle that is the nearest to a point, of those that were looked at.
   struct Nearest {
     bool compared = false; ///< with another one; the following are set
     SharedPart part;
@@ -136,7 +136,7 @@ private:
     bool bounded; ///< whether doubles have told that
   };
 
-  /// Of the triangles that may be the nearest.
+  /// Decides for each point which of the triangles that may be the nearest is it.
   void decideAmong()
   {
     const LaneTag d;
@@ -175,7 +175,7 @@ private:
     }
   }
 
-  /// What floats say of a distance.
+  /// Sets the bounds of a distance that floats tell.
   void setBounds(NearestFound& found, const DistanceObstacle& obstacle, float squared, float error) const
   {
     const LaneTag d;

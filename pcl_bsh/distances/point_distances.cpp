@@ -73,7 +73,7 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   result = std::move(fresh);
 }
 
-/// That of the voxel with the middle point. In the unit of all voxels, a stray at 1e20 leaves floats nothing to tell.
+/// Unit of the voxel with the middle point. In the unit of all voxels, a stray at 1e20 leaves floats nothing to tell.
 double unitOfMost(const SphereHierarchy::Storage& storage)
 {
   const Voxel* const first = storage.voxels.get();

@@ -11,8 +11,8 @@
 // and means and percentiles are of these. The Hausdorff distance of surfaces is that of their farthest places.
 //
 // The distance of points p and q is |T_a p - T_b q|, less the points' radii where given: then it may be negative. The
-// nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. The same
-// input gives the same answer, bit for bit, for any number of threads and any processor.
+// nearest point is the one that exact arithmetic on the given numbers finds, of several the smallest record. Equal
+// input gives equal answers, bit for bit, for any number of threads and any processor.
 #pragma once
 
 #include <pcl_bsh/base/cancelled.h>
@@ -30,10 +30,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What pointDistances() and symmetricDistances() read. With a tolerance each distance is within it of the smallest;
+/// Options of pointDistances() and symmetricDistances(). With a tolerance each distance is within it of the smallest;
 /// which points have one is exact all the same. Accuracies that stop early (level, pairs, time) give an interval for
-/// each point, and a distance where the search came to its end; pairs and time are shared by all points that one call
-/// asks about.
+/// each point, and a distance where the search came to its end. All points that one call asks about share the pairs and
+/// the time.
 struct PointDistancesRequest : Effort {
   /// Points of a that have no point of b within it get no distance; >= 0, inclusive, infinity for no limit.
   double max_distance = std::numeric_limits<double>::infinity();
@@ -64,10 +64,10 @@ struct PointDistances {
 ///   declaration asks for. Cancelled.
 PointDistances pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Writes into a result whose memory is used again. After an exception the result is empty.
 void pointDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request, PointDistances& result);
 
-/// Of some records of a alone: what holds for the others is as of records that are no points.
+/// The distances of some records of a alone. The others get the entries of records that are no points.
 /// @param records of a's view
 PointDistances pointDistances(const Placed& a, const std::vector<std::uint32_t>& records, const Placed& b,
                               const PointDistancesRequest& request = {});
@@ -90,7 +90,7 @@ struct SymmetricDistances {
 /// @throws as pointDistances() does
 SymmetricDistances symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request = {});
 
-/// The same into a result whose memory is used again; it is empty should anything be thrown.
+/// Writes into a result whose memory is used again. After an exception the result is empty.
 void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRequest& request,
                         SymmetricDistances& result);
 
@@ -105,7 +105,7 @@ struct HausdorffRequest : Effort {
 /// Greatest width of the interval of a Hausdorff distance of surfaces, as a share of the larger box's diagonal.
 inline constexpr double kHausdorffShare = 0x1p-14;
 
-/// What hausdorffDistance() found.
+/// Result of hausdorffDistance().
 struct HausdorffDistance {
   /// The greatest distance from a place of either cloud to the other cloud, in the clouds' unit, rounded to the nearest
   /// double: of points exactly, of surfaces that of the farthest place which was measured. NaN where a cloud is empty.

@@ -43,7 +43,7 @@ struct LongLengths {
 
 /// |(p - q) + shift| of the pairs from i on, as many as a vector has.
 ///
-/// A coordinate is value + tail but for what the tail is rounded; `errors` is the absolute sum of its terms. The square
+/// A coordinate is value + tail, up to the rounding of the tail; `errors` is the absolute sum of its terms. The square
 /// of a value is two doubles, and what the tail adds to it is `mixed`, at most `most_mixed`. The sum of the squares is
 /// high and its rounding errors; all that is of low order is added up in `low`, and its absolute sum in `size_of_low`.
 /// high - root^2 is a double.
@@ -67,7 +67,7 @@ HWY_INLINE LongLengths longLengths(const GivenPairs& pairs, std::size_t i, const
     low = hn::Add(low, hn::Add(rounding, hn::Add(square_error, mixed)));
     size_of_low = hn::Add(size_of_low, hn::Add(hn::Abs(rounding), hn::Add(hn::Abs(square_error), most_mixed)));
   }
-  // What underflows is below 2^-1000, beside squares of 2^-900.
+  // Products that underflow are below 2^-1000, beside squares of 2^-900.
   const auto known = hn::And(hn::And(hn::Gt(high, hn::Set(d, 0x1p-900)), hn::Lt(high, hn::Set(d, 0x1p900))),
                              hn::Lt(size_of_low, hn::Mul(high, hn::Set(d, kMostLowOrder))));
   const Vector root = hn::Sqrt(high);

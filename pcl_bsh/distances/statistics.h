@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What people are told of the distances of many points: a few numbers, and a histogram.
+// A summary, for people, of the distances of many points: a few numbers, and a histogram.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -24,8 +24,8 @@ struct DistanceStatistics {
   double maximum = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Of all entries but NaN. Percentile p of n values in order is at place (n - 1) p / 100, counted from 0; between two
-/// places it is interpolated linearly (Hyndman, Fan: Sample Quantiles in Statistical Packages, 1996, definition 7).
+/// Statistics of all entries except NaN. Percentile p of n values in order is at place (n - 1) p / 100, from 0. Between
+/// two places it is interpolated linearly (Hyndman, Fan: Sample Quantiles in Statistical Packages, 1996, definition 7).
 /// @param distance finite numbers and NaN
 DistanceStatistics statisticsOf(const std::vector<double>& distance);
 
@@ -39,9 +39,9 @@ struct DistanceHistogram {
   double end() const { return width * static_cast<double>(counts.size()); }
 };
 
-/// Of all entries but NaN; negative ones are in the first interval. The intervals reach from 0 to `end` or a little
-/// farther: their width is 1, 2 or 5 times a power of ten.
-/// @param end of the axis; what is not a number above 0 stands for no extent: one interval then has all distances of 0
+/// Counts all entries except NaN; negative ones are in the first interval. The intervals reach from 0 to `end` or a
+/// little farther: their width is 1, 2 or 5 times a power of ten.
+/// @param end of the axis; a value that is not above 0 stands for no extent: one interval has all distances of 0
 /// @param most_intervals > 0
 DistanceHistogram histogramOf(const std::vector<double>& distance, double end, std::size_t most_intervals);
 

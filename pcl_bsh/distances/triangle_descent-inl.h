@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Of one voxel of a.
+/// Measures triangles of one voxel of a.
 class TriangleDescent {
 public:
   explicit TriangleDescent(MeasuredLeaf& leaf)
@@ -40,9 +40,9 @@ public:
     lane_ = lane;
   }
 
-  /// @param i of the leaf's triangles @param cut it is no farther than this from b, unless that exceeds the greatest
-  /// distance @param list spheres that hold all that can be the nearest @param below(sphere) the first of those below a
-  /// sphere; not asked of leaves
+  /// The nearest record of b to triangle i of the leaf. @param list spheres that hold all that can be the nearest
+  /// @param cut the triangle is no farther than this from b, unless that exceeds the greatest distance
+  /// @param below(sphere) the first of those below a sphere; not asked of leaves
   template <class Below>
   NearestFound nearest(std::uint32_t i, float cut, const std::vector<NearSphere>& list, const Below& below)
   {
@@ -119,14 +119,14 @@ private:
     }
   }
 
-  /// Of a node of a voxel, which are fitted when first asked for.
+  /// The slabs of a node of a voxel. They are fitted when first asked for.
   const Slabs& slabsOf(const Spaces& side, const Voxel& voxel, const Node& node)
   {
     Voxel* const first = side.storage.voxels.get();
     return first[&voxel - first].slabs.of(voxel, side.storage.view, leaf_.work)[&node - voxel.nodes.data()];
   }
 
-  /// Of the leaf.
+  /// The slab of the leaf.
   Slab ownSlab(const DistanceObstacle& own)
   {
     const Slabs& slabs = slabsOf(a_, *leaf_.range.voxel, *node_);
@@ -165,8 +165,8 @@ private:
     }
   }
 
-  /// Those of b's triangles that floats do not prove to be beyond the limit, which their corners lower: a long one is
-  /// not its ball.
+  /// The triangles of b's leaf that floats do not prove to be beyond the limit. Their corners lower the limit first, as
+  /// a long triangle fills little of its ball.
   std::uint32_t nearTriangles(const DistanceObstacle& own, const LeafRange& other, std::uint32_t among)
   {
     const LaneTag d;
@@ -199,7 +199,7 @@ private:
     for (; lanes != 0; lanes &= lanes - 1) limit_ = std::min(limit_, upper[std::countr_zero(lanes)]);
   }
 
-  /// Of carried places, and of the triangle, in the unit of its voxel.
+  /// The error of carried places and of the triangle together, in the unit of its voxel.
   float errorIn(const DistanceObstacle& own) const { return roundUp(flat_.error(own.frame)) + own.slack; }
 
   /// The voxel of a, as seen from a space of b.

@@ -38,8 +38,9 @@ public:
     return range;
   }
 
-  /// Of a point of the voxel of a from any of b, or less; and of the centre of any node of the voxel, if its sphere is
-  /// given: that holds the box around its points, in which centres lie. The smallest sphere of the points would not do.
+  /// A lower bound of the distance from any point of the voxel of a to any of b. It bounds that of any node's centre,
+  /// too, if the radius is of the voxel's sphere: this holds the box around its points, in which centres lie. The
+  /// smallest sphere of the points would not do.
   float least(float radius)
   {
     const Node& root = b_.storage.top[0];
@@ -50,7 +51,7 @@ public:
   }
 
 private:
-  /// To the children of a node above the voxels of b.
+  /// Bounds the distances from such a sphere to the children of a node above the voxels of b.
   void boundChildren(const Node& node, float radius, float* lower, float* upper)
   {
     CarriedNode spheres;

@@ -18,16 +18,16 @@ namespace pcl_bsh {
 /// for.
 struct CollidingIndices {
   std::vector<std::int32_t> a;           ///< points of a that collide
-  std::vector<std::int32_t> b;           ///< likewise of b
+  std::vector<std::int32_t> b;           ///< points of b that collide
   std::vector<std::int32_t> undecided_a; ///< points of a that the request's accuracy lets the walk leave undecided
-  std::vector<std::int32_t> undecided_b; ///< likewise of b
+  std::vector<std::int32_t> undecided_b; ///< points of b that are left undecided for this reason
   Work work;                             ///< as collisionFlags() counts it
 };
 
 /// Which points collide with something of the other cloud? Throws as collisionFlags() does.
 CollidingIndices collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& request);
 
-/// The same into a result whose memory is used again.
+/// Writes into a result whose memory is used again.
 void collidingIndices(const Placed& a, const Placed& b, const FlagsRequest& request, CollidingIndices& result);
 
 } // namespace pcl_bsh

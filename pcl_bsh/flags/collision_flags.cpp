@@ -105,7 +105,7 @@ void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, M
   found.undecided_b = countOf(found.b, Verdict::undecided);
 }
 
-/// Of flags that a density guard looks at again, what the flags themselves are of the whole.
+/// Share of the progress that the flags themselves make, where a density guard looks at them again.
 constexpr double kUnguarded = 0.5;
 
 /// Free points that may be within the clearance of a patch of b's surface are sparse.

@@ -14,10 +14,10 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Whose points are flagged.
+/// The clouds whose points are flagged.
 enum class Flagged : std::uint8_t { a = 1, b = 2, both = 3 };
 
-/// What collisionFlags() reads.
+/// Options of collisionFlags().
 struct FlagsRequest : Effort {
   FlagsRequest() = default;
   /** All. */ FlagsRequest(double within, Flagged whose = Flagged::a, Effort effort = {})
@@ -36,18 +36,18 @@ struct FlagsRequest : Effort {
   /// of a patch (wherever points truly are), is Verdict::sparse instead of free. It is no farther from a point of b
   /// than the clearance and half of its spacing.
   ///
-  /// Promised: of a free point that stays free, no place of b's surface is within the clearance, if each place of that
+  /// Promised: no place of b's surface is within the clearance of a free point that stays free, if each place of that
   /// surface is in a patch. Not promised: that the patches cover it. Holes wider than the spacings say, what nobody
   /// scanned, and the gaps between the samples of a, whose surface the guard does not know, are as they were.
   const float* spacings_of_b = nullptr;
 };
 
-/// What collisionFlags() found.
+/// Result of collisionFlags().
 struct FlagsResult {
   /// One per record of a's view: undecided only when the request's accuracy lets the walk stop early, or where points
   /// have uncertainties; sparse only with a density guard. Empty when not asked for.
   std::vector<Verdict> a;
-  std::vector<Verdict> b; ///< likewise for b
+  std::vector<Verdict> b; ///< one per record of b's view; sparse never
   std::size_t colliding_a = 0;
   std::size_t colliding_b = 0;
   std::size_t undecided_a = 0;
@@ -57,15 +57,14 @@ struct FlagsResult {
 };
 
 /// Which points collide with something of the other cloud? Where points have uncertainties (PointsView), a point
-/// collides if some point of the other cloud is within the clearance of it wherever both truly are; it is free if none
-/// can be; else it is undecided. Several points of the other cloud of which always one is near, though not always the
-/// same, leave it undecided. One search tells them apart.
-/// A density guard is one search more.
+/// collides if some point of the other cloud is within the clearance of it wherever both truly are. It is free if no
+/// point can be within it; else it is undecided. Several points of the other cloud of which always one is near, though
+/// not always the same, leave it undecided. One search finds all three verdicts; a density guard is one search more.
 /// @throws std::invalid_argument when the clearance, the accuracy, a spacing or a pose is not what its declaration asks
 ///   for. Cancelled.
 FlagsResult collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request);
 
-/// The same into a result whose memory is used again: for one pose after another.
+/// Writes into a result whose memory is used again: for one pose after another.
 void collisionFlags(const Placed& a, const Placed& b, const FlagsRequest& request, FlagsResult& result);
 
 } // namespace pcl_bsh

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Points of a leaf: those that collide for certain, or may turn out to; and those that may collide, likewise.
+/// Bits of a leaf's points that collide for certain, and that may collide; or of those that may turn out to do so.
 struct OpenPoints {
   std::uint32_t surely = 0, perhaps = 0;
 };
@@ -67,8 +67,9 @@ inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit
                     visit.r[lane] + obstacle.reach, kSphereMargin);
 }
 
-/// Where points are uncertain: by the nearest of b, each as far as its own uncertainty makes it, and pair by pair where
-/// that does not decide. @param reach of the obstacle. @param own uncertainties of the leaf's points
+/// Which open points collide for certain, where points are uncertain. Sets visit.perhaps of those that may collide. The
+/// nearest of b decide, each as far as its own uncertainty makes it; single pairs decide the rest.
+/// @param reach of the obstacle. @param own uncertainties of the leaf's points
 HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach,
                                                      FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
                                                      const float* own, const LeafPoints& points, const FlagQuery& query,
@@ -106,7 +107,7 @@ HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstac
   return hit;
 }
 
-/// By float band, and exactly within the band.
+/// Which open points collide, where none has a radius: by the float band, and exactly within it.
 inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                                const LeafRange& leaf, const LeafPoints& points, const PointPairs& pairs, Work& work)
 {
@@ -150,10 +151,10 @@ inline double ballScale(const ObstacleVoxel& obstacle)
   return static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
 }
 
-/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach. What is
-/// left of each candidate goes to visit.asked: the points that a ball of it may be near to. All are, where no point is
-/// looked at, for the clearance is less than rounding, and where balls are larger than the reach, for they are near to
-/// most. @param radii of a's balls in the obstacle's frame, or zeros
+/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach. For
+/// each candidate, visit.asked gets the points that a ball of it may be near to. Where the clearance is less than
+/// rounding, these are all open points, and none is looked at. Where the candidate's balls are larger than the reach,
+/// they are all, too, as such balls are near to most. @param radii of a's balls in the obstacle's frame, or zeros
 inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                                 const LeafPoints& points, const float* radii)
 {
@@ -202,10 +203,10 @@ inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit&
   return firstBits(other.count) & ~far;
 }
 
-/// Calls compare(record, triangle, squared, near) for the triangles of b whose balls may be near enough to open
-/// points of the leaf, or to their balls, as hitMiddles() left them, with the distances of the points from the triangle
-/// and the bits of those; until it returns true. @param hit of points that need not be asked for. @param radii of a's
-/// balls in the obstacle's frame, at least; or zeros
+/// Calls compare(record, triangle, squared, near) for triangles of b until it returns true. The balls of these may be
+/// near enough to points that hitMiddles() left in visit.asked, or to their balls; `near` has the bits of such points,
+/// `squared` the distances from the triangle. @param hit bits of points that need not be compared.
+/// @param radii of a's balls in the obstacle's frame, at least; or zeros
 template <class FacingOf, class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                       const std::uint32_t& hit, const LeafPoints& points, const float* radii, const PointsView& view,
@@ -235,8 +236,8 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
   }
 }
 
-/// Where b is of triangles, and a's points have no radii: by the middles of balls, then by the float band of those
-/// whose balls come near enough, and exactly within the band.
+/// Which open points collide, where b is of triangles and a's points have no radii. Middles of balls decide first, then
+/// the float band of triangles whose balls come near enough, and exact arithmetic within the band.
 template <class FacingOf>
 std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
                            const LeafPoints& points, const FlagQuery& query, FlatRecords& flat, Work& work,
@@ -272,8 +273,8 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
   return hit;
 }
 
-/// The same of a's balls and triangles: by their middles, as far as these are near enough, and exactly where only their
-/// balls come near.
+/// Which open balls or triangles of a collide, where b is of triangles: by their middles, as far as these are near
+/// enough, and exactly where only their balls come near.
 template <class FacingOf>
 std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
                              const LeafPoints& points, const FlagQuery& query, FlatRecords& flat, Work& work,
@@ -341,7 +342,7 @@ std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, st
   return hit;
 }
 
-/// The same where points have radii. @param facingOf(candidate) bits of a leaf's points that may matter
+/// Which open points collide, where points have radii. @param facingOf(candidate) bits of its points that may matter
 template <class FacingOf>
 inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                               const LeafRange& leaf, const LeafPoints& points, const FlagQuery& query, Work& work,

@@ -50,7 +50,7 @@ public:
 
   std::size_t count() const { return count_; }
 
-  /// Those that the box may be near, for isAmong(). @param box in the frame of a's voxel
+  /// The obstacles that the box may be near, for isAmong(). @param box in the frame of a's voxel
   std::uint64_t near(const QueryBox& box) const
   {
     const QueryBox turned = carryBox(turned_, box);

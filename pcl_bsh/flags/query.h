@@ -11,7 +11,7 @@
 
 namespace pcl_bsh {
 
-/// What the walks through all voxels of a have in common.
+/// The input that the walks through all voxels of a share.
 struct FlagQuery {
   const Placed& a;
   const Placed& b;
@@ -31,10 +31,10 @@ struct FlaggedPlace {
   std::uint32_t voxel;
 };
 
-/// What one walk through a voxel came to.
+/// The outcome of one walk through a voxel of a.
 struct FlaggedVoxel {
   Work work;
-  bool undecided = false; ///< whether points were left so
+  bool undecided = false; ///< whether the walk left points undecided
 };
 
 /// Appends the voxels of a that may come near to anything of b, in their order.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flags the points of a voxel of a as they follow each other in the cloud, without a tree of theirs: a question that is
-// asked once is answered before such a tree would be built. Neighbours in a scan mostly collide with the same leaf of
-// b.
+// Flags the points of a voxel of a as they follow each other in the cloud, without a tree of their own. A question that
+// is asked once is answered before such a tree would be built. Neighbours in a scan mostly collide with the same leaf
+// of b.
 
 #if defined(PCL_BSH_FLAGS_RUNS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_FLAGS_RUNS_INL_H_
@@ -128,8 +128,8 @@ private:
     }
   }
 
-  /// What collides with one voxel of b. The leaf that a point is nearest to settles its neighbours, where most points
-  /// collide; the others are compared with all leaves that are near.
+  /// Flags open points that collide with one voxel of b. The leaf that a point is nearest to settles its neighbours,
+  /// where most points collide; the others are compared with all leaves that are near.
   /// @pre `around_` holds the open points. @return whether the group needs no other voxel of b
   bool flagIn(const ObstacleVoxel& obstacle)
   {

@@ -31,7 +31,7 @@ public:
   {
   }
 
-  /// Begins with a voxel of a, which is built. @param may_use_known whether those that are fitted may be used at once
+  /// Begins with a voxel of a, which is built. @param may_use_known whether slabs that are fitted may be used at once
   void begin(std::uint32_t voxel, const Voxel& built, bool may_use_known)
   {
     own_ = &a_.storage.voxels[voxel];
@@ -40,13 +40,13 @@ public:
     uses_known_ = may_use_known && own_->slabs.isFitted();
   }
 
-  /// Whether those of an obstacle may be used without fitting any.
+  /// Whether the slabs of an obstacle may be used without fitting any.
   bool areKnown(std::uint32_t obstacle) const
   {
     return uses_known_ && b_.storage.voxels[reached_[obstacle]].slabs.isFitted();
   }
 
-  /// Fits those of a voxel of b, where no query has yet.
+  /// Fits the slabs of a voxel of b, where no query has yet.
   void fit(ObstacleVoxel& obstacle)
   {
     Voxel& voxel = b_.storage.voxels[reached_[static_cast<std::size_t>(&obstacle - obstacles_.data())]];
@@ -81,7 +81,7 @@ public:
           visit.cz);
   }
 
-  /// Of the children in `near`, those that a sphere of b may be near to, as its slabs and theirs tell.
+  /// The children in `near` that a sphere of b may be near to, as its slabs and theirs tell.
   HWY_INLINE std::uint32_t nearOf(FlagVisit& visit, const ObstacleSphere& candidate, const Point& center, float radius,
                                   std::uint32_t near)
   {
@@ -121,7 +121,7 @@ public:
     return pointsNearSlabs(leaf.x(), leaf.y(), leaf.z(), leaf.count, held, obstacles_[visit.obstacle].reach);
   }
 
-  /// Of the children of a node of b in `near`, those that a sphere may be near to. @pre fit()
+  /// The children of a node of b in `near` that a sphere may be near to. @pre fit()
   std::uint32_t nearSphere(const ObstacleVoxel& obstacle, const Node& node, const SphereLanes& spheres,
                            const Point& center, float radius, std::uint32_t near) const
   {
@@ -154,13 +154,13 @@ public:
   }
 
 private:
-  /// What a candidate holds, between both of its slabs where its triangles are long.
+  /// The slabs between which a candidate holds its records: both of them where its triangles are long.
   static CrossedSlabs slabsOf(const ObstacleVoxel& obstacle, const ObstacleSphere& candidate)
   {
     return candidate.between(*obstacle.voxel, obstacle.slabs, obstacle.cross_slabs, obstacle.frame.stretch_b);
   }
 
-  /// The same across the slabs of long triangles, and of leaves of points by each point.
+  /// Does what nearOf() does, by the cross slabs of long triangles, and for leaves of points by each point.
   HWY_NOINLINE std::uint32_t nearAcross(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];

@@ -46,7 +46,7 @@ struct UncertainLanes {
   }
 };
 
-/// Those of a node's children; zeros where points have none of their own.
+/// The uncertainties of a node's children; zeros where points have none of their own.
 inline const UncertaintyLanes& ownOf(const OwnUncertainties* own, std::size_t node)
 {
   static constexpr UncertaintyLanes kNone{};
@@ -107,9 +107,9 @@ private:
   const bool certain_;
 };
 
-/// What a walk through a voxel of a does where points are uncertain: a node is settled as soon as all of its points are
-/// known to collide for certain. Before that all of them may be known to be possible; from then on it only matters
-/// which of b may make some certain, and what is left is undecided.
+/// The part of a walk through a voxel of a for uncertain points. A node is settled as soon as all of its points are
+/// known to collide for certain. Before that, it may be known that all of them may collide: from then on only points of
+/// b matter that may make some certain, and the rest stays undecided.
 class UncertainWalk {
 public:
   UncertainWalk(const FlagQuery& query, std::vector<UncertainReach>& reaches) : query_(query), reaches_(reaches)
@@ -203,7 +203,7 @@ private:
     return {node.x[candidate.lane], node.y[candidate.lane], node.z[candidate.lane]};
   }
 
-  /// Those of these children of whose centres a point of the candidate is within their reach.
+  /// The children that have a point of the candidate within the child's reach of its centre.
   static std::uint32_t withPointsWithin(const UncertainPoint& finder, const FlagVisit& visit,
                                         const ObstacleVoxel& obstacle, const ObstacleSphere& candidate,
                                         const float* reaches, float more, std::uint32_t lanes, Work& work)

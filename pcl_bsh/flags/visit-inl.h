@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a walk that flags points keeps of one node of a: its children in the frame of a voxel of b, and the spheres of b
-// that each child may collide with.
+// The state of one node of a in a walk that flags points: its children in the frame of a voxel of b, and the spheres of
+// b that each child may collide with.
 
 #if defined(PCL_BSH_FLAGS_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_FLAGS_VISIT_INL_H_
@@ -34,7 +34,7 @@ struct ObstacleVoxel {
   DistanceBand possible;              ///< of what may collide
   DistanceBand flat, possibly_flat;   ///< of these, of triangles for which FlatRecord::isUsual()
   const Slabs* slabs = nullptr;       ///< of its nodes, once asked for
-  const Slabs* cross_slabs = nullptr; ///< likewise, where triangles are long
+  const Slabs* cross_slabs = nullptr; ///< second ones of these, where triangles are long
   bool has_long_triangles = false;    ///< about as long as the voxel is wide: balls of nodes say little about them
 };
 
@@ -47,7 +47,7 @@ struct FlagVisit : ListVisit<ObstacleSphere> {
   float largest_leaf = 0.0f;                                    ///< of r, of leaves
   bool has_several = false;                                     ///< candidates, so that slabs are worth fitting
   bool has_slabs = false;                                       ///< whether the following are set
-  alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, likewise
+  alignas(32) float nx[kLanes], ny[kLanes], nz[kLanes];         ///< normals of the children's slabs, in that frame
   const Slabs* slabs = nullptr;                                 ///< the children's
   bool may_have_slabs = false;                                  ///< whether they may be asked for on the way
   alignas(32) float cx[kLanes], cy[kLanes], cz[kLanes];         ///< normals of the children's cross slabs
@@ -55,12 +55,12 @@ struct FlagVisit : ListVisit<ObstacleSphere> {
   std::uint32_t carried = 0; ///< bits of the leaves whose points are in `points`
   LeafPoints points[kLanes]; ///< of leaves, in the obstacle voxel's frame
   BoundingSphere around;     ///< holds them all; in the frame of a's voxel
-  QueryBall ball;            ///< likewise, in the obstacle voxel's frame
+  QueryBall ball;            ///< about it, with the reach; in the obstacle voxel's frame
 
   std::vector<std::uint32_t> asked; ///< of each of near[lane], bits of points, while a leaf is compared with triangles
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
-  std::uint32_t perhaps[kLanes] = {};     ///< likewise, of the points that may collide, but were not found to
-  std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; what is open is if they do
+  std::uint32_t perhaps[kLanes] = {};     ///< of leaves: bits of points that may collide, but were not found to
+  std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; it is open whether they do
   std::uint32_t unsure = 0; ///< bits of leaves that met spheres which were not to be opened
 
   /// @param may_collide all points below the node

@@ -53,7 +53,7 @@ public:
     if (b_.storage.view.triangles && !reached_.haveTrianglesNear(voxel, slabs_, [this] { return steps() > allowed_; }))
       return writer_.tellAll(Finding::free);
     allowed_ += kMostStepsPerPoint * a_.storage.voxels[voxel].count;
-    // Within one cloud, the work would depend on which thread comes first. Of other clouds, see mayUseKnownSlabs().
+    // Within one cloud, the work would depend on which thread comes first. For two clouds, see mayUseKnownSlabs().
     if (mayUseKnownSlabs() && &a_.storage != &b_.storage &&
         flagRuns(a_.storage, voxel, obstacles_, query_, writer_, found.work))
       return;
@@ -66,7 +66,7 @@ public:
 
   // As ListWalk asks.
 
-  /// A node of a; all points below it may collide, where they are uncertain, or may not.
+  /// A node of a, and whether it is known that all points below it may collide, where they are uncertain.
   struct Part : NodeInSphere {
     bool may_collide;
   };
@@ -116,9 +116,9 @@ public:
   FlaggedVoxel found;
 
 private:
-  /// Slabs that earlier queries have fitted are used at once, if for exact answers: these are the same with slabs and
-  /// without. No other answer may depend on what was asked before. Of fresh voxels, a query that runs at the same time
-  /// may fit them or not; the work then depends on that, the result does not.
+  /// Whether slabs that earlier queries have fitted are used at once: for exact answers, which are equal with slabs and
+  /// without. No other answer may depend on what was asked before. A query that runs at the same time may fit slabs of
+  /// fresh voxels or not; the work then depends on that, the result does not.
   bool mayUseKnownSlabs() const { return !rule_.mayStop() && query_.surely.exact; }
 
   std::uint64_t steps() const
@@ -168,7 +168,7 @@ private:
     }
   }
 
-  /// Of the children in `near`, those that are apart from a sphere of b, though their spheres and slabs are not.
+  /// The children in `near` that are apart from a sphere of b, though their spheres and slabs are not.
   std::uint32_t separated(const FlagVisit& visit, const ObstacleSphere& candidate, float radius, std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -197,8 +197,8 @@ private:
     return apart | separation_.byExtent(compared, gap, near & ~apart, true);
   }
 
-  /// Of the children in `near`, those that triangles of a leaf may be near to, where a ball of these tells little. It
-  /// settles what all is near enough to one.
+  /// The children in `near` that triangles of a leaf may be near to, where the triangles' balls tell little. Settles
+  /// children that are near enough to one triangle as a whole.
   HWY_NOINLINE std::uint32_t nearTriangles(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -340,7 +340,7 @@ private:
                               points, query_, found.work);
   }
 
-  /// Of the children in `near`, those that are not known to be beyond the reach from a sphere of b.
+  /// The children in `near` that are not known to be beyond the reach from a sphere of b.
   HWY_NOINLINE std::uint32_t notBeyond(const FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
     const NodeChild other{reached_.numbers[visit.obstacle], *candidate.node, candidate.lane};

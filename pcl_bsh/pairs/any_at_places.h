@@ -12,8 +12,8 @@ namespace pcl_bsh {
 AnyResult anyCollisionAt(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
                          const Watch& watch = {});
 
-/// What search(places, watch) finds of what may collide and of what does for certain, as one answer. @pre the points
-/// are uncertain, and the search ends early only at a witness
+/// One answer from two calls of search(places, watch): for pairs that may collide, and for pairs that do for certain.
+/// @pre the points are uncertain, and the search ends early only at a witness
 template <class Search>
 AnyResult anyOfUncertain(Progress& progress, const Search& search)
 {

@@ -56,7 +56,7 @@ private:
   Pause& pause_;
 };
 
-/// What one of several threads does.
+/// The work of one of several threads.
 class AnyShare {
 public:
   AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places)
@@ -121,7 +121,7 @@ HWY_EXPORT(anyCollisionInTimeOnTarget);
 
 namespace {
 
-/// Of a time budget, what the search for a witness gets. It decides earlier than the search for the distance, which has
+/// Share of a time budget for the search for a witness. It decides earlier than the search for the distance, which has
 /// the rest for the interval that an undecided answer carries.
 constexpr double kWitnessShare = 15.0 / 16;
 
@@ -142,7 +142,7 @@ AnyResult searchAsFarAsAllowed(const Placed& a, const Placed& b, const AnyReques
   return found;
 }
 
-/// Of points that may be elsewhere than they were measured.
+/// Searches among points that may be elsewhere than they were measured.
 AnyResult searchUncertain(const Placed& a, const Placed& b, const AnyRequest& request, Progress& progress)
 {
   if (request.accuracy.stopsEarly()) {

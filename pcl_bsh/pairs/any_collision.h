@@ -12,7 +12,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What anyCollision() reads.
+/// Options of anyCollision().
 struct AnyRequest : Effort {
   AnyRequest() = default;
   /** All. */ AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
@@ -20,7 +20,7 @@ struct AnyRequest : Effort {
   double clearance = 0.0; ///< finite, >= 0; inclusive
 };
 
-/// What anyCollision() found.
+/// Result of anyCollision().
 struct AnyResult {
   Verdict verdict = Verdict::free; ///< undecided only when the request's accuracy lets the walk stop early,
                                    ///< or where points have uncertainties
@@ -32,9 +32,9 @@ struct AnyResult {
 
 /// Does any pair of points collide? Where points have uncertainties (PointsView): is some pair within the clearance
 /// wherever its points truly are, can none be (free), or neither (undecided)? Stops at the first witness. Several
-/// threads share a search that takes longer than about 0.05 ms. Its work is that of one thread, but for what is built:
-/// other threads may have entered, and so built, voxels behind the witness; and where hundreds of triangles are hardly
-/// farther apart than the clearance, which each thread has to find out. Accuracies that stop early take one thread.
+/// threads share a search that takes longer than about 0.05 ms. Its work is that of one thread, with two exceptions.
+/// Other threads may have entered, and so built, voxels behind the witness. Where hundreds of triangles are hardly
+/// farther apart than the clearance, each thread has to find that out. Accuracies that stop early take one thread.
 /// @throws std::invalid_argument when the clearance, the accuracy or a pose is not what its declaration asks for.
 ///   Cancelled.
 AnyResult anyCollision(const Placed& a, const Placed& b, const AnyRequest& request = {});

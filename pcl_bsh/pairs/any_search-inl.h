@@ -81,7 +81,7 @@ public:
 
   const Work& work() const { return walk_.work; }
 
-  /// What is left to be visited since the observer stopped the search, the next one last.
+  /// The pairs that are left to be visited since the observer stopped the search, the next one last.
   const std::vector<LanePair>& left() const { return stack_; }
 
   // As visitPairs() asks.

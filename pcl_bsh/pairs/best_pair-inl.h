@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 
 class BestPair {
 public:
-  /// Of the search that run() has made, whether the distance exceeds the goal's clearance; with the nearest pair.
+  /// Whether the distance exceeds the goal's clearance, as run() has found; with the nearest pair.
   AnyResult verdict(const DistanceResult& found) const
   {
     const bool is_free = static_cast<double>(left_over_) > goal_.clearance;
@@ -43,14 +43,14 @@ protected:
     sharp_ = 0x1p-36 * smallerRadius();
   }
 
-  /// No pair is nearer, as none was found.
+  /// No pair is nearer than this, where none was found.
   double leastBeyond() const
   {
     const bool is_empty = walk_.a.storage.size == 0 || walk_.b.storage.size == 0;
     return is_empty ? kInfinity : std::min(static_cast<double>(left_over_), goal_.max_distance);
   }
 
-  /// Nothing was passed over but what is no nearer than the best less the tolerance.
+  /// Holds the smallest distance: all pairs that were passed over are no nearer than the best less the tolerance.
   Interval intervalOf(double gap) const
   {
     const double lower = std::nextafter(gap, -kInfinity) - goal_.tolerance;
@@ -79,8 +79,8 @@ protected:
     return overlap < 2.0f ? overlap - 2.0f : 0.0f;
   }
 
-  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. What touches b's
-  /// only where the record does that was looked at beside all of a is as near as that one at most, and so no better.
+  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. A record of
+  /// b that touches only where the one looked at beside all of a does is as near as that one at most, and so no better.
   PointPair firstAmong(const PlanesBetween::Touching& touching) const
   {
     const auto& [of_a, of_b] = touching;
@@ -155,8 +155,8 @@ protected:
   bool none_nearer_ = false;                            ///< than the best below the pair that is visited
 
 private:
-  /// Of a pair's gap: what double arithmetic tells at once, if that is as good as nothing beside the clouds' size, so
-  /// that no more pairs are looked at. Rounding it takes ten times as long.
+  /// Bounds of a pair's gap: those of double arithmetic, if they are so narrow beside the clouds' size that no more
+  /// pairs are looked at. Rounding the gap takes ten times as long.
   RecordDistance::Enclosure boundGap(const RecordDistance::Pair& posed) const
   {
     if (!pairs_.ofTriangles()) {
@@ -168,7 +168,7 @@ private:
     return {std::nextafter(gap, -kInfinity), std::nextafter(gap, kInfinity)};
   }
 
-  /// Of both clouds as wholes, that of the smaller one. @pre makeWholes()
+  /// The radius of the smaller one of both clouds as wholes. @pre makeWholes()
   double smallerRadius() const
   {
     const auto radiusOf = [](const Spaces& side) {

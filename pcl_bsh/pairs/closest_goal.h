@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a search for the closest pair has to find, and when it may end before.
+// The goal of a search for the closest pair, and when the search may end before.
 #pragma once
 
 #include <pcl_bsh/pairs/any_collision.h>

@@ -23,7 +23,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// Of several threads, the nearest pair that any has found.
+/// The nearest pair that any of several threads has found.
 class SharedNearest {
 public:
   /// Makes both the nearer one of the two; of equals, the smaller (a, b).
@@ -41,7 +41,7 @@ public:
     version_.fetch_add(1, std::memory_order_relaxed);
   }
 
-  /// Of which the next get() is at least as new.
+  /// The next get() is at least as new as this version.
   std::uint64_t version() const { return version_.load(std::memory_order_relaxed); }
 
   Nearest get() const

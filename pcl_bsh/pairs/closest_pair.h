@@ -13,7 +13,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What closestPair() reads.
+/// Options of closestPair().
 struct DistanceRequest : Effort {
   using Effort::Effort;
   /** All. */ DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
@@ -24,7 +24,7 @@ struct DistanceRequest : Effort {
   double max_distance = std::numeric_limits<double>::infinity();
 };
 
-/// What closestPair() found.
+/// Result of closestPair().
 struct DistanceResult {
   /// Smallest |T_a p - T_b q|, less the two points' radii where given (then negative = depth of overlap); rounded to
   /// the nearest double. Infinity when a cloud has no finite point, or no pair is within max_distance.

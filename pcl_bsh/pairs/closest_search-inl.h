@@ -44,7 +44,7 @@ struct NoOthers {
 /// finds near pairs late; each dive that finds none doubles the steps to the next one.
 inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
-/// What a search with a time compares of leaves before it may take long steps: most searches come to no more.
+/// Pairs that a search with a time compares of leaves before it may take long steps. Most searches come to no more.
 inline constexpr std::uint64_t kPairsBeforePoints = 48;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
@@ -92,7 +92,7 @@ public:
 
   const std::vector<LanePair>& left() const { return stack_; }
 
-  /// Of what is known by now.
+  /// The result as far as it is known by now.
   DistanceResult result(const Work& work)
   {
     others_.hear(best_);
@@ -187,7 +187,7 @@ private:
         }
         if (queue_.isEmpty()) return;
         next = queue_.pop();
-        if (!mayImprove(*next)) { // and of those left, none but for its numbers
+        if (!mayImprove(*next)) { // those left may, at most, by their record numbers
           if (next->key <= best_.to_beat && !queue_.isEmpty()) {
             next.reset();
             continue;
@@ -229,8 +229,8 @@ private:
     return walk_.radiiOf(pair) <= widthBefore(pair);
   }
 
-  /// Whether a dive for a nearer pair than the one considered has come to where less is to be gained than by raising
-  /// the interval's lower end: a budget may end before a leaf is reached. (The factor: intervals after the same work,
+  /// Whether a dive for a nearer pair than the one considered is so deep that raising the interval's lower end gains
+  /// more. A budget may end before a leaf is reached. (The factor: intervals after the same work,
   /// of 2 to 16.)
   bool isDeepEnough(const LanePair& pair) const
   {
@@ -258,7 +258,7 @@ private:
     return one;
   }
 
-  /// Opens a pair and queues its children, but for one that comes next.
+  /// Opens a pair and queues its children, except one that comes next.
   std::optional<LanePair> openNearestNext(const LanePair& pair)
   {
     const Opened which = walk_.choose(pair);
@@ -285,15 +285,15 @@ private:
     return goes_on ? std::optional(nearest) : std::nullopt;
   }
 
-  /// On the first dive, which a budget may not let end.
+  /// Considers a pair on the first dive, which a budget may not let end.
   void considerIfMuchNearer(const LanePair& pair, float between_centers)
   {
     const double between = static_cast<double>(between_centers) * walk_.b.frame(pair.b.space).unit;
     if (between < 0.7 * best_.high) considerOneOf(pair);
   }
 
-  /// A bound from above, of any pair below. One that doubles do not tell from the best is none: ties, of which a cloud
-  /// and its copy have thousands, are for leaves to decide.
+  /// Considers one of the pairs below, for a bound from above. It is passed over where doubles do not tell it from the
+  /// best: ties, of which a cloud and its copy have thousands, are for leaves to decide.
   void considerOneOf(const LanePair& pair)
   {
     const PointPair one = walk_.lowest(pair);
@@ -306,7 +306,7 @@ private:
     consider(one);
   }
 
-  /// The same of a pair whose turn has come.
+  /// Whether a pair whose turn has come can improve; looks closer where steps were in vain.
   bool mayImprove(const LanePair& pair)
   {
     none_nearer_ = false;
@@ -314,14 +314,14 @@ private:
     return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
   }
 
-  /// The same where bounds tell little: of ties, and what doubles hardly tell from them.
+  /// Whether a pair can improve where bounds tell little: among ties, and what doubles hardly tell from them.
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
     return canImprove(pair) && !(planes_.policy.mayAsk() && isSettledByPlanes(pair));
   }
 
-  /// For what is nearer to one of the best pair, among all of the other cloud: half of what was done in vain before.
+  /// Compares each of the best pair with all of the other cloud. It costs half of what was done in vain before.
   void lookRound()
   {
     has_looked_round_ = true;
@@ -358,7 +358,7 @@ private:
     return !(first < *best_.pair);
   }
 
-  /// Of the children that the last step found near, those that can.
+  /// The children that can improve, among those that the last step found near.
   std::uint32_t improvingOf(const WaitingChildren& children) const
   {
     std::uint32_t improving = 0, unsure = step_.near;

@@ -14,7 +14,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What nearestContacts() and pairsWithin() read. Both are exact, and take one thread.
+/// Options of nearestContacts() and pairsWithin(). Both are exact, and take one thread.
 struct ContactsRequest : Effort {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
@@ -43,7 +43,7 @@ struct Contact {
   std::uint32_t patch = 0;                           ///< of a manifold: which of its patches, from 0
 };
 
-/// What nearestContacts() found.
+/// Result of nearestContacts().
 struct ContactsResult {
   std::vector<Contact> contacts; ///< by distance before rounding, then by (a, b)
   bool complete = true;          ///< no colliding pair was left out
@@ -56,7 +56,7 @@ struct ContactsResult {
 ///   accuracy other than exact. Cancelled.
 ContactsResult nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request);
 
-/// The same into a result whose memory is used again.
+/// Writes into a result whose memory is used again.
 void nearestContacts(const Placed& a, const Placed& b, const ContactsRequest& request, ContactsResult& result);
 
 /// Pairs of points within the clearance, in no particular order, for callers that visit all of them.
@@ -68,7 +68,7 @@ struct PairsWithin {
 /// Throws as nearestContacts() does.
 PairsWithin pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request);
 
-/// The same into a result whose memory is used again.
+/// Writes into a result whose memory is used again.
 void pairsWithin(const Placed& a, const Placed& b, const ContactsRequest& request, PairsWithin& result);
 
 } // namespace pcl_bsh

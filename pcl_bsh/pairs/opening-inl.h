@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What opening a pair would take, of searches that may have to do without.
+// The cost of opening a pair, for searches that may have to do without: the level it needs, and the points to prepare.
 
 #if defined(PCL_BSH_PAIRS_OPENING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_PAIRS_OPENING_INL_H_

@@ -40,10 +40,10 @@ public:
       note({entered.space, entered.node, i}, (near >> i & 1u) != 0 ? SphereFate::kept : SphereFate::pruned, level);
   }
 
-  /// Of a lane that was met before, or of a child of the tree above the voxels.
+  /// The level of a lane that was met before, or of a child of the tree above the voxels.
   int levelOf(const Lane& lane) const { return met_.at({lane.space, lane.node, lane.lane}).level; }
 
-  /// Of the children in the node below a lane.
+  /// The level of the children in the node below a lane.
   int levelBelow(const Lane& lane, const Lane& entered) const
   {
     return entered.space == kAboveVoxels ? -1 : std::max(levelOf(lane), 0) + 1;

@@ -11,7 +11,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// What became of a sphere during a walk; of several meetings, the furthest.
+/// The fate of a sphere during a walk; of several meetings, the furthest.
 enum class SphereFate : std::uint8_t {
   pruned,   ///< tested, and it or all children of what it was tested against out of reach
   kept,     ///< within reach as far as it was tested, but not opened before the walk was done
@@ -27,7 +27,7 @@ struct TracedSphere {
   SphereFate fate = SphereFate::pruned;
 };
 
-/// What traceCollision() found, and which way it took.
+/// Result of traceCollision(), and the way that it took.
 struct CollisionTrace {
   std::vector<TracedSphere> a, b; ///< each sphere that was tested, once; in the order of the trees
   AnyResult result;               ///< what anyCollision() returns

@@ -73,7 +73,7 @@ void expectExact(const Mesh& solid_mesh, const PointsView& queried, const Isomet
   const Solid solid(view);
   const SolidBodies bodies(solid);
   const SphereHierarchy hierarchy(queried);
-  const QueriedRecords queried(hierarchy);
+  const QueriedRecords queried_records(hierarchy);
   const PointsView& places = queried.triangles ? queried.triangles->vertices : queried;
 
   const std::vector<std::uint8_t> labels = labelsByHand(view, pose_of_solid, places, pose_of_queried);
@@ -104,9 +104,9 @@ void expectExact(const Mesh& solid_mesh, const PointsView& queried, const Isomet
   }
   std::sort(holders.begin(), holders.end());
 
-  EXPECT_EQ(enclosedBy({solid, pose_of_solid}, queried, pose_of_queried), enclosed);
-  EXPECT_EQ(holdersOf(bodies, pose_of_solid, queried, pose_of_queried, enclosed), holders);
-  const std::optional<PointPair> any = findEnclosed(bodies, pose_of_solid, queried, pose_of_queried);
+  EXPECT_EQ(enclosedBy({solid, pose_of_solid}, queried_records, pose_of_queried), enclosed);
+  EXPECT_EQ(holdersOf(bodies, pose_of_solid, queried_records, pose_of_queried, enclosed), holders);
+  const std::optional<PointPair> any = findEnclosed(bodies, pose_of_solid, queried_records, pose_of_queried);
   if (!queried.triangles) {
     ASSERT_EQ(any.has_value(), !enclosed.empty());
     if (any) {
@@ -220,7 +220,7 @@ TEST(Enclosure, WhatHasNoPlaceIsHeldByNothing)
   const std::uint32_t nan = nothing.vertex(NAN, 0, 0), loose = nothing.vertex(0.5, 0.5, 0.5);
   nothing.triangle(nan, nan, loose);
   const SphereHierarchy hierarchy(viewOf(nothing.view()));
-  const QueriedRecords queried(hierarchy);
+  const QueriedRecords queried_records(hierarchy);
   EXPECT_THAT(enclosedBy(solid, queried, identity), IsEmpty());
   EXPECT_FALSE(findEnclosed(bodies, identity, queried, identity));
 }

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// Of places and gaps below, relative to the largest coordinate. A place on an edge errs by 3 v of it on each axis, two
-/// places and their distance by less than 13 v. A dot product with a direction errs by 3 v sqrt(3) of it, two such by
-/// less than 11 v, their difference and the quotient by 4 v of a gap of up to 2 sqrt(3) of it.
+/// Error of places and gaps below, relative to the largest coordinate. A place on an edge errs by 3 v of it on each
+/// axis, two places and their distance by less than 13 v. A dot product with a direction errs by 3 v sqrt(3) of it, two
+/// such by less than 11 v. Their difference and the quotient err by 4 v of a gap of up to 2 sqrt(3) of it.
 constexpr double kPlaceError = 32 * kDoubleUnit;
 
 /// The least and the most of three corners along a direction.
@@ -32,7 +32,7 @@ Span spanOf(const Point3 (&corners)[Count], const Point3& direction)
   return span;
 }
 
-/// At most the distance of what these corners span, but for kPlaceError; -infinity where nothing is known.
+/// At most the distance of what these corners span, within kPlaceError; -infinity where nothing is known.
 template <std::size_t Count>
 double gapAlong(const Point3 (&a)[Count], const Point3 (&b)[Count], const Point3& direction)
 {
@@ -42,8 +42,8 @@ double gapAlong(const Point3 (&a)[Count], const Point3 (&b)[Count], const Point3
   return std::max(along_b.low - along_a.high, along_a.low - along_b.high) / std::sqrt(square);
 }
 
-/// The same of the gap along the normal of a and, across it, of the circles about both; within three times the error.
-/// Of surfaces that face each other from far away it tells apart all but what is opposite.
+/// At most the distance of both, within three times kPlaceError: from the gap along the normal of a and, across it, the
+/// gap of the circles about both. It tells surfaces apart that face each other from far away, unless they are opposite.
 double gapAboutNormal(const Point3 (&a)[3], const Point3 (&b)[3])
 {
   const Point3 normal = cross(a[1] - a[0], a[2] - a[0]);
@@ -77,7 +77,7 @@ Point3 betweenEdges(const Point3& from_a, const Point3& way_a, const Point3& fro
   return between + s * way_a - t * way_b;
 }
 
-/// Of a place from a triangle that was laid flat, but for what it is off.
+/// The distance of a place from a triangle that was laid flat, and by how much it may be off.
 struct Measured {
   double length, off;
 };

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh {
 
-/// Of the origin from the given triangle that was laid flat.
+/// The distance of the origin from the given triangle that was laid flat.
 ExactDistance::Enclosure distanceOfOrigin(const FlatTriangle<double>& triangle);
 
 struct DoubleDistance {
@@ -16,7 +16,7 @@ struct DoubleDistance {
   FeaturePairs pairs;                ///< all but those that are surely not the nearest
 };
 
-/// Of two triangles whose corners are known within `error` in all.
+/// The distance of two triangles whose corners are known within `error` in all.
 ///
 /// Upper bound: the distance of two places which are combinations of the corners, whatever led to them. Lower bound:
 /// the gap between both triangles along some direction, whatever led to it. No condition of the triangles enters

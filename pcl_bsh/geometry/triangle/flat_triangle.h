@@ -18,14 +18,14 @@ inline constexpr double kFlatUnit = kFloatUnit; ///< of the arithmetic
 template <>
 inline constexpr double kFlatUnit<double> = kDoubleUnit;
 
-/// How far the rows of a flat triangle may change lengths: rounding nine entries of rows of length 1 changes them by
-/// less than 1.74 u, and the double arithmetic that made them by less than 32 v.
+/// How far the rows of a flat triangle may change lengths, as a share. Rounding nine entries of rows of length 1
+/// changes them by less than 1.74 u, and the double arithmetic that made them by less than 32 v.
 template <class Number>
 inline constexpr double kFlatSkew = 2 * kFlatUnit<Number>;
 template <>
 inline constexpr double kFlatSkew<double> = 32 * kDoubleUnit;
 
-/// What kernels and rows together make of a distance, as a share of it.
+/// The error that kernels and rows together make in a distance, as a share of it.
 template <class Number>
 inline constexpr double kFlatRelative = (kFlatTriangleUnits * kFlatUnit<Number> + kFlatSkew<Number>)*(1.0 + 0x1p-16);
 inline constexpr double kFlatShare = kFlatRelative<float>;
@@ -34,18 +34,18 @@ inline constexpr double kFlatShare = kFlatRelative<float>;
 /// the root or the square, and a few products and sums; proved in test/proof/flat_margin.g.
 inline constexpr float kFlatMargin = 0x1p-19f;
 
-/// Lays a triangle flat. Then |sqrt(s) - D| <= kFlatRelative D + error, where D is the distance of a point of its frame
-/// from the given triangle, and s what squaredToTriangle() says, but for kSquaredDistanceError of s.
+/// Lays a triangle flat. Then |sqrt(s) - D| <= kFlatRelative D + error. D is the distance of a point of its frame from
+/// the given triangle, and s what squaredToTriangle() says, within kSquaredDistanceError of s.
 ///
-/// Error bound: how far the rows carry each corner from where it is stored is measured in double, which errs by less
-/// than 16 v of the longest side; a triangle goes where its corners go. The kernel adds kFlatTriangleUnits of the
+/// Error bound: double arithmetic measures how far the rows carry each corner from where it is stored. It errs by less
+/// than 16 v of the longest side. A triangle goes where its corners go. The kernel adds kFlatTriangleUnits of the
 /// longest side. Sides too short for the inverse of their square count as points.
 /// @param corners finite. @param slack how far they may be off. The error is infinite where coordinates are out of the
 /// kernel's range.
 template <class Number>
 FlatTriangle<Number> flatten(const Triangle3& corners, double slack = 0.0);
 
-/// The same of a triangle in a local frame, whose corners lie within its reach.
+/// Lays a triangle flat in a local frame. Its corners lie within the frame's reach.
 FlatTriangle<float> flatten(const LocalFrame& frame, const Triangle3& corners);
 
 /// Lengths of which one is the distance from the given triangle: what a squared distance in float tells, within the

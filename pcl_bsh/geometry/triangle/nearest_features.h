@@ -100,7 +100,7 @@ Fraction<Number> squaredDistance(const Features& features, const CornerA& a, con
 /// triangle.
 ///
 /// The nearest places of two triangles that do not meet are a corner and a place inside a face, or places of two edges.
-/// Of two edges they are inside both, or a corner and an edge. Each pair of two corners, of corner and edge and so on
+/// On two edges they are inside both, or a corner and a place. Each pair of two corners, of corner and edge and so on
 /// is offered once at most, so that equal distances are not compared where one feature is shared. Where a sign is
 /// unknown, `sure` is false and the result worth nothing.
 template <class Number>
@@ -109,7 +109,7 @@ public:
   using Vector = Vector3<Number>;
   using Corners = std::array<Vector, 3>;
 
-  /// Of a point and a triangle.
+  /// Compares a point and a triangle.
   NearestFeatures(const Vector& point, const Corners& triangle) : a_{point, point, point}, b_(triangle)
   {
     const Vector normal = normalOf(b_);
@@ -122,7 +122,7 @@ public:
       if (flat || outer_[j]) offerEdge(0, j, true);
   }
 
-  /// Of two triangles.
+  /// Compares two triangles.
   NearestFeatures(const Corners& a, const Corners& b, FeaturePairs pairs) : a_(a), b_(b)
   {
     const Vector normals[2] = {normalOf(a), normalOf(b)};

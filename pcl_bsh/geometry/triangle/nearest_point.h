@@ -41,7 +41,7 @@ inline Point3 nearestPoint(const Point3& p, const Triangle3& triangle)
   return nearest;
 }
 
-/// Of two triangles: one of each, by projecting to and fro (von Neumann), which comes to the nearest two.
+/// The nearest places of two triangles, one of each. Projecting to and fro (von Neumann) comes to them.
 inline std::array<Point3, 2> nearestPoints(const Triangle3& a, const Triangle3& b)
 {
   constexpr int most = 1000;

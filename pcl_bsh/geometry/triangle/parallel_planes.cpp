@@ -45,8 +45,8 @@ std::optional<bool> TriangleDistance::areParallelAsGiven(const TrianglePair& pai
   return areParallel(asGiven(pair.a), asGiven(pair.b));
 }
 
-/// Sign of the distance of the planes of the first pair less that of the second, which are all parallel. Of one pose,
-/// in the given coordinates: the pose stretches all gaps alike. Nothing where that is not known.
+/// Sign of the distance of the planes of the first pair less that of the second, which are all parallel. Compares
+/// pairs of one pose in the given coordinates: the pose stretches all gaps alike. Nothing where that is not known.
 std::optional<int> TriangleDistance::comparePlanesAsGiven(const TrianglePair& first, const TrianglePair& second) const
 {
   if (a_ != b_) return std::nullopt;

@@ -29,11 +29,11 @@ double turn(const Place& u, const Place& v, const Place& w)
   return (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
 }
 
-/// Of coordinates up to a scale that are off by a few roundings of it: what a turn errs by is far below this share of
-/// its square.
+/// A turn of coordinates up to a scale that are off by a few roundings of it errs by far less than this share of the
+/// scale's square.
 constexpr double kTurnDoubt = 0x1p-40;
-/// Of coordinates that are off by more than that: a turn is the sum of two products of differences, each up to twice
-/// the scale, and each off by two errors.
+/// A turn of coordinates that are off by more errs by less than this many times the scale times their error. It is the
+/// sum of two products of differences, each up to twice the scale, and each off by two errors.
 constexpr double kTurnErrors = 32.0;
 
 /// Whether a place is surely inside. @param doubt of turns
@@ -45,8 +45,8 @@ bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
 }
 
 /// Whether some place of a surely is inside b: the middle of what they have in common, as doubles find it. It is in a
-/// but for its rounding, and inside b by more than that.
-/// @param error of any coordinate, but for its rounding to double
+/// up to its rounding, and inside b by more than that.
+/// @param error of any coordinate, without its rounding to double
 bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, double error)
 {
   double scale = 0.0;
@@ -79,7 +79,7 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, do
   return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
-/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal: where both touch along
+/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both touch along
 /// parts of their edges, doubles know no place inside both. @param turnOf(from, to, corner): to which side it turns
 template <class TurnOf>
 bool surelyTouch(const LongCorners& t, const LongCorners& closed, const TurnOf& turnOf)

@@ -21,7 +21,7 @@ int compareRoot(const Fraction<Number>& squared, const Number& length, bool& sur
 /// Its root, rounded to the nearest double; NaN where that is in doubt.
 ///
 /// The quotient q of the values is corrected by what is left of the numerator, n - q d, as LongNumber has it, over d.
-/// That correction is rounded by v twice, and taken over d's value, which is v of d off: 4 v of the correction; what n
+/// The correction is rounded by v twice, and taken over d's value, which is v of d off: 4 v of the correction; what n
 /// - q d errs by stays as it is.
 inline double nearestRoot(const Fraction<LongNumber>& squared)
 {

@@ -60,7 +60,7 @@ Point3 faceNormal(const Triangle3& t)
   return cross(ofOrdinaryLength(t[1] - t[0]), ofOrdinaryLength(t[2] - t[0]));
 }
 
-/// The place of a triangle's inside that is below or above a point; nothing where there is none.
+/// Offers the place of a triangle's inside that is below or above a point, if there is such a place.
 /// @param offer called with the place
 template <class Offer>
 void onFace(const Point3& p, const Triangle3& t, const Offer& offer)
@@ -160,7 +160,7 @@ double speedOf(const MovingCorners& corners)
   return speed;
 }
 
-/// Of directions from b to a, the one along which both are farthest apart; of length 1.
+/// The direction from b to a along which both are farthest apart, among those offered; of length 1.
 class BestDirection {
 public:
   BestDirection(const Corners& a, const Corners& b) : a_(a), b_(b) {}

@@ -11,11 +11,11 @@
 
 namespace pcl_bsh {
 
-/// Of a distance of two places, or of a span along a direction, relative to the largest coordinate: proved in
+/// Error of a distance of two places, or of a span along a direction, relative to the largest coordinate. Proved in
 /// test/proof/separation.g. Squares of lengths below 2^-500 vanish: as much is added.
 inline constexpr double kSeparationError = 48 * kDoubleUnit;
 
-/// What stands for a point, or for a closed triangle: all that lies between its corners.
+/// A point, or a closed triangle: all that lies between its corners.
 struct Corners {
   Triangle3 at;
   std::uint32_t count; ///< 1 or 3
@@ -30,12 +30,12 @@ struct Separation {
   double low = 0.0, high = 0.0; ///< the distance is between these, whatever rounding takes
 };
 
-/// Of corners in one frame, finite and below 2^300. `low` and `high` are as near to each other as rounding lets them,
-/// but for triangles so thin that their sides lie closer together than that.
+/// The separation of corners in one frame, finite and below 2^300. `low` and `high` are as near to each other as
+/// rounding lets them, except for triangles so thin that their sides lie closer together than that.
 PCL_BSH_EXPORT_INTERNAL Separation separationOf(const Corners& a, const Corners& b);
 
-/// The normal of a face of one of them, of length 1 and from b to a, along which both are apart by no less than this;
-/// of several the one along which they are farthest apart; 0 where there is none.
+/// The normal of a face of one of them, of length 1 and from b to a, along which both are apart by no less than
+/// `least`. Among several, it is the one along which they are farthest apart; 0 where no face has such a normal.
 PCL_BSH_EXPORT_INTERNAL Point3 faceBetween(const Corners& a, const Corners& b, double least);
 
 /// Corners that move, each on a parabola: at s in [0, 1] at from + s way + 4 s (1 - s) bow.

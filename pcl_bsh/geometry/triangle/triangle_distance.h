@@ -5,7 +5,7 @@
 //   TriangleDistance distance(T_world_a, T_world_b);
 //   bool collide = distance.compare(p, triangle, clearance) <= 0;
 //
-// What ExactDistance is to points: poses are taken as they are, coordinates may be any finite doubles. Triangles are
+// Like ExactDistance for points, it takes poses as they are; coordinates may be any finite doubles. Triangles are
 // closed, and may be segments or points; triangles that meet have distance 0. Expects the DefaultFloatEnvironment.
 #pragma once
 
@@ -90,7 +90,7 @@ public:
   double distance(const Point3& p, const Triangle3& b, Stages* stages = nullptr) const;
   double distance(const Triangle3& a, const Triangle3& b, Stages* stages = nullptr) const;
 
-  /// The same less the radius.
+  /// The distance less the radius, rounded in the same way.
   double gap(const PointPair& pair, Stages* stages = nullptr) const;
   double gap(const TrianglePair& pair, Stages* stages = nullptr) const;
 

@@ -82,8 +82,8 @@ std::array<Number, 3> Winding::seen(const Point3& p, const Point3& q) const
   return at;
 }
 
-/// The same in b's own axes, the ray's first, then cyclically: as long as the determinant of b's rotation makes them,
-/// for which row k of the inverse is the product of the columns k + 1 and k + 2.
+/// Turns corners to b's own axes, the ray's first, then cyclically. Lengths are multiplied by the determinant of b's
+/// rotation: row k of the inverse, multiplied so, is the product of the columns k + 1 and k + 2.
 template <class Number>
 Winding::Corners<Number> Winding::turnedBack(const Corners<Number>& corners) const
 {

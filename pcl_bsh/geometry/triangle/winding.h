@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What closed triangles enclose, exactly: crossings of a ray from a point, and the winding number that they add up to.
+// Tells exactly if closed triangles enclose a point: crossings of a ray from it, and the winding number of them all.
 //
 //   Winding winding(T_world_a, T_world_b);
 //   int turns = 0;
@@ -19,9 +19,9 @@
 namespace pcl_bsh {
 
 /// Rays from points of a along an axis of b, through triangles of b. The ray begins beside the point, by an
-/// infinitesimal step along the next axis and an infinitely smaller one along the last: it meets no edge and no corner,
-/// each of its crossings counts once, and the winding number is that of the point where the point is not on the
-/// surface.
+/// infinitesimal step along the next axis and an infinitely smaller one along the last. So it meets no edge and no
+/// corner, and each of its crossings counts once. Where the point is not on the surface, the winding number is that of
+/// the point.
 class PCL_BSH_EXPORT_INTERNAL Winding {
 public:
   struct Crossing {
@@ -40,8 +40,8 @@ public:
   /// @param p, triangle finite
   Crossing crossing(const Point3& p, const Triangle3& triangle, Stages* stages = nullptr) const;
 
-  /// Of `count` triangles, of which those that are not finite count for nothing: how often they wind round the point,
-  /// positive where fronts look outward; nothing where the point is on one of them. All are asked.
+  /// How often `count` triangles wind round the point, positive where fronts look outward; nothing where the point is
+  /// on one of them. Triangles that are not finite count for nothing. Asks one triangle after another.
   /// @param triangle called with 0 .. count - 1
   std::optional<int> number(const Point3& p, std::size_t count,
                             const std::function<Triangle3(std::size_t)>& triangle) const;

@@ -89,7 +89,7 @@ private:
     bool fixed;
   };
 
-  /// But for rules about the two.
+  /// The rule of two objects, without the rules about the two.
   PairRule ofKinds(ObjectId a, ObjectId b) const
   {
     const Object &first = objects_[a], &second = objects_[b];
