@@ -60,7 +60,7 @@ Parameters
 ----------
 cloud : SphereHierarchy
 widest_gap : float, optional
-    What gapes wider is an opening, not a surface. Default: eight times the median spacing, which is too little for a
+    A wider gap is an opening, not a surface. Default: eight times the median spacing, which is too little for a
     spinning lidar.
 threads : int, default 1
 

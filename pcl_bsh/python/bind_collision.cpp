@@ -26,7 +26,7 @@ clearance : float, default 0
 pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
     Rigid transforms from the cloud to the world.
 side : {"a", "b", "both"}
-    Whose points are flagged.
+    The clouds whose points are flagged.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
 **options of collisions
@@ -43,14 +43,14 @@ ndarray of uint8, (records,)
 Raises
 ------
 ValueError
-    A clearance that is negative or not finite, a pose that is not rigid within 1e-6, an accuracy that is none.
+    A clearance that is negative or not finite, a pose that is not rigid within 1e-6, a text that names no accuracy.
 
 Warns
 -----
 UserWarning
-    Of what the flags do not say: a cloud without a finite point, or with some that are not; float32 coordinates that
+    Facts that the flags do not tell: a cloud without a finite point, or with some that are not; float32 coordinates that
     are coarse for the clearance; points so far apart that surfaces may touch between them; clouds that are so far from
-    each other that their frames are not one, perhaps. All queries of two clouds warn likewise.
+    each other that their frames are not one, perhaps. All queries of two clouds warn of the same facts.
 
 Examples
 --------
@@ -67,7 +67,7 @@ array([0, 1], dtype=uint8)
 constexpr auto kCollidingIndices =
     R"(The rows that collide, ascending: for large clouds of which few points do.
 
-Parameters are those of `collision_flags`, but for `spacings_of_b`, `density` and `seen`.
+Parameters are those of `collision_flags`, except `spacings_of_b`, `density` and `seen`.
 
 Returns
 -------
@@ -91,7 +91,7 @@ array([1], dtype=int32)
 constexpr auto kAnyCollision =
     R"(Does any pair of points collide? Ends at the first one.
 
-Parameters are those of `collision_flags`, but for `side`, `spacings_of_b`, `density` and `seen`.
+Parameters are those of `collision_flags`, except `side`, `spacings_of_b`, `density` and `seen`.
 
 Returns
 -------

@@ -31,8 +31,8 @@ progress : callable, optional
 Returns
 -------
 PointDistances
-    Unpacks as ``distance, closest_point``. `distance` (records of a,) is float64, NaN where there is none; `closest_point`
-    is int32: its row in b, of several the smallest, -1 where there is none.
+    Unpacks as ``distance, closest_point``. `distance` (records of a,) is float64, NaN where no record is within reach;
+    `closest_point` is int32: its row in b, of several the smallest, -1 where no record is within reach.
 
 Examples
 --------
@@ -73,12 +73,12 @@ Examples
 
 constexpr auto kHausdorffDistance =
     R"(The symmetric Hausdorff distance, without measuring every point: that of `symmetric_distances`, bit for bit, for less.
-Of meshes, that of all places of their triangles, as an interval.
+For meshes, it is the distance of all places of their triangles, as an interval.
 
 Parameters
 ----------
 a, b : SphereHierarchy
-    Of meshes, the surfaces: `solid` is for `symmetric_distances`.
+    Meshes count as surfaces: `solid` is for `symmetric_distances`.
 pose_a, pose_b, threads, progress
     As of `point_distances`.
 accuracy : Accuracy or str, optional

@@ -23,16 +23,16 @@ Parameters
 path : str or path-like
     .pcd, .ply, .las, .laz, .e57, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
 columns : sequence of str, optional
-    Of .csv, .xyz and .txt: names of all columns in place of what the file says, ``["x", "y", "z", "_"]``; "_" is not
+    Names of all columns of .csv, .xyz and .txt, in place of those in the file, ``["x", "y", "z", "_"]``; "_" is not
     read.
 threads : int, default 0
-    That unpack LAZ; 0: all of the machine's. Any number gives the same result.
+    Threads that unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False
     Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
 unit : str, optional
-    Of the file's lengths: mm, cm, m, ft or us-ft. Else that of a LAS file's coordinate system.
+    Unit of the file's lengths: mm, cm, m, ft or us-ft. Default: that of a LAS file's coordinate system.
 to_unit : str, optional
-    That lengths are read in, as float64; else they stay as they are.
+    Unit that lengths are converted to, as float64. Default: they stay as they are.
 length_fields : sequence of str, optional
     With `to_unit`: more fields that are lengths, such as sigmas.
 
@@ -50,7 +50,7 @@ FileError
 Warns
 -----
 UserWarning
-    Of what was taken for granted, as of columns without names, and of records that a LAS header does not count.
+    Facts that were taken for granted, as of columns without names, and records that a LAS header does not count.
 
 See Also
 --------
@@ -76,7 +76,7 @@ path : str or path-like
 records : ndarray
     Structured with fields x, y, z: (n,), or (height, width) for an organised cloud. Or (n, 3).
 header : FileHeader, optional
-    Of `read_with_header`.
+    The one that `read_with_header` returned.
 
 Raises
 ------
@@ -99,16 +99,16 @@ constexpr auto kReadMesh = R"(The vertices and faces of a mesh, for `SphereHiera
 Parameters
 ----------
 path : str or path-like
-    .obj, .off, .ply or .stl; polygons are cut into triangles. Of other formats there are no triangles. Lines, edges and
+    .obj, .off, .ply or .stl; polygons are cut into triangles. Other formats have no triangles. Lines, edges and
     free-form surfaces are warned of; a file of these without faces is refused: `read` gives its vertices.
 threads : int, default 0
-    That unpack LAZ; 0: all of the machine's. Any number gives the same result.
+    Threads that unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False
     Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
 unit : str, optional
-    Of the file's lengths: mm, cm, m, ft or us-ft. Else that of a LAS file's coordinate system.
+    Unit of the file's lengths: mm, cm, m, ft or us-ft. Default: that of a LAS file's coordinate system.
 to_unit : str, optional
-    That lengths are read in, as float64; else they stay as they are.
+    Unit that lengths are converted to, as float64. Default: they stay as they are.
 length_fields : sequence of str, optional
     With `to_unit`: more fields that are lengths, such as sigmas.
 

@@ -70,7 +70,7 @@ SphereHierarchy(1000 points, float64)
 constexpr auto kOfTriangles = R"(The hierarchy of a mesh's triangles: every query takes it where points go.
 
 Answers are exact for all of each triangle, and their records are triangles. A triangle may be a segment or a point; one
-with a corner that is not finite is left out. What a closed surface encloses is no part of it.
+with a corner that is not finite is left out. The inside of a closed surface is no part of it.
 
 Parameters
 ----------

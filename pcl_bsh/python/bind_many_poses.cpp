@@ -18,7 +18,7 @@ Parameters
 ----------
 a, b : SphereHierarchy
 poses : array_like, (m, 4, 4) or (m, 3, 4)
-    Of b in the world.
+    Poses of b in the world.
 clearance : float, default 0
 pose_a : array_like, (4, 4) or (3, 4), optional
 accuracy : Accuracy or str, default exact
@@ -45,12 +45,12 @@ array([1, 1, 0], dtype=uint8)
 
 constexpr auto kClosestAtPoses = R"(The smallest distance, b at each of many poses.
 
-Parameters are those of `any_collision_at_poses`, but for `clearance` and `accuracy`.
+Parameters are those of `any_collision_at_poses`, except `clearance` and `accuracy`.
 
 Returns
 -------
 distances : ndarray of float64, (m,)
-    Of what a solid holds, negative: the depth of the deepest.
+    Negative where a solid encloses a record: the depth of the deepest.
 pairs : ndarray of int32, (m, 2)
     Rows of a and b; -1 when a cloud is empty.
 
@@ -74,7 +74,7 @@ Parameters
 ----------
 scan, model : SphereHierarchy
 poses : array_like, (m, 4, 4) or (m, 3, 4)
-    Of the model in the world: vertices that motions share.
+    Poses of the model in the world: vertices that motions share.
 motions : array_like of int, (k, 2)
     From one pose of the list to another.
 clearance : float, default 0

@@ -30,7 +30,7 @@ threads : int, default 1
 Returns
 -------
 Neighbors
-    Flat arrays with offsets; ``found[i]`` is (indices, squared_distances) of query i. Of one point these two arrays.
+    Flat arrays with offsets; ``found[i]`` is (indices, squared_distances) of query i. A query of one point returns these two arrays.
 
 Examples
 --------

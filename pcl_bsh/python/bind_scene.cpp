@@ -31,19 +31,19 @@ distance : float, optional
 contacts : int, optional
     At most so many for each pair of parts, the nearest.
 response : {"none", "stop", "slide"}
-    What a moving object does where it meets another.
+    The motion of an object where it meets another.
 gravity : float, optional
     Objects follow the ground, and climb or sink by this step height at most.
 down : array_like, (3,), default (0, 0, -1)
-    Of gravity.
+    Direction of gravity.
 test_pairs : bool, default True
     False: only pairs for which a rule asks.
 accuracy : Accuracy or str, default exact
-    Of any, flags, distance and self_collisions.
+    Accuracy of any, flags, distance and self_collisions.
 tolerance : float, default 1e-4
-    Of first contacts, swept motion and responses, in the clouds' unit; > 0.
+    Length by which first contacts, swept motion and responses may be off, in the clouds' unit; > 0.
 voxel_edge : float, default 0
-    Of the grid over the scene; 0: from the sizes of what moves.
+    Edge of a cell of the grid over the scene; 0: from the sizes of what moves.
 threads : int, default 1
 deform : float, optional
     Points of objects may move, by `Scene.deform`: the spheres of a voxel, or of all, are built anew once they have grown

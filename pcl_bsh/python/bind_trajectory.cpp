@@ -32,12 +32,12 @@ Parameters
 ----------
 scan, model : SphereHierarchy
 poses : array_like, (m, 4, 4) or (m, 3, 4)
-    Of the model in the world: rigid transforms.
+    Poses of the model in the world: rigid transforms.
 clearance : float, default 0
 pose_scan : array_like, (4, 4) or (3, 4), optional
-    Of the scan in the world.
+    Pose of the scan in the world.
 flags, distances, first_poses, closest_poses, pose_summaries : bool
-    What to compute; arrays that are not asked for are None. `distances` and `closest_poses` measure each point that
+    Results to compute; arrays that are not asked for are None. `distances` and `closest_poses` measure each point that
     collides; one distance for each pose is told by `closest_pair_at_poses`, for less.
 swept : float, optional
 pivot : array_like, (3,), optional
@@ -164,14 +164,14 @@ auto columnWhere(std::vector<T> TrajectoryResult::*values, PythonQuestion asked)
 }
 
 constexpr auto kFindClashes =
-    R"(What collides along a path, place by place: clusters of colliding points, the most severe first.
+    R"(Places where a path collides: clusters of colliding points, the most severe first.
 
 Parameters
 ----------
 scan : SphereHierarchy
-    That the path was asked about.
+    The scan that the path was asked about.
 run : Trajectory
-    Of `collide_along` with flags, distances, first_poses and closest_poses.
+    The result of `collide_along` with flags, distances, first_poses and closest_poses.
 cluster_distance : float
     Points no farther apart belong together; > 0.
 
@@ -202,7 +202,7 @@ nearness : float
 Returns
 -------
 list of Clash
-    The same with `status` set and ids passed on, and after them those of `earlier` that are resolved.
+    The clashes with `status` set and ids passed on, then those of `earlier` that are resolved.
 )";
 
 using Status = As<"Literal['new', 'persisting', 'resolved']">;

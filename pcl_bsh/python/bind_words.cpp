@@ -16,8 +16,8 @@ namespace py = pybind11;
 constexpr auto kAccuracy = R"(How sure an answer has to be, and so what it may cost.
 
 Every query takes one as `accuracy`, or the text that makes it: ``"exact"``, ``"tolerance=LENGTH"``,
-``"level=N"``, ``"pairs=N"`` or ``"time=SECONDS"``. What a query that stops early does not know is undecided, or lies in
-an interval that holds the truth.
+``"level=N"``, ``"pairs=N"`` or ``"time=SECONDS"``. A query that stops early leaves points undecided, or returns
+intervals that hold the truth.
 
 Parameters
 ----------
@@ -27,7 +27,7 @@ text : str
 Raises
 ------
 ValueError
-    Where the text is none of these.
+    Where the text is another.
 
 Examples
 --------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What makes the files of results/: programs of a built preset `benchmark`, run one after another."""
+"""Makes the files of results/: programs of a built preset `benchmark`, run one after another."""
 import csv
 import json
 import os

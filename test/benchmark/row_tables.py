@@ -7,7 +7,7 @@ from make_rows import HERE, run, run_surfaces
 
 
 class Rows(list):
-    """Of a file, as dictionaries."""
+    """The rows of a file, as dictionaries."""
 
     def where(self, **values):
         """@param values of columns; a column's unit, and what is no word in it, is left out of its name"""
@@ -91,7 +91,7 @@ def paths(rows):
 
 
 def tight(rows):
-    """What else is asked, against the flags."""
+    """Other questions, against the flags."""
     yield "| question | query | of the flags' time | node pairs |"
     yield "|---|---|---|---|"
     for row in rows:
@@ -229,7 +229,7 @@ def plates(rows):
 
 
 def grown(rows):
-    """What the last size of each query has grown to."""
+    """The growth of each query at its last size."""
     return [f"{row['growth of steps']}, {short(float(row['time [ms]']), ' ms')}" for row in rows if row["growth of steps"] != "-"]
 
 

@@ -21,7 +21,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent
 
 
 def output(command, arguments, error):
-    """What a program prints; `error` where it fails"""
+    """The output of a program; `error` where it fails"""
     try:
         run = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:

@@ -241,7 +241,7 @@ ENDS_OPERAND = re.compile(r"[,;?]|(?<!:):(?!:)|(?<![=!<>])=(?!=)|\breturn\b|(?<=
 
 
 def operands(code, begin, end):
-    """What to leave out so that one operand of && or || is gone, with its operator: of a chain each operand once."""
+    """Ranges that hold one operand of && or || and its operator: each operand of a chain once."""
     def level(i, last, step):
         """The places from i on that no bracket encloses, until the one that encloses i ends."""
         depth = 0

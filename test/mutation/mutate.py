@@ -233,7 +233,7 @@ def run_binary(work, test, environment, arguments, cpu_seconds):
 
 @functools.lru_cache(maxsize=None)
 def tests_of(work, test, slow):
-    """What each quick or slow test of a room reaches, by a run without mutants."""
+    """The lines that each quick or slow test of a room reaches, by a run without mutants."""
     kept = work / "reached" / (test + (".slow" if slow else ""))
     if not kept.exists():
         kept.parent.mkdir(exist_ok=True)
@@ -256,7 +256,7 @@ def tests_of(work, test, slow):
 
 
 def batches(own, others, slow):
-    """Of tests with their rooms: the room, its tests and how long they take. A second of its own room's, then steps of
+    """Divides tests by room: the room, its tests and how long they take. A second of its own room's, then steps of
     all rooms' that take longer and longer, then the slow ones."""
     order = lambda pair: pair[0].milliseconds
 

@@ -87,6 +87,24 @@ def prose(lines):
         yield first, " ".join(paragraph)
 
 
+def embedded(text, begin, end):
+    """Paragraphs of documents within code: docstrings of Python, raw strings of C++. Indentation divides them."""
+    for found in re.finditer(begin + r"(.*?)" + end, text, re.DOTALL):
+        first = text.count("\n", 0, found.start(1)) + 1
+        paragraph, start, column = [], first, 0
+        for number, line in enumerate(found.group(1).split("\n") + [""], first):
+            at = len(line) - len(line.lstrip())
+            sample = re.match(r"\s*(>>>|\.\.\. |[-=]{3}|\S+ : )", line)
+            if paragraph and (not line.strip() or sample or (at != column and number > start + 1)):
+                yield start, " ".join(paragraph)
+                paragraph = []
+            if line.strip() and not sample:
+                if not paragraph:
+                    start = number
+                column = at
+                paragraph.append(line.strip())
+
+
 def messages(text):
     """String literals of C++ with three words or more, neighbours joined."""
     for found in re.finditer(r'"((?:[^"\\\n]|\\.)*)"(?:\s*"((?:[^"\\\n]|\\.)*)")*', text):
@@ -113,6 +131,9 @@ def texts():
         pieces = [("document", p) for p in prose(lines)] if not mark else [("comment", p) for p in comments(lines, mark)]
         if mark == "//" and path.parts[0] in PRODUCT:
             pieces += [("message", p) for p in messages("\n".join(re.sub(r"(^|\s)//.*", "", l) for l in lines))]
+            pieces += [("embedded", p) for p in embedded(text, r'R"\(', r'\)"')]
+        if path.suffix == ".py":
+            pieces += [("embedded", p) for p in embedded(text, '"""', '"""')]
         for kind, (line, paragraph) in pieces:
             for sentence in sentences(paragraph):
                 yield kind, path, line, sentence
@@ -132,7 +153,7 @@ def findings(rules):
         for rule, pattern, where in compiled:
             if kind in where and pattern.search(sentence):
                 found[rule].append(f"{path}:{line}: {sentence}")
-        if kind != "message":
+        if kind not in ("message", "embedded"):
             for rule, words in longest:
                 if len(sentence.split()) > words:
                     found[rule].append(f"{path}:{line}: {sentence}")

@@ -7,7 +7,7 @@ KINDS = ("random", "float32", "lattice", "line", "one_place", "holes", "far", "o
 
 
 def cloud(kind, seed=0, n=150):
-    """(n, 3) coordinates. Those of the kinds lattice, line and one_place have many ties, which float64 decides exactly."""
+    """(n, 3) coordinates. The kinds lattice, line and one_place have many ties, which float64 decides exactly."""
     rng = np.random.default_rng(seed)
     if kind == "random":
         return rng.random((n, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What mypy makes of the package's stubs."""
+"""The verdict of mypy on the package's stubs."""
 
 import importlib.util
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What users read: docstrings whose examples run, signatures, stubs, the time of a call."""
+"""Documents of the package: docstrings whose examples run, signatures, stubs, the time of a call."""
 
 import ast
 import doctest

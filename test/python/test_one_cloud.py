@@ -9,7 +9,7 @@ from clouds import KINDS, cloud, distances
 
 
 def neighbors_of(d, most):
-    """Of a row of distances: indices by distance, then by row."""
+    """Sorts a row of distances: indices by distance, then by row."""
     order = np.lexsort((np.arange(len(d)), d))
     return order[np.isfinite(d[order])][:most]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What must not change an answer does not: axes, powers of two, orders, halves, doubled points, exact turns."""
+"""Changes that must not change an answer: axes, powers of two, orders, halves, doubled points, exact turns."""
 
 import json
 import pathlib

@@ -18,7 +18,7 @@ constexpr auto collide_footer =
     R"(Point p of INPUT and q of OBSTACLE collide iff |p - POSE q| <= D, decided exactly, or as --accuracy says. With
 --uncertainty a point collides, or is free, only if it is so wherever the points truly are; else it is undecided.
 An OBSTACLE with faces (.obj .off .ply .stl) is a surface: q is any point of its triangles, and distances are exact to
-them. What a closed surface encloses counts with --solid alone. Reports name its triangles, from 0; polygons are cut
+them. The inside of a closed surface counts with --solid alone. Reports name its triangles, from 0; polygons are cut
 into triangles.
 An INPUT with faces is a surface, too: its triangles are flagged, and OUTPUT is a .ply with a property of its faces.
 Reads {read}, writes all of these but {unwritten}. Files may be

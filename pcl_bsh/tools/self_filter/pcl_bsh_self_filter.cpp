@@ -40,7 +40,7 @@ constexpr auto footer =
     R"(Each output has the name of its cloud, in the folder of --out, and all fields. A point that is kept, or has coordinates and
 the flag 0, is farther than the padding from every link; one that is removed, or has the flag 1, is within the padding of
 a link, has no coordinates, or is no return: exactly 0 0 0, where the sensor itself is. Boxes,
-cylinders, spheres and meshes that close are solid; other meshes are surfaces, with a warning. Of a link the bodies for collisions count; where it has none, those
+cylinders, spheres and meshes that close are solid; other meshes are surfaces, with a warning. A link counts with its bodies for collisions; where it has none, those
 to look at. Joints are fixed, revolute, continuous or prismatic; limits are not looked at. Meshes are .stl, .obj, .ply or
 .off in metres, or, where assimp was there when this was built, .dae: its <unit> counts, its <up_axis> does not, as in RViz.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.

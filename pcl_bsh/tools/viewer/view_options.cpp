@@ -19,11 +19,11 @@ namespace {
 
 constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A file with faces is a surface, drawn as one:
-its triangles are compared, coloured and picked. What a closed one encloses counts with --solid: distances
-are signed, and inside they are orange to red. What does not close is refused: --open-edges shows why.
+its triangles are compared, coloured and picked. The inside of a closed one counts with --solid: distances
+are signed, and inside they are orange to red. A surface that does not close is refused: --open-edges shows why.
 A cloud that holds the fields collision, distance or first_pose, or a .ply whose faces have such
 properties, shows these as they are.
-Of a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
+For a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
 camera sees nearest one by one, as many as the budget holds; with its fields collision, distance ...
 coloured as clouds are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
