@@ -26,6 +26,8 @@ most : int, optional
     Only so many, the nearest ones. There may be as many as points of a times points of b.
 pose_a, pose_b : array_like, (4, 4) or (3, 4), optional
     Rigid transforms from the cloud to the world.
+progress : callable, optional
+    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 
 Returns
 -------
@@ -68,19 +70,20 @@ struct Contacts {
   Work work;
 };
 
-ContactsRequest requestOf(double clearance, const std::optional<std::size_t>& most)
+ContactsRequest requestOf(double clearance, const std::optional<std::size_t>& most, const ProgressLike& progress)
 {
   ContactsRequest request;
   request.clearance = clearance;
+  request.progress = progressOf(progress);
   if (most) request.most = *most;
   return request;
 }
 
 Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optional<std::size_t> most,
-                    const PoseLike& pose_a, const PoseLike& pose_b)
+                    const PoseLike& pose_a, const PoseLike& pose_b, const ProgressLike& progress)
 {
   PythonQuestion asked(a, pose_a, b, pose_b);
-  const ContactsRequest request = requestOf(clearance, most);
+  const ContactsRequest request = requestOf(clearance, most, progress);
   asked.question.clearance = clearance;
   const auto find = [&] {
     const ContactsResult found = nearestContacts(asked.a, asked.b, request);
@@ -99,10 +102,11 @@ Contacts contactsOf(const Cloud& a, const Cloud& b, double clearance, std::optio
 }
 
 py::array_t<std::int32_t> pairsWithinOf(const Cloud& a, const Cloud& b, double clearance,
-                                        std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b)
+                                        std::optional<std::size_t> most, const PoseLike& pose_a, const PoseLike& pose_b,
+                                        const ProgressLike& progress)
 {
   PythonQuestion asked(a, pose_a, b, pose_b);
-  const ContactsRequest request = requestOf(clearance, most);
+  const ContactsRequest request = requestOf(clearance, most, progress);
   asked.question.clearance = clearance;
   const PairsWithin found = asked.answer(
       [&] { return pairsWithin(asked.a, asked.b, request); },
@@ -133,9 +137,9 @@ void bindContacts(py::module_& module)
         return "Contacts(" + std::to_string(found.a.size()) + (found.complete ? ")" : ", the nearest)");
       });
   module.def("nearest_contacts", &contactsOf, kContacts, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
-             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());
+             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none(), "progress"_a = py::none());
   module.def("pairs_within", &pairsWithinOf, kPairsWithin, "a"_a, "b"_a, "clearance"_a = 0.0, py::kw_only(),
-             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none());
+             "most"_a = py::none(), "pose_a"_a = py::none(), "pose_b"_a = py::none(), "progress"_a = py::none());
 }
 
 } // namespace pcl_bsh::python

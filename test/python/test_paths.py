@@ -80,6 +80,8 @@ def test_progress_and_stop():
         "distances": lambda progress: pcl_bsh.point_distances(S, M, progress=progress).distance,
         "symmetric": lambda progress: pcl_bsh.symmetric_distances(S, M, progress=progress).b.distance,
         "any": lambda progress: pcl_bsh.any_collision_at_poses(S, M, poses, 0.05, progress=progress),
+        "contacts": lambda progress: pcl_bsh.nearest_contacts(S, M, 0.3, progress=progress).distance,
+        "pairs": lambda progress: pcl_bsh.pairs_within(S, M, 0.3, progress=progress),
         "closest": lambda progress: pcl_bsh.closest_pair_at_poses(S, M, poses, progress=progress)[0],
         "motions": lambda progress: pcl_bsh.any_collision_on_motions(S, M, poses, motions, 0.05, swept=0.01,
                                                                      progress=progress),
