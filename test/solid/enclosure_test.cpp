@@ -211,7 +211,7 @@ TEST(Enclosure, SoupOfTrianglesIsOfBodiesByItsPlaces)
   EXPECT_EQ(findEnclosed(bodies, identity, QueriedRecords(cloud), identity)->b, 12u);
 }
 
-TEST(Enclosure, WhatHasNoPlaceIsHeldByNothing)
+TEST(Enclosure, NothingEnclosesARecordWithoutAPlace)
 {
   const Mesh box = test::boxMesh();
   const Solid solid(box.view());
@@ -220,7 +220,7 @@ TEST(Enclosure, WhatHasNoPlaceIsHeldByNothing)
   const std::uint32_t nan = nothing.vertex(NAN, 0, 0), loose = nothing.vertex(0.5, 0.5, 0.5);
   nothing.triangle(nan, nan, loose);
   const SphereHierarchy hierarchy(viewOf(nothing.view()));
-  const QueriedRecords queried_records(hierarchy);
+  const QueriedRecords queried(hierarchy);
   EXPECT_THAT(enclosedBy(solid, queried, identity), IsEmpty());
   EXPECT_FALSE(findEnclosed(bodies, identity, queried, identity));
 }
