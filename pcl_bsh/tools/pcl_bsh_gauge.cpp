@@ -150,6 +150,7 @@ void summarise(const Options& options, const io::GaugeReport& report)
   for (std::size_t part = 0; part < report.table.parts(); ++part) no_data += report.table.points(part) == 0;
   std::ostream& out = options.files.summary();
   out << counted(report.infringements.size(), "infringement") << " of " << counted(report.infringing, "point");
+  if (!report.previous.empty()) out << ", " << io::stateCounts(report.listed);
   if (!report.infringements.empty()) {
     const Infringing& worst = report.infringements.front().worst;
     out << ", the worst " << io::numberText(worst.clearance, std::chars_format::fixed, 3) << " at chainage "
@@ -166,6 +167,8 @@ void compare(const Options& options, const Axis& axis)
 {
   const std::vector<Envelope> envelopes = readEnvelopes(options, axis);
   axis.requireReach(options.reach);
+  std::optional<io::GaugeList> earlier;
+  if (!options.previous.empty()) earlier = io::readGaugeList(options.previous, options.limit);
   GaugeTable table(axis, envelopes.size(), options.step);
   if (!options.output.empty()) io::requireWritableCloud(options.output);
   for (const fs::path* file : {&options.table, &options.infringements, &options.report, &options.page})
@@ -191,6 +194,7 @@ void compare(const Options& options, const Axis& axis)
                          options.reach,
                          options.limit,
                          options.thickness,
+                         options.cluster_distance,
                          {},
                          0,
                          {}};
@@ -206,7 +210,9 @@ void compare(const Options& options, const Axis& axis)
   });
   report.infringing = list.size();
   report.infringements = infringementsOf(list, options.cluster_distance);
+  report.listed = io::listedOf(report, list);
   step.done(counted(list.size(), "infringing point"));
+  if (earlier) cli::warnOfFile(program, options.previous, io::compareWithList(report, options.previous, *earlier));
   if (options.draws()) {
     report.sections = sectionsOf(options, report);
     fillSections(options, *scan, report);

@@ -25,6 +25,15 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 
+} // namespace
+
+std::string inWords(ClashStatus status)
+{
+  std::string name = nameOf(status);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 Point3 pointFrom(const JsonReader& reader)
 {
   Point3 point{};
@@ -42,6 +51,16 @@ Extent boxFrom(const JsonReader& box)
   return extent;
 }
 
+ClashStatus statusFrom(const JsonReader& status)
+{
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < clash_statuses; ++i) names.emplace_back(nameOf(static_cast<ClashStatus>(i)));
+  const std::string name = status.oneOf(names);
+  return static_cast<ClashStatus>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+namespace {
+
 std::optional<Extent> boxOrNone(const JsonReader& box)
 {
   return box.json().is_null() ? std::nullopt : std::optional(boxFrom(box));
@@ -55,14 +74,6 @@ Point3 placeFrom(const JsonReader& entry, const Clash& clash)
   Point3 middle;
   for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * clash.low[k] + 0.5 * clash.high[k];
   return middle;
-}
-
-ClashStatus statusFrom(const JsonReader& status)
-{
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < clash_statuses; ++i) names.emplace_back(nameOf(static_cast<ClashStatus>(i)));
-  const std::string name = status.oneOf(names);
-  return static_cast<ClashStatus>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 /// A clash as clashJson() writes it. Corners and distances may be any finite numbers; all else is within its range.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/clashes/clashes.h>
-#include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/reports/bcf_topics.h>
 #include <pcl_bsh/question/question.h>
 
@@ -27,6 +27,14 @@ std::string uncertaintyText(const Uncertainty& uncertainty);
 
 /// A length, or a field and how many of its sigmas count, or an object of one of them and that of poses.
 Json uncertaintyJson(const Uncertainty& uncertainty);
+
+/// nameOf() with spaces, for people.
+std::string inWords(ClashStatus status);
+
+// A point, a box with min and max, and a status, as reports have them. @throws JsonError
+Point3 pointFrom(const JsonReader& reader);
+Extent boxFrom(const JsonReader& box);
+ClashStatus statusFrom(const JsonReader& status);
 
 /// Where a run looked.
 struct Survey {

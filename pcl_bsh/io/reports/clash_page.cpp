@@ -135,13 +135,6 @@ private:
     return page;
   }
 
-  static std::string inWords(ClashStatus status)
-  {
-    std::string name = nameOf(status);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return name;
-  }
-
   /// From deep red where clouds touch to pale yellow at the clearance.
   std::string colorOf(double distance) const
   {

@@ -14,24 +14,27 @@ constexpr std::size_t most_rows = 50, most_gaps = 20;
 
 Data rowsOf(const GaugeReport& report)
 {
-  if (report.infringements.empty()) return false;
+  if (report.listed.empty()) return false;
   List rows;
-  for (const Infringement& infringement : report.infringements) {
+  for (const ListedInfringement& listed : report.listed) {
     if (rows.size() == most_rows) break;
-    const Infringing& worst = infringement.worst;
-    rows.push_back(
-        Object{{"rank", std::to_string(rows.size() + 1)},
-               {"envelope", plain(report.envelopes[static_cast<std::size_t>(worst.envelope)].name())},
-               {"chainage", coordinate(report.axis.chainage(worst.place.distance))},
-               {"from", coordinate(report.axis.chainage(infringement.from))},
-               {"to", coordinate(report.axis.chainage(infringement.to))},
-               {"clearance", coordinate(worst.clearance)},
-               {"offset", coordinate(worst.place.offset)},
-               {"height", coordinate(worst.place.height)},
-               {"points", std::to_string(infringement.members.size())},
-               {"at", coordinate(worst.at[0]) + ", " + coordinate(worst.at[1]) + ", " + coordinate(worst.at[2])}});
+    const Clash& clash = listed.clash;
+    rows.push_back(Object{
+        {"rank", isPresent(clash.status) ? std::to_string(rows.size() + 1) : ""},
+        {"id", plain(clash.id)},
+        {"class", nameOf(clash.status)},
+        {"status", inWords(clash.status)},
+        {"envelope", plain(listed.envelope)},
+        {"chainage", coordinate(listed.chainage)},
+        {"from", coordinate(listed.chainage_from)},
+        {"to", coordinate(listed.chainage_to)},
+        {"clearance", coordinate(clash.distance)},
+        {"offset", coordinate(listed.offset)},
+        {"height", coordinate(listed.height)},
+        {"points", std::to_string(clash.points)},
+        {"at", coordinate(clash.place[0]) + ", " + coordinate(clash.place[1]) + ", " + coordinate(clash.place[2])}});
   }
-  const std::size_t more = report.infringements.size() - rows.size();
+  const std::size_t more = report.listed.size() - rows.size();
   return Object{{"list", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};
 }
 
@@ -95,6 +98,8 @@ void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report
                        {"far", std::to_string(report.counts[4])},
                        {"not_finite", std::to_string(report.counts[5])},
                        {"rows", rowsOf(report)},
+                       {"previous", textOrNone(report.previous)},
+                       {"states", stateCounts(report.listed)},
                        {"envelopes", envelopes},
                        {"sections", sections.empty() ? Data(false) : Data(Object{{"list", sections}})}};
   const std::string html = rendered("gauge_page.html", gauge_page_html, page);

@@ -38,20 +38,23 @@ std::pair<double, double> chainagesOf(const GaugeReport& report, std::size_t par
   return {report.axis.chainage(from), report.axis.chainage(std::nextafter(to, from))};
 }
 
-Json jsonOf(const GaugeReport& report, const Infringement& infringement)
+Json jsonOf(const ListedInfringement& listed)
 {
-  const Infringing& worst = infringement.worst;
-  return {{"envelope", report.envelopes[static_cast<std::size_t>(worst.envelope)].name()},
-          {"chainage_from", report.axis.chainage(infringement.from)},
-          {"chainage_to", report.axis.chainage(infringement.to)},
-          {"chainage", report.axis.chainage(worst.place.distance)},
-          {"distance", worst.place.distance},
-          {"offset", worst.place.offset},
-          {"height", worst.place.height},
-          {"clearance", worst.clearance},
-          {"points", infringement.members.size()},
-          {"record", worst.record},
-          {"at", {worst.at[0], worst.at[1], worst.at[2]}}};
+  const Clash& clash = listed.clash;
+  return {{"id", clash.id},
+          {"status", nameOf(clash.status)},
+          {"envelope", listed.envelope},
+          {"chainage_from", listed.chainage_from},
+          {"chainage_to", listed.chainage_to},
+          {"chainage", listed.chainage},
+          {"distance", listed.distance},
+          {"offset", listed.offset},
+          {"height", listed.height},
+          {"clearance", clash.distance},
+          {"points", clash.points},
+          {"record", listed.record},
+          {"at", clash.place},
+          {"box", {{"min", clash.low}, {"max", clash.high}}}};
 }
 
 } // namespace
@@ -90,17 +93,18 @@ void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& repor
 void writeInfringements(const std::filesystem::path& path, const GaugeReport& report)
 {
   files::replaceFile(path, [&](std::ostream& out) {
-    out << "rank,envelope,chainage_from,chainage_to,chainage,distance,offset,height,clearance,points,record,x,y,z\n";
+    out << "rank,id,status,envelope,chainage_from,chainage_to,chainage,distance,offset,height,clearance,points,record,"
+           "x,y,z\n";
     std::size_t rank = 0;
-    for (const Infringement& infringement : report.infringements) {
-      const Infringing& worst = infringement.worst;
-      out << ++rank << ',' << csvText(report.envelopes[static_cast<std::size_t>(worst.envelope)].name());
-      for (const double value : {report.axis.chainage(infringement.from), report.axis.chainage(infringement.to),
-                                 report.axis.chainage(worst.place.distance), worst.place.distance, worst.place.offset,
-                                 worst.place.height, worst.clearance})
+    for (const ListedInfringement& listed : report.listed) {
+      const Clash& clash = listed.clash;
+      if (isPresent(clash.status)) out << ++rank;
+      out << ',' << clash.id << ',' << nameOf(clash.status) << ',' << csvText(listed.envelope);
+      for (const double value : {listed.chainage_from, listed.chainage_to, listed.chainage, listed.distance,
+                                 listed.offset, listed.height, clash.distance})
         out << ',' << numberText(value);
-      out << ',' << infringement.members.size() << ',' << worst.record;
-      for (const double value : worst.at) out << ',' << numberText(value);
+      out << ',' << clash.points << ',' << listed.record;
+      for (const double value : clash.place) out << ',' << numberText(value);
       out << '\n';
     }
   });
@@ -122,6 +126,8 @@ Json gaugeJson(const GaugeReport& report)
       {"unit", report.unit},
       {"coordinate_system", report.coordinate_system},
       {"limit", report.limit},
+      {"cluster_distance", report.cluster_distance},
+      {"previous", report.previous.empty() ? Json() : Json(report.previous)},
       {"reach", {{"offset", report.reach.offset}, {"below", report.reach.below}, {"above", report.reach.above}}},
       {"points",
        {{"at_one_place", report.counts[0]},
@@ -134,7 +140,7 @@ Json gaugeJson(const GaugeReport& report)
   Json& envelopes = json["envelopes"] = Json::array();
   for (const Envelope& envelope : report.envelopes) envelopes.push_back(envelope.name());
   Json& infringements = json["infringements"] = Json::array();
-  for (const Infringement& infringement : report.infringements) infringements.push_back(jsonOf(report, infringement));
+  for (const ListedInfringement& listed : report.listed) infringements.push_back(jsonOf(listed));
   Json& table = json["table"] = Json::array();
   for (std::size_t part = 0; part < report.table.parts(); ++part) {
     const auto [from, to] = chainagesOf(report, part);

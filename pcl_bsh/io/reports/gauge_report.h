@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/io/json/json_document.h>
+#include <pcl_bsh/io/reports/gauge_list.h>
 #include <pcl_bsh/track/gauge_table.h>
 
 #include <array>
@@ -32,10 +33,13 @@ struct GaugeReport {
   AxisReach reach;
   double limit = 0.0;     ///< clearances up to this are infringements
   double thickness = 0.1; ///< of sections
+  double cluster_distance = 0.5;
   std::array<std::size_t, 6> counts{};
   std::size_t infringing = 0; ///< points
   std::vector<Infringement> infringements;
   std::vector<GaugeSection> sections = {};
+  std::vector<ListedInfringement> listed = {}; ///< of listedOf(); then those that are gone
+  std::string previous = {};                   ///< file name of the list that it is compared with, or empty
 
   std::size_t placed() const { return counts[0] + counts[1]; } ///< points that have a place at the axis
 };
@@ -48,7 +52,8 @@ const char* textOf(PartState state);
 /// A line for each part and envelope that counts there: .csv. Cells without data are empty. @throws files::FileError
 void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& report);
 
-/// A line for each infringement, the worst first: .csv. @throws files::FileError
+/// A line for each listed infringement, the worst first, those that are gone last and without rank: .csv. @throws
+/// files::FileError
 void writeInfringements(const std::filesystem::path& path, const GaugeReport& report);
 
 /// All of that, null where there is no data.

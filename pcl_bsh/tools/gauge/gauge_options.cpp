@@ -25,6 +25,8 @@ Example: what of a scan reaches into a structure gauge along a line?
 Example: the same with two profiles, of which one is a vehicle's that widens in curves, and sections
   pcl_bsh_gauge scan.las marked.las --axis line.csv --profile gauge.csv --profile wagon.csv --vehicle wagon=19,3.7 \
       --sections sections --at 1200 --at 1350
+Example: what infringes since last week, and what is gone?
+  pcl_bsh_gauge w48.las --axis line.xml --profile gauge.dxf --report w48.json --previous w47.json
 Example: poses of a wagon whose pivots are 19 m apart, for pcl_bsh_collide
   pcl_bsh_gauge --axis line.axis --pivots 19 --step 0.5 --poses-out poses.txt)";
 
@@ -75,6 +77,7 @@ void requireTogether(const GaugeOptions& options)
     for (const auto& [option, file] : {std::pair{"--table", &options.table},
                                        {"--infringements", &options.infringements},
                                        {"--report", &options.report},
+                                       {"--previous", &options.previous},
                                        {"--page", &options.page},
                                        {"--sections", &options.sections}})
       if (!file->empty()) refuse(option, "is about a scan: give INPUT");
@@ -172,6 +175,10 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   app.add_option("--table", options.table, "smallest clearances of each part of the axis")->type_name("FILE.csv");
   app.add_option("--infringements", options.infringements, "the infringements, the worst first")->type_name("FILE.csv");
   app.add_option("--report", options.report, "both, and the counts, as JSON; - is standard output")->type_name("FILE");
+  app.add_option("--previous", options.previous,
+                 "--report of an earlier run: infringements are new, persisting, resolved, or\n"
+                 "not visited by the axis or not scanned any more; --report may replace it")
+      ->type_name("FILE");
   app.add_option("--page", options.page, "page for browsers: infringements, charts, maps, sections")
       ->type_name("FILE.html");
   app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
@@ -221,7 +228,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   files.reads("INPUT", options.input).reads("--axis", options.axis);
   for (const ProfileOptions& profile : options.profiles)
     files.reads("--profile", profile.file).reads("--widening", profile.widening);
-  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "").writes("--report", options.report);
+  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "").writes("--report", options.report, "--previous");
+  files.reads("--previous", options.previous);
   files.writes("--table", options.table).writes("--infringements", options.infringements);
   files.writes("--page", options.page).writes("--poses-out", options.poses);
   return options;

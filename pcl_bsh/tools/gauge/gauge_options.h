@@ -35,7 +35,7 @@ struct GaugeOptions {
   std::optional<double> profile_unit;
   double limit = 0.0, step = 1.0, cluster_distance = 0.5, thickness = 0.1;
   AxisReach reach;
-  std::filesystem::path table, infringements, report, page, sections, poses;
+  std::filesystem::path table, infringements, report, page, previous, sections, poses;
   std::vector<double> at; ///< chainages of sections
   double pivots = 0.0;
   std::string unit;

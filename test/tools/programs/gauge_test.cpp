@@ -77,12 +77,46 @@ TEST_F(GaugeProgram, TablesByChainage)
   EXPECT_THAT(table[5], HasSubstr(",15,20,box,clear,1,0.5,0.5,,,")) << table[5];
   const std::vector<std::string> list = linesOf("list.csv");
   ASSERT_EQ(list.size(), 3u);
-  EXPECT_EQ(list[1], "1,tall,212.5,212.5,212.5,12.5,-0.5,4.5,-0.5,1,2,500012.5,4000000.5,34.5");
-  EXPECT_THAT(list[2], testing::StartsWith("2,box,105,105.2")) << list[2];
+  EXPECT_EQ(list[1], "1,C250006_2000000_17,new,tall,212.5,212.5,212.5,12.5,-0.5,4.5,-0.5,1,2,500012.5,4000000.5,34.5");
+  EXPECT_THAT(list[2], testing::StartsWith("2,C250002_1999999_16,new,box,105,105.2")) << list[2];
   const auto report = nlohmann::json::parse(io::contentOf(folder / "report.json"));
   EXPECT_EQ(report["points"]["behind_the_end"], 1);
   EXPECT_EQ(report["infringements"][0]["clearance"], -0.5);
   EXPECT_TRUE(report["table"][0]["smallest"].is_null()) << "no data";
+}
+
+TEST_F(GaugeProgram, TellsWhatIsNewAndWhatIsGone)
+{
+  folder.write("w47.xyz", "500005 3999998.6 32\n500008 4000000 33.8\n500013 4000001.4 32\n500018.5 4000001.4 32\n");
+  folder.write("w48.xyz", "500005.1 3999998.7 32\n500008 4000000 35\n500013 4000000 29.5\n500015 3999998.7 32\n"
+                          "500018.5 4000002 32\n");
+  const std::string rest = " --axis {line.axis} --profile {box.csv} --report {week.json} ";
+  ASSERT_EQ(gauge("{w47.xyz}" + rest).exit_code, 0);
+  const auto before = nlohmann::json::parse(io::contentOf(folder / "week.json"));
+  const std::string more = "--previous {week.json} --range 100:218 --infringements {list.csv} --page {page.html}";
+  const Outcome done = gauge("{w48.xyz}" + rest + more);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err, "");
+  EXPECT_THAT(done.out, testing::StartsWith("2 infringements of 2 points, 1 new, 1 persisting, 1 resolved, 1 not "
+                                            "visited, 1 not scanned, the worst -0.200 at"));
+  const auto report = nlohmann::json::parse(io::contentOf(folder / "week.json"));
+  std::vector<std::string> told;
+  for (const auto& one : report["infringements"])
+    told.push_back(one["status"].get<std::string>() + ' ' + std::to_string(one["chainage"].get<int>()));
+  EXPECT_THAT(told, testing::UnorderedElementsAre("persisting 105", "new 215", "resolved 108", "not_scanned 213",
+                                                  "not_visited 218"));
+  for (const auto& one : report["infringements"])
+    for (const auto& former : before["infringements"])
+      if (one["status"] != "new" && std::abs(one["distance"].get<double>() - former["distance"].get<double>()) < 0.2) {
+        EXPECT_EQ(one["id"], former["id"]) << "the place keeps its name";
+      }
+  const std::vector<std::string> list = linesOf("list.csv");
+  ASSERT_EQ(list.size(), 6u);
+  EXPECT_THAT(list[5], testing::StartsWith(",C")) << "no rank of what is gone";
+  EXPECT_THAT(io::contentOf(folder / "page.html"), HasSubstr("<span class=\"badge not_scanned\">not scanned</span>"));
+
+  const Outcome again = gauge("{w48.xyz}" + rest + more);
+  EXPECT_THAT(again.out, HasSubstr("0 new, 2 persisting, 0 resolved, 1 not visited, 1 not scanned")) << again.err;
 }
 
 TEST_F(GaugeProgram, OutputHasFieldsOfEachPoint)
@@ -165,6 +199,11 @@ TEST_F(GaugeProgram, RefusesWrongInputInOneLine)
   expectRefused(both + "--profile {box.csv}", 2, "another is called 'box', too: rename a file");
   expectRefused(both + "--page {page.html} --at 205", 2,
                 "--at: 205: the axis has no such chainage: give one from 100 to 220");
+  ASSERT_EQ(gauge(both + "--report {week.json}").exit_code, 0);
+  expectRefused(both + "--previous {week.json} --limit 0.1", 1,
+                "week.json: lists infringements with --limit 0, now it is 0.1: ask with the same limit");
+  expectRefused(both + "--previous {box.csv}", 1, "box.csv: is no report of a gauging run");
+  expectRefused("--axis {line.axis} --pivots 8 --poses-out {p.txt} --previous {week.json}", 2, "give INPUT");
   expectRefused(both + "--at 105", 2, "--at: draws sections");
   expectRefused(both + "--table {box.csv}", 2, "box.csv");
   expectRefused("{none.xyz} --axis {line.axis} --profile {box.csv}", 1, "none.xyz");
