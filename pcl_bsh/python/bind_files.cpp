@@ -3,6 +3,7 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/path_of.h>
 #include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
@@ -120,11 +121,6 @@ triangles : ndarray of uint32, (t, 3)
 )";
 
 using FileHeader = io::CloudFacts;
-
-std::string pathOf(const PathLike& path)
-{
-  return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
-}
 
 /// How a file is read, by the arguments that readers share.
 io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, bool allow_scale,

@@ -132,6 +132,7 @@ PYBIND11_MODULE(_core, module)
   bindNeighbors(module);
   bindClusters(module);
   bindTrajectory(module);
+  bindTrack(module);
   bindManyPoses(module);
   bindScene(module);
   bindFiles(module);

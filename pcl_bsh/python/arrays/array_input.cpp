@@ -223,6 +223,17 @@ py::array_t<float> floatsOf(const std::string& name, const py::object& values, s
   return py::reinterpret_borrow<py::array_t<float>>(array); // not a view of it: what is given is to be locked
 }
 
+std::vector<double> rowsOf(const std::string& name, const py::object& values, py::ssize_t columns)
+{
+  const py::array array = doublesOf(name, values, Input::trajectory);
+  const bool fits = columns == 1 ? array.ndim() == 1 : array.ndim() == 2 && array.shape(1) == columns;
+  if (!fits)
+    throw InvalidInput(Input::trajectory, name, "have shape " + shapeOf(array),
+                       columns == 1 ? "give (n,)" : "give (n, " + std::to_string(columns) + ")");
+  const auto* numbers = static_cast<const double*>(array.data());
+  return {numbers, numbers + array.size()};
+}
+
 std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns)
 {
   const py::array given = asArray(name, values);

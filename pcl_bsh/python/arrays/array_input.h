@@ -115,6 +115,9 @@ Accuracy accuracyOf(const py::object& accuracy);
 /// (n,) float32, not locked.
 py::array_t<float> floatsOf(const std::string& name, const py::object& values, std::size_t count);
 
+/// Rows of `columns` numbers, one after the other; of one column (n,).
+std::vector<double> rowsOf(const std::string& name, const py::object& values, py::ssize_t columns);
+
 /// Rows of `columns` record numbers, each in [0, 2^32).
 std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns);
 

@@ -48,11 +48,13 @@ ArrayOf<T> arrayFrom(std::vector<T>&& values)
   return ArrayOf<T>(static_cast<py::ssize_t>(held.size()), numbersIn(held.data()), free);
 }
 
-/// A read-only array of any shape in the memory of an object, which it keeps alive.
+/// A read-only array of any shape in the memory of an object, which it keeps alive. @param strides in bytes; none: one
+/// number stands behind the other
 template <class T>
-ArrayOf<T> arrayIn(const py::handle& object, const T* data, std::vector<py::ssize_t> shape)
+ArrayOf<T> arrayIn(const py::handle& object, const T* data, std::vector<py::ssize_t> shape,
+                   std::vector<py::ssize_t> strides = {})
 {
-  ArrayOf<T> array(std::move(shape), numbersIn(data), object);
+  ArrayOf<T> array(std::move(shape), std::move(strides), numbersIn(data), object);
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/io/tracks/axis_file.h>
+#include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/path_of.h>
+#include <pcl_bsh/python/python_question.h>
+#include <pcl_bsh/track/gauge_table.h>
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::python {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+constexpr auto kAxis =
+    R"(The line that a vehicle follows: straights, arcs and clothoids in plan, heights, and cant.
+
+Right is positive. Distances and chainages are counted in plan. `Axis.read` and `Axis.elements` make one from a file and
+from text.
+
+Parameters
+----------
+points : array_like, (n, 3)
+    Measured; two arcs join each to the next, without a kink.
+chainages : array_like, (n,)
+    Of the points; they rise.
+cants : array_like, (n,), optional
+    How much higher the left rail is.
+gauge : float, default 1.5
+    Between the rails' heads, whose heights cant tells.
+pivot : str, default low_rail
+    What cant turns about: low_rail, whose height is the axis', or centre.
+most_turn : float, default 0.2
+    The polyline may turn by so many radians at a point.
+
+Raises
+------
+ValueError
+    Naming the chainage where it is no axis.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> axis = pcl_bsh.Axis([[0, 0, 0], [50, 0, 0], [100, 0, 1]], [1000, 1050, 1100])
+>>> axis.length, axis.chainage(30.0), axis.distances_at(1060.0)
+(100.0, 1030.0, [60.0])
+)";
+
+constexpr auto kAxisRead =
+    R"(The axis of a file: points as .csv, an alignment of LandXML as .xml, others elements as text.
+
+Parameters
+----------
+path : str or path-like
+alignment : str, optional
+    Its name, where a LandXML holds several.
+cant_unit : float, optional
+    Cant is in so many of the clouds' units; default 0.001 in LandXML, else 1.
+gauge : float, optional
+pivot : str, optional
+    In place of what the file says; as `Axis` has them.
+
+Raises
+------
+FileError
+    A ValueError and an OSError, naming the line or the distance.
+
+Warns
+-----
+UserWarning
+    Of how far the axis is from what the file says.
+)";
+
+constexpr auto kAxisElements =
+    R"(The axis that elements describe, a word and its numbers in each line.
+
+Parameters
+----------
+text : str
+    Lines such as `start X Y BEARING`, `straight LENGTH`, `arc LENGTH RADIUS`, `clothoid LENGTH FROM TO`, `chainage C`,
+    `height C Z`, `cant C VALUE` and `equation C AHEAD`. Bearings are degrees clockwise from y; radii are positive to
+    the right, and inf of a straight.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> bend = pcl_bsh.Axis.elements("start 0 0 90\nstraight 40\nclothoid 30 inf 200\narc 50 200")
+>>> bend.length, bend.smallest_radius
+(120.0, 200.0)
+)";
+
+constexpr auto kFrame = R"(The axis' own frame at a distance along it, as a pose.
+
+Returns
+-------
+ndarray of float64, (4, 4)
+    Columns: along, to the left, up in the cant's plane; where offset and height are 0.
+)";
+
+constexpr auto kEnvelope =
+    R"(Room about an axis that must stay free: a polygon in section, which may widen along the axis.
+
+Parameters
+----------
+name : str
+corners : array_like, (n, 2)
+    Offset to the right and height of each corner; closed, and may not cross itself.
+ranges : sequence of (float, float), optional
+    Chainages where it counts, both inclusive; default everywhere.
+vehicle : (float, float), optional
+    Distance of a vehicle's pivots and its overhang: it widens by their overthrow, by the axis' radius at each place.
+widening : array_like, (n, 3), optional
+    Distance along the axis, and how much it widens to the left and to the right there; straight between rows.
+
+Raises
+------
+ValueError
+    Naming the envelope, and the edges that cross.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> pcl_bsh.Envelope("box", [[-1.5, 0], [1.5, 0], [1.5, 4], [-1.5, 4]], ranges=[(100, 200)])
+Envelope('box', 4 corners)
+)";
+
+constexpr auto kGauge =
+    R"(Where every point is beside an axis, and how far it is outside of envelopes.
+
+Parameters
+----------
+points : array_like, (n, 3), or structured with x, y, z
+axis : Axis
+envelopes : sequence of Envelope
+reach : float, default 10
+    How far beside the axis points belong to it; at most 0.8 of its smallest radius.
+below, above : float, default 5 and 15
+    The same, below the axis' height and above it.
+threads : int, default 1
+    0: all of the machine's; the result is the same for any number.
+
+Returns
+-------
+Gauged
+    A point that is near two places of the axis counts at both: its clearance is the smaller one.
+
+Raises
+------
+ValueError
+    Without envelopes, or for a reach that this axis does not have.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> axis = pcl_bsh.Axis([[0, 0, 0], [100, 0, 0]], [1000, 1100])
+>>> box = pcl_bsh.Envelope("box", [[-1.5, 0], [1.5, 0], [1.5, 4], [-1.5, 4]])
+>>> found = pcl_bsh.gauge([[20.0, -1.25, 2.0], [30, 2, 2], [30, 50, 2]], axis, [box])
+>>> found.chainage, found.offset, found.clearance
+(array([1020., 1030.,   nan]), array([ 1.25, -2.  ,   nan]), array([-0.25,  0.5 ,   nan]))
+>>> found.envelope
+array([ 0,  0, -1], dtype=int32)
+)";
+
+constexpr auto kTable =
+    R"(The smallest clearance of each part of the axis.
+
+Parameters
+----------
+step : float, default 1
+    Length of a part; the last one may be shorter.
+
+Returns
+-------
+structured ndarray
+    A row for each part and envelope: distance_from, distance_to, chainage_from, chainage_to, envelope, points, and the
+    clearances smallest, left, above, right and below, by side of the envelope. NaN: no data, which is not clear.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> axis = pcl_bsh.Axis([[0, 0, 0], [100, 0, 0]], [1000, 1100])
+>>> box = pcl_bsh.Envelope("box", [[-1.5, 0], [1.5, 0], [1.5, 4], [-1.5, 4]])
+>>> table = pcl_bsh.gauge([[20.0, -1.25, 2.0], [30, 2, 2]], axis, [box]).table(step=50)
+>>> table["chainage_from"], table["smallest"], table["left"]
+(array([1000., 1050.]), array([-0.25,   nan]), array([0.5, nan]))
+)";
+
+using Pivot = As<"Literal['low_rail', 'centre']">;
+using OptionalPivot = As<"Optional[Literal['low_rail', 'centre']]">;
+
+CantPivot pivotOf(const py::object& pivot)
+{
+  const std::string text = py::str(pivot);
+  if (text == "low_rail") return CantPivot::low_rail;
+  if (text == "centre") return CantPivot::centre;
+  throw InvalidInput(Input::pivot, "pivot", "`" + text + "` is unknown", "give \"low_rail\" or \"centre\"");
+}
+
+Axis axisThrough(const ArrayLike& points, const ArrayLike& chainages, const OptionalArray& cants, double gauge,
+                 const Pivot& pivot, double most_turn)
+{
+  const std::vector<double> at = rowsOf("points", points, 3), chainage = rowsOf("chainages", chainages, 1);
+  const std::size_t count = at.size() / 3;
+  const std::vector<double> cant = cants.is_none() ? std::vector<double>(count, 0.0) : rowsOf("cants", cants, 1);
+  for (const auto& [name, size] : {std::pair{"chainages", chainage.size()}, {"cants", cant.size()}})
+    if (size != count)
+      throw InvalidInput(Input::trajectory, name, "are " + std::to_string(size),
+                         "give one for each of the " + counted(count, "point"));
+  std::vector<AxisPoint> measured(count);
+  for (std::size_t i = 0; i < count; ++i)
+    measured[i] = {chainage[i], {at[3 * i], at[3 * i + 1], at[3 * i + 2]}, cant[i]};
+  AxisDescription rest;
+  rest.gauge = gauge;
+  rest.pivot = pivotOf(pivot);
+  return Axis::through(measured, rest, most_turn);
+}
+
+Axis axisOfFile(const PathLike& path, const std::optional<std::string>& alignment, std::optional<double> cant_unit,
+                std::optional<double> gauge, const OptionalPivot& pivot)
+{
+  io::AxisSettings settings;
+  settings.alignment = alignment.value_or("");
+  settings.cant_unit = cant_unit;
+  settings.gauge = gauge;
+  if (!pivot.is_none()) settings.pivot = pivotOf(pivot);
+  const std::string file = pathOf(path);
+  std::vector<std::string> remarks;
+  Axis axis = unlocked([&] { return io::readAxis(file, settings, &remarks); });
+  for (const std::string& remark : remarks) warn(file + ": " + remark);
+  return axis;
+}
+
+Axis axisOfElements(const std::string& text)
+{
+  try {
+    return Axis(io::parseElements(text));
+  }
+  catch (const io::FormatError& error) {
+    throw InvalidInput(Input::trajectory, "elements", error.what(), error.remedy());
+  }
+}
+
+/// @throws InvalidInput where the axis has no such distance
+double onAxis(const Axis& axis, double distance)
+{
+  if (!(distance >= 0.0 && distance <= axis.length()))
+    throw InvalidInput(Input::trajectory, "distance", numberText(distance) + " is not on the axis",
+                       "give one from 0 to " + numberText(axis.length()))
+        .withValue(distance);
+  return distance;
+}
+
+py::array_t<double> frameOf(const Axis& axis, double distance)
+{
+  const AxisFrame frame = axis.frame(onAxis(axis, distance));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    pose.matrix().row(k) << frame.along[i], -frame.right[i], frame.up[i], frame.origin[i];
+  }
+  return arrayOf(pose);
+}
+
+Envelope envelopeOf(std::string name, const ArrayLike& corners, const std::vector<std::pair<double, double>>& ranges,
+                    const std::optional<std::pair<double, double>>& vehicle, const OptionalArray& widening)
+{
+  EnvelopeDescription description;
+  description.name = std::move(name);
+  const std::vector<double> numbers = rowsOf("corners", corners, 2);
+  for (std::size_t i = 0; i < numbers.size(); i += 2) description.corners.push_back({numbers[i], numbers[i + 1]});
+  for (const auto& [from, to] : ranges) description.ranges.push_back({from, to});
+  if (vehicle) description.vehicle = Vehicle{vehicle->first, vehicle->second};
+  if (!widening.is_none()) {
+    const std::vector<double> rows = rowsOf("widening", widening, 3);
+    std::vector<Knot> left, right;
+    for (std::size_t i = 0; i < rows.size(); i += 3) {
+      if (i > 0 && !(rows[i] >= rows[i - 3]))
+        throw InvalidInput(Input::trajectory, "widening", "has distances that fall", "give rows along the axis");
+      left.push_back({rows[i], rows[i + 1]});
+      right.push_back({rows[i], rows[i + 2]});
+    }
+    description.left = Piecewise::through(left, Piecewise::Ends::held);
+    description.right = Piecewise::through(right, Piecewise::Ends::held);
+  }
+  return Envelope(std::move(description));
+}
+
+/// An answer, and what it is about.
+struct GaugedRun {
+  Axis axis;
+  std::vector<Envelope> envelopes;
+  GaugedPoints found;
+  std::vector<double> chainage;
+};
+
+GaugedRun gaugeOf(const ArrayLike& points, const Axis& axis, const std::vector<Envelope>& envelopes, double reach,
+                  double below, double above, unsigned threads)
+{
+  py::array kept;
+  const PointsView view = viewForCall("points", points, kept);
+  return unlocked([&] {
+    GaugedRun run{axis, envelopes, gauge(view, axis, envelopes, {{reach, below, above}, threads}), {}};
+    run.chainage.reserve(run.found.state.size());
+    for (std::size_t i = 0; i < run.found.state.size(); ++i) {
+      const bool placed = run.found.state[i] == PlaceState::found || run.found.state[i] == PlaceState::two_places;
+      if (!placed) run.found.place[i] = {no_number, no_number, no_number};
+      run.chainage.push_back(placed ? axis.chainage(run.found.place[i].distance) : no_number);
+    }
+    return run;
+  });
+}
+
+/// A property for one of the numbers of each place.
+auto placeColumn(double AxisPlace::*number)
+{
+  return [number](const py::object& self) {
+    const std::vector<AxisPlace>& places = self.cast<const GaugedRun&>().found.place;
+    return arrayIn(self, places.empty() ? nullptr : &(places.front().*number),
+                   {static_cast<py::ssize_t>(places.size())}, {sizeof(AxisPlace)});
+  };
+}
+
+/// A row of the table, NaN where there is no data.
+struct GaugeRow {
+  double distance_from, distance_to, chainage_from, chainage_to;
+  std::int32_t envelope;
+  std::uint64_t points;
+  double smallest, left, above, right, below;
+};
+
+Records tableOf(const GaugedRun& run, double step)
+{
+  std::vector<GaugeRow> rows = unlocked([&] {
+    GaugeTable table(run.axis, run.envelopes.size(), step);
+    table.add(run.found, run.envelopes);
+    const auto told = [](double clearance) { return std::isfinite(clearance) ? clearance : no_number; };
+    std::vector<GaugeRow> made;
+    for (std::size_t part = 0; part < table.parts(); ++part) {
+      const double from = table.from(part), to = table.to(part);
+      for (std::size_t e = 0; e < run.envelopes.size(); ++e)
+        made.push_back({from, to, run.axis.chainage(from), run.axis.chainage(std::nextafter(to, from)),
+                        static_cast<std::int32_t>(e), table.points(part), told(table.smallest(part, e)),
+                        told(table.smallest(part, e, Sector::left)), told(table.smallest(part, e, Sector::above)),
+                        told(table.smallest(part, e, Sector::right)), told(table.smallest(part, e, Sector::below))});
+    }
+    return made;
+  });
+  return Records(arrayFrom(std::move(rows)));
+}
+
+py::dict countsOf(const GaugedRun& run)
+{
+  const auto& counts = run.found.counts;
+  return py::dict("at_one_place"_a = counts[0], "at_two_places"_a = counts[1], "before_the_beginning"_a = counts[2],
+                  "behind_the_end"_a = counts[3], "too_far"_a = counts[4], "not_finite"_a = counts[5]);
+}
+
+} // namespace
+
+void bindTrack(py::module_& module)
+{
+  PYBIND11_NUMPY_DTYPE(GaugeRow, distance_from, distance_to, chainage_from, chainage_to, envelope, points, smallest,
+                       left, above, right, below);
+
+  py::class_<Axis>(module, "Axis", kAxis)
+      .def(py::init(&axisThrough), "points"_a, "chainages"_a, "cants"_a = py::none(), py::kw_only(), "gauge"_a = 1.5,
+           "pivot"_a = "low_rail", "most_turn"_a = 0.2)
+      .def_static("read", &axisOfFile, kAxisRead, "path"_a, py::kw_only(), "alignment"_a = py::none(),
+                  "cant_unit"_a = py::none(), "gauge"_a = py::none(), "pivot"_a = py::none())
+      .def_static("elements", &axisOfElements, kAxisElements, "text"_a)
+      .def_property_readonly("length", &Axis::length, "In plan.")
+      .def_property_readonly("smallest_radius", &Axis::smallestRadius, "inf of straights.")
+      .def_property_readonly(
+          "deviation", [](const Axis& axis) { return axis.fit().deviation; },
+          "Through points: the farthest that it is from their polyline.")
+      .def(
+          "chainage", [](const Axis& axis, double distance) { return axis.chainage(onAxis(axis, distance)); },
+          "The number that a distance along the axis has.", "distance"_a)
+      .def("distances_at", &Axis::distancesAt,
+           "All distances with that chainage: none in a gap of the chainage, two where it repeats.", "chainage"_a)
+      .def("frame", &frameOf, kFrame, "distance"_a)
+      .def("__repr__", [](const Axis& axis) {
+        return "Axis(chainage " + numberText(axis.chainage(0.0)) + " to " + numberText(axis.chainage(axis.length())) +
+               ")";
+      });
+  py::class_<Envelope>(module, "Envelope", kEnvelope)
+      .def(py::init(&envelopeOf), "name"_a, "corners"_a, py::kw_only(),
+           "ranges"_a = std::vector<std::pair<double, double>>(), "vehicle"_a = py::none(), "widening"_a = py::none())
+      .def_property_readonly("name", &Envelope::name)
+      .def("__repr__", [](const Envelope& envelope) {
+        return "Envelope('" + envelope.name() + "', " + counted(envelope.corners().size(), "corner") + ")";
+      });
+  py::class_<GaugedRun>(module, "Gauged",
+                        "The answer of `gauge`: arrays have an entry for each point, NaN where it has no place at the "
+                        "axis.")
+      .def_property_readonly(
+          "place",
+          [](const py::object& self) {
+            const auto& state = self.cast<const GaugedRun&>().found.state;
+            return arrayIn(self, reinterpret_cast<const std::uint8_t*>(state.data()),
+                           {static_cast<py::ssize_t>(state.size())});
+          },
+          "uint8: 0 at one place of the axis, 1 at two, 2 before its beginning, 3 behind its end, 4 "
+          "too far from it, 5 not finite.")
+      .def_property_readonly("chainage", column(&GaugedRun::chainage), "float64.")
+      .def_property_readonly("distance", placeColumn(&AxisPlace::distance), "float64: along the axis.")
+      .def_property_readonly("offset", placeColumn(&AxisPlace::offset), "float64: to the right, in the cant's plane.")
+      .def_property_readonly("height", placeColumn(&AxisPlace::height), "float64: above the axis, in the same plane.")
+      .def_property_readonly(
+          "clearance",
+          [](const py::object& self) { return arrayIn(self, self.cast<const GaugedRun&>().found.clearance); },
+          "float64: the smallest of all envelopes, less than 0 inside; NaN where none counts.")
+      .def_property_readonly(
+          "envelope",
+          [](const py::object& self) { return arrayIn(self, self.cast<const GaugedRun&>().found.envelope); },
+          "int32: the number of the envelope that has it, of equal ones the first; -1: none counts.")
+      .def_property_readonly(
+          "each",
+          [](const py::object& self) {
+            const auto& run = self.cast<const GaugedRun&>();
+            return arrayIn(
+                self, run.found.each.data(),
+                {static_cast<py::ssize_t>(run.found.state.size()), static_cast<py::ssize_t>(run.envelopes.size())});
+          },
+          "(points, envelopes) float64: the clearance of each envelope; NaN where it does not count.")
+      .def_property_readonly("counts", &countsOf, "How many points have each state of `place`.")
+      .def("table", &tableOf, kTable, "step"_a = 1.0)
+      .def("__repr__", [](const GaugedRun& run) {
+        return "Gauged(" + counted(run.found.counts[0] + run.found.counts[1], "point") + " at the axis, of " +
+               std::to_string(run.found.state.size()) + ")";
+      });
+  module.def("gauge", &gaugeOf, kGauge, "points"_a, "axis"_a, "envelopes"_a, py::kw_only(), "reach"_a = 10.0,
+             "below"_a = 5.0, "above"_a = 15.0, "threads"_a = 1);
+}
+
+} // namespace pcl_bsh::python
