@@ -17,6 +17,8 @@ Json withRange(Json schema, const Option& option)
   return schema;
 }
 
+Json rowSchema(const std::vector<Option>& options);
+
 Json formSchema(const Form& form, const Option& option)
 {
   Json number = withRange({{"type", "number"}}, option);
@@ -36,6 +38,10 @@ Json formSchema(const Form& form, const Option& option)
     break;
   case Form::Type::numbers:
     break;
+  case Form::Type::texts:
+    return {{"type", "array"}, {"items", {{"type", "string"}}}};
+  case Form::Type::rows:
+    return {{"type", "array"}, {"items", rowSchema(option.of_rows)}};
   }
   return {{"type", "array"}, {"items", number}, {"minItems", form.count}, {"maxItems", form.count}};
 }
@@ -54,8 +60,19 @@ Json optionSchema(const Option& option)
   const std::string unit = option.unit.empty() ? "" : " (" + option.unit + ")";
   Json described = {{"description", option.doc + unit}};
   described.update(schema);
-  if (!option.required) described["default"] = jsonOf(option.standard);
+  if (!option.required) described["default"] = jsonOf(option.standard, option);
   return described;
+}
+
+/// An object with these options and no others.
+Json rowSchema(const std::vector<Option>& options)
+{
+  Json properties = Json::object(), required = Json::array();
+  for (const Option& option : options) {
+    properties[option.name] = optionSchema(option);
+    if (option.required) required.push_back(option.name);
+  }
+  return {{"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
 }
 
 /// All that an object with one of the type's names as its type may say.
@@ -79,7 +96,17 @@ std::string defaultText(const Option& option)
 {
   if (option.required) return "*required*";
   if (option.kind == Kind::pose) return "no motion";
-  return "`" + jsonOf(option.standard).dump() + "`";
+  return "`" + jsonOf(option.standard, option).dump() + "`";
+}
+
+void describe(const std::vector<Option>& options, std::string& text)
+{
+  text += "| option | what | value | default |\n|---|---|---|---|\n";
+  for (const Option& option : options) {
+    text +=
+        "| `" + option.name + "` | " + option.doc + " | " + expectation(option) + " | " + defaultText(option) + " |\n";
+  }
+  text += "\n";
 }
 
 void describe(const StageType& type, std::string& text)
@@ -89,12 +116,12 @@ void describe(const StageType& type, std::string& text)
   text += type.aliases.empty() ? "\n\n" : ".\n\n";
   if (type.most_inputs > 1) text += "Takes any number of `inputs`.\n\n";
   if (type.options.empty()) return;
-  text += "| option | what | value | default |\n|---|---|---|---|\n";
+  describe(type.options, text);
   for (const Option& option : type.options) {
-    text +=
-        "| `" + option.name + "` | " + option.doc + " | " + expectation(option) + " | " + defaultText(option) + " |\n";
+    if (option.kind != Kind::rows) continue;
+    text += "Each of `" + option.name + "`:\n\n";
+    describe(option.of_rows, text);
   }
-  text += "\n";
 }
 
 } // namespace

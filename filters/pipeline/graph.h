@@ -20,15 +20,22 @@ namespace pcl_bsh::pipeline {
 
 using io::Json;
 
+/// An OtherCloud that is given: by an option or by one of its rows, and the node that makes it.
+struct CloudOfOption {
+  std::size_t option = 0;
+  std::size_t node = 0;
+  std::size_t row = 0;
+};
+
 struct Node {
   const StageType* type = nullptr;
   std::string tag;
-  std::string path;                                        ///< in the document: /pipeline/2
-  std::vector<Value> options;                              ///< one per option of the type
-  std::vector<std::size_t> inputs;                         ///< nodes before this one
-  std::vector<std::pair<std::size_t, std::size_t>> clouds; ///< option and node, for each OtherCloud that is given
-  Json user_data;                                          ///< null without one
-  bool in_document = true;                                 ///< else it reads a file that another stage's option names
+  std::string path;                ///< in the document: /pipeline/2
+  std::vector<Value> options;      ///< one per option of the type
+  std::vector<std::size_t> inputs; ///< nodes before this one
+  std::vector<CloudOfOption> clouds;
+  Json user_data;          ///< null without one
+  bool in_document = true; ///< else it reads a file that another stage's option names
   std::vector<std::pair<std::string, std::filesystem::path>> pose_files; ///< option and file, read with the document
   std::vector<std::string> warnings;                                     ///< of its options, a line each
   StageCloudPtr given;                                                   ///< instead of a reader's file

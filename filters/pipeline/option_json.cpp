@@ -114,6 +114,16 @@ Value read(const Form& form, const Json& json, const Option& option)
     return textOf(json, option);
   case Form::Type::name:
     return nameOf(json, option);
+  case Form::Type::rows:
+    return std::vector<Row>();
+  case Form::Type::texts: {
+    std::vector<std::string> texts;
+    for (const Json& text : json) {
+      if (!text.is_string()) refuse(json, option);
+      texts.push_back(text.get<std::string>());
+    }
+    return texts;
+  }
   case Form::Type::limits:
     return Limits{limitOf(json[0], json, option), limitOf(json[1], json, option)};
   case Form::Type::numbers:
@@ -167,7 +177,9 @@ const KindRow& rowOf(Kind kind)
       {Kind::input_file, "the name of a file", {{Type::name}}},
       {Kind::output_file, "the name of a file to write", {{Type::name}}},
       {Kind::cloud, "the tag of an earlier stage, or the name of a cloud file", {{Type::name}}},
-      {Kind::length_or_field, "a number", {{Type::number}, {Type::name}}, ", or the name of a field"}};
+      {Kind::length_or_field, "a number", {{Type::number}, {Type::name}}, ", or the name of a field"},
+      {Kind::texts, "a list of texts", {{Type::texts}}},
+      {Kind::rows, "a list of objects", {{Type::rows}}}};
   return *std::find_if(rows.begin(), rows.end(), [&](const KindRow& row) { return row.kind == kind; });
 }
 
@@ -178,6 +190,7 @@ bool Form::fits(const Json& json) const
   if (type == Type::boolean) return json.is_boolean();
   if (type == Type::integer || type == Type::number) return json.is_number();
   if (type == Type::text || type == Type::name) return json.is_string();
+  if (type == Type::texts || type == Type::rows) return json.is_array();
   return json.is_array() && json.size() == count;
 }
 
@@ -188,6 +201,12 @@ const std::vector<Form>& formsOf(Kind kind)
 
 std::string expectation(const Option& option)
 {
+  if (option.kind == Kind::rows) {
+    std::string list = rowOf(option.kind).phrase;
+    for (const Option& one : option.of_rows)
+      list += (&one == &option.of_rows.front() ? " with `" : ", `") + one.name + '`';
+    return list;
+  }
   if (option.choices.empty()) return rowOf(option.kind).phrase + rangeOf(option) + rowOf(option.kind).rest;
   std::string list = "one of";
   for (const std::string& choice : option.choices) list += (choice == option.choices[0] ? " " : ", ") + choice;
@@ -219,12 +238,28 @@ Json jsonOf(const Value& value)
     return Json::array({std::visit(written, limits->least), std::visit(written, limits->most)});
   return std::visit(
       [&](const auto& held) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Limits>)
-          return nullptr; // written above
+        using T = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<T, Limits> || std::is_same_v<T, std::vector<Row>>)
+          return nullptr; // limits are written above, rows by their options
         else
           return written(held);
       },
       value);
+}
+
+Json jsonOf(const Value& value, const Option& option)
+{
+  const auto* const rows = std::get_if<std::vector<Row>>(&value);
+  if (!rows) return jsonOf(value);
+  Json list = Json::array();
+  for (const Row& row : *rows) {
+    Json object = Json::object();
+    for (std::size_t i = 0; i < row.values.size(); ++i)
+      if (!std::holds_alternative<std::monostate>(row.values[i]))
+        object[option.of_rows[i].name] = jsonOf(row.values[i], option.of_rows[i]);
+    list.push_back(std::move(object));
+  }
+  return list;
 }
 
 Json jsonOfText(const std::string& text, const Option& option)

@@ -17,7 +17,7 @@ using io::Json;
 
 /// A way to write a value in JSON.
 struct Form {
-  enum class Type : std::uint8_t { boolean, integer, number, text, name, numbers, limits };
+  enum class Type : std::uint8_t { boolean, integer, number, text, name, numbers, limits, texts, rows };
 
   Type type;
   std::size_t count = 0; ///< of an array: how many numbers
@@ -31,10 +31,14 @@ const std::vector<Form>& formsOf(Kind kind);
 /// The values that are allowed: "a number above 0", "one of free, colliding".
 std::string expectation(const Option& option);
 
+/// Rows have values that the parser reads one by one, with their places in errors.
 /// @throws std::invalid_argument `is X: give EXPECTATION`
 PCL_BSH_EXPORT_INTERNAL Value valueOf(const Json& json, const Option& option);
 
 PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value);
+
+/// The same, and of rows objects with what is given.
+PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value, const Option& option);
 
 /// The JSON of a command line's text: texts need no quotes, lists no brackets.
 PCL_BSH_EXPORT_INTERNAL Json jsonOfText(const std::string& text, const Option& option);

@@ -9,6 +9,7 @@
 //   InputFile, OutputFile                                "hall.pcd"
 //   OtherCloud                                           the tag of an earlier stage, or "robot.pcd"
 //   LengthOrField                                        0.005 or "sigma"
+//   std::vector<std::string>                             ["press:mill"]
 //   std::optional of any                                 the same; nothing unless the document says something
 #pragma once
 
@@ -39,8 +40,16 @@ struct Limits {
   Limit most;
 };
 
+struct Row;
+
 /// A value of a document, checked to be of the option's kind. std::monostate: null.
-using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, Limits>;
+using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, Limits,
+                           std::vector<std::string>, std::vector<Row>>;
+
+/// An object of a list: a value for each option that it may have.
+struct Row {
+  std::vector<Value> values;
+};
 
 /// Which of these an option is.
 enum class Kind : std::uint8_t {
@@ -56,6 +65,8 @@ enum class Kind : std::uint8_t {
   output_file,
   cloud,
   length_or_field,
+  texts,
+  rows,
 };
 
 /// So many numbers.
@@ -149,6 +160,9 @@ struct OptionType<double> : detail::HeldType<double, Kind::number> {
 };
 template <>
 struct OptionType<std::string> : detail::HeldType<std::string, Kind::text> {
+};
+template <>
+struct OptionType<std::vector<std::string>> : detail::HeldType<std::vector<std::string>, Kind::texts> {
 };
 template <>
 struct OptionType<Limits> : detail::HeldType<Limits, Kind::limits> {

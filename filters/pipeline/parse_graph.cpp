@@ -242,24 +242,48 @@ private:
       if (!common) requireOption(item.key(), node);
     }
     for (const Option& option : node.type->options) {
-      if (!stage.contains(option.name)) {
-        if (option.required) throw stageError(graph_, node, option.name, "is missing: give " + expectation(option));
-        node.options.push_back(option.standard);
-        continue;
-      }
-      try {
-        const Json& said = stage[option.name];
-        node.options.push_back(valueOf(said, option));
-        if (option.kind == Kind::pose && said.is_string())
-          node.pose_files.emplace_back(option.name, said.get<std::string>());
-        if (option.kind == Kind::pose && said.is_array())
-          if (const auto warning = io::warningOfAngles(said.get<std::vector<double>>()))
-            node.warnings.push_back(option.name + ": " + *warning);
-      }
-      catch (const std::invalid_argument& error) {
-        throw stageError(graph_, node, option.name, error.what());
-      }
+      Value value = readOption(stage, option, option.name, node);
+      node.options.push_back(std::move(value));
     }
+  }
+
+  /// @param place of the option in the stage
+  Value readOption(const Json& object, const Option& option, const std::string& place, Node& node) const
+  {
+    if (!object.contains(option.name)) {
+      if (option.required) throw stageError(graph_, node, place, "is missing: give " + expectation(option));
+      return option.standard;
+    }
+    const Json& said = object[option.name];
+    try {
+      Value value = valueOf(said, option);
+      if (option.kind == Kind::pose && said.is_string()) node.pose_files.emplace_back(place, said.get<std::string>());
+      if (option.kind == Kind::pose && said.is_array())
+        if (const auto warning = io::warningOfAngles(said.get<std::vector<double>>()))
+          node.warnings.push_back(place + ": " + *warning);
+      if (option.kind != Kind::rows) return value;
+    }
+    catch (const std::invalid_argument& error) {
+      throw stageError(graph_, node, place, error.what());
+    }
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < said.size(); ++i)
+      rows.push_back(readRow(said[i], option, place + '/' + std::to_string(i), node));
+    return rows;
+  }
+
+  Row readRow(const Json& said, const Option& option, const std::string& place, Node& node) const
+  {
+    if (!said.is_object()) throw stageError(graph_, node, place, "is " + io::shown(said) + ": give an object");
+    std::vector<std::string> names;
+    for (const Option& one : option.of_rows) names.push_back(one.name);
+    for (const auto& item : said.items())
+      if (std::find(names.begin(), names.end(), item.key()) == names.end())
+        throw stageError(graph_, node, place + '/' + escaped(item.key()),
+                         "is no option of one of `" + option.name + "`: " + io::suggestion(item.key(), names));
+    Row row;
+    for (const Option& one : option.of_rows) row.values.push_back(readOption(said, one, place + '/' + one.name, node));
+    return row;
   }
 
   void readInputs(const Json& stage, Node& node) const
@@ -316,27 +340,55 @@ private:
   {
     for (std::size_t i = 0; i < node.options.size(); ++i) {
       const Option& option = node.type->options[i];
-      if (option.kind != Kind::cloud || std::holds_alternative<std::monostate>(node.options[i])) continue;
-      const auto& name = std::get<std::string>(node.options[i]);
-      if (const Node* other = findTag(name)) {
-        node.clouds.emplace_back(i, positionOf(other));
-        continue;
-      }
-      const StageType* type = typeOfFile(name, false);
-      if (type == nullptr) {
-        throw stageError(graph_, node, option.name,
-                         "is " + io::shown(name) + ", neither an earlier stage's tag nor a cloud file: " +
-                             io::suggestion(name, earlierTags()));
-      }
-      Node reader;
-      reader.type = type;
-      reader.tag = madeUpTag(*type);
-      reader.path = node.path + "/" + escaped(option.name);
-      reader.in_document = false;
-      readOptions(Json{{"filename", name}}, reader);
-      node.clouds.emplace_back(i, graph_.nodes.size());
-      graph_.nodes.push_back(std::move(reader));
+      if (option.kind == Kind::cloud && !std::holds_alternative<std::monostate>(node.options[i]))
+        node.clouds.push_back({i, nodeOfCloud(node.options[i], option.name, Json::object(), node)});
+      if (option.kind != Kind::rows) continue;
+      const auto& rows = std::get<std::vector<Row>>(node.options[i]);
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        node.clouds.push_back({i, nodeOfRow(rows[row], option, option.name + '/' + std::to_string(row), node), row});
     }
+  }
+
+  std::size_t nodeOfRow(const Row& row, const Option& option, const std::string& place, const Node& node)
+  {
+    Json of_reader = Json::object();
+    std::size_t cloud = 0;
+    for (std::size_t i = 0; i < row.values.size(); ++i) {
+      const Option& one = option.of_rows[i];
+      if (one.kind == Kind::cloud) cloud = i;
+      if (one.of_reader && !std::holds_alternative<std::monostate>(row.values[i]))
+        of_reader[one.name] = jsonOf(row.values[i]);
+    }
+    return nodeOfCloud(row.values[cloud], place + '/' + option.of_rows[cloud].name, of_reader, node);
+  }
+
+  /// @param given the tag of a stage, or a file. @param of_reader more options of the file's reader
+  std::size_t nodeOfCloud(const Value& given, const std::string& place, const Json& of_reader, const Node& node)
+  {
+    const auto& name = std::get<std::string>(given);
+    if (const Node* other = findTag(name)) {
+      if (!of_reader.empty())
+        throw stageError(graph_, node, place,
+                         "is " + io::shown(name) + ", a stage, and `" + of_reader.begin().key() +
+                             "` is of a file: give that to the stage");
+      return positionOf(other);
+    }
+    const StageType* type = typeOfFile(name, false);
+    if (type == nullptr) {
+      throw stageError(graph_, node, place,
+                       "is " + io::shown(name) +
+                           ", neither an earlier stage's tag nor a cloud file: " + io::suggestion(name, earlierTags()));
+    }
+    Node reader;
+    reader.type = type;
+    reader.tag = madeUpTag(*type);
+    reader.path = node.path + "/" + place;
+    reader.in_document = false;
+    Json options = {{"filename", name}};
+    options.update(of_reader);
+    readOptions(options, reader);
+    graph_.nodes.push_back(std::move(reader));
+    return graph_.nodes.size() - 1;
   }
 
   void requireOverridesUsed() const
@@ -381,7 +433,7 @@ std::vector<std::size_t> countReaders(const Graph& graph)
   std::vector<std::size_t> readers(graph.nodes.size(), 0);
   for (const Node& node : graph.nodes) {
     for (const std::size_t input : node.inputs) ++readers[input];
-    for (const auto& cloud : node.clouds) ++readers[cloud.second];
+    for (const auto& cloud : node.clouds) ++readers[cloud.node];
   }
   return readers;
 }

@@ -19,7 +19,8 @@ std::unique_ptr<Stage> makeStage(const Node& node, const Headers& headers)
 {
   std::unique_ptr<Stage> stage = node.type->make();
   for (std::size_t i = 0; i < node.options.size(); ++i) node.type->options[i].set(*stage, node.options[i]);
-  for (const auto& [option, other] : node.clouds) node.type->options[option].cloud(*stage)->header = headers[other];
+  for (const CloudOfOption& one : node.clouds)
+    node.type->options[one.option].cloud(*stage, one.row)->header = headers[one.node];
   return stage;
 }
 

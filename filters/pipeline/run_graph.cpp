@@ -76,7 +76,7 @@ public:
   {
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
       for (const std::size_t input : graph.nodes[i].inputs) addEdge(input, i);
-      for (const auto& cloud : graph.nodes[i].clouds) addEdge(cloud.second, i);
+      for (const auto& cloud : graph.nodes[i].clouds) addEdge(cloud.node, i);
       if (inputs_left_[i] == 0) ready_.insert(i);
     }
   }
@@ -186,16 +186,19 @@ private:
     const Node& node = graph_.nodes[position];
     StageClouds inputs;
     for (const std::size_t input : node.inputs) inputs.push_back(take(input));
-    for (const auto& [option, other] : node.clouds) {
-      node.type->options[option].cloud(*stages_[position])->cloud = take(other);
-    }
+    for (const CloudOfOption& one : node.clouds) cloudOf(position, one)->cloud = take(one.node);
     return inputs;
   }
 
   void releaseClouds(std::size_t position)
   {
     const Node& node = graph_.nodes[position];
-    for (const auto& cloud : node.clouds) node.type->options[cloud.first].cloud(*stages_[position])->cloud.reset();
+    for (const CloudOfOption& one : node.clouds) cloudOf(position, one)->cloud.reset();
+  }
+
+  OtherCloud* cloudOf(std::size_t position, const CloudOfOption& one) const
+  {
+    return graph_.nodes[position].type->options[one.option].cloud(*stages_[position], one.row);
   }
 
   StageCloudPtr outputOf(std::size_t position, StageClouds&& inputs)
@@ -342,7 +345,7 @@ Json documentOf(const Graph& graph)
     for (const std::size_t input : node.inputs) inputs.push_back(graph.nodes[input].tag);
     if (!node.type->isReader()) stage["inputs"] = inputs;
     for (std::size_t i = 0; i < node.options.size(); ++i) {
-      stage[node.type->options[i].name] = jsonOf(node.options[i]);
+      stage[node.type->options[i].name] = jsonOf(node.options[i], node.type->options[i]);
     }
     if (!node.user_data.is_null()) stage["user_data"] = node.user_data;
     stages.push_back(std::move(stage));

@@ -38,10 +38,12 @@ struct Option {
   bool above_least = false;         ///< `least` itself is not allowed
   std::vector<std::string> choices; ///< of a text; empty: any
   bool replaceable = false;         ///< an input file that an output of the same stage may replace
+  std::vector<Option> of_rows;      ///< of kind rows: the options of each row
+  bool of_reader = false;           ///< of a row: the reader of the row's file has it
 
   std::function<void(Stage&, const Value&)> set;
   std::function<Value(const Stage&)> get;
-  std::function<OtherCloud*(Stage&)> cloud; ///< of kind cloud; null when nothing is said
+  std::function<OtherCloud*(Stage&, std::size_t row)> cloud; ///< of kind cloud or rows; row 0 where there are none
 };
 
 /// A row of the table of stages.
@@ -114,9 +116,10 @@ public:
       static_cast<S&>(stage).*member = OptionType<T>::from(value);
     };
     option.get = [member](const Stage& stage) { return OptionType<T>::to(static_cast<const S&>(stage).*member); };
-    if constexpr (std::is_same_v<T, OtherCloud>) {
-      option.cloud = [member](Stage& stage) { return &(static_cast<S&>(stage).*member); };
-    }
+    if constexpr (std::is_same_v<T, OtherCloud>)
+      option.cloud = [member](Stage& stage, std::size_t) { return &(static_cast<S&>(stage).*member); };
+    if constexpr (std::is_same_v<T, std::optional<OtherCloud>>)
+      option.cloud = [member](Stage& stage, std::size_t) { return &*(static_cast<S&>(stage).*member); };
     type_.addOption(std::move(option));
     return *this;
   }
@@ -138,6 +141,7 @@ public:
   StageDescription& required()
   {
     last().required = true;
+    last().nullable = false;
     return *this;
   }
   /// Sets a limit of the last option: > least.

@@ -186,39 +186,12 @@ void check(const Options& options, const Question& question)
   files::requireWritable(*options.distance_page);
 }
 
-/// Asks about several obstacles, against the input and against each other.
-Answer askSeveral(const Options& options, const Question& question, Shape& scan, std::vector<PlacedShape>& obstacles,
-                  cli::CollisionReport& report)
-{
-  std::vector<cli::ComparedObstacle>& all = report.obstacles;
-  const bool first = !question.wanted.distances; // these come later
-  ObstaclesAnswer found = ask(question, scan, obstacles, [&](std::size_t i, const Question& asked, Answer& answer) {
-    if (!first) return;
-    all[i].question = asked;
-    all[i].question.progress = nullptr;
-    all[i].answer = std::move(answer);
-  });
-  if (!first) return std::move(found.all);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].found = found.each[i];
-    if (!options.clashes.empty()) addFree(all[i].answer.collisions, scan.hierarchy().view().count);
-  }
-  report.closest_obstacle = found.closest;
-  if (!options.between) return std::move(found.all);
-  const cli::IgnoredPairs ignored = options.ignoredPairs();
-  for (const ObstaclePair& pair : askBetween(question, obstacles, [&](std::uint32_t i, std::uint32_t k) {
-         return !ignored.holds(all[i].name, all[k].name);
-       }))
-    report.between.push_back({all[pair.first].name, all[pair.second].name, pair});
-  return std::move(found.all);
-}
-
 /// From the input and its obstacles to all that is told of them.
-int tell(const Options& options, const Scan& input, Shape& scan, const std::vector<io::ClashList>& earlier,
+int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListing& listing,
          cli::CollisionReport& report)
 {
   const Question& question = report.question;
-  std::vector<cli::ComparedObstacle>& all = report.obstacles;
+  std::vector<io::ComparedObstacle>& all = report.obstacles;
   const bool several = report.haveNames();
   scan.ignore(question.ignore_points);
   const SphereHierarchy& a = cli::build(scan, question.uncertaintyOfInput(), question.threads, report.seconds.build);
@@ -227,20 +200,20 @@ int tell(const Options& options, const Scan& input, Shape& scan, const std::vect
   report.input = {options.input.string(), a.view().count, a.size()};
   if (scan.counted()) report.input.ignored = scan.counted()->all;
   report.input_is_surface = scan.isSurface();
-  const cli::IgnoredPairs ignored = options.ignoredPairs();
+  const IgnoredPairs ignored = options.ignoredPairs();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    shapes.push_back({all[i].loaded.shape(all[i].file.string())});
+    shapes.push_back({all[i].loaded.shape(all[i].file)});
     if (several) {
       const cli::ObstacleChoice& choice = options.obstacles[i];
       shapes.back() = {shapes.back().shape, choice.pose, choice.clearance, choice.solid, choice.uncertainty};
     }
-    shapes.back().ignores_input = several && ignored.holds("input", all[i].name);
+    shapes.back().ignores_input = several && ignored.holds(kInputName, all[i].name);
     all[i].question = pcl_bsh::questionOf(question, shapes.back());
     shapes.back().shape.ignore(question.obstacle_ignore_points);
     const SphereHierarchy& b = cli::build(shapes.back().shape, all[i].question.uncertaintyOfObstacle(),
                                           question.threads, report.seconds.build);
     hierarchies.push_back(&b);
-    report.obstacle = {all[i].file.string(), b.view().count, b.size()};
+    report.obstacle = {all[i].file, b.view().count, b.size()};
     if (const auto& counted = shapes.back().shape.counted()) report.obstacle.ignored = counted->all;
     if (b.size() == 0 && several)
       report.warnings.push_back(all[i].name + ": has nothing that is finite: it collides with nothing");
@@ -252,7 +225,12 @@ int tell(const Options& options, const Scan& input, Shape& scan, const std::vect
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
   const auto ask_all = [&](const Question& asked) {
-    return several ? askSeveral(options, asked, scan, shapes, report) : ask(asked, scan, shapes[0].shape);
+    ObstaclesAnswer found = io::askAbout(asked, scan, shapes, all);
+    if (asked.wanted.collisions()) {
+      report.closest_obstacle = found.closest;
+      if (options.between) report.between = io::askBetween(asked, shapes, all, ignored);
+    }
+    return std::move(found.all);
   };
   answer(ask_all, !options.clashes.empty(), report);
   report.voxels_total = a.statistics().voxels;
@@ -260,7 +238,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, const std::vect
   for (const std::string& remark : input.facts.remarks)
     addOnce(options.input.string() + ": " + remark, report.warnings);
   addTexts(report.answer.warnings, report.warnings);
-  for (const cli::ComparedObstacle& one : all)
+  for (const io::ComparedObstacle& one : all)
     for (std::string& remark : cli::warningsOf(one.loaded, one.file)) addOnce(std::move(remark), report.warnings);
 
   write(options, input, report.answer, report.seconds.write);
@@ -269,7 +247,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, const std::vect
     cli::writeFlags(*options.obstacle_out, all[0].loaded, report.answer.obstacle_flags, all[0].facts);
     report.seconds.write += step.done(counted(all[0].loaded.view().count, all[0].loaded.partName()));
   }
-  const std::string clashes = options.clashes.empty() ? "" : cli::listClashes(options, a, hierarchies, earlier, report);
+  const std::string clashes = options.clashes.empty() ? "" : cli::listClashes(options, a, hierarchies, listing, report);
   const std::optional<io::DistanceReport> measured =
       several ? std::nullopt : reportDistances(options, a, *hierarchies[0], report);
   if (measured) report.distances = io::distanceJson(*measured);
@@ -286,7 +264,7 @@ int collide(Options options)
   Question& question = report.question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &report.warnings);
   check(options, question);
-  const std::vector<io::ClashList> earlier = cli::readEarlier(options, question, report.warnings);
+  io::ClashListing listing = cli::listingOf(options, question, report.warnings);
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system;
@@ -307,7 +285,7 @@ int collide(Options options)
                                 options.input.string() + " in " + unit +
                                 ", by their coordinate systems: give --input-unit " + unit + " to convert it");
     }
-    report.obstacles.push_back({name, file, std::move(loaded), std::move(facts)});
+    report.obstacles.push_back({name, file.string(), std::move(loaded), std::move(facts)});
   };
   if (options.obstacles.empty()) load("", options.obstacle, options.reading, question.obstacle_uncertainty);
   for (const cli::ObstacleChoice& one : options.obstacles) {
@@ -322,7 +300,7 @@ int collide(Options options)
     options.question.pose = question.pose = fit.pose;
   }
   if (!options.poses_out.empty()) io::writePoses(options.poses_out, question.poses());
-  return cli::named([&] { return tell(options, input, scan, earlier, report); }, question, options.names_of_poses);
+  return cli::named([&] { return tell(options, input, scan, listing, report); }, question, options.names_of_poses);
 }
 
 } // namespace

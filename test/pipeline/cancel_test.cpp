@@ -184,7 +184,8 @@ TEST_P(Cancel, QueriesAlongATrajectoryStop)
   const std::unique_ptr<Stage> stage = type.make();
   type.findOption("clearance")->set(*stage, 0.1);
   type.findOption("trajectory")->set(*stage, (folder / "track.txt").string());
-  type.findOption("obstacle")->cloud(*stage)->cloud = someCloud();
+  type.findOption("obstacle")->set(*stage, std::string("other"));
+  type.findOption("obstacle")->cloud(*stage, 0)->cloud = someCloud();
   stage->plan({emptyLike(*someCloud())->cloud});
   std::atomic<bool> cancelled = true;
   stage->watch(&cancelled);

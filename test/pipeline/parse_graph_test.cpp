@@ -69,7 +69,7 @@ TEST(ParseGraph, InputsNameEarlierStages)
   EXPECT_THAT(graph.nodes[2].inputs, ElementsAre(0, 1));
   EXPECT_THAT(graph.nodes[3].inputs, ElementsAre(0));
   ASSERT_EQ(graph.nodes[3].clouds.size(), 1U);
-  EXPECT_EQ(graph.nodes[3].clouds[0].second, 1U);
+  EXPECT_EQ(graph.nodes[3].clouds[0].node, 1U);
   EXPECT_THAT(countReaders(graph), ElementsAre(2, 2, 1, 1, 1, 0, 0));
 }
 
@@ -81,7 +81,7 @@ TEST(ParseGraph, AFileInPlaceOfATagGetsAReader)
   EXPECT_EQ(graph.nodes[1].path, "/pipeline/1/obstacle");
   EXPECT_FALSE(graph.nodes[1].in_document);
   EXPECT_THAT(graph.nodes[2].inputs, ElementsAre(0));
-  EXPECT_EQ(graph.nodes[2].clouds[0].second, 1U);
+  EXPECT_EQ(graph.nodes[2].clouds[0].node, 1U);
   EXPECT_EQ(documentOf(graph)["pipeline"].size(), 3U);
 }
 

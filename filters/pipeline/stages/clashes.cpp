@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the collisions, place by place, as a list.
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
-#include <pcl_bsh/io/reports/clash_report.h>
 
 namespace pcl_bsh::pipeline {
 namespace {
@@ -16,22 +16,25 @@ struct ClashWriter : Stage, QuestionStage {
   std::optional<InputFile> previous;
   std::string unit;
   std::string input_name = "input";
+  bool between = false;
+  std::vector<std::string> ignore;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
     Wanted wanted;
     wanted.flags = wanted.contacts = wanted.poses = wanted.unseen_places = true;
+    wanted.closest = !obstacles.empty();
     QuestionStage::plan(inputs[0], wanted, *this);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
-    if (previous) readEarlier();
+    readListing();
     return inputs[0];
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    write(ask(inputs[0], *this), inputs[0]->coordinate_system);
+    write(ask(inputs[0], *this, ignored_), inputs[0]->coordinate_system);
     return inputs[0];
   }
 
@@ -47,37 +50,53 @@ private:
     }
   }
 
-  void readEarlier()
+  /// What is known of the list before clouds are read.
+  void readListing()
   {
+    std::vector<std::string> names, warnings; // those of poses are told
+    std::vector<io::ComparedObstacle> compared;
+    for (auto& [one, shape] : asked(warnings)) {
+      if (!one.name.empty()) names.push_back(one.name);
+      compared.push_back(std::move(one));
+    }
+    if (names.empty() && (between || !ignore.empty()))
+      throw OptionError(between ? "between" : "ignore", "is given, and there is one obstacle: give `obstacles`");
     try {
-      earlier_ = io::readClashes(previous->path);
-      for (const std::string& warning : io::requireComparable(previous->path, earlier_, asked())) warn(warning);
+      ignored_ = {ignore, names};
+    }
+    catch (const InvalidInput& error) {
+      throw OptionError("ignore", error.advice());
+    }
+    listing_ = {input_name, unit};
+    listing_.cluster_distance = cluster_distance;
+    if (!previous) return;
+    listing_.previous = previous->path;
+    warnings.clear();
+    try {
+      listing_.readEarlier(compared, warnings);
     }
     catch (const std::runtime_error& error) {
       throw OptionError("previous", error.what());
     }
+    for (std::string& warning : warnings) warn(std::move(warning));
   }
-
-  io::ClashQuestion asked() const { return {question, input_name, obstacle.name}; }
 
   void write(AnsweredQuestion&& found, const std::string& coordinate_system)
   {
-    const SphereHierarchy &input = found.inputHierarchy(question), &other = found.obstacleHierarchy(question);
-    const double distance =
-        cluster_distance ? *cluster_distance : io::clusterDistanceFor(*question.clearance, spacingOf(input));
-    const std::vector<Eigen::Isometry3d> poses = question.poses();
-    io::ClashReport report = io::clashesOf(asked(), input, other, poses, found.answer, distance,
-                                           found.compared.isSurface() ? &found.compared : nullptr);
-    report.unit = unit;
-    report.coordinate_system = coordinate_system;
-    if (previous)
-      for (const std::string& warning : io::compareWithList(report, previous->path, earlier_, input, other))
-        warn(warning);
-    io::writeClashes(filename.path, report);
-    if (also) io::writeClashes(also->path, report);
+    std::vector<const SphereHierarchy*> hierarchies;
+    for (std::size_t i = 0; i < found.shapes.size(); ++i) hierarchies.push_back(&found.obstacleHierarchy(i));
+    listing_.coordinate_system = coordinate_system;
+    if (between) listing_.between = io::askBetween(question, found.shapes, found.obstacles, ignored_);
+    std::vector<std::string> warnings;
+    const io::ClashLists lists =
+        io::listOf(listing_, found.inputHierarchy(question), hierarchies, found.obstacles, found.answer, warnings);
+    for (std::string& warning : warnings) warn(std::move(warning));
+    io::writeClashes(filename.path, lists);
+    if (also) io::writeClashes(also->path, lists);
   }
 
-  io::ClashList earlier_;
+  IgnoredPairs ignored_;
+  io::ClashListing listing_;
 };
 
 } // namespace
@@ -105,6 +124,10 @@ StageType clashWriter()
               "the .json or BCF of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
               "new, persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
       .replaceable()
+      .option(&ClashWriter::between, "between", "the `obstacles` are compared with each other, too, as they stand")
+      .option(
+          &ClashWriter::ignore, "ignore",
+          "pairs of names that are not compared, of `obstacles` or `input`: \"FIRST:SECOND\", where * is any letters")
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");
 }

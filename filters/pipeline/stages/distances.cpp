@@ -29,13 +29,14 @@ struct DistanceWriter : Stage, QuestionStage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     AnsweredQuestion asked = ask(inputs[0], *this);
-    const Placed input(asked.inputHierarchy(question)), other(asked.obstacleHierarchy(question), question.pose);
+    const Placed input(asked.inputHierarchy(question)), other(asked.obstacleHierarchy(0), question.pose);
     PointDistancesRequest request;
     request.max_distance = question.max_distance.value_or(request.max_distance);
     request.accuracy = question.accuracy;
-    const io::DistanceQuestion told = {input_name,     obstacle.name,
+    const io::Obstacle& compared = asked.obstacles[0].loaded;
+    const io::DistanceQuestion told = {input_name,     obstacle->name,
                                        unit,           request,
-                                       places_beyond,  asked.compared.isSurface() ? &asked.compared : nullptr,
+                                       places_beyond,  compared.isSurface() ? &compared : nullptr,
                                        question.solid, inputs[0]->coordinate_system};
     const io::DistanceReport report = io::reportOf(told, input, other, asked.answer.distances);
     io::writeDistances(filename.path, report);

@@ -9,6 +9,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/uncertainty.h>
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -30,17 +31,17 @@ std::vector<Eigen::Isometry3d> readTrajectory(const InputFile& file, std::vector
 
 /// A matrix of few printed digits stands for its nearest rotation, with a warning. A pose farther from rigid stays as
 /// it is, and the query refuses it.
-Eigen::Isometry3d rigidPoseOf(const Pose& pose, std::vector<std::string>& warnings)
+Eigen::Isometry3d rigidPoseOf(const Pose& pose, const std::string& option, std::vector<std::string>& warnings)
 {
   Eigen::Isometry3d only;
   only.matrix() = pose.matrix;
   const io::RigidPose rigid = io::nearestRigid(only);
-  if (rigid.deviation > 0) warnings.push_back("pose: " + io::nearestRotationWarning(rigid.deviation));
+  if (rigid.deviation > 0) warnings.push_back(option + ": " + io::nearestRotationWarning(rigid.deviation));
   return rigid.pose;
 }
 
 /// By the fields of a cloud to come: its points are seen when the stage runs.
-void checkField(const char* option, const Uncertainty& uncertainty, const CloudHeader& cloud)
+void checkField(const std::string& option, const Uncertainty& uncertainty, const CloudHeader& cloud)
 {
   try {
     withUncertainty(PointsView(), cloud.fields, "cloud", uncertainty);
@@ -62,8 +63,17 @@ void warnOfUndecided(const Answer& answer, const Question& question, const char*
   stage.warn(std::to_string(undecided) + ' ' + parts + " stay undecided" + why + ": they are not taken for free");
 }
 
+/// Warns of what a scanner did not see. @param obstacle its name, or "the obstacle"
+void warnOfUnseen(const Answer::Unseen& unseen, const std::string& part, const std::string& obstacle, Stage& stage)
+{
+  if (unseen.count == 0) return;
+  stage.warn(counted(unseen.count, part + " of " + obstacle + " is", part + "s of " + obstacle + " are") +
+             " unseen: free of collisions, but no scanner saw that nothing is there (" +
+             std::to_string(unseen.in_shadow) + " in shadow, " + std::to_string(unseen.inSkin()) + " in the skin)");
+}
+
 /// The shape as which a cloud is compared. @param option whose cloud it is, in errors
-io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const char* option)
+io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const std::string& option)
 {
   if (!cloud->corners_alone.empty() && !question.vertices_only)
     throw OptionError(option,
@@ -114,7 +124,87 @@ constexpr Kind kindOf()
     return OptionType<T>::kind;
 }
 
+/// An option of a NamedObstacle.
+struct RowOption {
+  Option option;
+  std::function<void(NamedObstacle&, const Value&)> set;
+};
+
+template <typename T>
+RowOption rowOption(T NamedObstacle::*member, const char* name, const char* doc)
+{
+  RowOption row;
+  row.option.name = name;
+  row.option.doc = doc;
+  row.option.kind = OptionType<T>::kind;
+  row.option.nullable = true;
+  row.set = [member](NamedObstacle& obstacle, const Value& value) { obstacle.*member = OptionType<T>::from(value); };
+  return row;
+}
+
+const std::vector<RowOption>& optionsOfRows()
+{
+  static const std::vector<RowOption> all = [] {
+    std::vector<RowOption> rows = {
+        rowOption(&NamedObstacle::file, "file", "the cloud or mesh"),
+        rowOption(&NamedObstacle::name, "name", "that lists and pages tell; null: the file's, or the tag"),
+        rowOption(&NamedObstacle::pose, "pose", "in the frame of all obstacles; null: that frame's"),
+        rowOption(&NamedObstacle::clearance, "clearance", "in place of the stage's"),
+        rowOption(&NamedObstacle::solid, "solid", "in place of the stage's"),
+        rowOption(&NamedObstacle::uncertainty, "uncertainty", "of its points, in place of `obstacle_uncertainty`")};
+    rows.front().option.required = true;
+    for (RowOption& row : rows) {
+      if (row.option.kind != Kind::number && row.option.kind != Kind::length_or_field) continue;
+      row.option.least = 0;
+      row.option.unit = "m";
+    }
+    for (const auto& [name, doc] : {std::pair{"unit", "the unit of the file's lengths"},
+                                    {"to_unit", "the unit that they are read in, as `to_unit` of readers"}}) {
+      RowOption row; // which its reader obeys
+      row.option.name = name;
+      row.option.doc = doc;
+      row.option.kind = Kind::text;
+      row.option.nullable = row.option.of_reader = true;
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }();
+  return all;
+}
+
+std::string nameOf(const NamedObstacle& obstacle)
+{
+  return obstacle.name.empty() ? std::filesystem::path(obstacle.file.name).stem().string() : obstacle.name;
+}
+
+std::string placeOf(std::size_t obstacle, const char* option)
+{
+  return "obstacles/" + std::to_string(obstacle) + '/' + option;
+}
+
 } // namespace
+
+Option optionOfObstacles(std::function<std::vector<NamedObstacle>&(Stage&)> obstacles)
+{
+  Option option;
+  option.name = "obstacles";
+  option.doc = "in place of `obstacle`, several with names: one question about all of them";
+  option.kind = Kind::rows;
+  for (const RowOption& row : optionsOfRows()) option.of_rows.push_back(row.option);
+  option.set = [obstacles](Stage& stage, const Value& value) {
+    std::vector<NamedObstacle>& all = obstacles(stage);
+    all.clear();
+    for (const Row& row : std::get<std::vector<Row>>(value)) {
+      all.emplace_back();
+      for (std::size_t i = 0; i < row.values.size(); ++i)
+        if (optionsOfRows()[i].set && !std::holds_alternative<std::monostate>(row.values[i]))
+          optionsOfRows()[i].set(all.back(), row.values[i]);
+    }
+  };
+  option.get = [](const Stage&) { return Value(std::vector<Row>()); };
+  option.cloud = [obstacles](Stage& stage, std::size_t row) { return &obstacles(stage)[row].file; };
+  return option;
+}
 
 Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> question)
 {
@@ -158,23 +248,61 @@ void refuse(const InvalidInput& error, const Question& question)
 
 void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& stage)
 {
+  if (!obstacle && obstacles.empty())
+    throw OptionError("obstacle", "is missing: give the tag of an earlier stage, or the name of a cloud file");
+  if (obstacle && !obstacles.empty()) throw OptionError("obstacles", "and `obstacle` are both given: give one of them");
   if (trajectory && pose) throw OptionError("trajectory", "and `pose` are both given: give one of them");
   std::vector<std::string> warnings;
   if (trajectory) question.path = readTrajectory(*trajectory, warnings);
-  if (pose) question.pose = rigidPoseOf(*pose, warnings);
+  if (pose) question.pose = rigidPoseOf(*pose, "pose", warnings);
   question.wanted = wanted;
+  checkField("uncertainty", question.uncertainty, input);
+  std::vector<std::string> names;
+  for (const auto& [one, shape] : asked(warnings)) {
+    try {
+      check(one.question);
+    }
+    catch (const InvalidInput& error) {
+      refuse(error, one.question);
+    }
+    if (one.name.empty()) {
+      checkField("obstacle_uncertainty", question.obstacle_uncertainty, obstacle->header);
+      continue;
+    }
+    const NamedObstacle& named = obstacles[names.size()];
+    checkField(named.uncertainty ? placeOf(names.size(), "uncertainty") : "obstacle_uncertainty",
+               one.question.obstacle_uncertainty, named.file.header);
+    names.push_back(one.name);
+  }
   try {
-    check(question);
+    checkObstacleNames(names);
   }
   catch (const InvalidInput& error) {
-    refuse(error, question);
+    throw OptionError("obstacles", error.advice());
   }
-  checkField("uncertainty", question.uncertainty, input);
-  checkField("obstacle_uncertainty", question.obstacle_uncertainty, obstacle.header);
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
-QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, Stage& stage) const
+std::vector<std::pair<io::ComparedObstacle, PlacedShape>> QuestionStage::asked(std::vector<std::string>& warnings) const
+{
+  std::vector<std::pair<io::ComparedObstacle, PlacedShape>> all;
+  const auto add = [&](const std::string& name, const OtherCloud& file, PlacedShape&& shape) {
+    io::ComparedObstacle one = {name, file.name};
+    one.question = questionOf(question, shape);
+    all.emplace_back(std::move(one), std::move(shape));
+  };
+  if (obstacle) add("", *obstacle, {});
+  for (const NamedObstacle& one : obstacles) {
+    PlacedShape shape = {Shape(), Eigen::Isometry3d::Identity(), one.clearance, one.solid};
+    if (one.pose) shape.pose = rigidPoseOf(*one.pose, placeOf(all.size(), "pose"), warnings);
+    if (one.uncertainty) assign(shape.uncertainty.emplace(), OptionType<LengthOrField>::to(*one.uncertainty));
+    add(nameOf(one), one.file, std::move(shape));
+  }
+  return all;
+}
+
+QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, Stage& stage,
+                                                   const IgnoredPairs& ignored) const
 {
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
@@ -186,24 +314,29 @@ QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, S
     asked.origin = io::originsOf(input->cloud, facts);
   }
   AnsweredQuestion found;
-  found.compared = shapeOf(obstacle.cloud, question, "obstacle");
-  found.obstacle = found.compared.shape("the obstacle");
   found.input = shapeOf(input, question, "input").shape("the input");
-  if (found.obstacle.isSurface()) stage.warn(io::promiseOf(found.compared, question.solid));
+  std::vector<std::string> told; // by plan(), already
+  for (auto& [one, shape] : this->asked(told)) {
+    const std::size_t i = found.shapes.size();
+    one.loaded = shapeOf(obstacle ? obstacle->cloud : obstacles[i].file.cloud, question,
+                         obstacle ? "obstacle" : placeOf(i, "file"));
+    const std::string label = one.name.empty() ? "" : one.name + ": ";
+    if (one.loaded.isSurface()) stage.warn(label + io::promiseOf(one.loaded, one.question.solid));
+    shape.shape = one.loaded.shape(one.name.empty() ? "the obstacle" : one.name);
+    shape.ignores_input = !one.name.empty() && ignored.holds(kInputName, one.name);
+    found.obstacles.push_back(std::move(one));
+    found.shapes.push_back(std::move(shape));
+  }
   try {
-    found.answer = pcl_bsh::ask(asked, found.input, found.obstacle);
+    found.answer = io::askAbout(asked, found.input, found.shapes, found.obstacles).all;
   }
   catch (const InvalidInput& error) {
     refuse(error, question);
   }
   for (const Warning& warning : found.answer.warnings) stage.warn(warning.text);
-  if (found.answer.unseen.count > 0) {
-    const std::string part = found.compared.partName();
-    stage.warn(counted(found.answer.unseen.count, part + " of the obstacle is", part + "s of the obstacle are") +
-               " unseen: free of collisions, but no scanner saw that nothing is there (" +
-               std::to_string(found.answer.unseen.in_shadow) + " in shadow, " +
-               std::to_string(found.answer.unseen.inSkin()) + " in the skin)");
-  }
+  for (const io::ComparedObstacle& one : found.obstacles)
+    warnOfUnseen(one.name.empty() ? found.answer.unseen : one.answer.unseen, one.loaded.partName(),
+                 one.name.empty() ? "the obstacle" : one.name, stage);
   warnOfUndecided(found.answer, question, found.input.isSurface() ? "triangles" : "points", stage);
   return found;
 }

@@ -1,50 +1,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Base of the stages that ask a question about an obstacle.
+// Base of the stages that ask a question about an obstacle, or about several.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_type.h>
-#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/reports/compared_obstacles.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/question/options.h>
 
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::pipeline {
 
+/// An obstacle of several. Members without a value are those of the question.
+struct NamedObstacle {
+  std::string name; ///< empty: the file's stem, or the tag
+  OtherCloud file;
+  std::optional<Pose> pose;
+  std::optional<double> clearance;
+  std::optional<bool> solid;
+  std::optional<LengthOrField> uncertainty;
+};
+
 /// The options of a stage that derives from it, beside Stage; those of the question are in the core's table.
 struct QuestionStage {
-  OtherCloud obstacle;
+  std::optional<OtherCloud> obstacle; ///< or there are `obstacles`
+  std::vector<NamedObstacle> obstacles;
   std::optional<Pose> pose;
   std::optional<InputFile> trajectory;
   Question question;
 
 protected:
-  /// For plan(): reads the trajectory, and refuses what ask() would refuse.
+  /// For plan(): reads the trajectory, names the obstacles, and refuses what ask() would refuse.
   /// @param input the header of the cloud whose points are asked about. @param stage that warns
   /// @throws OptionError
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
+  /// The only obstacle, without a name, or several, each with its pose and the question about it. Clouds are not read.
+  std::vector<std::pair<io::ComparedObstacle, PlacedShape>> asked(std::vector<std::string>& warnings) const;
+
   /// A question, and its answer.
   struct AnsweredQuestion {
-    io::Obstacle compared; ///< as what the obstacle is compared
-    Shape input, obstacle;
-    Answer answer;
+    std::vector<io::ComparedObstacle> obstacles; ///< as what they are compared; the only one has no name
+    Shape input;
+    std::vector<PlacedShape> shapes; ///< of the obstacles
+    Answer answer;                   ///< of the only obstacle, or of all together
 
     const SphereHierarchy& inputHierarchy(const Question& asked)
     {
       return input.hierarchy(asked.uncertaintyOfInput(), asked.threads);
     }
-    const SphereHierarchy& obstacleHierarchy(const Question& asked)
+    const SphereHierarchy& obstacleHierarchy(std::size_t i)
     {
-      return obstacle.hierarchy(asked.uncertaintyOfObstacle(), asked.threads);
+      const Question& asked = obstacles[i].question;
+      return shapes[i].shape.hierarchy(asked.uncertaintyOfObstacle(), asked.threads);
     }
   };
 
   /// For run(): asks, until the stage is cancelled, and adds the warnings of the answer.
-  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage) const;
+  /// @param ignored obstacles that `input` is paired with are not asked about
+  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage, const IgnoredPairs& ignored = {}) const;
 
   /// Whether the triangles of the input are asked about, not its points.
   bool asksAboutFaces(const StageCloud& input) const
@@ -59,6 +77,9 @@ protected:
 /// A row of the core's table as an option of a stage. @param question of a stage
 Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> question);
 
+/// `obstacles` of a stage.
+Option optionOfObstacles(std::function<std::vector<NamedObstacle>&(Stage&)> obstacles);
+
 /// An error of a question, told by the stage's option where it is about one. @throws OptionError, or the error
 [[noreturn]] void refuse(const InvalidInput& error, const Question& question);
 
@@ -66,11 +87,19 @@ Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> ques
 template <typename S>
 StageDescription<S>& withQuestionOptions(StageDescription<S>& description, QuestionKind kind)
 {
-  description.option(&S::obstacle, "obstacle", "the cloud or mesh that the input is compared with")
-      .required()
-      .option(&S::pose, "pose",
-              "of the obstacle in the input's frame; rigid, where a matrix of few printed digits stands for its "
-              "nearest rotation; null: the frames are one");
+  const bool may_be_several = kind != QuestionKind::both_ways; // whose distances are also the obstacle's
+  description.option(&S::obstacle, "obstacle",
+                     may_be_several ? "the cloud or mesh that the input is compared with, unless there are `obstacles`"
+                                    : "the cloud or mesh that the input is compared with");
+  if (may_be_several)
+    description.option(optionOfObstacles(
+        [](Stage& stage) -> std::vector<NamedObstacle>& { return static_cast<S&>(stage).obstacles; }));
+  else
+    description.required();
+  description.option(
+      &S::pose, "pose",
+      "of the obstacle, or of the frame of all obstacles, in the input's frame; rigid, where a matrix of "
+      "few printed digits stands for its nearest rotation; null: the frames are one");
   if (isOf(QuestionKind::collisions, kind)) {
     description.option(
         &S::trajectory, "trajectory",

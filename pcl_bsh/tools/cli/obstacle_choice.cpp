@@ -5,11 +5,10 @@
 #include "path.h"
 
 #include <pcl_bsh/io/text/format_error.h>
+#include <pcl_bsh/question/obstacle_names.h>
 #include <pcl_bsh/question/options.h>
 
-#include <algorithm>
 #include <cstddef>
-#include <set>
 #include <utility>
 
 namespace pcl_bsh::cli {
@@ -87,53 +86,23 @@ ObstacleChoice parseObstacle(const std::string& text, std::vector<std::string>& 
   return choice;
 }
 
-/// @param pattern where * stands for any letters, none among them
-bool matches(const char* pattern, const char* name)
-{
-  if (*pattern == '\0') return *name == '\0';
-  if (*pattern == '*') return matches(pattern + 1, name) || (*name != '\0' && matches(pattern, name + 1));
-  return *pattern == *name && matches(pattern + 1, name + 1);
-}
-
 } // namespace
 
 std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings)
 {
   std::vector<ObstacleChoice> choices;
-  std::set<std::string> names;
+  std::vector<std::string> names;
   for (const std::string& text : texts) {
     choices.push_back(parseObstacle(text, warnings));
-    const std::string& name = choices.back().name;
-    if (name == "input") throw UsageError("--obstacle: 'input' is the input's own name: give another, NAME=FILE");
-    if (!names.insert(name).second)
-      throw UsageError("--obstacle: two obstacles have the name '" + name + "': give each its own, NAME=FILE");
+    names.push_back(choices.back().name);
+  }
+  try {
+    checkObstacleNames(names);
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError("--obstacle: " + error.advice() + ", NAME=FILE");
   }
   return choices;
-}
-
-IgnoredPairs::IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& names)
-{
-  for (const std::string& text : texts) {
-    const std::vector<std::string> two = split(text, ':');
-    if (two.size() != 2 || two[0].empty() || two[1].empty())
-      throw UsageError("--ignore: '" + text + "' is no pair of names: give FIRST:SECOND, where * is any letters");
-    for (const std::string& pattern : two) {
-      const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };
-      if (std::none_of(names.begin(), names.end(), fits))
-        throw UsageError("--ignore: '" + pattern + "' matches no obstacle: give input, or one of their names");
-    }
-    patterns_.emplace_back(two[0], two[1]);
-  }
-}
-
-bool IgnoredPairs::holds(const std::string& one, const std::string& other) const
-{
-  return std::any_of(patterns_.begin(), patterns_.end(), [&](const auto& pair) {
-    const auto fits = [&](const std::string& first, const std::string& second) {
-      return matches(pair.first.c_str(), first.c_str()) && matches(pair.second.c_str(), second.c_str());
-    };
-    return fits(one, other) || fits(other, one);
-  });
 }
 
 } // namespace pcl_bsh::cli

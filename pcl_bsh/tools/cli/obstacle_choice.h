@@ -33,17 +33,4 @@ struct ObstacleChoice {
 ///   one name; files::FileError for a file of a pose
 std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings);
 
-/// Two obstacles, or an obstacle and the input, that do not count against each other.
-class IgnoredPairs {
-public:
-  /// @param texts FIRST:SECOND each, where * stands for any letters. @param names all that there are
-  /// @throws UsageError for another text, and for a pattern that no name matches
-  IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& names);
-
-  bool holds(const std::string& one, const std::string& other) const;
-
-private:
-  std::vector<std::pair<std::string, std::string>> patterns_;
-};
-
 } // namespace pcl_bsh::cli

@@ -6,6 +6,7 @@
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 
+#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/io/clouds/formats.h>
 
 #include <cmath>
@@ -104,9 +105,14 @@ void setObstacles(CollideOptions& options, const std::vector<std::string>& given
 
 IgnoredPairs CollideOptions::ignoredPairs() const
 {
-  std::vector<std::string> names = {"input"};
+  std::vector<std::string> names;
   for (const ObstacleChoice& one : obstacles) names.push_back(one.name);
-  return {ignored, names};
+  try {
+    return {ignored, names};
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError("--ignore: " + error.advice());
+  }
 }
 
 std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)

@@ -7,6 +7,7 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/question/obstacle_names.h>
 #include <pcl_bsh/question/question.h>
 
 #include <cstdint>
@@ -46,7 +47,7 @@ struct CollideOptions {
   std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
   CommandFiles files;                      ///< all that are read or written
 
-  /// @throws UsageError as IgnoredPairs does
+  /// @throws UsageError where IgnoredPairs refuses them
   IgnoredPairs ignoredPairs() const;
 
   bool moves() const { return question.path.has_value() || !trajectory.empty(); }

@@ -64,8 +64,8 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   json["surface"] = io::surfaceJson(report.surface ? &*report.surface : nullptr, question.solid);
   if (report.haveNames()) {
     json["obstacles"] = json["between"] = nlohmann::ordered_json::array();
-    for (const ComparedObstacle& one : report.obstacles)
-      json["obstacles"].push_back(io::obstacleJson(one.name, {one.question, report.input.file, one.file.string()},
+    for (const io::ComparedObstacle& one : report.obstacles)
+      json["obstacles"].push_back(io::obstacleJson(one.name, {one.question, report.input.file, one.file},
                                                    one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
     for (const io::BetweenObstacles& two : report.between) json["between"].push_back(io::betweenJson(two));
   }

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
-#include <pcl_bsh/io/reports/clash_report.h>
-#include <pcl_bsh/question/obstacles.h>
+#include <pcl_bsh/io/reports/compared_obstacles.h>
 
 #include <nlohmann/json.hpp>
 
@@ -33,28 +32,16 @@ struct Seconds {
   double write = 0;
 };
 
-/// An obstacle, the question about it, and its answer.
-struct ComparedObstacle {
-  std::string name; ///< empty: it is alone
-  std::filesystem::path file;
-  io::Obstacle loaded;
-  io::CloudFacts facts;
-  Question question = {};
-  Answer answer = {}; ///< where it is one of several; else the report has it
-  ObstacleAnswer found = {};
-  std::vector<Eigen::Isometry3d> poses = {};
-};
-
 struct CollisionReport {
   CloudReport input;
-  CloudReport obstacle;                      ///< of a surface, its vertices
-  std::optional<io::Obstacle> surface;       ///< the obstacle, where it is one
-  std::vector<ComparedObstacle> obstacles;   ///< that alone, or several that have names
-  std::vector<io::BetweenObstacles> between; ///< where several are compared with each other
-  std::uint32_t closest_obstacle = kNothing; ///< of several, that of the closest pair
-  bool input_is_surface = false;             ///< its numbers are those of triangles
-  std::string unit;                          ///< of all lengths, where it is known; else empty
-  std::string coordinate_system;             ///< of the input, where its file names one; else empty
+  CloudReport obstacle;                        ///< of a surface, its vertices
+  std::optional<io::Obstacle> surface;         ///< the obstacle, where it is one
+  std::vector<io::ComparedObstacle> obstacles; ///< that alone, or several that have names
+  std::vector<io::BetweenObstacles> between;   ///< where several are compared with each other
+  std::uint32_t closest_obstacle = kNothing;   ///< of several, that of the closest pair
+  bool input_is_surface = false;               ///< its numbers are those of triangles
+  std::string unit;                            ///< of all lengths, where it is known; else empty
+  std::string coordinate_system;               ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;
   std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for

@@ -49,7 +49,7 @@ void tellObstacles(const CollisionReport& report, std::ostream& out)
     return text.str();
   };
   if (!report.haveNames()) return;
-  for (const ComparedObstacle& one : report.obstacles) {
+  for (const io::ComparedObstacle& one : report.obstacles) {
     out << one.name << ": " << io::nameOfState(one.found);
     if (one.found.colliding > 0)
       out << " of " << counted(one.found.colliding, report.input_is_surface ? "triangle" : "point");

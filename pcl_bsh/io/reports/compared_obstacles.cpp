@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/reports/compared_obstacles.h>
+
+#include <pcl_bsh/question/warnings/warnings.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pcl_bsh::io {
+namespace {
+
+void addEachOnce(std::vector<std::string>&& more, std::vector<std::string>& warnings)
+{
+  for (std::string& one : more) addOnce(std::move(one), warnings);
+}
+
+double greatestClearance(const std::vector<ComparedObstacle>& obstacles)
+{
+  double greatest = 0.0;
+  for (const ComparedObstacle& one : obstacles) greatest = std::max(greatest, one.question.clearance.value_or(0.0));
+  return greatest;
+}
+
+} // namespace
+
+ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,
+                         std::vector<ComparedObstacle>& obstacles)
+{
+  ObstaclesAnswer found;
+  if (obstacles.front().name.empty()) {
+    found.all = ask(question, input, shapes.front().shape);
+    return found;
+  }
+  const bool keep = question.wanted.collisions();
+  found = ask(question, input, shapes, [&](std::size_t i, const Question& asked, Answer& answer) {
+    if (!keep) return;
+    obstacles[i].question = asked;
+    obstacles[i].question.progress = nullptr;
+    obstacles[i].answer = std::move(answer);
+  });
+  if (!keep) return found;
+  const std::size_t records = input.hierarchy(question.uncertaintyOfInput(), question.threads).view().count;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    obstacles[i].found = found.each[i];
+    if (question.wanted.contacts) addFree(obstacles[i].answer.collisions, records);
+  }
+  return found;
+}
+
+std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<PlacedShape>& shapes,
+                                         const std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored)
+{
+  std::vector<BetweenObstacles> between;
+  const auto wanted = [&](std::uint32_t i, std::uint32_t k) {
+    return !ignored.holds(obstacles[i].name, obstacles[k].name);
+  };
+  for (const ObstaclePair& pair : pcl_bsh::askBetween(question, shapes, wanted))
+    between.push_back({obstacles[pair.first].name, obstacles[pair.second].name, pair});
+  return between;
+}
+
+void ClashListing::readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings)
+{
+  if (!previous) return;
+  earlier = readClashLists(*previous);
+  for (const ComparedObstacle& one : obstacles) {
+    const ClashQuestion asked = {one.question, input, one.file};
+    if (const ClashList* const list = findList(earlier, one.name, asked))
+      addEachOnce(requireComparable(*previous, *list, asked), warnings);
+  }
+}
+
+ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
+                  const std::vector<const SphereHierarchy*>& hierarchies, std::vector<ComparedObstacle>& obstacles,
+                  const Answer& alone, std::vector<std::string>& warnings)
+{
+  const double distance = listing.cluster_distance ? *listing.cluster_distance
+                                                   : clusterDistanceFor(greatestClearance(obstacles),
+                                                                        alone.density.input.value_or(Spacing()));
+  ClashLists lists;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    ComparedObstacle& one = obstacles[i];
+    one.poses = one.question.poses();
+    const bool has_name = !one.name.empty();
+    ClashReport list =
+        clashesOf({one.question, listing.input, one.file}, scan, *hierarchies[i], one.poses,
+                  has_name ? one.answer : alone, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
+    list.unit = listing.unit;
+    list.coordinate_system = listing.coordinate_system;
+    list.name = one.name;
+    if (has_name) list.answer = &one.found;
+    if (const ClashList* const before = findList(listing.earlier, one.name, list.question))
+      addEachOnce(compareWithList(list, *listing.previous, *before, scan, *hierarchies[i]), warnings);
+    else if (listing.previous)
+      list.previous = listing.previous->string();
+    lists.obstacles.push_back(std::move(list));
+  }
+  lists.between = listing.between;
+  if (lists.haveNames() && listing.previous)
+    addEachOnce(warningsOfGone(lists, *listing.previous, listing.earlier), warnings);
+  return lists;
+}
+
+} // namespace pcl_bsh::io

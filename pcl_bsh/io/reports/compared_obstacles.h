@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Obstacles from files in one question, and the list of their clashes: for programs and stages.
+//
+//   std::vector<ComparedObstacle> all = ...; // one without a name, or several with names
+//   const ObstaclesAnswer found = askAbout(question, scan, shapes, all);
+//   writeClashes("clashes.html", listOf(listing, scan, hierarchies, all, found.all, warnings));
+#pragma once
+
+#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/question/obstacle_names.h>
+#include <pcl_bsh/question/obstacles.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// An obstacle, the question about it, and its answer.
+struct ComparedObstacle {
+  std::string name; ///< empty: it is alone
+  std::string file;
+  Obstacle loaded = {};
+  CloudFacts facts = {};
+  Question question = {};
+  Answer answer = {}; ///< where it is one of several
+  ObstacleAnswer found = {};
+  std::vector<Eigen::Isometry3d> poses = {};
+};
+
+/// Asks about the only obstacle, or about several with names. Where collisions are asked for, each of several keeps the
+/// question about it and its answer. Of the only one, no more than `all` is told.
+/// @param shapes those of `obstacles`
+/// @throws as ask() does
+ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,
+                         std::vector<ComparedObstacle>& obstacles);
+
+/// askBetween() by names.
+std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<PlacedShape>& shapes,
+                                         const std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored);
+
+/// How the clashes of obstacles are listed.
+struct ClashListing {
+  std::string input; ///< its name
+  std::string unit = {}, coordinate_system = {};
+  std::optional<double> cluster_distance = {};        ///< none: from the greatest clearance and the input's spacing
+  std::optional<std::filesystem::path> previous = {}; ///< file of an earlier list
+  std::vector<ClashList> earlier = {};                ///< of that file
+  std::vector<BetweenObstacles> between = {};
+
+  /// Reads the earlier list. @param obstacles with names, files and questions
+  /// @param warnings gets what requireComparable() tells
+  /// @throws as readClashLists() and requireComparable() do
+  void readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings);
+};
+
+/// The list of all clashes. Borrows `obstacles`, hierarchies and `alone`.
+/// @param hierarchies of `obstacles`. @param alone the answer about the only obstacle; of several, their common one
+/// @param warnings gets those of the comparison with the earlier list
+ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
+                  const std::vector<const SphereHierarchy*>& hierarchies, std::vector<ComparedObstacle>& obstacles,
+                  const Answer& alone, std::vector<std::string>& warnings);
+
+} // namespace pcl_bsh::io

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/obstacle_names.h>
+
+#include <pcl_bsh/base/invalid_input.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+
+namespace pcl_bsh {
+namespace {
+
+/// @param pattern where * stands for any letters, none among them
+bool matches(const char* pattern, const char* name)
+{
+  if (*pattern == '\0') return *name == '\0';
+  if (*pattern == '*') return matches(pattern + 1, name) || (*name != '\0' && matches(pattern, name + 1));
+  return *pattern == *name && matches(pattern + 1, name + 1);
+}
+
+InvalidInput wrongName(const char* option, const std::string& wrong, const std::string& remedy)
+{
+  return {Input::points, option, wrong, remedy};
+}
+
+} // namespace
+
+void checkObstacleNames(const std::vector<std::string>& names)
+{
+  std::set<std::string> known;
+  for (const std::string& name : names) {
+    if (name.empty()) throw wrongName("obstacles", "one has no name", "give each its own");
+    if (name == kInputName) throw wrongName("obstacles", "'input' is the input's own name", "give another");
+    if (!known.insert(name).second)
+      throw wrongName("obstacles", "two obstacles have the name '" + name + "'", "give each its own");
+  }
+}
+
+IgnoredPairs::IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& obstacles)
+{
+  std::vector<std::string> names = {kInputName};
+  names.insert(names.end(), obstacles.begin(), obstacles.end());
+  for (const std::string& text : texts) {
+    const std::size_t colon = text.find(':');
+    if (colon == text.npos || colon == 0 || colon + 1 == text.size() || text.find(':', colon + 1) != text.npos)
+      throw wrongName("ignore", "'" + text + "' is no pair of names", "give FIRST:SECOND, where * is any letters");
+    const std::pair two(text.substr(0, colon), text.substr(colon + 1));
+    for (const std::string& pattern : {two.first, two.second}) {
+      const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };
+      if (std::none_of(names.begin(), names.end(), fits))
+        throw wrongName("ignore", "'" + pattern + "' matches no obstacle", "give input, or one of their names");
+    }
+    patterns_.push_back(two);
+  }
+}
+
+bool IgnoredPairs::holds(const std::string& one, const std::string& other) const
+{
+  return std::any_of(patterns_.begin(), patterns_.end(), [&](const auto& pair) {
+    const auto fits = [&](const std::string& first, const std::string& second) {
+      return matches(pair.first.c_str(), first.c_str()) && matches(pair.second.c_str(), second.c_str());
+    };
+    return fits(one, other) || fits(other, one);
+  });
+}
+
+} // namespace pcl_bsh
