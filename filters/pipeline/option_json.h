@@ -37,7 +37,7 @@ PCL_BSH_EXPORT_INTERNAL Value valueOf(const Json& json, const Option& option);
 
 PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value);
 
-/// The same, and of rows objects with what is given.
+/// Rows become objects with the options that are given.
 PCL_BSH_EXPORT_INTERNAL Json jsonOf(const Value& value, const Option& option);
 
 /// The JSON of a command line's text: texts need no quotes, lists no brackets.

@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/pipeline/graph.h>
 #include <pcl_bsh/filters/pipeline/option_json.h>
+#include <pcl_bsh/filters/pipeline/stage_names.h>
 #include <pcl_bsh/io/json/nearest_name.h>
 #include <pcl_bsh/io/poses/pose_text.h>
 #include <pcl_bsh/io/text/format_error.h>
@@ -16,39 +17,6 @@ namespace pcl_bsh::pipeline {
 namespace {
 
 const std::vector<std::string> common_keys = {"type", "tag", "inputs", "user_data"};
-
-std::vector<std::string> typeNames()
-{
-  std::vector<std::string> names;
-  for (const StageType& type : stageTypes()) {
-    names.push_back(type.name);
-    names.insert(names.end(), type.aliases.begin(), type.aliases.end());
-  }
-  return names;
-}
-
-/// The reader or writer that files of this name stand for; null where no stage does.
-const StageType* typeOfFile(const std::string& file, bool written)
-{
-  const std::string extension = io::extensionOf(file);
-  for (const StageType& type : stageTypes()) {
-    const bool can = written ? type.isWriter() : type.isReader();
-    if (can && std::find(type.extensions.begin(), type.extensions.end(), extension) != type.extensions.end()) {
-      return &type;
-    }
-  }
-  return nullptr;
-}
-
-std::string knownExtensions(bool written)
-{
-  std::string list;
-  for (const StageType& type : stageTypes()) {
-    if (!(written ? type.isWriter() : type.isReader())) continue;
-    for (const std::string& extension : type.extensions) list += (list.empty() ? "" : " ") + extension;
-  }
-  return list;
-}
 
 bool isTag(const std::string& text)
 {
@@ -426,22 +394,6 @@ private:
 Graph parseGraph(std::string_view text, const std::vector<OptionOverride>& overrides, const std::string& name)
 {
   return Parser(overrides, name).parse(text);
-}
-
-std::vector<std::size_t> countReaders(const Graph& graph)
-{
-  std::vector<std::size_t> readers(graph.nodes.size(), 0);
-  for (const Node& node : graph.nodes) {
-    for (const std::size_t input : node.inputs) ++readers[input];
-    for (const auto& cloud : node.clouds) ++readers[cloud.node];
-  }
-  return readers;
-}
-
-PipelineError stageError(const Graph& graph, const Node& node, const std::string& option, const std::string& wrong)
-{
-  return PipelineError(graph.name + ": " + node.tag + ": " + node.path + (option.empty() ? "" : "/" + option) + ": " +
-                       wrong);
 }
 
 } // namespace pcl_bsh::pipeline

@@ -132,7 +132,8 @@ PYBIND11_MODULE(_core, module)
   bindNeighbors(module);
   bindClusters(module);
   bindTrajectory(module);
-  bindTrack(module);
+  bindAxis(module);
+  bindGauge(module);
   bindManyPoses(module);
   bindScene(module);
   bindFiles(module);

@@ -50,7 +50,7 @@ private:
     }
   }
 
-  /// What is known of the list before clouds are read.
+  /// Reads the facts about the list that are known before clouds are read.
   void readListing()
   {
     std::vector<std::string> names, warnings; // those of poses are told

@@ -28,14 +28,6 @@ std::string uncertaintyText(const Uncertainty& uncertainty);
 /// A length, or a field and how many of its sigmas count, or an object of one of them and that of poses.
 Json uncertaintyJson(const Uncertainty& uncertainty);
 
-/// nameOf() with spaces, for people.
-std::string inWords(ClashStatus status);
-
-// A point, a box with min and max, and a status, as reports have them. @throws JsonError
-Point3 pointFrom(const JsonReader& reader);
-Extent boxFrom(const JsonReader& box);
-ClashStatus statusFrom(const JsonReader& status);
-
 /// Where a run looked.
 struct Survey {
   std::size_t poses = 0;

@@ -2,6 +2,7 @@
 // The numbers of the page; clash_page.html has the page itself.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/clash_values.h>
 #include <pcl_bsh/io/reports/obstacle_table.h>
 #include <pcl_bsh/io/reports/page_text.h>
 

@@ -30,7 +30,7 @@ struct ComparedObstacle {
 };
 
 /// Asks about the only obstacle, or about several with names. Where collisions are asked for, each of several keeps the
-/// question about it and its answer. Of the only one, no more than `all` is told.
+/// question about it and its answer. The only one has no more than `all`.
 /// @param shapes those of `obstacles`
 /// @throws as ask() does
 ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/reports/clash_values.h>
 #include <pcl_bsh/io/reports/gauge_list.h>
 
 #include <pcl_bsh/io/clouds/records.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the page; gauge_page.html has the page itself.
 #include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/clash_values.h>
 #include <pcl_bsh/io/reports/gauge_drawings.h>
 #include <pcl_bsh/io/reports/gauge_report.h>
 #include <pcl_bsh/io/reports/page_text.h>
