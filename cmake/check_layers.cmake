@@ -10,7 +10,7 @@ set(without_pcl "^pcl_bsh/(base|simd|geometry|hierarchy|query|traversal|flags|pa
 set(never_without_pcl "^(pcl/|pcl_bsh/io/|pcl_bsh/collide\\.h$|iostream$|fstream$)")
 set(with_vtk "^(pcl_bsh/vtk|pcl_bsh/vtk_filters|pcl_bsh/tools/viewer)$")
 set(gpl "^(CGAL/|pcl_bsh/certify/)") # only in pcl_bsh/certify, and in its program what that offers
-set(gpl_program "^pcl_bsh/tools/(pcl_bsh_certify\\.cpp|certify/[a-z]+\\.(h|cpp))$")
+set(gpl_program "^pcl_bsh/tools/(pcl_bsh_certify\\.cpp|certify/[a-z_]+\\.(h|cpp))$")
 
 # The table's rows from the bottom room up: | `folder` | target | what | never | includes |
 set(rooms "")
