@@ -184,7 +184,8 @@ public:
       auto [at_a, at_b] = nearestPlaces(a, b, entry.pair);
       const Eigen::Vector3d apart = pairs.ofTriangles() ? pairs.distance.between(entry.pair) : at_a - at_b;
       const double gap = pairs.ofTriangles() ? pairs.gap(entry.pair) : entry.high;
-      const Eigen::Vector3d normal = apart.stableNormalized();
+      const double size = apart.lpNorm<Eigen::Infinity>(); // Eigen's stableNormalized() rounds at the least numbers
+      const Eigen::Vector3d normal = size > 0.0 ? (apart / size).normalized() : Eigen::Vector3d::Zero().eval();
       at_a -= a.hierarchy().view().ownRadius(entry.pair.a) * normal;
       at_b += b.hierarchy().view().ownRadius(entry.pair.b) * normal;
       result.contacts.push_back({entry.pair, gap, normal, at_a, at_b});

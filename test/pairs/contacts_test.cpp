@@ -151,6 +151,21 @@ TEST(Contacts, NormalsAreInTheFrameOfThePoses)
 }
 
 /// Surfaces of any size: triangles below 1e-80 have squares of normals that are not in the range of double.
+TEST(Contacts, NormalsOfTheLeastNumbersAreOfLengthOne)
+{
+  for (const double unit : {0x1p-1074, 3 * 0x1p-1074, 1e-322, 1e-320, 1e-310}) {
+    test::Mesh mesh;
+    mesh.add({0, 0, 0}, {unit, 0, 0}, {0, unit, 0});
+    const Cloud beside({{-unit, -unit, 0}});
+    const SphereHierarchy a(beside.view()),
+        b(viewOf(TrianglesView{viewOf(mesh.vertices[0].data(), 3), mesh.corners.data(), 1}));
+    const ContactsResult found = nearestContacts({a}, {b}, within(5 * unit, 3));
+    ASSERT_EQ(found.contacts.size(), 1u) << unit;
+    const double root = std::sqrt(0.5);
+    EXPECT_TRUE(found.contacts[0].normal.isApprox(Eigen::Vector3d(-root, -root, 0), 1e-15)) << unit;
+  }
+}
+
 TEST(Contacts, NormalsOfTrianglesOfAnySizeAreOfLengthOne)
 {
   struct Case {

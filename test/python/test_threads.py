@@ -132,6 +132,18 @@ def test_ctrl_c():
         pcl_bsh.collision_flags(pcl_bsh.SphereHierarchy(a, copy=True), pcl_bsh.SphereHierarchy(b, copy=True), 0.01))
 
 
+def test_ctrl_c_ends_what_reports_no_progress():
+    turn = np.linspace(0, 2 * np.pi, 24000, endpoint=False)
+    rim = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    faces = np.stack([np.arange(24000), (np.arange(24000) + 1) % 24000, np.full(24000, 24000)], axis=1)
+    A, B = (pcl_bsh.SphereHierarchy.of_triangles(np.vstack([rim, [[0, 0, 1]]]) + [0, 0, z], faces) for z in (0, 1e-9))
+    scene = pcl_bsh.Scene(clearance=0.5, contacts=1000)
+    scene.add("cone", A), scene.add("its copy", B)
+    for query in (lambda: pcl_bsh.nearest_contacts(A, B, 0.5, most=1000), scene.query):  # minutes: all meet at the tip
+        assert interrupted(query) < 10
+    assert pcl_bsh.any_collision(A, B, 0.5)
+
+
 def test_ctrl_c_ends_a_pipeline():
     records = cloud("random", 1, 200000)
     chain = [{"type": "readers.pcd", "filename": "none.pcd", "tag": "scan"}]

@@ -280,23 +280,25 @@ ClashList parseClashes(std::string_view text, const std::string& name)
 
 namespace {
 
-bool isMonth(const std::string& word)
+/// Whether a word is a month or a day of the week, or its first three letters.
+bool isOfDate(const std::string& word)
 {
-  constexpr std::array<std::string_view, 12> months = {"january",   "february", "march",    "april",
-                                                       "may",       "june",     "july",     "august",
-                                                       "september", "october",  "november", "december"};
+  constexpr std::array<std::string_view, 19> names = {"january",  "february", "march",    "april",     "may",
+                                                      "june",     "july",     "august",   "september", "october",
+                                                      "november", "december", "monday",   "tuesday",   "wednesday",
+                                                      "thursday", "friday",   "saturday", "sunday"};
   const std::string small = inSmallLetters(word);
-  return std::any_of(months.begin(), months.end(), [&](std::string_view month) {
-    return small == month || (small.size() == 3 && month.substr(0, 3) == small) || (small == "sept" && month[0] == 's');
-  });
+  return small == "sept" || std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+           return small == name || (small.size() == 3 && name.substr(0, 3) == small);
+         });
 }
 
-/// The words of a name without numbers and months: files of one place share them from week to week.
+/// The words of a name without numbers, months and days of the week: files of one place share them from week to week.
 std::string withoutDates(const std::string& name)
 {
   std::string words, word;
   const auto end = [&] {
-    if (!word.empty() && !isMonth(word)) words += word + ' ';
+    if (!word.empty() && !isOfDate(word)) words += word + ' ';
     word.clear();
   };
   for (const char c : name) {

@@ -68,8 +68,8 @@ ClashList readClashes(const std::filesystem::path& path);
 ClashList parseClashes(std::string_view text, const std::string& name);
 
 /// Whether the earlier list, read from `path`, can tell what is new now.
-/// @return warnings, a line each: names of other clouds, except of inputs that differ in numbers or months alone, as
-///   from week to week; motion between poses tested in one run only, a list of an earlier version
+/// @return warnings, a line each: names of other clouds, except of inputs that differ in numbers, months or weekdays
+///   alone, as from week to week; motion between poses tested in one run only, a list of an earlier version
 /// @throws files::FileError when options differ that decide which points collide: clashes would seem new or resolved
 ///   that are not. These are all options except swept motion and `seen`, whose places are listed apart
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,

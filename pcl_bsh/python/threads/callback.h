@@ -5,6 +5,7 @@
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/python/threads/computing.h>
 #include <pcl_bsh/python/threads/interpreter_lock.h>
+#include <pcl_bsh/query/progress.h>
 
 #include <pybind11/pybind11.h>
 
@@ -24,25 +25,36 @@ inline bool isFalse(const py::object& answer)
   return (py::isinstance<py::bool_>(answer) || py::isinstance(answer, py::handle(numpys))) && !py::bool_(answer);
 }
 
-/// Calls f(fraction), which stops the query by returning False. Without f, too, Ctrl-C ends the query with
-/// KeyboardInterrupt. The query must be called without the interpreter's lock.
+/// Whether a query goes on: not when the interpreter ends. Needs to be asked without the interpreter's lock.
+/// @throws py::error_already_set of KeyboardInterrupt, after Ctrl-C
+inline bool goesOn(double)
+{
+  if (isEnding()) return false;
+  const Locked lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  return true;
+}
+
+/// Calls f(fraction), which stops the query by returning False; f may be None. The query must be called without the
+/// interpreter's lock.
 inline std::function<bool(double)> progressOf(const py::object& f)
 {
   return [&f](double fraction) {
-    if (isEnding()) return false;
+    if (!goesOn(fraction)) return false;
     const Locked lock;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (f.is_none()) return true;
     return !isFalse(called(f, py::float_(fraction)));
   };
 }
 
-/// Computes without the interpreter's lock.
+/// Computes without the interpreter's lock. Ctrl-C ends it with KeyboardInterrupt, whether it reports progress or not.
 template <class Compute>
 auto unlocked(Compute&& compute)
 {
   const Unlocked unlocked;
   const Computing turn;
+  const std::function<bool(double)> report = goesOn;
+  const Progress watched(report);
   return compute();
 }
 

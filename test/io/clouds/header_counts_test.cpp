@@ -136,6 +136,13 @@ TEST_F(HeaderCounts, OfTextMeshes)
             "remark: its header counts 1 face, and 2 are there: all that are there are read");
   EXPECT_EQ(saidOf("a.obj", "# Faces: 9\n" + v + "f 1 2 3\n"),
             "remark: its header counts 9 faces, and 1 is there: all that are there are read");
+  for (const char* count :
+       {"# 5 vertices", "#Vertices: 5", "# vertices = 5", "# Vertex count: 5", "# Number of vertices: 5"})
+    EXPECT_THAT(saidOf("a.obj", count + ("\n" + v)), HasSubstr("is truncated: it has 4 of the 5 vertices")) << count;
+  for (const char* other : {"# 5 vertices of 9", "# vertices", "# 5", "# 5 vertices and more", "# vertices 5 faces"})
+    EXPECT_EQ(saidOf("a.obj", other + ("\n" + v)), "") << other;
+  EXPECT_EQ(saidOf("a.obj", "# 2 faces\n" + v + "f 1 2 3\n"),
+            "remark: its header counts 2 faces, and 1 is there: all that are there are read");
 }
 
 TEST_F(HeaderCounts, OfBinaryStl)

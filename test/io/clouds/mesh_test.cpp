@@ -389,6 +389,11 @@ TEST(MeshFile, ABackslashJoinsLinesOfObj)
   EXPECT_THAT(failureOf(folder.write("c.obj", "v 0 0 0 \\\n\nv 1 1 1 \\\n\nv 2 2\n")),
               HasSubstr("line 5 has fewer values"));
   EXPECT_THAT(failureOf(folder.write("c.obj", "v 0 0 \\")), HasSubstr("'\\' is not a number"));
+  for (const char* end : {"\\\n", "\\\r\n", " \\ \n"})
+    EXPECT_THAT(failureOf(folder.write("c.obj", std::string("v 0 0 0") + end + "v 1 0 0" + end + "v 0 1 0\nf 1 1 1\n")),
+                HasSubstr("line 1 is damaged: 'v' is not a number"))
+        << "three vertices, joined to one";
+  EXPECT_EQ(readMesh(folder.write("d.obj", "v 0 0 0 1\nv 0 0 0 1 2 3 4 5\n")).vertices.width, 2u);
 }
 
 TEST(MeshFile, HeadersOfStlAreOfTextOrLongEnough)

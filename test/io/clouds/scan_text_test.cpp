@@ -465,4 +465,19 @@ TEST(Pts, MayBeColumns)
   EXPECT_EQ(readCloudHeader(folder / "a.pts").fields.size(), 3U);
 }
 
+TEST(PtsFile, ColumnsOfWordsAreReadWhereTheFirstLineNamesThem)
+{
+  for (const char* file : {"2\n1 2 3 wall\n4 5 6 7\n", "1 2 3 4\n4 5 6 wall\n"}) {
+    try {
+      parsePts(file);
+      ADD_FAILURE() << file;
+    }
+    catch (const FormatError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("'wall' is not a number"));
+      EXPECT_THAT(error.remedy(), testing::HasSubstr("name all columns in a first line")) << file;
+    }
+  }
+  EXPECT_EQ(namesOf(parsePts("x y z name\n1 2 3 wall\n4 5 6 floor\n")), "x y z name");
+}
+
 } // namespace pcl_bsh::io

@@ -51,7 +51,13 @@ struct PointLine {
 /// Takes the next line as a point.
 class PointReader {
 public:
-  explicit PointReader(PointLine line) : line_(std::move(line)), numbers_(line_.values.size()) {}
+  /// @param remedy for words that are no numbers
+  explicit PointReader(PointLine line, const char* remedy = remedy_for_damage)
+  : line_(std::move(line)),
+    numbers_(line_.values.size()),
+    remedy_(remedy)
+  {
+  }
 
   /// @return false when the next line has other words than numbers; nothing has happened then
   bool nextPlain(TextCursor& text)
@@ -66,7 +72,12 @@ public:
   {
     if (nextPlain(text)) return true;
     if (!text.nextLine()) return false;
-    for (double& number : numbers_) number = text.number<double>();
+    try {
+      for (double& number : numbers_) number = text.number<double>();
+    }
+    catch (const FormatError& error) {
+      throw FormatError(error.what(), error.remedy() == remedy_for_damage ? remedy_ : error.remedy());
+    }
     text.requireEndOfLine();
     checkColours(text);
     return true;
@@ -88,6 +99,7 @@ private:
 
   PointLine line_;
   std::vector<double> numbers_;
+  std::string remedy_;
 };
 
 std::optional<std::uint64_t> countOf(const std::vector<std::string_view>& words)
@@ -298,7 +310,7 @@ pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* re
   const PointLine line = ptsLine(text, promised.value_or(0));
   TextRows rows(line.values);
   rows.reserveLines(text.rest());
-  PointReader reader(line);
+  PointReader reader(line, "where a column holds no numbers, name all columns in a first line, as x y z name");
   std::uint64_t points = 0, all_promised = 0, all_points = 0; // of the block, of blocks that promise some
   const auto endBlock = [&] {
     if (!promised) return;

@@ -56,13 +56,26 @@ constexpr std::array<ObjKind, 8> obj_kinds = {{
 
 } // namespace
 
-std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view what)
+std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view one, std::string_view many)
 {
   std::optional<std::uint64_t> promise;
   for (TextCursor comments(file); comments.nextLine() && comments.line().starts_with('#');) {
-    if (comments.word() != "#" || inSmallLetters(std::string(comments.word().substr(0, 40))) != what) continue;
-    const auto count = numberOf<std::uint64_t>(comments.word());
-    if (count && comments.line().empty()) promise = count;
+    std::string line = inSmallLetters(std::string(comments.line().substr(1, 80)));
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ':' || c == '='; }, ' ');
+    std::optional<std::uint64_t> count;
+    bool named = false, other = false;
+    for (TextCursor words(line); words.nextLine();) {
+      while (!words.line().empty()) {
+        const std::string_view word = words.word();
+        const auto number = numberOf<std::uint64_t>(word);
+        named = named || word == one || word == many;
+        other = other || (number ? count.has_value()
+                                 : word != one && word != many && word != "number" && word != "of" && word != "count");
+        if (number) count = number;
+      }
+    }
+    if (count && named && !other) promise = count;
   }
   return promise;
 }
@@ -88,7 +101,7 @@ Polygons parseObjFaces(std::string_view file, std::vector<std::string>* remarks)
     if (left_out != obj_kinds.end() && (kind != "l" || joinsVertices(text)))
       polygons.leftOut().add(left_out->one, left_out->many, true);
   }
-  const std::optional<std::uint64_t> promised = objPromise(file, "faces:");
+  const std::optional<std::uint64_t> promised = objPromise(file, "face", "faces");
   if (remarks != nullptr && promised && *promised != fan)
     if (const auto other = remarkOnCount({*promised, "face", "faces"}, polygons.size())) remarks->push_back(*other);
   return polygons;

@@ -19,9 +19,10 @@ inline TextCursor objText(std::string_view file)
   return TextCursor(file, '#', TextCursor::Lines::continued);
 }
 
-/// How many of something the comments before the first other line promise, like MeshLab's `# Vertices: 8`.
-/// @param what in small letters, with its colon
-std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view what);
+/// How many of something the comments before the first other line promise, like MeshLab's `# Vertices: 8`, or
+/// `# 8 vertices`.
+/// @param one, many the noun in small letters
+std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view one, std::string_view many);
 
 /// Lines `f`, of any number of corners; indices from 1, or negative ones, which count back from the vertex before the
 /// line. Lines and free-form curves and surfaces are left out.

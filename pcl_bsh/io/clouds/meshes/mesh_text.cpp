@@ -42,6 +42,7 @@ public:
     const std::size_t channels = left == 3 || left == 4 ? left : 0;
     for (std::size_t i = 0; i < colours_.channels(); ++i) addChannel(text, record, i, i < channels);
     if (colour_first_) rows_.take(text, record, 3, before);
+    while (!text.line().empty()) text.number<double>(); // they mean nothing here, but two lines joined to one are found
   }
 
 private:
@@ -114,7 +115,7 @@ bool namesItsOwnNormal(std::string_view corner)
 ObjScan scanObj(std::string_view file)
 {
   ObjScan scan;
-  scan.promised = objPromise(file, "vertices:");
+  scan.promised = objPromise(file, "vertex", "vertices");
   TextCursor text = objText(file);
   while (text.nextLine()) {
     const std::string_view kind = text.word();
