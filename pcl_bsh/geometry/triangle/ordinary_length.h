@@ -22,8 +22,9 @@ inline double toOrdinary(double largest)
 /// A vector of the direction of v, of a length whose fourth power is in the range of double.
 inline Vector3<double> ofOrdinaryLength(const Vector3<double>& v)
 {
-  const double factor = toOrdinary(std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}));
-  return factor == 1.0 ? v : factor * v;
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}), factor = toOrdinary(largest);
+  if (factor == 1.0) return v;
+  return std::ldexp(1.0, -std::ilogb(factor * largest)) * (factor * v); // one factor is too small for the least numbers
 }
 
 } // namespace pcl_bsh
