@@ -223,7 +223,7 @@ def test_options_of_questions_are_arguments():
             pcl_bsh.collision_flags(above, grid, **{name: 1.0})
     with pytest.raises(TypeError, match="density"):
         pcl_bsh.point_distances(above, grid, density=True)
-    assert "solid : bool, optional\n    An obstacle with faces counts" in pcl_bsh.collision_flags.__doc__
+    assert "solid : bool, optional\n    The obstacle is a solid, whose faces must close" in pcl_bsh.collision_flags.__doc__
 
 
 @pytest.mark.parametrize("text", ["exact", "tolerance=0.05", "level=0", "level=3", "pairs=20", "time=0.001"])
