@@ -88,7 +88,8 @@ TEST_F(Obstacles, ArePlacedByThePoseOfAll)
 
 TEST_F(Obstacles, AreMeasuredToTheNearest)
 {
-  const StageCloudPtr out = run("filters.bsh_distance", R"("obstacles": )" + two).clouds.at("out");
+  const StageCloudPtr out =
+      run("filters.bsh_distance", R"("filter_limits": [null, null], "obstacles": )" + two).clouds.at("out");
   EXPECT_FLOAT_EQ(static_cast<float>(io::valueOf(out->cloud, 1, "distance")), -0.3F);
   EXPECT_EQ(io::valueOf(out->cloud, 0, "distance"), 0.0);
 }
