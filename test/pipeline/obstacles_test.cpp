@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace pcl_bsh::pipeline {
 namespace {
 
@@ -86,12 +88,13 @@ TEST_F(Obstacles, ArePlacedByThePoseOfAll)
               ElementsAre(0, 0, 0, 0));
 }
 
+/// Limits begin at 0 by default, which leaves out what a solid encloses.
 TEST_F(Obstacles, AreMeasuredToTheNearest)
 {
-  const StageCloudPtr out =
-      run("filters.bsh_distance", R"("filter_limits": [null, null], "obstacles": )" + two).clouds.at("out");
-  EXPECT_FLOAT_EQ(static_cast<float>(io::valueOf(out->cloud, 1, "distance")), -0.3F);
+  const StageCloudPtr out = run("filters.bsh_distance", R"("obstacles": )" + two).clouds.at("out");
+  ASSERT_EQ(out->cloud.width, 3U);
   EXPECT_EQ(io::valueOf(out->cloud, 0, "distance"), 0.0);
+  EXPECT_FLOAT_EQ(static_cast<float>(io::valueOf(out->cloud, 1, "distance")), std::sqrt(137.0F));
 }
 
 TEST_F(Obstacles, AreOneListWithTheirNames)

@@ -16,11 +16,11 @@ std::string inWords(ClashStatus status)
 
 Point3 pointFrom(const JsonReader& reader)
 {
-  constexpr double largest = std::numeric_limits<double>::max();
+  constexpr double most = std::numeric_limits<double>::max();
   Point3 point{};
   const std::vector<JsonReader> numbers = reader.elements();
   if (numbers.size() != point.size()) reader.fail("has not three numbers", "give x, y and z");
-  for (std::size_t k = 0; k < point.size(); ++k) point[k] = numbers[k].number(-largest, largest);
+  for (std::size_t k = 0; k < point.size(); ++k) point[k] = numbers[k].number(-most, most);
   return point;
 }
 
