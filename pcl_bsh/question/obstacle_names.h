@@ -29,6 +29,7 @@ public:
   /// @throws InvalidInput for another text, and for a pattern that no name matches
   IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& obstacles);
 
+  /// Whether the two do not count against each other, in either order.
   bool holds(const std::string& one, const std::string& other) const;
 
 private:
