@@ -148,7 +148,7 @@ GaugedRun gaugeOf(const ArrayLike& points, const Axis& axis, const std::vector<E
     GaugedRun run{axis, envelopes, gauge(view, axis, envelopes, {{reach, below, above}, threads}), {}};
     run.chainage.reserve(run.found.state.size());
     for (std::size_t i = 0; i < run.found.state.size(); ++i) {
-      const bool placed = run.found.state[i] == PlaceState::found || run.found.state[i] == PlaceState::two_places;
+      const bool placed = hasPlace(run.found.state[i]);
       if (!placed) run.found.place[i] = {no_number, no_number, no_number};
       run.chainage.push_back(placed ? axis.chainage(run.found.place[i].distance) : no_number);
     }

@@ -66,7 +66,7 @@ struct OutputFields {
   {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < found.state.size(); ++i) {
-      const bool placed = found.state[i] == PlaceState::found || found.state[i] == PlaceState::two_places;
+      const bool placed = hasPlace(found.state[i]);
       const AxisPlace& at = found.place[i];
       chainage.push_back(placed ? axis.chainage(at.distance) : none);
       offset.push_back(static_cast<float>(placed ? at.offset : none));
@@ -124,7 +124,7 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
               section.points.size() < most_section_points)
             section.points.push_back({at.offset, at.height});
         };
-        if (places->state == PlaceState::found || places->state == PlaceState::two_places) add(places->best);
+        if (hasPlace(places->state)) add(places->best);
         if (places->state == PlaceState::two_places) add(places->second);
       }
     }

@@ -106,6 +106,11 @@ enum class PlaceState : std::uint8_t {
   not_finite,
 };
 
+inline bool hasPlace(PlaceState state) ///< whether the point has a place at the axis, or two
+{
+  return state == PlaceState::found || state == PlaceState::two_places;
+}
+
 /// The nearest place in plan, of two at one distance the first along the axis; and the second nearest, if there is one
 /// within reach. A place is one where the axis is nearest among its neighbours.
 struct AxisPlaces {

@@ -72,7 +72,7 @@ GaugedPoints gauge(const PointsView& points, const Axis& axis, const std::vector
     for (std::size_t i = block * block_points; i < end; ++i) {
       const AxisPlaces places = axis.nearest(points.point(points.record(i)), request.reach);
       found.state[i] = places.state;
-      const bool placed = places.state == PlaceState::found || places.state == PlaceState::two_places;
+      const bool placed = hasPlace(places.state);
       AxisPlace place = places.best;
       Judged* judged = &at_best;
       if (placed) {

@@ -34,7 +34,7 @@ std::size_t GaugeTable::partOf(double distance) const
 void GaugeTable::add(const GaugedPoints& found, const std::vector<Envelope>& envelopes)
 {
   for (std::size_t i = 0; i < found.state.size(); ++i) {
-    if (found.state[i] != PlaceState::found && found.state[i] != PlaceState::two_places) continue;
+    if (!hasPlace(found.state[i])) continue;
     const AxisPlace& place = found.place[i];
     const std::size_t part = partOf(place.distance);
     ++points_[part];

@@ -61,9 +61,7 @@ ClashStatus statusOfGone(const GaugeReport& report, const ListedInfringement& go
   const auto envelope = std::find_if(report.envelopes.begin(), report.envelopes.end(),
                                      [&](const Envelope& candidate) { return candidate.name() == gone.envelope; });
   const AxisPlaces places = report.axis.nearest(gone.clash.place, report.reach);
-  if (envelope == report.envelopes.end() ||
-      !(places.state == PlaceState::found || places.state == PlaceState::two_places))
-    return ClashStatus::not_visited;
+  if (envelope == report.envelopes.end() || !hasPlace(places.state)) return ClashStatus::not_visited;
   const auto counts = [&](const AxisPlace& at) { return envelope->countsAt(report.axis.chainage(at.distance)); };
   const auto isSeen = [&](const AxisPlace& at) {
     const auto sector = static_cast<Sector>(envelope->aroundOf({at.offset, at.height}));

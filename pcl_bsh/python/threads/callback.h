@@ -41,8 +41,8 @@ inline std::function<bool(double)> progressOf(const py::object& f)
 {
   return [&f](double fraction) {
     if (!goesOn(fraction)) return false;
-    const Locked lock;
     if (f.is_none()) return true;
+    const Locked lock;
     return !isFalse(called(f, py::float_(fraction)));
   };
 }
