@@ -106,7 +106,8 @@ enum class PlaceState : std::uint8_t {
   not_finite,
 };
 
-inline bool hasPlace(PlaceState state) ///< whether the point has a place at the axis, or two
+/// Whether the point has a place at the axis, or two.
+inline bool hasPlace(PlaceState state)
 {
   return state == PlaceState::found || state == PlaceState::two_places;
 }
