@@ -11,9 +11,17 @@
 
 namespace pcl_bsh {
 
-/// A beam counts for directions up to this many angles from its own. It is the angle, from the middle of a cell of
-/// directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
-inline constexpr double kReachOfAngle = 1.2;
+/// A direction lies between beams that are at most this many angles from it. It is the angle, from the middle of a cell
+/// of directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
+inline constexpr double kBetweenOfAngle = 1.2;
+
+/// All directions up to this many angles from a seen one lie between beams. It is half a step of an even grid: a corner
+/// of a right angle that reaches farther over the last row of beams, or into a hole, meets a beam.
+inline constexpr double kMarginOfAngle = 0.334;
+
+/// A beam counts for directions up to this many angles from its own. A right angle, at any place of an even grid that
+/// lost a single beam, holds a beam nearer than sqrt(5) steps; the angle is 1.5 steps.
+inline constexpr double kReachOfAngle = 1.5;
 
 /// The directions that a beam counts for, and the share of its range that it is sure of.
 struct BeamAngle {

@@ -80,17 +80,18 @@ struct CellSphere {
   double chord = 0.0;
 };
 
-/// The directions about a unit vector up to an angle of at most a quarter turn.
+/// The directions about a unit vector up to an angle of less than half a turn.
 struct Cone {
   Cone(const Eigen::Vector3d& axis, double half_angle)
   : direction(axis),
-    sine(std::sin(half_angle)),
+    sine(half_angle < 0.5 * static_cast<double>(EIGEN_PI) ? std::sin(half_angle) : 1.0),
     cosine(std::cos(half_angle)),
     chord(2.0 * std::sin(0.5 * half_angle))
   {
   }
   Eigen::Vector3d direction;
-  double sine, cosine, chord;
+  double sine; ///< the greatest of its angles
+  double cosine, chord;
 
   bool isApartFrom(const CellSphere& cell) const
   {

@@ -16,6 +16,9 @@ constexpr unsigned kLevel = 8; ///< cells of some 6 milliradians
 /// Cones narrower than some cells are not divided.
 constexpr double kNarrow = 0.02;
 
+/// Beams up to this many angles from a ball say whether it is seen.
+constexpr double kNeededOfAngle = std::max(kReachOfAngle, kMarginOfAngle + kBetweenOfAngle);
+
 /// For what cones, cells and beams are rounded by.
 constexpr double kSlack = 0x1p-20;
 
@@ -91,7 +94,7 @@ private:
       looked_.all_ = true;
       return;
     }
-    anyCell(Cone(ball.direction, ball.coneAngle() + kReachOfAngle * looked_.angle_ + kSlack),
+    anyCell(Cone(ball.direction, ball.coneAngle() + kNeededOfAngle * looked_.angle_ + kSlack),
             [&](const DirectionCell& cell) {
               looked_.cells_[numberOf(cell)] = true;
               return false;

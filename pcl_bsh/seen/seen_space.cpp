@@ -68,7 +68,7 @@ bool SeenScan::sees(const BallView& ball, std::uint64_t& tested) const
   double chord = 2.0;
   if (!ball.is_around) {
     const double cone = ball.coneAngle();
-    if (holes_.meets(Cone(ball.direction, cone), tested)) return false;
+    if (holes_.meets(Cone(ball.direction, cone + kMarginOfAngle * angle_), tested)) return false;
     chord = chordOf(cone + speaks_.reach) + 2.0 * kDirectionError;
   }
   else if (holes_.hasAny()) {

@@ -7,18 +7,20 @@
 //
 // A direction lies between beams if beams lie on all sides of it: it is in a triangle of three beams within 1.2 angles.
 // Nothing is known of other directions: beyond the outermost beams, in gaps, beside a single beam or row. A beam counts
-// for the directions within 1.2 angles of its own. They are empty up to its return, less the return's uncertainty and
+// for the directions within 1.5 angles of its own. They are empty up to its return, less the return's uncertainty and
 // radius, and less the angle's share of that (0.002 of it at 0.002 radians). A scanner looks at a ball in the
-// directions of its cone, or in all where it is in the ball. It sees the ball if each of these directions lies between
-// beams. Also, each beam that counts for one has to be empty up to where the direction leaves the ball. One scanner
-// that sees the whole ball suffices.
+// directions of its cone, or in all where it is in the ball. It sees the ball if each of these directions, and each one
+// within a third of the angle (0.334) of them, lies between beams. Also, each beam that counts for a direction of the
+// cone has to be empty up to where the direction leaves the ball. One scanner that sees the whole ball suffices.
 //
 // For which worlds that holds. In a direction between beams a plane that they met, at any slant, is no nearer than the
 // nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer by
 // less than the angle's share under these conditions. A sphere: the beams round the direction are within the angle of
 // it. An edge of a right angle or blunter: within 0.87 angles. A corner of three right angles: within two thirds. Beams
 // of an even grid are so near, at the measured angle. Beams have to meet things. A scanner sees a thing at least two
-// angles wide, also at its corners: then a beam of an even grid meets it beside each of its places.
+// angles wide, also at its corners: then a beam of an even grid meets it beside each of its places. Single beams of the
+// grid may be lost: a right angle then holds another beam within 1.5 angles. A corner that hangs over the last row, or
+// into a gap, by more than half a step meets a beam of that row; by less, it is within the third of the angle.
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
 // grid over the sphere, with edges of a quarter of the angle at most. A cell lies between beams if each of eight

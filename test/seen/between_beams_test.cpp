@@ -118,7 +118,7 @@ TEST_F(BetweenBeams, NothingIsSeenBehindACeilingAboveTheUppermostBeam)
     const Counted found = countAtCeiling(scan);
     EXPECT_EQ(found.within_seen, 0u) << step;
     EXPECT_GT(found.within, 5000u);
-    EXPECT_GT(found.free_seen, step == 1.0 ? 800u : 2000u) << "of " << found.free;
+    EXPECT_GT(found.free_seen, step == 1.0 ? 300u : 2000u) << "of " << found.free;
   }
 }
 
@@ -155,7 +155,8 @@ TEST_F(BetweenBeams, NothingIsSeenBehindACeilingInGaps)
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     Scan scan(world);
     scan.add(-10, 5, -20, 20, step, gaps[i]);
-    const Counted found = countAtCeiling(scan, Eigen::Matrix3d::Identity(), 1.5 * step * kDegree);
+    const double steps = i == 4 ? 2.5 : 1.5; // a third of the beams is lost
+    const Counted found = countAtCeiling(scan, Eigen::Matrix3d::Identity(), steps * step * kDegree);
     EXPECT_EQ(found.within_seen, 0u) << i;
     EXPECT_GT(found.free_seen, 50u) << i;
   }
@@ -227,15 +228,71 @@ TEST_F(BetweenBeams, NothingIsSeenBehindPlanesAtAnySlant)
   EXPECT_GT(free_seen, 2000u);
 }
 
+/// A right-angled corner of a box before a wall. It may hang over the last row of beams, between two beams, or begin
+/// just beside beams, where the next beam is lost.
+class CornerAmongBeams : public BetweenBeams {
+protected:
+  static constexpr double kStep = 1.0; ///< degrees
+
+  /// How many of places about the corner are seen, of those within the clearance. @param down of the box's diagonal
+  std::size_t seenAt(double elevation, double azimuth, double down, const Scan& scan) const
+  {
+    const Eigen::Vector3d corner = 4.0 * directionOf(elevation * kDegree, azimuth * kDegree);
+    std::vector<double> places;
+    for (int i = 0; i < 125; ++i) {
+      const Eigen::Vector3d place = corner + 0.0004 * Eigen::Vector3d(i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2);
+      places.insert(places.end(), {place.x(), place.y(), place.z()});
+    }
+    const Counted found = count(boxAt(corner, down), scan.space(), places, 0.001);
+    EXPECT_GT(found.within, 90u) << down;
+    return found.within_seen;
+  }
+
+  /// A box of a size of 2 behind its corner; `down` is 0 where its near face's edges are along rows and columns.
+  static MadeWorld boxAt(const Eigen::Vector3d& corner, double down)
+  {
+    MadeWorld made;
+    made.planes.push_back({Eigen::Vector3d::UnitX(), 9.0});
+    Eigen::Isometry3d pose(Eigen::Translation3d(corner) * Eigen::AngleAxisd(down * kDegree, Eigen::Vector3d::UnitX()));
+    pose.translate(Eigen::Vector3d::Ones());
+    made.boxes.push_back({pose, Eigen::Vector3d::Ones()});
+    return made;
+  }
+};
+
+TEST_F(CornerAmongBeams, OverTheLastRowIsNotSeen)
+{
+  for (const double over : {0.1, 0.3, 0.49})
+    for (const double down : {45.0, 40.0, 50.0}) {
+      const double elevation = 3.0 - over * kStep, azimuth = 0.5 * kStep;
+      const MadeWorld made = boxAt(4.0 * directionOf(elevation * kDegree, azimuth * kDegree), down);
+      Scan scan(made);
+      scan.add(-10, 3, -10, 10, kStep);
+      EXPECT_EQ(seenAt(elevation, azimuth, down, scan), 0u) << over << ' ' << down;
+    }
+}
+
+TEST_F(CornerAmongBeams, BesideALostBeamIsNotSeen)
+{
+  for (const double beside : {0.01, 0.1}) {
+    const MadeWorld made = boxAt(4.0 * directionOf(beside * kDegree, beside * kDegree), 0.0);
+    Scan scan(made);
+    scan.add(-10, 10, -10, 10, kStep, [](double e, double a) { return std::hypot(e - 1.0, a - 1.0) > 0.5; });
+    EXPECT_EQ(seenAt(beside, beside, 0.0, scan), 0u) << beside;
+  }
+}
+
 /// Several scanners among planes, boxes and spheres that are at least two of the angle wide as each scanner sees them;
-/// places about all of it, most near surfaces, edges and corners. PCL_BSH_LONG_TESTS=1 in the environment: more than a
+/// places about all of it, most near surfaces, edges and corners. PCL_BSH_LONG_TESTS=1 in the environment: sixteen
 /// million places.
 TEST(BetweenBeamsOfWorlds, NothingIsSeenWhereASurfaceIsWithinTheClearance)
 {
   std::size_t judged = 0, seen = 0;
   const char* long_tests = std::getenv("PCL_BSH_LONG_TESTS");
   const bool is_long = long_tests && *long_tests == '1';
-  for (std::uint64_t seed = 0; seed < (is_long ? 600 : 24); ++seed) {
+  std::vector<std::uint64_t> seeds = {459, 4353}; // a beam is lost at a corner; a corner hangs over the last row
+  for (std::uint64_t seed = 0; seed < (is_long ? 6000 : 24); ++seed) seeds.push_back(seed);
+  for (const std::uint64_t seed : seeds) {
     Random random(seed);
     const test::ScannedWorld made(random);
     std::vector<Verdict> verdicts(made.places.size() / 3, Verdict::free);
@@ -254,7 +311,7 @@ TEST(BetweenBeamsOfWorlds, NothingIsSeenWhereASurfaceIsWithinTheClearance)
     }
   }
   RecordProperty("judged", std::to_string(judged));
-  EXPECT_GT(judged, is_long ? 1'000'000u : 40'000u);
+  EXPECT_GT(judged, is_long ? 16'000'000u : 40'000u);
   EXPECT_GT(seen, 5000u);
 }
 

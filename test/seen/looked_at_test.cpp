@@ -42,10 +42,11 @@ TEST(LookedAt, HoldsTheBeamsThatSpeakForTheModelAndFewOthers)
       EXPECT_TRUE(looked.holds({9, 9, 9})) << "all of them";
       continue;
     }
-    // By how much a direction is beside a cone and what a beam counts for; negative: within both.
+    // By how much a direction is beside a cone and the beams that say something of it: those up to 0.334 and 1.2 angles
+    // from it. Negative: within both.
     const auto beside = [&](const Eigen::Vector3d& direction, const Eigen::Vector3d& way, double radius) {
       const double between = std::atan2(direction.cross(way).norm(), direction.dot(way));
-      return between - std::asin(std::min(1.0, radius / way.norm())) - 1.2 * angle;
+      return between - std::asin(std::min(1.0, radius / way.norm())) - 1.534 * angle;
     };
     const Eigen::Vector3d middle = pose.translation() - from;
     const double whole = std::sqrt(3.0) * size + clearance; // leaves are looked at as balls

@@ -155,8 +155,12 @@ void expectSeenByOne(const std::vector<ScanBeams>& scans, double angle, const Ei
       for (std::size_t k = 0; k < scan.returns.count; ++k) {
         const Point3 end = scan.returns.point(static_cast<std::uint32_t>(k));
         const Eigen::Vector3d beam = Eigen::Vector3d(end.data()) - origin;
-        if (beam.dot(d) < beam.norm() * std::cos(1.2 * angle) * (1 + 1e-14)) continue;
-        turns.push_back(std::atan2(beam.dot(d.cross(d.unitOrthogonal())), beam.dot(d.unitOrthogonal())));
+        const auto is_within = [&](double reach) {
+          return beam.dot(d) >= beam.norm() * std::cos(reach * angle) * (1 + 1e-14);
+        };
+        if (is_within(1.2))
+          turns.push_back(std::atan2(beam.dot(d.cross(d.unitOrthogonal())), beam.dot(d.unitOrthogonal())));
+        if (!is_within(1.5)) continue;
         seen = seen && beam.norm() - scan.returns.uncertainty > leaves * (1 - 1e-12);
       }
       std::sort(turns.begin(), turns.end());
@@ -342,7 +346,7 @@ TEST(MarkUnseenHardCases, BeamThatGrazes)
   std::vector<double> ends = allAround(0.1, 12.5);
   const double angle = 0.2, off = 0.4; // a short beam, off the ball's direction
   ends.insert(ends.end(), {std::cos(off), std::sin(off), 0.0});
-  const double touching = 5.0 * std::sin(off - 1.2 * angle);
+  const double touching = 5.0 * std::sin(off - 1.5 * angle);
   EXPECT_TRUE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 - 1e-9)));
   EXPECT_FALSE(isSeen({scanOf(ends)}, angle, {5, 0, 0}, touching * (1 + 1e-9)));
   for (const double less : {0.0, 1e-15, 1e-14}) // what rounding leaves open is not seen
@@ -407,14 +411,14 @@ TEST(MarkUnseenHardCases, ABeamWithoutLengthSaysNothing)
   for (const bool returned : {true, false}) {
     ScanBeams scan;
     const std::vector<double> nowhere = {0, 0, 0},
-                              others = {5, 0.5, 0.5, 5, -0.5, 0.5, 5, -0.5, -0.5, 5, 0.5, -0.5, 0, 0, 0};
+                              others = {5, 0.62, 0.62, 5, -0.62, 0.62, 5, -0.62, -0.62, 5, 0.62, -0.62, 0, 0, 0};
     (returned ? scan.returns : scan.misses) = viewOf(nowhere.data(), 1);
     scan.misses_beyond = 100.0;
     EXPECT_FALSE(isSeen({scan}, 0.2, {2, 0, 0}, 0.25));
     EXPECT_FALSE(isSeen({scan}, 0.2, {0, 0, 0}, 0.25));
     EXPECT_EQ(SeenSpace({scan}).beams(0), 0u);
     (returned ? scan.returns : scan.misses) = viewOf(others.data(), 5);
-    EXPECT_TRUE(isSeen({scan}, 0.25, {2, 0, 0}, 0.05));
+    EXPECT_TRUE(isSeen({scan}, 0.25, {2, 0, 0}, 0.005));
     EXPECT_EQ(SeenSpace({scan}).beams(0), 4u);
   }
 }
@@ -438,12 +442,13 @@ TEST(MarkUnseenHardCases, SomeBeamsWithoutReturn)
 
 TEST(MarkUnseenHardCases, AFewBeamsSeeWhatLiesBetweenThem)
 {
-  const std::vector<double> square = {5, 0.5, 0.5, 5, -0.5, 0.5, 5, -0.5, -0.5, 5, 0.5, -0.5};
+  const std::vector<double> square = {5, 0.62, 0.62, 5, -0.62, 0.62, 5, -0.62, -0.62, 5, 0.62, -0.62};
   for (std::size_t beams = 1; beams < 4; ++beams)
     EXPECT_FALSE(isSeen({scanOf({square.begin(), square.begin() + static_cast<std::ptrdiff_t>(3 * beams)})}, 0.25,
                         {2, 0, 0}, 0.05))
         << beams;
-  EXPECT_TRUE(isSeen({scanOf(square)}, 0.25, {2, 0, 0}, 0.05));
+  EXPECT_TRUE(isSeen({scanOf(square)}, 0.25, {2, 0, 0}, 0.005));
+  EXPECT_FALSE(isSeen({scanOf(square)}, 0.25, {2, 0, 0}, 0.1)) << "its margin reaches out";
   EXPECT_FALSE(isSeen({scanOf(square)}, 0.25, {2, 0.15, 0}, 0.05)) << "it reaches out";
   EXPECT_FALSE(isSeen({scanOf(square)}, 0.1, {2, 0, 0}, 0.05)) << "they are too far apart";
 }

@@ -58,7 +58,7 @@ bool sees(const ScanBeams& scan, const std::vector<DirectionCell>& holes, double
 {
   if (!ball.isMeasured() || (ball.is_around && !holes.empty())) return false;
   if (!ball.is_around) {
-    const Cone cone(ball.direction, ball.coneAngle());
+    const Cone cone(ball.direction, ball.coneAngle() + kMarginOfAngle * angle);
     if (std::any_of(holes.begin(), holes.end(), [&](const DirectionCell& cell) { return cone.meets(cell); }))
       return false;
   }
