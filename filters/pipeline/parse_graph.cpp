@@ -310,7 +310,7 @@ private:
       const Option& option = node.type->options[i];
       if (option.kind == Kind::cloud && !std::holds_alternative<std::monostate>(node.options[i]))
         node.clouds.push_back({i, nodeOfCloud(node.options[i], option.name, Json::object(), node)});
-      if (option.kind != Kind::rows) continue;
+      if (option.kind != Kind::rows || !option.cloud) continue;
       const auto& rows = std::get<std::vector<Row>>(node.options[i]);
       for (std::size_t row = 0; row < rows.size(); ++row)
         node.clouds.push_back({i, nodeOfRow(rows[row], option, option.name + '/' + std::to_string(row), node), row});

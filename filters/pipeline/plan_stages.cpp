@@ -42,12 +42,21 @@ PipelineFiles filesOf(const Graph& graph)
   for (const Node& node : graph.nodes) {
     std::string replaceable;
     const auto addAll = [&](Kind kind, files::Use use) {
+      const auto addOne = [&](const Option& option, const Value& value, const std::string& name) {
+        const auto* const file = std::get_if<std::string>(&value);
+        if (option.kind != kind || !file) return;
+        all.add(node, name, *file, use, use == files::Use::written ? replaceable : "");
+        if (option.replaceable) replaceable = all.used.back().name;
+      };
       for (std::size_t i = 0; i < node.options.size(); ++i) {
         const Option& option = node.type->options[i];
-        const auto* const file = std::get_if<std::string>(&node.options[i]);
-        if (option.kind != kind || !file) continue;
-        all.add(node, option.name, *file, use, use == files::Use::written ? replaceable : "");
-        if (option.replaceable) replaceable = all.used.back().name;
+        addOne(option, node.options[i], option.name);
+        if (option.kind != Kind::rows) continue;
+        const auto& rows = std::get<std::vector<Row>>(node.options[i]);
+        for (std::size_t row = 0; row < rows.size(); ++row)
+          for (std::size_t k = 0; k < option.of_rows.size(); ++k)
+            addOne(option.of_rows[k], rows[row].values[k],
+                   option.name + '/' + std::to_string(row) + '/' + option.of_rows[k].name);
       }
     };
     if (!node.given) addAll(Kind::input_file, files::Use::read);

@@ -14,9 +14,9 @@ namespace {
 std::deque<StageType> builtInStages()
 {
   std::deque<StageType> all = fileReaders();
-  for (const auto& stage :
-       {voxelGrid, approximateVoxelGrid, uniformSampling, passThrough, cropBox, statisticalOutlierRemoval,
-        radiusOutlierRemoval, transform, normalEstimation, euclideanCluster, merge, bshCollision, bshFlag, bshDistance})
+  for (const auto& stage : {voxelGrid, approximateVoxelGrid, uniformSampling, passThrough, cropBox,
+                            statisticalOutlierRemoval, radiusOutlierRemoval, transform, normalEstimation,
+                            euclideanCluster, merge, bshCollision, bshFlag, bshDistance, gaugeStage})
     all.push_back(stage());
   const std::deque<StageType> writers = fileWriters();
   all.insert(all.end(), writers.begin(), writers.end());

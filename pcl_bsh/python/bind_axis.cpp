@@ -27,7 +27,7 @@ from text.
 Parameters
 ----------
 points : array_like, (n, 3)
-    Measured; two arcs join each to the next, without a kink.
+    Measured; two arcs join each to the next, without a kink. With `fit`, few arcs are near them.
 chainages : array_like, (n,)
     Chainages of the points; they rise.
 cants : array_like, (n,), optional
@@ -37,7 +37,9 @@ gauge : float, default 1.5
 pivot : str, default low_rail
     The line that cant turns about: low_rail, whose height is the axis', or centre.
 most_turn : float, default 0.2
-    The polyline may turn by so many radians at a point.
+    The line may turn by so many radians at a point.
+fit : float, optional
+    How far from the arcs a point may be, as points err; `deviation` tells how far they are.
 
 Raises
 ------
@@ -65,6 +67,8 @@ cant_unit : float, optional
 gauge : float, optional
 pivot : str, optional
     In place of the file's own; as `Axis` has them.
+fit : float, optional
+    For a file of points, as `Axis` has it.
 
 Raises
 ------
@@ -115,7 +119,7 @@ CantPivot pivotOf(const py::object& pivot)
 }
 
 Axis axisThrough(const ArrayLike& points, const ArrayLike& chainages, const OptionalArray& cants, double gauge,
-                 const Pivot& pivot, double most_turn)
+                 const Pivot& pivot, double most_turn, std::optional<double> fit)
 {
   const std::vector<double> at = rowsOf("points", points, 3), chainage = rowsOf("chainages", chainages, 1);
   const std::size_t count = at.size() / 3;
@@ -130,16 +134,17 @@ Axis axisThrough(const ArrayLike& points, const ArrayLike& chainages, const Opti
   AxisDescription rest;
   rest.gauge = gauge;
   rest.pivot = pivotOf(pivot);
-  return Axis::through(measured, rest, most_turn);
+  return fit ? Axis::fitted(measured, *fit, rest, most_turn) : Axis::through(measured, rest, most_turn);
 }
 
 Axis axisOfFile(const PathLike& path, const std::optional<std::string>& alignment, std::optional<double> cant_unit,
-                std::optional<double> gauge, const OptionalPivot& pivot)
+                std::optional<double> gauge, const OptionalPivot& pivot, std::optional<double> fit)
 {
   io::AxisSettings settings;
   settings.alignment = alignment.value_or("");
   settings.cant_unit = cant_unit;
   settings.gauge = gauge;
+  settings.fit = fit;
   if (!pivot.is_none()) settings.pivot = pivotOf(pivot);
   const std::string file = pathOf(path);
   std::vector<std::string> remarks;
@@ -185,15 +190,15 @@ void bindAxis(py::module_& module)
 {
   py::class_<Axis>(module, "Axis", kAxis)
       .def(py::init(&axisThrough), "points"_a, "chainages"_a, "cants"_a = py::none(), py::kw_only(), "gauge"_a = 1.5,
-           "pivot"_a = "low_rail", "most_turn"_a = 0.2)
+           "pivot"_a = "low_rail", "most_turn"_a = 0.2, "fit"_a = py::none())
       .def_static("read", &axisOfFile, kAxisRead, "path"_a, py::kw_only(), "alignment"_a = py::none(),
-                  "cant_unit"_a = py::none(), "gauge"_a = py::none(), "pivot"_a = py::none())
+                  "cant_unit"_a = py::none(), "gauge"_a = py::none(), "pivot"_a = py::none(), "fit"_a = py::none())
       .def_static("elements", &axisOfElements, kAxisElements, "text"_a)
       .def_property_readonly("length", &Axis::length, "In plan.")
       .def_property_readonly("smallest_radius", &Axis::smallestRadius, "inf of straights.")
       .def_property_readonly(
           "deviation", [](const Axis& axis) { return axis.fit().deviation; },
-          "Through points: the farthest that it is from their polyline.")
+          "Through points: the farthest that it is from their polyline. Fitted: from a point.")
       .def(
           "chainage", [](const Axis& axis, double distance) { return axis.chainage(onAxis(axis, distance)); },
           "The number that a distance along the axis has.", "distance"_a)

@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far is a scan from what must stay free along a track? From an axis, profiles and a scan to tables and drawings.
-#include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/gauge/gauge_options.h>
 #include <pcl_bsh/tools/gauge/scan.h>
 
 #include <pcl_bsh/base/counted.h>
-#include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/filters/gauge_fields.h>
 #include <pcl_bsh/filters/selected_records.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/gauge_drawings.h>
-#include <pcl_bsh/io/reports/gauge_report.h>
 #include <pcl_bsh/io/text/number_text.h>
-#include <pcl_bsh/io/tracks/profile_file.h>
 #include <pcl_bsh/track/bogies.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,52 +32,13 @@ constexpr std::size_t most_worst_sections = 12, most_section_points = 20'000;
 std::vector<Envelope> readEnvelopes(const Options& options, const Axis& axis)
 {
   std::vector<Envelope> envelopes;
-  for (const cli::ProfileOptions& profile : options.profiles) {
-    EnvelopeDescription description;
-    description.name = profile.name;
+  for (const io::EnvelopeFiles& files : options.profiles) {
     std::vector<std::string> remarks;
-    description.corners = io::readProfile(profile.file, options.profile_unit, &remarks);
-    cli::warnOfFile(program, profile.file, remarks);
-    description.ranges = profile.ranges;
-    description.vehicle = profile.vehicle;
-    if (!profile.widening.empty()) {
-      io::WideningTable table = io::readWidening(profile.widening, axis);
-      description.left = std::move(table.left);
-      description.right = std::move(table.right);
-    }
-    envelopes.emplace_back(std::move(description));
-    if (profile.vehicle) overthrowOf(*profile.vehicle, axis.smallestRadius()); // fails now
+    envelopes.push_back(io::readEnvelope(files, axis, options.profile_unit, &remarks));
+    cli::warnOfFile(program, files.profile, remarks);
   }
   return envelopes;
 }
-
-/// Fields of OUTPUT, point by point.
-struct OutputFields {
-  std::vector<double> chainage;
-  std::vector<float> offset, height, clearance;
-  std::vector<std::int32_t> envelope;
-  std::vector<std::uint8_t> place;
-
-  void add(const Axis& axis, const GaugedPoints& found)
-  {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < found.state.size(); ++i) {
-      const bool placed = hasPlace(found.state[i]);
-      const AxisPlace& at = found.place[i];
-      chainage.push_back(placed ? axis.chainage(at.distance) : none);
-      offset.push_back(static_cast<float>(placed ? at.offset : none));
-      height.push_back(static_cast<float>(placed ? at.height : none));
-      clearance.push_back(static_cast<float>(found.clearance[i]));
-      place.push_back(static_cast<std::uint8_t>(found.state[i]));
-    }
-    envelope.insert(envelope.end(), found.envelope.begin(), found.envelope.end());
-  }
-  std::vector<NewField> fields() const
-  {
-    return {{"chainage", &chainage},   {"offset", &offset},     {"height", &height},
-            {"clearance", &clearance}, {"envelope", &envelope}, {"place", &place}};
-  }
-};
 
 /// Sections that are wanted: at given chainages, and at the worst places.
 std::vector<io::GaugeSection> sectionsOf(const Options& options, const io::GaugeReport& report)
@@ -171,8 +128,7 @@ void compare(const Options& options, const Axis& axis)
   if (!options.previous.empty()) earlier = io::readGaugeList(options.previous, options.limit);
   GaugeTable table(axis, envelopes.size(), options.step);
   if (!options.output.empty()) io::requireWritableCloud(options.output);
-  for (const fs::path* file : {&options.table, &options.infringements, &options.report, &options.page})
-    if (!file->empty()) files::requireWritable(*file);
+  options.written.requireWritable();
 
   std::optional<cli::GaugeScan> scan;
   {
@@ -181,7 +137,7 @@ void compare(const Options& options, const Axis& axis)
     step.done(counted(scan->points(), "point"));
   }
   cli::warnOfFile(program, options.input, scan->remarks());
-  OutputFields fields;
+  GaugeFields fields;
   if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
 
   io::GaugeReport report{options.input.string(),
@@ -198,21 +154,16 @@ void compare(const Options& options, const Axis& axis)
                          {},
                          0,
                          {}};
-  std::vector<Infringing> list;
+  io::GaugeRun run(report, table, options.threads);
   cli::Step step("Gauging");
   scan->forEachBatch([&](const PointsView& points, std::uint64_t first) {
-    const GaugedPoints found = gauge(points, axis, envelopes, {options.reach, options.threads});
-    table.add(found, envelopes);
-    addInfringing(points, found, options.limit, first, list);
-    for (std::size_t state = 0; state < report.counts.size(); ++state) report.counts[state] += found.counts[state];
+    const GaugedPoints found = run.add(points, first);
     if (!options.output.empty()) fields.add(axis, found);
     step.share(static_cast<double>(first + points.count) / static_cast<double>(scan->points()));
   });
-  report.infringing = list.size();
-  report.infringements = infringementsOf(list, options.cluster_distance);
-  report.listed = io::listedOf(report, list);
-  step.done(counted(list.size(), "infringing point"));
-  if (earlier) cli::warnOfFile(program, options.previous, io::compareWithList(report, options.previous, *earlier));
+  const std::vector<std::string> remarks = run.finish(options.previous, earlier);
+  step.done(counted(report.infringing, "infringing point"));
+  cli::warnOfFile(program, options.previous, remarks);
   if (options.draws()) {
     report.sections = sectionsOf(options, report);
     fillSections(options, *scan, report);
@@ -221,10 +172,7 @@ void compare(const Options& options, const Axis& axis)
   if (!options.output.empty())
     io::writeCloud(options.output, withFields(scan->whole(), fields.fields()), scan->facts().viewpoint,
                    scan->facts().las);
-  if (!options.table.empty()) io::writeGaugeTable(options.table, report);
-  if (!options.infringements.empty()) io::writeInfringements(options.infringements, report);
-  if (!options.report.empty()) cli::writeJson(options.report, io::gaugeJson(report));
-  if (!options.page.empty()) io::writeGaugePage(options.page, report);
+  options.written.write(report);
   writeSections(options.sections, report);
   summarise(options, report);
 }

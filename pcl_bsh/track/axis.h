@@ -70,8 +70,8 @@ struct AxisPoint {
 struct AxisFit {
   double gap = 0.0, kink = 0.0; ///< the largest between elements
   double gap_at = 0.0;          ///< its distance
-  double deviation = 0.0;       ///< of an axis through points: the farthest that it is from their polyline
-  double stretch = 0.0;         ///< of the same: the largest |length / difference of chainage - 1| between two points
+  double deviation = 0.0; ///< of an axis through points the farthest from their polyline; of a fitted one from a point
+  double stretch = 0.0;   ///< of both: the largest |length / difference of chainage - 1| between two points
 };
 
 /// The axis' own directions at a place.
@@ -134,6 +134,13 @@ public:
   /// @param most_turn of the polyline at a point, in radians
   /// @throws InvalidInput where chainages do not rise, or the polyline turns more
   static Axis through(const std::vector<AxisPoint>& points, AxisDescription rest = {}, double most_turn = 0.2);
+
+  /// Few arcs near measured points that err, without a kink. Heights and cant are straight from point to point.
+  /// @param tolerance finite, > 0: how far from the arcs a point may be in plan. Neighbours that err by more than that,
+  ///   together, may be farther: fit().deviation tells
+  /// @throws InvalidInput as through() does
+  static Axis fitted(const std::vector<AxisPoint>& points, double tolerance, AxisDescription rest = {},
+                     double most_turn = 0.2);
 
   /// In plan.
   double length() const;

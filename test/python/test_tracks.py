@@ -75,6 +75,12 @@ def test_an_axis_through_points_and_its_frame(tmp_path):
     np.testing.assert_allclose(frame[:3, 0], [1, 0, 0], atol=1e-15)
     np.testing.assert_allclose(frame[2, 1], 0.1 / 1.5, atol=1e-15)  # the left rail is higher
     np.testing.assert_allclose(frame[:3, 3], [20, 0, 10], atol=1e-12)
+    angle = np.linspace(0, 1, 101)
+    circle = np.stack([100 * np.sin(angle), 100 * np.cos(angle), 0 * angle], axis=1)
+    circle[:, :2] += np.random.default_rng(1).uniform(-0.005, 0.005, (101, 2))
+    fitted = pcl_bsh.Axis(circle, 100 * angle, fit=0.02)
+    assert 0.002 < fitted.deviation <= 0.02 and 90 < fitted.smallest_radius < 105
+    assert pcl_bsh.Axis(circle, 100 * angle).smallest_radius < 80
     (tmp_path / "line.axis").write_text(BEND)
     read = pcl_bsh.Axis.read(tmp_path / "line.axis")
     assert read.distances_at(2150.0) == [150.0] and read.distances_at(1500.0) == []

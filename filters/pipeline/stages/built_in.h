@@ -24,6 +24,7 @@ StageType merge();
 StageType bshCollision();
 StageType bshFlag();
 StageType bshDistance();
+StageType gaugeStage();
 std::deque<StageType> fileWriters();
 StageType clashWriter();
 StageType distanceWriter();

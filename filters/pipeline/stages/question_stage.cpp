@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
+#include <pcl_bsh/filters/pipeline/stages/row_options.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
@@ -124,52 +125,26 @@ constexpr Kind kindOf()
     return OptionType<T>::kind;
 }
 
-/// An option of a NamedObstacle.
-struct RowOption {
-  Option option;
-  std::function<void(NamedObstacle&, const Value&)> set;
-};
-
-template <typename T>
-RowOption rowOption(T NamedObstacle::*member, const char* name, const char* doc)
+std::vector<RowOption<NamedObstacle>> optionsOfObstacles()
 {
-  RowOption row;
-  row.option.name = name;
-  row.option.doc = doc;
-  row.option.kind = OptionType<T>::kind;
-  row.option.nullable = true;
-  row.set = [member](NamedObstacle& obstacle, const Value& value) { obstacle.*member = OptionType<T>::from(value); };
-  return row;
-}
-
-const std::vector<RowOption>& optionsOfRows()
-{
-  static const std::vector<RowOption> all = [] {
-    std::vector<RowOption> rows = {
-        rowOption(&NamedObstacle::file, "file", "the cloud or mesh"),
-        rowOption(&NamedObstacle::name, "name", "that lists and pages tell; null: the file's, or the tag"),
-        rowOption(&NamedObstacle::pose, "pose", "in the frame of all obstacles; null: that frame's"),
-        rowOption(&NamedObstacle::clearance, "clearance", "in place of the stage's"),
-        rowOption(&NamedObstacle::solid, "solid", "in place of the stage's"),
-        rowOption(&NamedObstacle::uncertainty, "uncertainty", "of its points, in place of `obstacle_uncertainty`")};
-    rows.front().option.required = true;
-    for (RowOption& row : rows) {
-      if (row.option.kind != Kind::number && row.option.kind != Kind::length_or_field) continue;
-      row.option.least = 0;
-      row.option.unit = "m";
-    }
-    for (const auto& [name, doc] : {std::pair{"unit", "the unit of the file's lengths"},
-                                    {"to_unit", "the unit that they are read in, as `to_unit` of readers"}}) {
-      RowOption row; // which its reader obeys
-      row.option.name = name;
-      row.option.doc = doc;
-      row.option.kind = Kind::text;
-      row.option.nullable = row.option.of_reader = true;
-      rows.push_back(std::move(row));
-    }
-    return rows;
-  }();
-  return all;
+  std::vector<RowOption<NamedObstacle>> rows = {
+      rowOption(&NamedObstacle::file, "file", "the cloud or mesh").required(),
+      rowOption(&NamedObstacle::name, "name", "that lists and pages tell; null: the file's, or the tag"),
+      rowOption(&NamedObstacle::pose, "pose", "in the frame of all obstacles; null: that frame's"),
+      rowOption(&NamedObstacle::clearance, "clearance", "in place of the stage's").length(),
+      rowOption(&NamedObstacle::solid, "solid", "in place of the stage's"),
+      rowOption(&NamedObstacle::uncertainty, "uncertainty", "of its points, in place of `obstacle_uncertainty`")
+          .length()};
+  for (const auto& [name, doc] : {std::pair{"unit", "the unit of the file's lengths"},
+                                  {"to_unit", "the unit that they are read in, as `to_unit` of readers"}}) {
+    RowOption<NamedObstacle> row;
+    row.option.name = name;
+    row.option.doc = doc;
+    row.option.kind = Kind::text;
+    row.option.nullable = row.option.of_reader = true;
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 std::string nameOf(const NamedObstacle& obstacle)
@@ -184,24 +159,11 @@ std::string placeOf(std::size_t obstacle, const char* option)
 
 } // namespace
 
-Option optionOfObstacles(std::function<std::vector<NamedObstacle>&(Stage&)> obstacles)
+Option optionOfObstacles(const std::function<std::vector<NamedObstacle>&(Stage&)>& obstacles)
 {
-  Option option;
-  option.name = "obstacles";
-  option.doc = "in place of `obstacle`, several with names: one question about all of them";
-  option.kind = Kind::rows;
-  for (const RowOption& row : optionsOfRows()) option.of_rows.push_back(row.option);
-  option.set = [obstacles](Stage& stage, const Value& value) {
-    std::vector<NamedObstacle>& all = obstacles(stage);
-    all.clear();
-    for (const Row& row : std::get<std::vector<Row>>(value)) {
-      all.emplace_back();
-      for (std::size_t i = 0; i < row.values.size(); ++i)
-        if (optionsOfRows()[i].set && !std::holds_alternative<std::monostate>(row.values[i]))
-          optionsOfRows()[i].set(all.back(), row.values[i]);
-    }
-  };
-  option.get = [](const Stage&) { return Value(std::vector<Row>()); };
+  Option option = rowsOption<NamedObstacle>(
+      "obstacles", "in place of `obstacle`, several with names: one question about all of them", optionsOfObstacles(),
+      obstacles);
   option.cloud = [obstacles](Stage& stage, std::size_t row) { return &obstacles(stage)[row].file; };
   return option;
 }

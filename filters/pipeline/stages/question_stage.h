@@ -78,7 +78,7 @@ protected:
 Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> question);
 
 /// `obstacles` of a stage.
-Option optionOfObstacles(std::function<std::vector<NamedObstacle>&(Stage&)> obstacles);
+Option optionOfObstacles(const std::function<std::vector<NamedObstacle>&(Stage&)>& obstacles);
 
 /// An error of a question, told by the stage's option where it is about one. @throws OptionError, or the error
 [[noreturn]] void refuse(const InvalidInput& error, const Question& question);

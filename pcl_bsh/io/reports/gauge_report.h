@@ -36,7 +36,7 @@ struct GaugeReport {
   double cluster_distance = 0.5;
   std::array<std::size_t, 6> counts{};
   std::size_t infringing = 0; ///< points
-  std::vector<Infringement> infringements;
+  std::vector<Infringement> infringements = {};
   std::vector<GaugeSection> sections = {};
   std::vector<ListedInfringement> listed = {}; ///< of listedOf(); then those that are gone
   std::string previous = {};                   ///< file name of the list that it is compared with, or empty

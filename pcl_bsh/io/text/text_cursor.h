@@ -18,8 +18,16 @@ namespace pcl_bsh::io {
 /// beside blanks are blanks.
 inline char separatorOf(std::string_view line)
 {
-  for (const char separator : {';', ','})
-    if (line.find(separator) != std::string_view::npos) return separator;
+  const auto separates = [line](char separator, bool within_quotes) {
+    bool quoted = false;
+    return std::any_of(line.begin(), line.end(), [&](char c) {
+      if (c == '"') quoted = !quoted;
+      return c == separator && (within_quotes || !quoted);
+    });
+  };
+  for (const bool within_quotes : {false, true}) // a lone quote is a character as others are
+    for (const char separator : {';', ','})
+      if (separates(separator, within_quotes)) return separator;
   const bool blank = line.substr(0, line.find_last_not_of(" \t") + 1).find(' ') != std::string_view::npos;
   return !blank && line.find('\t') != std::string_view::npos ? '\t' : ' ';
 }
@@ -53,8 +61,8 @@ public:
   }
 
   /// From now on exactly one such character separates words, and blanks around a word do not count. Two in a row have
-  /// an empty word between them; one at the end of a line has no word behind it. Quotes around a word do not count:
-  /// "x". ' ': any number of blanks and tabs.
+  /// an empty word between them; one at the end of a line has no word behind it. Quotes around a word do not count, and
+  /// neither do separators within: "x,y". ' ': any number of blanks and tabs.
   void separateBy(char separator) noexcept { separator_ = separator; }
 
   /// Goes to the next line that has a word. False at the end of the text.
@@ -173,12 +181,24 @@ private:
 
   std::string_view wordBeforeSeparator() noexcept
   {
-    const std::size_t length = std::min(line_.find(separator_), line_.size());
+    const std::size_t length = std::min(line_.find(separator_, quotesEnd()), line_.size());
     const std::string_view taken = line_.substr(0, length);
     ends_with_separator_ = length + 1 == line_.size();
     line_.remove_prefix(std::min(length + 1, line_.size()));
     skipBlanks();
     return withoutQuotes(taken.substr(0, taken.find_last_not_of(" \t") + 1));
+  }
+
+  /// Behind the quote that closes the word the line begins with; 0 where it begins with none, or none closes it.
+  std::size_t quotesEnd() const noexcept
+  {
+    if (!line_.starts_with('"')) return 0;
+    for (std::size_t at = line_.find('"', 1); at != std::string_view::npos; at = line_.find('"', at + 1)) {
+      const std::size_t next = line_.find_first_not_of(" \t", at + 1);
+      if (line_.substr(at + 1).starts_with(separator_) || next == std::string_view::npos || line_[next] == separator_)
+        return at + 1;
+    }
+    return 0;
   }
 
   static std::string_view withoutQuotes(std::string_view word) noexcept

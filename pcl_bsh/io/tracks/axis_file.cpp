@@ -45,9 +45,13 @@ Axis axisOfPoints(std::string_view text, const AxisSettings& settings, std::vect
   AxisDescription rest;
   applySettings(rest, settings);
   try {
-    Axis axis = Axis::through(points, rest);
-    remarks.push_back("its arcs through " + std::to_string(points.size()) + " points are within " +
-                      shortNumber(axis.fit().deviation) + " of straight lines between them");
+    Axis axis = settings.fit ? Axis::fitted(points, *settings.fit, rest) : Axis::through(points, rest);
+    remarks.push_back(settings.fit
+                          ? "its " + std::to_string(axis.description().plan.size()) + " arcs are within " +
+                                shortNumber(axis.fit().deviation) + " of its " + std::to_string(points.size()) +
+                                " points, the smallest radius is " + shortNumber(axis.smallestRadius())
+                          : "its arcs through " + std::to_string(points.size()) + " points are within " +
+                                shortNumber(axis.fit().deviation) + " of straight lines between them");
     if (axis.fit().stretch > 0.01)
       remarks.push_back("its length between two points differs from their chainages by " +
                         shortNumber(100 * axis.fit().stretch) + " percent at most: are units and order right?");
@@ -188,6 +192,7 @@ Axis readAxis(const std::filesystem::path& path, const AxisSettings& settings, s
       if (remarks) *remarks = std::move(found);
       return axis;
     }
+    if (settings.fit) throw FormatError("holds elements, and arcs are fitted to points alone", "leave the fit out");
     const bool xml = extension == ".xml";
     AxisDescription description = xml ? parseLandXml(file.view(), settings, found) : parseElements(file.view());
     for (Knot& cant : description.cants) cant.value *= settings.cant_unit.value_or(xml ? 0.001 : 1.0);

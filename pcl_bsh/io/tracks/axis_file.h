@@ -17,12 +17,13 @@ struct AxisSettings {
   std::optional<double> cant_unit = std::nullopt; ///< lengths are so often this; none: 0.001 in LandXML, else 1
   std::optional<double> gauge = std::nullopt;     ///< instead of the file's
   std::optional<CantPivot> pivot = std::nullopt;  ///< instead of the file's
+  std::optional<double> fit = std::nullopt; ///< of points: few arcs that are so near; none: arcs through each point
 };
 
 /// Reads an axis, by the file's extension:
 ///
 /// .csv        points, a line each, as a first line names their columns: chainage, x y z (also E N H) and, if there,
-///             cant. Arcs go through them
+///             cant. Arcs go through them, or near them by `fit`
 /// .xml        LandXML's Alignment: CoordGeom with Line, Curve and Spiral (clothoid), ProfAlign with PVI and ParaCurve,
 ///             Cant, StaEquation
 /// others      elements, as parseElements() has them

@@ -84,4 +84,22 @@ WideningTable readWidening(const std::filesystem::path& path, const Axis& axis)
   });
 }
 
+Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optional<double> unit,
+                      std::vector<std::string>* remarks)
+{
+  EnvelopeDescription description;
+  description.name = files.name.empty() ? files.profile.stem().string() : files.name;
+  description.corners = readProfile(files.profile, unit, remarks);
+  description.ranges = files.ranges;
+  description.vehicle = files.vehicle;
+  if (!files.widening.empty()) {
+    WideningTable table = readWidening(files.widening, axis);
+    description.left = std::move(table.left);
+    description.right = std::move(table.right);
+  }
+  Envelope envelope(std::move(description));
+  if (files.vehicle) overthrowOf(*files.vehicle, axis.smallestRadius()); // fails now, not at a point
+  return envelope;
+}
+
 } // namespace pcl_bsh::io

@@ -36,4 +36,17 @@ struct WideningTable {
 /// @throws files::FileError as readProfile() does, and for a chainage that the axis has not, or has twice
 WideningTable readWidening(const std::filesystem::path& path, const Axis& axis);
 
+/// The files of an envelope, and what no file says of it.
+struct EnvelopeFiles {
+  std::string name; ///< empty: the profile's file, without its extension
+  std::filesystem::path profile;
+  std::vector<ChainageRange> ranges = {};        ///< where it counts; none: everywhere
+  std::filesystem::path widening = {};           ///< empty: none
+  std::optional<Vehicle> vehicle = std::nullopt; ///< by whose overthrow it widens
+};
+
+/// @param unit, remarks as readProfile() has them @throws as readProfile(), readWidening(), Envelope and overthrowOf()
+Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optional<double> unit = std::nullopt,
+                      std::vector<std::string>* remarks = nullptr);
+
 } // namespace pcl_bsh::io

@@ -31,15 +31,15 @@ Example: poses of a wagon whose pivots are 19 m apart, for pcl_bsh_collide
   pcl_bsh_gauge --axis line.axis --pivots 19 --step 0.5 --poses-out poses.txt)";
 
 /// NAME=VALUE, or VALUE for all profiles.
-void forProfiles(std::vector<ProfileOptions>& profiles, const std::string& option, const std::string& given,
-                 const std::function<void(ProfileOptions&, const std::string&)>& use)
+void forProfiles(std::vector<io::EnvelopeFiles>& profiles, const std::string& option, const std::string& given,
+                 const std::function<void(io::EnvelopeFiles&, const std::string&)>& use)
 {
   const std::size_t equals = given.find('=');
   const std::string name = equals == std::string::npos ? "" : given.substr(0, equals);
   const std::string value = equals == std::string::npos ? given : given.substr(equals + 1);
   bool used = false;
   std::string names;
-  for (ProfileOptions& profile : profiles) {
+  for (io::EnvelopeFiles& profile : profiles) {
     names += (names.empty() ? "" : ", ") + profile.name;
     if (!name.empty() && profile.name != name) continue;
     use(profile, value);
@@ -74,11 +74,11 @@ void requireTogether(const GaugeOptions& options)
   if (options.input.empty()) {
     if (!poses) refuse("command line", std::string("INPUT is required: see ") + gauge_program + " --help");
     if (!options.profiles.empty()) refuse("--profile", "is compared with a scan: give INPUT");
-    for (const auto& [option, file] : {std::pair{"--table", &options.table},
-                                       {"--infringements", &options.infringements},
-                                       {"--report", &options.report},
+    for (const auto& [option, file] : {std::pair{"--table", &options.written.table},
+                                       {"--infringements", &options.written.infringements},
+                                       {"--report", &options.written.report},
                                        {"--previous", &options.previous},
-                                       {"--page", &options.page},
+                                       {"--page", &options.written.page},
                                        {"--sections", &options.sections}})
       if (!file->empty()) refuse(option, "is about a scan: give INPUT");
     return;
@@ -88,7 +88,7 @@ void requireTogether(const GaugeOptions& options)
   for (std::size_t i = 0; i < options.profiles.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (options.profiles[i].name == options.profiles[j].name)
-        refuse("--profile", options.profiles[i].file.string() + ": another is called '" + options.profiles[i].name +
+        refuse("--profile", options.profiles[i].profile.string() + ": another is called '" + options.profiles[i].name +
                                 "', too: rename a file");
   if (!options.at.empty() && !options.draws())
     refuse("--at", "draws sections: give --sections FOLDER or --page FILE.html");
@@ -120,6 +120,11 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
       ->required();
   app.add_option("--alignment", options.axis_settings.alignment, "name of the alignment, where a LandXML holds several")
       ->type_name("NAME");
+  app.add_option("--fit", options.axis_settings.fit,
+                 "of an axis of measured points: as few arcs as come so near to them\n"
+                 "(default: arcs through each point)")
+      ->type_name("L")
+      ->transform(positive());
   app.add_option("--cant-unit", options.axis_settings.cant_unit,
                  "cant is in so many of the clouds' units (default: 0.001 in LandXML, else 1)")
       ->type_name("L")
@@ -172,14 +177,17 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
                  "infringing points no farther apart are one infringement (default: 0.5)")
       ->type_name("L")
       ->transform(positive());
-  app.add_option("--table", options.table, "smallest clearances of each part of the axis")->type_name("FILE.csv");
-  app.add_option("--infringements", options.infringements, "the infringements, the worst first")->type_name("FILE.csv");
-  app.add_option("--report", options.report, "both, and the counts, as JSON; - is standard output")->type_name("FILE");
+  app.add_option("--table", options.written.table, "smallest clearances of each part of the axis")
+      ->type_name("FILE.csv");
+  app.add_option("--infringements", options.written.infringements, "the infringements, the worst first")
+      ->type_name("FILE.csv");
+  app.add_option("--report", options.written.report, "both, and the counts, as JSON; - is standard output")
+      ->type_name("FILE");
   app.add_option("--previous", options.previous,
                  "--report of an earlier run: infringements are new, persisting, resolved, or\n"
                  "not visited by the axis or not scanned any more; --report may replace it")
       ->type_name("FILE");
-  app.add_option("--page", options.page, "page for browsers: infringements, charts, maps, sections")
+  app.add_option("--page", options.written.page, "page for browsers: infringements, charts, maps, sections")
       ->type_name("FILE.html");
   app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
       ->type_name("FOLDER");
@@ -209,15 +217,15 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   for (const std::filesystem::path& file : profiles)
     options.profiles.push_back({file.stem().string(), file, {}, {}, {}});
   for (const std::string& range : ranges)
-    forProfiles(options.profiles, "--range", range, [](ProfileOptions& profile, const std::string& value) {
+    forProfiles(options.profiles, "--range", range, [](io::EnvelopeFiles& profile, const std::string& value) {
       const auto [from, to] = twoNumbers("--range", value, ':', "FROM:TO, such as 1200:1350");
       profile.ranges.push_back({from, to});
     });
   for (const std::string& widening : widenings)
     forProfiles(options.profiles, "--widening", widening,
-                [](ProfileOptions& profile, const std::string& value) { profile.widening = value; });
+                [](io::EnvelopeFiles& profile, const std::string& value) { profile.widening = value; });
   for (const std::string& vehicle : vehicles)
-    forProfiles(options.profiles, "--vehicle", vehicle, [](ProfileOptions& profile, const std::string& value) {
+    forProfiles(options.profiles, "--vehicle", vehicle, [](io::EnvelopeFiles& profile, const std::string& value) {
       const auto [pivots, overhang] = twoNumbers("--vehicle", value, ',', "P,O, such as 19,3.7");
       profile.vehicle = Vehicle{pivots, overhang};
     });
@@ -226,12 +234,13 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
 
   CommandFiles& files = options.files;
   files.reads("INPUT", options.input).reads("--axis", options.axis);
-  for (const ProfileOptions& profile : options.profiles)
-    files.reads("--profile", profile.file).reads("--widening", profile.widening);
-  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "").writes("--report", options.report, "--previous");
+  for (const io::EnvelopeFiles& profile : options.profiles)
+    files.reads("--profile", profile.profile).reads("--widening", profile.widening);
+  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "")
+      .writes("--report", options.written.report, "--previous");
   files.reads("--previous", options.previous);
-  files.writes("--table", options.table).writes("--infringements", options.infringements);
-  files.writes("--page", options.page).writes("--poses-out", options.poses);
+  files.writes("--table", options.written.table).writes("--infringements", options.written.infringements);
+  files.writes("--page", options.written.page).writes("--poses-out", options.poses);
   return options;
 }
 

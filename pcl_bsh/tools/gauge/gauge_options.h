@@ -5,8 +5,9 @@
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
+#include <pcl_bsh/io/reports/gauge_run.h>
 #include <pcl_bsh/io/tracks/axis_file.h>
-#include <pcl_bsh/track/envelope.h>
+#include <pcl_bsh/io/tracks/profile_file.h>
 
 #include <filesystem>
 #include <map>
@@ -18,24 +19,16 @@ namespace pcl_bsh::cli {
 
 inline constexpr auto gauge_program = "pcl_bsh_gauge";
 
-/// A profile, with the options that name it. Its name is that of its file without the extension.
-struct ProfileOptions {
-  std::string name;
-  std::filesystem::path file;
-  std::vector<ChainageRange> ranges;
-  std::filesystem::path widening;
-  std::optional<Vehicle> vehicle;
-};
-
 struct GaugeOptions {
   std::filesystem::path input, output; ///< each may be empty
   std::filesystem::path axis;
   io::AxisSettings axis_settings;
-  std::vector<ProfileOptions> profiles;
+  std::vector<io::EnvelopeFiles> profiles;
   std::optional<double> profile_unit;
   double limit = 0.0, step = 1.0, cluster_distance = 0.5, thickness = 0.1;
   AxisReach reach;
-  std::filesystem::path table, infringements, report, page, previous, sections, poses;
+  io::GaugeFiles written;
+  std::filesystem::path previous, sections, poses;
   std::vector<double> at; ///< chainages of sections
   double pivots = 0.0;
   std::string unit;
@@ -43,7 +36,7 @@ struct GaugeOptions {
   ReadChoice reading;
   CommandFiles files;
 
-  bool draws() const { return !sections.empty() || !page.empty(); }
+  bool draws() const { return !sections.empty() || !written.page.empty(); }
 };
 
 /// The options, checked; none when only help was asked for. @throws UsageError

@@ -317,6 +317,11 @@ TEST(Csv, QuotesAroundWordsDoNotCount)
   EXPECT_EQ(namesOf(cloud), "x y z my_value");
   ASSERT_EQ(cloud.width, 2U);
   EXPECT_EQ(placeOf(cloud, 1), (Place{5, 6, 7}));
+  const TemporaryFolder folder;
+  const std::string named = "x,y,z,name\n1,2,3,\"pipe, 2; bent\"\n4,5,6,valve\n";
+  writeCloud(folder / "b.csv", readCloud(folder.write("a.csv", named)));
+  EXPECT_EQ(contentOf(folder / "b.csv"), named) << "separators within quotes do not count";
+  EXPECT_EQ(parseColumns("x;y;z;name\n1;2;3;\"a;b,c\"\n").width, 1U);
 }
 
 TEST(ScanText, RealFiles)

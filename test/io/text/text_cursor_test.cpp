@@ -71,10 +71,16 @@ TEST(TextCursor, TakesOneSeparatorAndNoOther)
 
 TEST(TextCursor, TakesQuotesOffInPairs)
 {
-  TextCursor text("\"1\",\"2,3\",\"\n");
+  TextCursor text("\"1\",\"2,3\",\"\n\"4,\"\"5\" , 6\",7\n\"8,9\n,\"1,2\"\n");
   text.separateBy(',');
   ASSERT_TRUE(text.nextLine());
-  for (const char* word : {"1", "\"2", "3\"", "\""}) EXPECT_EQ(text.word(), word);
+  for (const char* word : {"1", "2,3", "\""}) EXPECT_EQ(text.word(), word);
+  ASSERT_TRUE(text.nextLine());
+  for (const char* word : {"4,\"\"5", "6\"", "7"}) EXPECT_EQ(text.word(), word);
+  ASSERT_TRUE(text.nextLine());
+  for (const char* word : {"\"8", "9"}) EXPECT_EQ(text.word(), word);
+  ASSERT_TRUE(text.nextLine());
+  for (const char* word : {"", "1,2"}) EXPECT_EQ(text.word(), word);
 }
 
 TEST(TextCursor, ALineIsFromItsFirstWordToItsLast)

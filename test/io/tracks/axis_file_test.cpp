@@ -98,6 +98,20 @@ TEST(AxisFile, PointsAsColumns)
   EXPECT_DOUBLE_EQ(axis.cant(50), 0.12);
   ASSERT_EQ(remarks.size(), 1u);
   EXPECT_THAT(remarks[0], HasSubstr("its arcs through 21 points are within 0.0312 of straight lines"));
+  AxisSettings settings;
+  settings.cant_unit = 0.001;
+  settings.fit = 0.01;
+  EXPECT_LE(readAxis(folder / "points.csv", settings, &remarks).description().plan.size(), 8u) << "of 40";
+  EXPECT_THAT(remarks[0],
+              testing::MatchesRegex("its [0-9] arcs are within .* of its 21 points, the smallest radius is .*"));
+  folder.write("elements.axis", "start 0 0 90\nstraight 40\n");
+  try {
+    readAxis(folder / "elements.axis", settings);
+    ADD_FAILURE();
+  }
+  catch (const files::FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("arcs are fitted to points alone: leave the fit out"));
+  }
 }
 
 TEST(AxisFile, RefusalsOfPointsNameTheLine)

@@ -159,6 +159,8 @@ TEST_F(Samples, TheMadeLineIsGauged)
   EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 3) << list;
   EXPECT_NE(files::contentOf(clone / "build/line/page.html").find("No data at chainages 1640 to 1650"),
             std::string::npos);
+  expectDone("cd build/line; ../release/bin/pcl_bsh_pipeline ../../examples/track/gauging.json");
+  EXPECT_EQ(files::contentOf(clone / "build/line/infringing.csv"), list);
 }
 
 /// Two epochs: what came, what went, a page, and a picture.

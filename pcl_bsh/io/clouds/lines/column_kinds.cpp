@@ -126,7 +126,8 @@ std::string_view textOf(const pcl::PCLPointField& field, const char* bytes)
 bool canBeColumn(std::string_view word, char separator)
 {
   if (separator == ' ' && (word.empty() || word.find(' ') != std::string_view::npos)) return false;
-  if (word.find_first_of(",;\"\t") != std::string_view::npos || word.starts_with("//")) return false;
+  const char* const never = separator == ',' ? "\"\t" : ",;\"\t";
+  if (word.find_first_of(never) != std::string_view::npos || word.starts_with("//")) return false;
   const std::size_t mark = word.find('#');
   if (mark == 0 || word.find(" #") != std::string_view::npos) return false;
   return word.empty() || (word.front() != ' ' && word.back() != ' ');

@@ -25,7 +25,8 @@ bool isTextField(const pcl::PCLPointField& field);
 /// Text of a record's field. @throws FormatError where its bytes are none
 std::string_view textOf(const pcl::PCLPointField& field, const char* bytes);
 
-/// Whether a word can stand between separators, and is read as it was. @param separator ' ': blanks
+/// Whether a word can stand between separators, and is read as it was; between commas within quotes where it has
+/// separators. @param separator ' ': blanks
 bool canBeColumn(std::string_view word, char separator);
 
 /// Finds the columns that are not float64, except coordinates, colours and those that are not read. Whole numbers

@@ -38,7 +38,10 @@ void appendText(std::string& line, const TextValue& value, const char* bytes)
     throw FormatError("field '" + value.field.name + "' has the text '" + std::string(text.substr(0, 40)) +
                           "', which cannot stand between separators",
                       value.text == ' ' ? "write a .csv or .pcd instead" : "write a .pcd instead");
+  const bool quoted = text.find_first_of(",;") != std::string_view::npos;
+  if (quoted) line += '"';
   line += text;
+  if (quoted) line += '"';
 }
 
 void writeRows(std::ostream& out, const pcl::PCLPointCloud2& cloud, const std::vector<TextValue>& values)

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where points are along a track, and how far outside of what must stay free.
+#include <pcl_bsh/base/cancelled.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/filters/gauge_fields.h>
+#include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/row_options.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/reports/gauge_run.h>
+#include <pcl_bsh/io/tracks/axis_file.h>
+#include <pcl_bsh/io/tracks/profile_file.h>
+#include <pcl_bsh/search/cloud_view.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::pipeline {
+namespace {
+
+constexpr std::size_t batch_points = std::size_t{1} << 18; // between two looks at whether to stop
+
+struct Profile {
+  InputFile file;
+  std::string name;
+  std::optional<double> from, to;
+  std::optional<InputFile> widening;
+  std::optional<double> vehicle_pivots;
+  double vehicle_overhang = 0.0;
+};
+
+struct Gauge : Stage {
+  InputFile axis;
+  std::string alignment;
+  std::optional<double> fit, cant_unit, rail_gauge, profile_unit;
+  std::optional<std::string> pivot;
+  std::vector<Profile> profiles;
+  std::optional<InputFile> previous;
+  double limit = 0.0, step = 1.0, cluster_distance = 0.5;
+  double reach = AxisReach().offset, below = AxisReach().below, above = AxisReach().above;
+  std::optional<OutputFile> table, infringements, report, page;
+  std::string unit;
+  std::string input_name = "input";
+
+  CloudHeader plan(const std::vector<CloudHeader>& inputs) override
+  {
+    std::vector<std::string> remarks;
+    checked("axis", [&] {
+      io::AxisSettings settings;
+      settings.alignment = alignment;
+      settings.fit = fit;
+      settings.cant_unit = cant_unit;
+      settings.gauge = rail_gauge;
+      if (pivot) settings.pivot = *pivot == "centre" ? CantPivot::centre : CantPivot::low_rail;
+      axis_ = io::readAxis(axis.path, settings, &remarks);
+    });
+    warnOf(axis.path, remarks);
+    readEnvelopes();
+    checked("reach", [&] { axis_->requireReach({reach, below, above}); });
+    checked("step", [&] { GaugeTable(*axis_, envelopes_.size(), step); });
+    for (const auto& [option, file, path] : {std::tuple{"table", &table, &files_.table},
+                                             {"infringements", &infringements, &files_.infringements},
+                                             {"report", &report, &files_.report},
+                                             {"page", &page, &files_.page}})
+      if (*file) {
+        *path = (*file)->path;
+        checked(option, [&, path = path] { files::requireWritable(*path); });
+      }
+    if (previous) checked("previous", [&] { earlier_ = io::readGaugeList(previous->path, limit); });
+    return withFields(inputs[0], GaugeFields().fields());
+  }
+
+  StageCloudPtr run(StageClouds&& inputs) override
+  {
+    GaugeTable parts(*axis_, envelopes_.size(), step);
+    io::GaugeReport told{input_name, axis.path,  unit,  inputs[0]->coordinate_system,
+                         *axis_,     envelopes_, parts, {reach, below, above},
+                         limit};
+    told.cluster_distance = cluster_distance;
+    io::GaugeRun gauging(told, parts, 1);
+    GaugeFields fields;
+    const PointsView all = viewOf(inputs[0]->cloud);
+    for (std::size_t first = 0; first < all.count; first += batch_points) {
+      if (isCancelled()) throw Cancelled();
+      PointsView batch = all;
+      batch.data = static_cast<const unsigned char*>(all.data) + first * all.stride;
+      batch.count = std::min(batch_points, all.count - first);
+      fields.add(*axis_, gauging.add(batch, first));
+    }
+    const std::string earlier = previous ? previous->path : "";
+    warnOf(earlier, gauging.finish(earlier, earlier_));
+    files_.write(told);
+    const auto output = ownCloud(std::move(inputs[0]));
+    output->cloud = withFields(output->cloud, fields.fields());
+    return output;
+  }
+
+private:
+  /// An error while this runs is the option's fault.
+  template <typename Check>
+  static void checked(const std::string& option, const Check& check)
+  {
+    try {
+      check();
+    }
+    catch (const std::runtime_error& error) {
+      throw OptionError(option, error.what());
+    }
+    catch (const InvalidInput& error) {
+      throw OptionError(option, error.what());
+    }
+  }
+
+  void warnOf(const std::string& file, const std::vector<std::string>& remarks)
+  {
+    for (const std::string& remark : remarks) warn(file + ": " + remark);
+  }
+
+  void readEnvelopes()
+  {
+    if (profiles.empty()) throw OptionError("profiles", "is an empty list: give one profile at least");
+    for (const Profile& profile : profiles) {
+      const std::string place = "profiles/" + std::to_string(envelopes_.size());
+      io::EnvelopeFiles files = {profile.name, profile.file.path};
+      if (profile.from.has_value() != profile.to.has_value())
+        throw OptionError(place, "has one end of a range: give both, `from` and `to`");
+      if (profile.from) files.ranges = {{*profile.from, *profile.to}};
+      if (profile.widening) files.widening = profile.widening->path;
+      if (profile.vehicle_pivots) files.vehicle = Vehicle{*profile.vehicle_pivots, profile.vehicle_overhang};
+      std::vector<std::string> remarks;
+      checked(place, [&] { envelopes_.push_back(io::readEnvelope(files, *axis_, profile_unit, &remarks)); });
+      warnOf(profile.file.path, remarks);
+      for (std::size_t i = 0; i + 1 < envelopes_.size(); ++i)
+        if (envelopes_[i].name() == envelopes_.back().name())
+          throw OptionError(place, "another is called '" + envelopes_[i].name() + "', too: give it a `name`");
+    }
+  }
+
+  std::optional<Axis> axis_;
+  std::vector<Envelope> envelopes_;
+  std::optional<io::GaugeList> earlier_;
+  io::GaugeFiles files_;
+};
+
+Option optionOfProfiles()
+{
+  RowOption<Profile> pivots = rowOption(&Profile::vehicle_pivots, "vehicle_pivots",
+                                        "it widens by the overthrow of a vehicle whose pivots are so far apart")
+                                  .length(true);
+  Option option = rowsOption<Profile>(
+      "profiles", "the outlines that must stay free",
+      {rowOption(&Profile::file, "file", "the outline, as .csv (offset, height) or .dxf").required(),
+       rowOption(&Profile::name, "name", "null: the file's, without its extension"),
+       rowOption(&Profile::from, "from", "the chainage where it begins to count; null: everywhere"),
+       rowOption(&Profile::to, "to", "the chainage where it ends to count, inclusive"),
+       rowOption(&Profile::widening, "widening", "how it widens: a .csv of chainage, left, right"), std::move(pivots),
+       rowOption(&Profile::vehicle_overhang, "vehicle_overhang", "how far that vehicle goes on beyond its pivots")
+           .length()},
+      [](Stage& stage) -> std::vector<Profile>& { return static_cast<Gauge&>(stage).profiles; });
+  option.required = true;
+  return option;
+}
+
+} // namespace
+
+StageType gaugeStage()
+{
+  return describe<Gauge>(
+             "filters.gauge",
+             "Adds where each point is along a track, and how far outside of profiles that must stay free. Fields: "
+             "`chainage` (float64), `offset`, `height`, `clearance` (float32; below 0 inside, NaN without one). "
+             "`envelope` (int32) is the profile's number, or -1 where no profile counts. `place` (uint8) is 0 at one "
+             "place of the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite. All points stay. The "
+             "query is that of pcl_bsh_gauge; TRACKS.md has the forms of the files.")
+      .option(&Gauge::axis, "axis", "the axis: points as .csv, an alignment of LandXML as .xml, or elements as text")
+      .required()
+      .option(optionOfProfiles())
+      .option(&Gauge::alignment, "alignment", "name of the alignment, where a LandXML holds several")
+      .option(&Gauge::fit, "fit",
+              "of an axis of measured points: as few arcs as come so near to them; null: arcs through each point")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::cant_unit, "cant_unit", "cant is in so many of the clouds' units; null: 0.001 in LandXML, else 1")
+      .above(0)
+      .option(&Gauge::rail_gauge, "gauge",
+              "between the rails' heads, whose heights cant tells; null: the file's, or 1.5")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::pivot, "pivot", "what cant turns about; null: as the file says, or low_rail")
+      .choices({"low_rail", "centre"})
+      .option(&Gauge::profile_unit, "profile_unit",
+              "profiles are in so many of the clouds' units; null: as a .dxf says, or 1")
+      .above(0)
+      .option(&Gauge::limit, "limit", "clearances up to this infringe")
+      .unit("m")
+      .option(&Gauge::step, "step", "length of a part of the table")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::reach, "reach", "how far beside the axis points belong to it")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::below, "below", "how far below it")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::above, "above", "how far above it")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::cluster_distance, "cluster_distance", "infringing points no farther apart are one infringement")
+      .unit("m")
+      .above(0)
+      .option(&Gauge::table, "table", "the .csv file to write: smallest clearances of each part of the axis")
+      .option(&Gauge::infringements, "infringements", "the .csv file to write: infringements, the worst first")
+      .option(&Gauge::previous, "previous",
+              "the `report` of an earlier run: tells infringements that are new, persisting, resolved, not visited or "
+              "not scanned any more; may be `report`")
+      .replaceable()
+      .option(&Gauge::report, "report", "the .json file to write: both, and the counts")
+      .option(&Gauge::page, "page", "the .html file to write: infringements, charts and maps")
+      .option(&Gauge::unit, "unit", "name of the clouds' unit, for the page")
+      .option(&Gauge::input_name, "input_name", "name of the input in the report");
+}
+
+} // namespace pcl_bsh::pipeline

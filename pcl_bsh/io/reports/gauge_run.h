@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A gauging run, batch by batch, and the files that it makes: for the program and for pipelines.
+//
+//   GaugeRun run(report, table, threads);
+//   run.add(points, first); // for each batch
+//   remarks = run.finish(previous, earlier);
+#pragma once
+
+#include <pcl_bsh/io/reports/gauge_report.h>
+#include <pcl_bsh/track/gauge.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_bsh::io {
+
+/// Gathers a report. The report is told the same, however its points are divided into batches.
+class GaugeRun {
+public:
+  /// @param table the report's
+  GaugeRun(GaugeReport& report, GaugeTable& table, unsigned threads);
+
+  /// @param first number of the batch's first point among all
+  GaugedPoints add(const PointsView& points, std::uint64_t first);
+
+  /// After the last batch: infringements, with their names and states.
+  /// @param earlier the list in the file `previous`, where there is one @return remarks about that file
+  std::vector<std::string> finish(const std::filesystem::path& previous, const std::optional<GaugeList>& earlier);
+
+private:
+  GaugeReport& report_;
+  GaugeTable& table_;
+  unsigned threads_;
+  std::vector<Infringing> infringing_;
+};
+
+/// Where a report goes. An empty path: nowhere.
+struct GaugeFiles {
+  std::filesystem::path table, infringements, report, page;
+
+  /// @throws files::FileError where one of them cannot be written
+  void requireWritable() const;
+  /// @throws files::FileError
+  void write(const GaugeReport& told) const;
+};
+
+} // namespace pcl_bsh::io
