@@ -25,8 +25,8 @@ inline constexpr double kReachOfAngle = 1.5;
 
 /// The directions that a beam counts for, and the share of its range that it is sure of.
 struct BeamAngle {
-  explicit BeamAngle(double radians)
-  : reach(kReachOfAngle * radians),
+  explicit BeamAngle(double radians, double reach_of_angle = kReachOfAngle)
+  : reach(reach_of_angle * radians),
     sine(std::sin(reach)),
     cosine(std::cos(reach)),
     sure(1.0 - radians)

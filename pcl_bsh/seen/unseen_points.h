@@ -41,7 +41,7 @@ struct UnseenPart {
 };
 
 /// Where nobody saw that there is nothing is shadow or skin. A place is in shadow if no beam passed it: for each
-/// scanner, its direction lies between no beams, or all beams within 1.5 angles of it ended before it. All else that is
+/// scanner, its direction lies between no beams, or all beams within 1.2 angles of it ended before it. All else that is
 /// unseen is skin: beams passed the place, but the ball about it is too near to a border or a surface to be seen.
 struct UnseenKinds {
   /// One per record: whether it is unseen and in shadow. A point by its place; a triangle if a part of it is that is

@@ -77,10 +77,10 @@ bool isDark(const ScanBeams& scan, const std::vector<DirectionCell>& holes, doub
   if (!place.isMeasured()) return true;
   bool passed = false;
   std::size_t beams = 0;
-  const BeamAngle speaks(angle);
+  const BeamAngle near(angle, kBetweenOfAngle);
   eachBeam(scan, [&](std::uint32_t, const BeamEnd& beam) {
     ++beams;
-    passed = passed || (!place.is_around && passes(place, beam.way, beam.empty, speaks));
+    passed = passed || (!place.is_around && passes(place, beam.way, beam.empty, near));
   });
   if (beams < 2) return true;
   if (place.is_around) return false;
