@@ -58,6 +58,7 @@ SeenScan::SeenScan(const ScanBeams& scan, double angle, unsigned threads)
 : beams_(scan),
   angle_(angleOf(beams_, angle)),
   speaks_(angle_),
+  passes_(angle_, kBetweenOfAngle),
   holes_(beams_, angle_, threads)
 {
 }
@@ -110,8 +111,7 @@ bool SeenScan::isDark(const BallView& place, std::uint64_t& tested) const
   if (angle_ == 0.0 || !place.isMeasured()) return true;
   if (place.is_around) return false;
   if (holes_.meets(Cone(place.direction, place.coneAngle()), tested)) return true;
-  const BeamAngle near(angle_, kBetweenOfAngle);
-  const double chord = chordOf(near.reach) + 4.0 * kDirectionError;
+  const double chord = chordOf(passes_.reach) + 4.0 * kDirectionError;
   // Ranges are stored no greater than a float.
   const double least =
       std::min(place.distance * (1.0 - 0x1p-20), 0.5 * static_cast<double>(std::numeric_limits<float>::max()));
@@ -123,7 +123,7 @@ bool SeenScan::isDark(const BallView& place, std::uint64_t& tested) const
       [&](const Beam& beam) {
         if (static_cast<double>(beam.empty) < least || isBeyond(place.direction, chord, beam)) return false;
         const BeamEnd given = beamOf(beams_.scan(), beam.record);
-        return passes(place, given.way, given.empty, near);
+        return passes(place, given.way, given.empty, passes_);
       });
 }
 

@@ -33,7 +33,8 @@ public:
 private:
   BeamTree beams_;
   double angle_;
-  BeamAngle speaks_;
+  BeamAngle speaks_; ///< for what is seen
+  BeamAngle passes_; ///< for what is in shadow
   HoleMap holes_;
 };
 

@@ -57,8 +57,8 @@ FittedPlace fittedAt(const std::vector<Plan>& points, std::size_t i, double tole
   const auto windowOf = [&](std::size_t half) {
     return Parabola(points, i - std::min(i, half), std::min(points.size() - 1, i + half), i);
   };
+  if (points.size() == 2) return {points[i], (points[1] - points[0]).normalized()};
   FittedPlace fitted = windowOf(1).place;
-  if (points.size() == 2) fitted = {points[i], (points[1] - points[0]).normalized()};
   for (std::size_t half = 2; half < 2 * points.size() && points.size() > 3; half *= 2) {
     const Parabola parabola = windowOf(half);
     if (!(parabola.residual <= kShareOfTolerance * tolerance)) break;
@@ -88,7 +88,7 @@ std::size_t farthestFrom(const std::vector<Plan>& points, const std::vector<Fitt
     reached += step;
     step *= 2;
   }
-  for (; step > 0; step /= 2)
+  while ((step /= 2) > 0)
     if (reached + step < points.size() && reaches(points, places, from, reached + step, tolerance)) reached += step;
   return reached;
 }

@@ -12,7 +12,6 @@
 #include <pcl_bsh/io/tracks/profile_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,8 +19,6 @@
 
 namespace pcl_bsh::pipeline {
 namespace {
-
-constexpr std::size_t batch_points = std::size_t{1} << 18; // between two looks at whether to stop
 
 struct Profile {
   InputFile file;
@@ -82,14 +79,10 @@ struct Gauge : Stage {
     told.cluster_distance = cluster_distance;
     io::GaugeRun gauging(told, parts, 1);
     GaugeFields fields;
-    const PointsView all = viewOf(inputs[0]->cloud);
-    for (std::size_t first = 0; first < all.count; first += batch_points) {
+    io::forEachGaugeBatch(viewOf(inputs[0]->cloud), [&](const PointsView& batch, std::size_t first) {
       if (isCancelled()) throw Cancelled();
-      PointsView batch = all;
-      batch.data = static_cast<const unsigned char*>(all.data) + first * all.stride;
-      batch.count = std::min(batch_points, all.count - first);
       fields.add(*axis_, gauging.add(batch, first));
-    }
+    });
     const std::string earlier = previous ? previous->path : "";
     warnOf(earlier, gauging.finish(earlier, earlier_));
     files_.write(told);

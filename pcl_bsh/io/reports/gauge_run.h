@@ -9,13 +9,30 @@
 #include <pcl_bsh/io/reports/gauge_report.h>
 #include <pcl_bsh/track/gauge.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace pcl_bsh::io {
+
+/// Points of a batch: what is read at once, and how much is done between two looks at whether to stop.
+inline constexpr std::size_t gauge_batch_points = std::size_t{1} << 18;
+
+/// Calls use(points, number of the first one) for each batch of a cloud, in order.
+template <class Use>
+void forEachGaugeBatch(const PointsView& all, const Use& use)
+{
+  for (std::size_t first = 0; first < all.count; first += gauge_batch_points) {
+    PointsView batch = all;
+    batch.data = static_cast<const unsigned char*>(all.data) + first * all.stride;
+    batch.count = std::min(gauge_batch_points, all.count - first);
+    use(batch, first);
+  }
+}
 
 /// Gathers a report. The report is told the same, however its points are divided into batches.
 class GaugeRun {
