@@ -19,16 +19,22 @@ struct ProgramOutcome {
 };
 using Outcome = ProgramOutcome; // a scene's move has an Outcome, too
 
-/// In the shell, so quote what it would change. @param place the folder to run in; empty: this one
-inline Outcome run(const std::string& program, const std::string& arguments, const std::filesystem::path& place = {})
+/// Commands of the shell. @param place the folder to run in; empty: this one
+inline Outcome runCommands(const std::string& commands, const std::filesystem::path& place = {})
 {
   const io::TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   const std::string err = (folder / "err").string();
-  const std::string command = (place.empty() ? "" : "cd " + place.string() + " && ") + "{ " + PCL_BSH_PROGRAM_DIR +
-                              "/" + program + " " + arguments + "\n} >" + out + " 2>" + err;
+  const std::string command =
+      (place.empty() ? "" : "cd " + place.string() + " && ") + "{ " + commands + "\n} >" + out + " 2>" + err;
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
+}
+
+/// In the shell, so quote what it would change.
+inline Outcome run(const std::string& program, const std::string& arguments, const std::filesystem::path& place = {})
+{
+  return runCommands(PCL_BSH_PROGRAM_DIR "/" + program + " " + arguments, place);
 }
 
 } // namespace pcl_bsh

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Texts that users copy run as they stand: the README's commands, in their order, and each sample scene and pipeline.
-#include "support/temporary_folder.h"
+#include "program_run.h"
 
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 #include <vector>
 
@@ -57,10 +54,8 @@ protected:
   void expectDone(const std::string& script) const
   {
     clone.write("script.sh", "set -euo pipefail\n" + script);
-    const std::string said = (clone / "said").string();
-    const int status =
-        std::system(("cd " + clone.path().string() + " && bash script.sh >" + said + " 2>&1 </dev/null").c_str());
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << script << '\n' << files::contentOf(said);
+    const Outcome done = runCommands("bash script.sh </dev/null", clone.path());
+    EXPECT_EQ(done.exit_code, 0) << script << '\n' << done.out << done.err;
   }
 
   const files::TemporaryFolder clone;
