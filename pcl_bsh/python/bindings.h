@@ -16,6 +16,7 @@ VerdictMember verdictOf(Verdict verdict);
 void bindWords(pybind11::module_& module);     ///< verdicts, work, accuracy, Cancelled
 void bindHierarchy(pybind11::module_& module); ///< SphereHierarchy
 void bindCollision(pybind11::module_& module); ///< flags, any collision, smallest distance
+void bindObstacles(pybind11::module_& module); ///< several at once
 void bindContacts(pybind11::module_& module);
 void bindDistances(pybind11::module_& module);
 void bindNeighbors(pybind11::module_& module);

@@ -127,6 +127,7 @@ PYBIND11_MODULE(_core, module)
   bindWords(module);
   bindHierarchy(module);
   bindCollision(module);
+  bindObstacles(module);
   bindContacts(module);
   bindDistances(module);
   bindNeighbors(module);

@@ -29,7 +29,7 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind)
          !is(&Question::obstacle_ignore_points);
 }
 
-void PythonQuestion::set(const py::kwargs& options, QuestionKind kind)
+void setOptions(Question& question, const py::kwargs& options, QuestionKind kind)
 {
   for (const auto& [key, value] : options) {
     const std::string name = py::str(key);

@@ -36,6 +36,10 @@ private:
 /// Whether a question about hierarchies has an option: not what decides how they are built.
 bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
 
+/// Options by their names in the table, of a kind of question: faces have them without a word of their own.
+/// @throws py::type_error for an unknown name or a wrong value
+void setOptions(Question& question, const py::kwargs& options, QuestionKind kind);
+
 /// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
 /// clouds thousands of times: how far their points are apart is measured once.
 struct PythonQuestion {
@@ -46,9 +50,8 @@ struct PythonQuestion {
   /// The arguments a, pose_a, b and pose_b.
   PythonQuestion(const Cloud& cloud_a, const PoseLike& pose_a, const Cloud& cloud_b, const PoseLike& pose_b);
 
-  /// Options by their names in the table, of a kind of question: faces have them without a word of their own.
-  /// @throws py::type_error for an unknown name or a wrong value
-  void set(const py::kwargs& options, QuestionKind kind);
+  /// setOptions() of the question.
+  void set(const py::kwargs& options, QuestionKind kind) { setOptions(question, options, kind); }
 
   /// The answer of ask(), computed without the interpreter's lock; its warnings are told.
   Answer answer();
