@@ -273,25 +273,33 @@ int collide(Options options)
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
-  const auto load = [&](const std::string& name, const fs::path& file, const cli::ReadChoice& reading,
-                        const Uncertainty& uncertainty) {
-    io::CloudFacts facts;
-    io::Obstacle loaded =
-        cli::loadObstacle(file, {question.vertices_only}, report.seconds.load,
-                          reading.ofObstacle(file, input.facts.unit, uncertainty.field), &facts, question.threads);
+  const auto load = [&](const cli::ObstacleChoice& one, io::CloudFacts& facts) {
+    cli::ReadChoice reading = options.reading;
+    if (one.unit) reading.obstacle_unit = one.unit;
+    const std::string& sigmas = one.uncertainty.value_or(question.obstacle_uncertainty).field;
+    const io::ReadSettings settings = reading.ofObstacle(one.file, input.facts.unit, sigmas);
+    std::vector<io::Obstacle> loaded;
+    if (one.parts)
+      loaded =
+          cli::loadParts(*one.parts, {question.vertices_only}, report.seconds.load, settings, facts, question.threads);
+    else
+      loaded = {cli::loadObstacle(one.file, {question.vertices_only}, report.seconds.load, settings, &facts,
+                                  question.threads)};
     if (!reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
       const std::string unit = io::nameOf(*input.facts.unit);
-      report.warnings.push_back(file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
+      report.warnings.push_back(one.file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
                                 options.input.string() + " in " + unit +
                                 ", by their coordinate systems: give --input-unit " + unit + " to convert it");
     }
-    report.obstacles.push_back({name, file.string(), std::move(loaded), std::move(facts)});
+    return loaded;
   };
-  if (options.obstacles.empty()) load("", options.obstacle, options.reading, question.obstacle_uncertainty);
-  for (const cli::ObstacleChoice& one : options.obstacles) {
-    cli::ReadChoice reading = options.reading;
-    if (one.unit) reading.obstacle_unit = one.unit;
-    load(one.name, one.file, reading, one.uncertainty.value_or(question.obstacle_uncertainty));
+  std::vector<cli::ObstacleChoice> choices = options.obstacles;
+  if (choices.empty()) choices.push_back({"", options.obstacle});
+  std::vector<io::Obstacle> loaded; // of the last file
+  io::CloudFacts facts;
+  for (const cli::ObstacleChoice& one : choices) {
+    if (one.part == 0) loaded = load(one, facts = {});
+    report.obstacles.push_back({one.name, one.file.string(), loaded[one.part], facts});
   }
   if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, report.obstacles[0].loaded);
   if (!options.pairs.empty()) {

@@ -22,6 +22,19 @@ io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSe
   return obstacle;
 }
 
+std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::SurfaceSettings& settings, double& seconds,
+                                    const io::ReadSettings& reading, io::CloudFacts& facts, unsigned threads)
+{
+  Step step("Loading " + parts.file.string());
+  const io::Mesh whole = io::readMesh(parts.file, &facts, reading, threads);
+  std::vector<io::Obstacle> obstacles;
+  for (io::Mesh& mesh : meshesOf(parts, whole))
+    obstacles.push_back(io::obstacleOf(parts.file, std::move(mesh), settings));
+  obstacles.front().addRemarks(facts.remarks);
+  seconds += step.done(counted(obstacles.size(), "part") + ", " + counted(whole.triangles.size(), "triangle"));
+  return obstacles;
+}
+
 void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle& obstacle)
 {
   if (obstacle.isSurface()) return io::requireWritableMesh(file);

@@ -2,6 +2,7 @@
 // The obstacle of a command line: a cloud or, where its file has faces, a surface.
 #pragma once
 
+#include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/query/result.h>
 
@@ -16,6 +17,12 @@ namespace pcl_bsh::cli {
 /// @throws as io::readObstacle() does, whose last arguments these are
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
                           const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads);
+
+/// Reads a file's parts, each an obstacle, as a step of the program. The first has the remarks about the file.
+/// @param seconds that it took are added
+/// @throws as io::readMesh(), whose last arguments these are, and io::meshesOf() do
+std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::SurfaceSettings& settings, double& seconds,
+                                    const io::ReadSettings& reading, io::CloudFacts& facts, unsigned threads);
 
 /// Fails unless a file can hold the obstacle and which of its points, or of its triangles, collide. Surfaces are .ply.
 /// @throws files::FileError; std::invalid_argument for a cloud whose field `collision` is of another type

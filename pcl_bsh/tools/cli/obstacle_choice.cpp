@@ -44,10 +44,15 @@ void set(ObstacleChoice& choice, const std::string& option, const std::string& v
     }
     return;
   }
+  if (option == "parts") {
+    if (value != "true" && value != "false") throw UsageError(label + ": parts: '" + value + "': give true or false");
+    if (value == "true") choice.parts = std::make_shared<const io::MeshParts>(io::readMeshParts(choice.file));
+    return;
+  }
   const std::string name = option == "uncertainty" ? "obstacle_uncertainty" : option;
   if (name != "clearance" && name != "solid" && name != "obstacle_uncertainty")
     throw UsageError(label + ": '" + option +
-                     "' is no option of an obstacle: give pose, unit, clearance, solid or uncertainty");
+                     "' is no option of an obstacle: give pose, unit, clearance, solid, uncertainty or parts");
   Question question;
   try {
     setOption(question, name, value);
@@ -82,8 +87,20 @@ ObstacleChoice parseObstacle(const std::string& text, std::vector<std::string>& 
       set(choice, word->substr(0, of_option), word->substr(of_option + 1), label, warnings);
     }
   }
-  if (choice.name.empty()) choice.name = choice.file.stem().string();
+  if (choice.name.empty() && !choice.parts) choice.name = choice.file.stem().string();
   return choice;
+}
+
+/// One for each part, or the only one.
+void addParts(const ObstacleChoice& choice, std::vector<ObstacleChoice>& choices, std::vector<std::string>& warnings)
+{
+  if (!choice.parts) return choices.push_back(choice);
+  for (const std::string& remark : choice.parts->remarks) warnings.push_back(choice.file.string() + ": " + remark);
+  for (std::size_t i = 0; i < choice.parts->names.size(); ++i) {
+    choices.push_back(choice);
+    choices.back().part = i;
+    choices.back().name = (choice.name.empty() ? "" : choice.name + '/') + choice.parts->names[i];
+  }
 }
 
 } // namespace
@@ -92,10 +109,8 @@ std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts
 {
   std::vector<ObstacleChoice> choices;
   std::vector<std::string> names;
-  for (const std::string& text : texts) {
-    choices.push_back(parseObstacle(text, warnings));
-    names.push_back(choices.back().name);
-  }
+  for (const std::string& text : texts) addParts(parseObstacle(text, warnings), choices, warnings);
+  for (const ObstacleChoice& choice : choices) names.push_back(choice.name);
   try {
     checkObstacleNames(names);
   }

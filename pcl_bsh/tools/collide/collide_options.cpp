@@ -133,7 +133,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
                  "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
                  "again and again. Its own options follow after ';':\n"
                  "\"NAME=FILE;pose=POSE;unit=mm\", and clearance=D, solid=true and\n"
-                 "uncertainty=U alike.\n"
+                 "uncertainty=U alike; parts=true makes an obstacle of each object or\n"
+                 "group of an .obj, or solid of an .stl, named PART or NAME/PART.\n"
                  "Without NAME= its name is the file's. A path moves all of them")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
@@ -194,7 +195,8 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   setObstacles(options, obstacles);
   std::vector<std::filesystem::path> clouds = {options.input};
   if (options.obstacles.empty()) clouds.push_back(options.obstacle);
-  for (const ObstacleChoice& one : options.obstacles) clouds.push_back(one.file);
+  for (const ObstacleChoice& one : options.obstacles)
+    if (one.part == 0) clouds.push_back(one.file);
   options.reading = reading.read(clouds);
   path.requireConsistent(pose.given() ? pose.option() : "");
   if (const auto given = pose.read(options.warnings)) question.pose = *given;
@@ -216,7 +218,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   files.reads("INPUT", options.input).reads("OBSTACLE", options.obstacle).readsPose("--pose", pose.pose);
   files.reads("--pairs", pose.pairs).writes("--poses-out", options.poses_out);
   for (const ObstacleChoice& one : options.obstacles)
-    files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
+    if (one.part == 0) files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));

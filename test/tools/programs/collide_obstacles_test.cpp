@@ -177,6 +177,47 @@ TEST_F(CollideObstacles, StandAgainstEachOtherWithoutAClearance)
   EXPECT_EQ(json("report.json")["between"][0]["clearance"], 0.0);
 }
 
+/// Boxes that stand at x from 0 on, a metre wide, 4 m apart, one an object of its own, a millimetre a unit.
+std::string boxesInMillimetres(int count)
+{
+  std::string obj;
+  for (int i = 0; i < count; ++i) {
+    obj += "o box_" + std::to_string(i) + '\n';
+    for (int k = 0; k < 8; ++k)
+      obj += "v " + std::to_string(4000 * i + (k % 2 ? 1000 : 0)) + (k / 2 % 2 ? " 1000" : " 0") +
+             (k > 3 ? " 1000\n" : " 0\n");
+    for (const char* const face :
+         {"-8 -6 -5 -7", "-4 -3 -1 -2", "-8 -7 -3 -4", "-6 -2 -1 -5", "-8 -4 -2 -6", "-7 -5 -1 -3"})
+      obj += std::string("f ") + face + '\n';
+  }
+  return obj;
+}
+
+TEST_F(CollideObstacles, AreThePartsOfAFile)
+{
+  folder.write("plant.obj", boxesInMillimetres(3));
+  const Outcome done =
+      collide("--input-unit m --obstacle \"plant.obj;unit=mm;parts=true;solid=true;pose=0,0,-0.9,0,0,0\" "
+              "--between --ignore \"box_1:box_*\" --clashes list.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("box_0: clash of 2 points, smallest distance -0.1 (0.1 deep)\n"));
+  EXPECT_THAT(done.out, HasSubstr("box_1: clear, smallest distance 0.5385"));
+  EXPECT_THAT(done.out, HasSubstr("box_0 and box_2: clear, smallest distance 7\n"));
+  EXPECT_THAT(done.out, Not(HasSubstr("box_0 and box_1")));
+  const SeveralJson list = json("list.json");
+  ASSERT_EQ(list["obstacles"].size(), 3U);
+  EXPECT_EQ(list["obstacles"][2]["file"], "plant.obj");
+  EXPECT_EQ(list["obstacles"][2]["surface"]["triangles"], 12);
+  EXPECT_EQ(list["clashes"][0]["obstacle_name"], "box_0");
+  EXPECT_THAT(collide("--obstacle \"plant=plant.obj;parts=true\" --obstacle crate.off").out,
+              HasSubstr("plant/box_2: clear"));
+  EXPECT_EQ(collide("--vertices-only --obstacle \"plant.obj;parts=true\"").exit_code, 0);
+  EXPECT_THAT(refused("--obstacle \"crate.off;parts=true\""), HasSubstr("crate.off: has no parts with names"));
+  EXPECT_THAT(refused("--obstacle \"plant.obj;parts=1\""), HasSubstr("parts: '1': give true or false"));
+  EXPECT_THAT(refused("--obstacle \"plant.obj;parts=true\" --obstacle box_1=crate.off"),
+              HasSubstr("two obstacles have the name 'box_1': give each its own"));
+}
+
 TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
 {
   EXPECT_THAT(refused("--obstacle a=crate.off --obstacle a=copy.off"),
@@ -184,7 +225,7 @@ TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
   EXPECT_THAT(refused("--obstacle =crate.off"), HasSubstr("names no obstacle: give NAME=FILE"));
   EXPECT_THAT(refused("--obstacle input=crate.off"), HasSubstr("'input' is the input's own name"));
   EXPECT_THAT(refused("--obstacle \"crate.off;size=3\""),
-              HasSubstr("'size' is no option of an obstacle: give pose, unit, clearance, solid or uncertainty"));
+              HasSubstr("'size' is no option of an obstacle: give pose, unit, clearance, solid, uncertainty or parts"));
   EXPECT_THAT(refused("--obstacle \"crate.off;solid\""), HasSubstr("'solid' has no value: give OPTION=VALUE"));
   EXPECT_THAT(refused("--obstacle \"crate.off;clearance=-1\""), HasSubstr("clearance: '-1': give a finite length"));
   EXPECT_THAT(refused("--obstacle none.off"), HasSubstr("none.off: no such file"));

@@ -110,13 +110,15 @@ void expect(TextCursor& text, std::string_view word)
   if (keyword(text) != word) text.fail("has no '" + std::string(word) + "' where a facet needs one");
 }
 
-void readText(std::string_view file, NumberedPlaces& places, std::vector<Triangle>& triangles)
+void readText(std::string_view file, NumberedPlaces& places, std::vector<Triangle>& triangles,
+              std::vector<StlSolid>& solids)
 {
   bool in_solid = false;
   for (TextCursor text(file); text.nextLine();) {
     const std::string key = keyword(text);
     if (key == "solid") {
       in_solid = true;
+      solids.push_back({std::string(text.line())});
     }
     else if (key == "endsolid") {
       in_solid = false;
@@ -137,6 +139,7 @@ void readText(std::string_view file, NumberedPlaces& places, std::vector<Triangl
       next(), expect(text, "endloop");
       next(), expect(text, "endfacet");
       triangles.push_back(triangle);
+      ++solids.back().triangles;
     }
     else {
       text.fail("starts with '" + key + "', which no STL file has there");
@@ -151,12 +154,23 @@ pcl::PCLPointCloud2 parseStl(std::string_view file, std::vector<Triangle>* trian
 {
   NumberedPlaces places;
   std::vector<Triangle> found;
+  std::vector<StlSolid> solids;
   if (isText(file))
-    readText(withoutEndMarks(file), places, found);
+    readText(withoutEndMarks(file), places, found, solids);
   else
     readBinary(file, places, found);
   if (triangles != nullptr) triangles->insert(triangles->end(), found.begin(), found.end());
   return places.cloud();
+}
+
+std::vector<StlSolid> parseStlSolids(std::string_view file)
+{
+  if (!isText(file)) throw FormatError("is a binary STL, whose parts have no names", "save it as text");
+  NumberedPlaces places;
+  std::vector<Triangle> triangles;
+  std::vector<StlSolid> solids;
+  readText(withoutEndMarks(file), places, triangles, solids);
+  return solids;
 }
 
 pcl::PCLPointCloud2 parseStlHeader(std::string_view file)
