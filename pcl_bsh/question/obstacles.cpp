@@ -104,7 +104,11 @@ public:
     if (wanted_.flags || wanted_.poses) found.flags.resize(records_, Verdict::free);
     if (wanted_.first_poses) found.first_pose.resize(records_, -1);
     if (!wanted_.contacts) return;
-    addFree(found, records_);
+    found.flags.resize(records_, Verdict::free);
+    found.distance.resize(records_, std::numeric_limits<float>::quiet_NaN());
+    found.first_pose.resize(records_, -1);
+    found.closest_pose.resize(records_, -1);
+    found.closest_point.resize(records_, kNothing);
     joined_.closest_obstacle.resize(records_, kNothing);
   }
 
@@ -297,15 +301,6 @@ Question questionOf(const Question& question, const PlacedShape& obstacle)
   if (obstacle.solid) one.solid = *obstacle.solid;
   if (obstacle.uncertainty) one.obstacle_uncertainty = *obstacle.uncertainty;
   return one;
-}
-
-void addFree(TrajectoryResult& found, std::size_t records)
-{
-  found.flags.resize(records, Verdict::free);
-  found.distance.resize(records, std::numeric_limits<float>::quiet_NaN());
-  found.first_pose.resize(records, -1);
-  found.closest_pose.resize(records, -1);
-  found.closest_point.resize(records, kNothing);
 }
 
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles, const AnswerOf& told)

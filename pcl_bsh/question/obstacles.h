@@ -64,7 +64,7 @@ struct ObstaclesAnswer {
 };
 
 /// Called for each obstacle in turn, with the question about it and its answer. Flags, contacts and poses may be empty
-/// where nothing collides with the obstacle (addFree()).
+/// where nothing collides with the obstacle.
 using AnswerOf = std::function<void(std::size_t obstacle, const Question& question, Answer& answer)>;
 
 /// Asks about each obstacle. All obstacles share the hierarchy of the input. Where poses alone are asked about, an
@@ -72,9 +72,6 @@ using AnswerOf = std::function<void(std::size_t obstacle, const Question& questi
 /// @throws InvalidInput for no obstacle; as ask() of one does
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
                     const AnswerOf& told = nullptr);
-
-/// Gives contacts of nothing to each record that `found` has no entry of: it is free.
-void addFree(TrajectoryResult& found, std::size_t records);
 
 /// Two obstacles as they stand to each other, by their numbers.
 struct ObstaclePair {

@@ -168,9 +168,11 @@ void requireClashFormat(const std::filesystem::path& path);
 std::string clashCounts(const ClashLists& lists);
 
 /// The clashes of two clouds in memory, and the unseen records of the obstacle. All except the question is borrowed.
-ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const SphereHierarchy& model,
-                      const std::vector<Eigen::Isometry3d>& poses, const Answer& answer, double cluster_distance,
-                      const Obstacle* surface);
+/// @param box the extent of the scan
+/// @param answer one without flags has no clashes: ask() does not tell them of one of several obstacles that is free
+ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const std::optional<Extent>& box,
+                      const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses, const Answer& answer,
+                      double cluster_distance, const Obstacle* surface);
 
 /// Appends the unseen places of the obstacle along the path (findUnseenPlaces()), where they were asked for. To be
 /// called before lists are compared.

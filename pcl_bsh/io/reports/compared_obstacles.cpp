@@ -39,11 +39,7 @@ ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<Pla
     obstacles[i].answer = std::move(answer);
   });
   if (!keep) return found;
-  const std::size_t records = input.hierarchy(question.uncertaintyOfInput(), question.threads).view().count;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    obstacles[i].found = found.each[i];
-    if (question.wanted.contacts) addFree(obstacles[i].answer.collisions, records);
-  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) obstacles[i].found = found.each[i];
   return found;
 }
 
@@ -77,13 +73,14 @@ ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
   const double distance = listing.cluster_distance ? *listing.cluster_distance
                                                    : clusterDistanceFor(greatestClearance(obstacles),
                                                                         alone.density.input.value_or(Spacing()));
+  const std::optional<Extent> box = extentOf(scan.view());
   ClashLists lists;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     ComparedObstacle& one = obstacles[i];
     one.poses = one.question.poses();
     const bool has_name = !one.name.empty();
     ClashReport list =
-        clashesOf({one.question, listing.input, one.file}, scan, *hierarchies[i], one.poses,
+        clashesOf({one.question, listing.input, one.file}, scan, box, *hierarchies[i], one.poses,
                   has_name ? one.answer : alone, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
     list.unit = listing.unit;
     list.coordinate_system = listing.coordinate_system;
