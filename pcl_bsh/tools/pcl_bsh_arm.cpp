@@ -9,18 +9,23 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/robots/read_robot.h>
+#include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/question/named_cloud.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/robot/robot_world.h>
 
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace {
@@ -54,7 +59,7 @@ struct Options {
   double radius = 0.0;
   bool motions = false, no_self = false;
   unsigned threads = 1;
-  std::optional<fs::path> report;
+  std::optional<fs::path> report, table;
   cli::ReadChoice reading;
   cli::CommandFiles files;
 };
@@ -102,6 +107,12 @@ std::vector<JointValues> valuesOf(const Options& options, const io::RobotGroups&
   return states;
 }
 
+/// A state or a motion, for programs and for people.
+struct Told {
+  Json json;
+  std::string line;
+};
+
 class Arm {
 public:
   Arm(const robots::RobotWorld& world, const std::vector<ReadObstacle>& obstacles)
@@ -133,7 +144,7 @@ public:
     json["place"] = obstacle.hierarchy->view().point(meeting.record);
   }
 
-  Json state(const RobotState& state, std::string& line) const
+  Told state(const RobotState& state) const
   {
     const robots::StateCheck check = world_.checkState(state);
     const robots::ClearanceResult nearest = world_.clearance(state);
@@ -141,21 +152,18 @@ public:
     if (nearest.meeting) json["gap"] = {nearest.gap.lower, nearest.gap.upper};
     const std::optional<Meeting>& meeting = check.meeting ? check.meeting : nearest.meeting;
     if (meeting) add(*meeting, json);
-    line = wordOf(check.verdict) + (meeting ? (check.meeting ? ": " : "; nearest is ") + told(*meeting) : "");
-    return json;
+    return {json, wordOf(check.verdict) + (meeting ? (check.meeting ? ": " : "; nearest is ") + told(*meeting) : "")};
   }
 
-  Json motion(const RobotState& from, const RobotState& to, std::string& line) const
+  Told motion(const RobotState& from, const RobotState& to) const
   {
     const robots::MotionCheck check = world_.checkMotion(from, to, true);
     Json json = {{"verdict", wordOf(check.verdict)}, {"last_valid", check.last_valid}};
-    line = wordOf(check.verdict);
-    if (!check.meeting) return json;
+    if (!check.meeting) return {json, wordOf(check.verdict)};
     json["fraction"] = check.fraction;
     add(*check.meeting, json);
-    line += " at " + std::to_string(check.fraction) + ": " + told(*check.meeting) + "; free until " +
-            std::to_string(check.last_valid);
-    return json;
+    return {json, wordOf(check.verdict) + (" at " + std::to_string(check.fraction)) + ": " + told(*check.meeting) +
+                      "; free until " + std::to_string(check.last_valid)};
   }
 
 private:
@@ -164,6 +172,40 @@ private:
   const robots::RobotWorld& world_;
   const std::vector<ReadObstacle>& obstacles_;
 };
+
+/// The answers about `count` states or motions, over threads.
+template <class Check>
+std::vector<Told> checkAll(const char* what, std::size_t count, unsigned threads, const Check& check)
+{
+  cli::Step step("Checking " + counted(count, what));
+  std::vector<Told> answers(count);
+  std::atomic<std::size_t> done{0};
+  parallelFor(count, threadCount(threads), [&](std::size_t i) {
+    answers[i] = check(i);
+    step.share(static_cast<double>(++done) / static_cast<double>(count));
+  });
+  step.done(counted(count, what));
+  return answers;
+}
+
+/// A row of the table; cells that say nothing are empty.
+std::string rowOf(const char* what, std::size_t number, const Json& json)
+{
+  const auto cell = [](const Json& value) {
+    if (value.is_null()) return std::string();
+    if (value.is_string()) return io::csvText(value.get<std::string>());
+    return value.is_number_float() ? io::numberText(value.get<double>()) : value.dump();
+  };
+  const auto of = [&](const char* key) { return json.value(key, Json()); };
+  const auto entry = [&](const char* key, std::size_t k) { return json.contains(key) ? json[key][k] : Json(); };
+  std::string row = what + (',' + std::to_string(number));
+  for (const Json& value :
+       {of("verdict"), entry("gap", 0), entry("gap", 1), of("fraction"), of("last_valid"), of("link"), of("other_link"),
+        of("obstacle"), json.contains("point") ? of("point") : of("triangle"), entry("place", 0), entry("place", 1),
+        entry("place", 2)})
+    row += ',' + cell(value);
+  return row + '\n';
+}
 
 void takeBase(Options& options, std::vector<std::string>& warnings)
 {
@@ -213,20 +255,30 @@ int run(Options& options)
                  {"clearance", options.world.clearance},
                  {"tolerance", options.world.tolerance},
                  {"states", Json::array()}};
-  std::string line;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    report["states"].push_back(arm.state(states[i], line));
-    options.files.summary() << "state " << i << ": " << line << '\n';
-  }
-  if (options.motions) report["motions"] = Json::array();
-  for (std::size_t i = 0; options.motions && i + 1 < states.size(); ++i) {
-    report["motions"].push_back(arm.motion(states[i], states[i + 1], line));
-    options.files.summary() << "motion " << i << " to " << i + 1 << ": " << line << '\n';
+  std::string table =
+      "what,number,verdict,gap_lower,gap_upper,fraction,last_valid,link,other_link,obstacle,record,x,y,z\n";
+  const auto tell = [&](const char* what, const char* key, const std::vector<Told>& answers) {
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      options.files.summary() << what << ' ' << i;
+      if (std::string_view(what) == "motion") options.files.summary() << " to " << i + 1;
+      options.files.summary() << ": " << answers[i].line << '\n';
+      table += rowOf(what, i, answers[i].json);
+      report[key].push_back(answers[i].json);
+    }
+  };
+  tell("state", "states",
+       checkAll("state", states.size(), options.threads, [&](std::size_t i) { return arm.state(states[i]); }));
+  if (options.motions) {
+    report["motions"] = Json::array();
+    tell("motion", "motions", checkAll("motion", states.size() - 1, options.threads, [&](std::size_t i) {
+           return arm.motion(states[i], states[i + 1]);
+         }));
   }
   warnOfHoles(options, robot, obstacles, warnings);
   cli::warn(program, warnings);
   report["warnings"] = warnings;
   if (options.report) cli::writeJson(*options.report, report);
+  if (options.table) files::replaceFile(*options.table, [&](std::ostream& out) { out << table; });
   return 0;
 }
 
@@ -239,8 +291,10 @@ void check(Options& options)
   files.reads("--states", options.robot.states);
   for (const fs::path& obstacle : options.obstacles) files.reads("OBSTACLE", obstacle);
   files.readsPose("--base", options.base).writes("--report", options.report.value_or(""));
+  files.writes("--table", options.table.value_or(""));
   files.requireApart();
   if (options.report) files::requireWritable(*options.report);
+  if (options.table) files::requireWritable(*options.table);
 }
 
 } // namespace
@@ -280,6 +334,8 @@ int main(int argc, char** argv)
         ->transform(cli::number<unsigned>(cli::give_threads))
         ->capture_default_str();
     app.add_option("--report", options.report, "JSON file for the results; - is standard output")->type_name("FILE");
+    app.add_option("--table", options.table, "CSV file: a line for each state and motion; - is standard output")
+        ->type_name("FILE");
     cli::ReadOptions reading;
     reading.addTo(app);
     if (!cli::understood(app, program, argc, argv)) return 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 namespace pcl_bsh {
 namespace {
@@ -41,6 +42,35 @@ protected:
 
   const io::TemporaryFolder folder;
 };
+
+TEST_F(ArmProgram, WritesATableOfAnyNumberOfThreads)
+{
+  std::string states = "turn\n";
+  for (int i = 0; i < 300; ++i) states += std::to_string(0.1 * i) + '\n';
+  folder.write("many.csv", states);
+  const std::string asked = "arm.urdf points.csv --states many.csv --motions --clearance 0.06 --table ";
+  ASSERT_EQ(arm(asked + "one.csv").exit_code, 0);
+  const Outcome done = arm(asked + "two.csv --threads 2 --report report.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const std::string table = io::contentOf(folder / "one.csv");
+  EXPECT_EQ(table, io::contentOf(folder / "two.csv"));
+  EXPECT_THAT(table, StartsWith("what,number,verdict,gap_lower,gap_upper,fraction,last_valid,link,other_link,obstacle,"
+                                "record,x,y,z\nstate,0,free,"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 600);
+  const Json report = Json::parse(io::contentOf(folder / "report.json"));
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  for (const auto& [what, key] : {std::pair("state", "states"), std::pair("motion", "motions")})
+    for (std::size_t i = 0; i < report[key].size(); ++i) {
+      std::getline(lines, line);
+      EXPECT_THAT(line, StartsWith(std::string(what) + ',' + std::to_string(i) + ',' +
+                                   report[key][i]["verdict"].get<std::string>() + ','));
+      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 13) << line;
+      EXPECT_EQ(line.find(",bob,,points.csv,1,0,1.15,0") != line.npos, report[key][i].contains("place")) << line;
+    }
+  expectFailure("arm.urdf points.csv --states states.csv --table none/a.csv", 1, "none");
+}
 
 TEST_F(ArmProgram, TellsWhatCollidesWhereAndWhen)
 {
