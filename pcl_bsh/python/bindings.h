@@ -18,6 +18,8 @@ void bindHierarchy(pybind11::module_& module); ///< SphereHierarchy
 void bindCollision(pybind11::module_& module); ///< flags, any collision, smallest distance
 void bindObstacles(pybind11::module_& module); ///< several at once
 void bindContacts(pybind11::module_& module);
+void bindManifold(pybind11::module_& module); ///< colliders, the few contacts of two, and ways out
+void bindMass(pybind11::module_& module);
 void bindDistances(pybind11::module_& module);
 void bindNeighbors(pybind11::module_& module);
 void bindClusters(pybind11::module_& module);   ///< clusters and spacings of one cloud
@@ -28,6 +30,9 @@ void bindManyPoses(pybind11::module_& module);  ///< many poses, many motions
 void bindScene(pybind11::module_& module);
 void bindSceneResult(pybind11::module_& module);
 void bindFiles(pybind11::module_& module);
+void bindRobot(pybind11::module_& module); ///< these three where URDF is read
+void bindRobotAnswers(pybind11::module_& module);
+void bindRobotWorld(pybind11::module_& module);
 void bindPipeline(pybind11::module_& module);
 
 } // namespace pcl_bsh::python

@@ -129,6 +129,8 @@ PYBIND11_MODULE(_core, module)
   bindCollision(module);
   bindObstacles(module);
   bindContacts(module);
+  bindManifold(module);
+  bindMass(module);
   bindDistances(module);
   bindNeighbors(module);
   bindClusters(module);
@@ -138,6 +140,11 @@ PYBIND11_MODULE(_core, module)
   bindManyPoses(module);
   bindScene(module);
   bindFiles(module);
+#ifdef PCL_BSH_ROBOTS
+  bindRobot(module);
+  bindRobotAnswers(module);
+  bindRobotWorld(module);
+#endif
   bindPipeline(module);
   module.def("_hide_types", [] { hideTypes(py::module_::import("pcl_bsh._core")); });
 }

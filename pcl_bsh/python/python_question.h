@@ -8,6 +8,7 @@
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/warnings/hollow.h>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,11 +27,19 @@ public:
 
   /// Its points are about to move: what was measured of them counts no more. While none computes, with the
   /// interpreter's lock.
-  void forget() { shape_ = Shape("", itself()); }
+  void forget()
+  {
+    shape_ = Shape("", itself());
+    ++changes_;
+  }
+
+  /// How often its points have moved, or nearly. While this thread computes.
+  std::size_t changes() const noexcept { return changes_; }
 
 private:
   std::shared_ptr<const SphereHierarchy> itself() const { return {std::shared_ptr<const void>(), this}; }
   Shape shape_{"", itself()};
+  std::size_t changes_ = 0;
 };
 
 /// Whether a question about hierarchies has an option: not what decides how they are built.

@@ -155,10 +155,11 @@ double Gaps::error(const RobotState& largest) const
          kOfGaps * (away + 2.0 * (reach + parts.extent) + options.clearance + options.self_clearance);
 }
 
-void Gaps::requireState(const RobotState& state) const
+void Gaps::requireState(const RobotState& state, const char* several, std::size_t number) const
 {
+  const auto name = [&] { return several ? several + (" " + std::to_string(number)) : "state"; };
   if (state.size() != kinematics.variables())
-    throw InvalidInput(Input::motion, "state", "has " + std::to_string(state.size()) + " values",
+    throw InvalidInput(Input::motion, name(), "has " + std::to_string(state.size()) + " values",
                        "give one for each of the " + std::to_string(kinematics.variables()) + " joints of " +
                            robot.name)
         .withValue(static_cast<double>(state.size()));
@@ -166,11 +167,12 @@ void Gaps::requireState(const RobotState& state) const
     const Joint& joint = *robot.links[kinematics.linkOfVariable(i)].joint;
     const bool bounded = joint.kind != Joint::Kind::continuous;
     if (std::isfinite(state[i]) && (!bounded || (state[i] >= joint.lower && state[i] <= joint.upper))) continue;
-    throw InvalidInput(Input::motion, "joint '" + joint.name + "'", "has the value " + std::to_string(state[i]),
+    throw InvalidInput(Input::motion, (several ? name() + ": joint '" : "joint '") + joint.name + "'",
+                       "has the value " + std::to_string(state[i]),
                        bounded ? "its limits are " + std::to_string(joint.lower) + " to " + std::to_string(joint.upper)
                                : "give a finite one")
         .withValue(state[i])
-        .withIndex(i);
+        .withIndex(several ? number : i);
   }
 }
 

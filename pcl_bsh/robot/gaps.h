@@ -42,7 +42,8 @@ public:
   /// At least how far a computed gap is off, at values up to these.
   double error(const RobotState& largest) const;
 
-  void requireState(const RobotState& state) const;
+  /// @param several what errors call it, with its number: a state, or a motion; null: it is the only one
+  void requireState(const RobotState& state, const char* several = nullptr, std::size_t number = 0) const;
 
   const Robot robot;
   const WorldOptions options;

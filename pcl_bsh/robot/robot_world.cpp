@@ -3,6 +3,8 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/robot/motion_search.h>
 #include <pcl_bsh/robot/robot_world.h>
 
@@ -21,16 +23,35 @@ std::vector<Obstacle> obstaclesOf(const std::vector<const SphereHierarchy*>& hie
   return obstacles;
 }
 
-/// Calls check(i) for each one, some at a time.
-template <class Check>
-std::vector<Verdict> checkAll(std::size_t count, unsigned threads, const Check& check)
+/// The answers of answer(i), of some at a time.
+template <class Answer>
+auto answerAll(std::size_t count, const Effort& effort, const Answer& answer)
 {
-  constexpr std::size_t some = 64;
-  std::vector<Verdict> verdicts(count);
-  parallelFor((count + some - 1) / some, threadCount(threads), [&](std::size_t part) {
-    for (std::size_t i = part * some; i < std::min(count, (part + 1) * some); ++i) verdicts[i] = check(i);
+  constexpr std::size_t some = 16;
+  const std::size_t parts = (count + some - 1) / some;
+  std::vector<decltype(answer(0))> answers(count);
+  Progress progress(effort.progress);
+  progress.begin(1.0, parts);
+  parallelFor(parts, threadCount(effort.threads), [&](std::size_t part) {
+    if (progress.stopped()) return;
+    for (std::size_t i = part * some; i < std::min(count, (part + 1) * some); ++i) answers[i] = answer(i);
+    progress.step();
   });
-  return verdicts;
+  progress.throwIfStopped();
+  progress.end();
+  return answers;
+}
+
+void requireStates(const Gaps& gaps, const std::vector<RobotState>& states, const Effort& effort)
+{
+  checkExact(effort);
+  for (std::size_t i = 0; i < states.size(); ++i) gaps.requireState(states[i], "state", i);
+}
+
+void requireLimit(double limit)
+{
+  if (std::isnan(limit))
+    throw InvalidInput(Input::max_distance, "limit", "is not a number", "give a length, or infinity");
 }
 
 /// The least gap of all that it is shown.
@@ -92,6 +113,28 @@ private:
   Gaps::Poses poses_;
   ClearanceResult best_;
 };
+
+StateCheck checkOf(const Gaps& gaps, const RobotState& state)
+{
+  const ScratchLease<MotionScratch> scratch;
+  return MotionSearch(gaps, state, state, *scratch).atStart();
+}
+
+MotionCheck checkOf(const Gaps& gaps, const RobotState& from, const RobotState& to, bool with_last_valid)
+{
+  const ScratchLease<MotionScratch> scratch;
+  MotionSearch search(gaps, from, to, *scratch);
+  MotionCheck check = search.all();
+  if (with_last_valid && check.verdict != Verdict::free) check.last_valid = search.lastValid();
+  return check;
+}
+
+ClearanceResult clearanceOf(const Gaps& gaps, const RobotState& state, double limit)
+{
+  RobotState largest = state;
+  for (double& value : largest) value = std::abs(value);
+  return LeastGap(gaps, state, limit).result(gaps.error(largest));
+}
 
 } // namespace
 
@@ -182,8 +225,7 @@ StateCheck RobotWorld::checkState(const RobotState& state) const
 {
   const DefaultFloatEnvironment environment;
   inside_->gaps.requireState(state);
-  const ScratchLease<MotionScratch> scratch;
-  return MotionSearch(inside_->gaps, state, state, *scratch).atStart();
+  return checkOf(inside_->gaps, state);
 }
 
 MotionCheck RobotWorld::checkMotion(const RobotState& from, const RobotState& to, bool with_last_valid) const
@@ -191,45 +233,45 @@ MotionCheck RobotWorld::checkMotion(const RobotState& from, const RobotState& to
   const DefaultFloatEnvironment environment;
   inside_->gaps.requireState(from);
   inside_->gaps.requireState(to);
-  const ScratchLease<MotionScratch> scratch;
-  MotionSearch search(inside_->gaps, from, to, *scratch);
-  MotionCheck check = search.all();
-  if (with_last_valid && check.verdict != Verdict::free) check.last_valid = search.lastValid();
-  return check;
+  return checkOf(inside_->gaps, from, to, with_last_valid);
 }
 
 ClearanceResult RobotWorld::clearance(const RobotState& state, double limit) const
 {
   const DefaultFloatEnvironment environment;
   inside_->gaps.requireState(state);
-  if (std::isnan(limit))
-    throw InvalidInput(Input::max_distance, "limit", "is not a number", "give a length, or infinity");
-  RobotState largest = state;
-  for (double& value : largest) value = std::abs(value);
-  return LeastGap(inside_->gaps, state, limit).result(inside_->gaps.error(largest));
+  requireLimit(limit);
+  return clearanceOf(inside_->gaps, state, limit);
 }
 
-std::vector<Verdict> RobotWorld::checkStates(const std::vector<RobotState>& states, unsigned threads) const
+std::vector<StateCheck> RobotWorld::checkStates(const std::vector<RobotState>& states, const Effort& effort) const
 {
   const DefaultFloatEnvironment environment;
-  for (const RobotState& state : states) inside_->gaps.requireState(state);
-  return checkAll(states.size(), threads, [&](std::size_t i) {
-    const ScratchLease<MotionScratch> scratch;
-    return MotionSearch(inside_->gaps, states[i], states[i], *scratch).atStart().verdict;
-  });
+  requireStates(inside_->gaps, states, effort);
+  return answerAll(states.size(), effort, [&](std::size_t i) { return checkOf(inside_->gaps, states[i]); });
 }
 
-std::vector<Verdict> RobotWorld::checkMotions(const std::vector<Motion>& motions, unsigned threads) const
+std::vector<MotionCheck> RobotWorld::checkMotions(const std::vector<Motion>& motions, bool with_last_valid,
+                                                  const Effort& effort) const
 {
   const DefaultFloatEnvironment environment;
-  for (const Motion& motion : motions) {
-    inside_->gaps.requireState(motion.from);
-    inside_->gaps.requireState(motion.to);
+  checkExact(effort);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    inside_->gaps.requireState(motions[i].from, "motion", i);
+    inside_->gaps.requireState(motions[i].to, "motion", i);
   }
-  return checkAll(motions.size(), threads, [&](std::size_t i) {
-    const ScratchLease<MotionScratch> scratch;
-    return MotionSearch(inside_->gaps, motions[i].from, motions[i].to, *scratch).all().verdict;
+  return answerAll(motions.size(), effort, [&](std::size_t i) {
+    return checkOf(inside_->gaps, motions[i].from, motions[i].to, with_last_valid);
   });
+}
+
+std::vector<ClearanceResult> RobotWorld::clearances(const std::vector<RobotState>& states, double limit,
+                                                    const Effort& effort) const
+{
+  const DefaultFloatEnvironment environment;
+  requireStates(inside_->gaps, states, effort);
+  requireLimit(limit);
+  return answerAll(states.size(), effort, [&](std::size_t i) { return clearanceOf(inside_->gaps, states[i], limit); });
 }
 
 } // namespace pcl_bsh::robots

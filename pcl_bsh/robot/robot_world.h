@@ -15,6 +15,7 @@
 #pragma once
 
 #include <pcl_bsh/export.h>
+#include <pcl_bsh/query/effort.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/robot/kinematics.h>
 #include <pcl_bsh/robot/robot.h>
@@ -102,14 +103,21 @@ public:
   /// @param limit gaps beyond it are not looked for: then the gap is from that to infinity
   ClearanceResult clearance(const RobotState& state, double limit = std::numeric_limits<double>::infinity()) const;
 
-  /// All at once. @param threads 0: all of the machine's
-  std::vector<Verdict> checkStates(const std::vector<RobotState>& states, unsigned threads = 1) const;
+  /// Many states at once, each as checkState() does it. @throws InvalidInput as checkState() does, which names the
+  /// first
+  ///   wrong one; for an accuracy other than exact. Cancelled
+  std::vector<StateCheck> checkStates(const std::vector<RobotState>& states, const Effort& effort = {}) const;
   /// A line in joint space.
   struct Motion {
     RobotState from, to;
   };
-  /// Many motions at once.
-  std::vector<Verdict> checkMotions(const std::vector<Motion>& motions, unsigned threads = 1) const;
+  /// Many motions at once, each as checkMotion() does it. @throws as checkStates() does
+  std::vector<MotionCheck> checkMotions(const std::vector<Motion>& motions, bool with_last_valid = false,
+                                        const Effort& effort = {}) const;
+  /// Many clearances at once, each as clearance() tells it. @throws as checkStates() does
+  std::vector<ClearanceResult> clearances(const std::vector<RobotState>& states,
+                                          double limit = std::numeric_limits<double>::infinity(),
+                                          const Effort& effort = {}) const;
 
 private:
   class Inside;

@@ -15,7 +15,7 @@
 #include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/question/named_cloud.h>
-#include <pcl_bsh/question/warnings/warnings.h>
+#include <pcl_bsh/question/warnings/robot_warnings.h>
 #include <pcl_bsh/robot/robot_world.h>
 
 #include <nlohmann/json.hpp>
@@ -214,20 +214,6 @@ void takeBase(Options& options, std::vector<std::string>& warnings)
   options.world.base.linear() = Eigen::Quaterniond(options.world.base.linear()).normalized().toRotationMatrix();
 }
 
-/// Samples that a link may slip between.
-void warnOfHoles(const Options& options, const robots::Robot& robot, const std::vector<ReadObstacle>& obstacles,
-                 std::vector<std::string>& warnings)
-{
-  NamedCloud links;
-  links.name = robot.name;
-  links.is_surface = true;
-  links.box.extend(Eigen::Vector3d::Zero());
-  for (const ReadObstacle& obstacle : obstacles)
-    if (const auto warning = warningOfDensity(measuredCloud(obstacle.path.string(), *obstacle.hierarchy), links,
-                                              options.world.clearance + options.radius))
-      warnings.push_back(warning->text);
-}
-
 int run(Options& options)
 {
   std::vector<std::string> warnings;
@@ -274,7 +260,10 @@ int run(Options& options)
            return arm.motion(states[i], states[i + 1]);
          }));
   }
-  warnOfHoles(options, robot, obstacles, warnings);
+  for (const ReadObstacle& obstacle : obstacles)
+    if (const auto warning = warningOfHoles(measuredCloud(obstacle.path.string(), *obstacle.hierarchy), robot.name,
+                                            options.world.clearance + options.radius))
+      warnings.push_back(warning->text);
   cli::warn(program, warnings);
   report["warnings"] = warnings;
   if (options.report) cli::writeJson(*options.report, report);

@@ -3,6 +3,7 @@
 
 #include "made_arms.h"
 #include "support/refusal.h"
+#include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
@@ -12,6 +13,8 @@
 #include <array>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <tuple>
 #include <vector>
 
 namespace pcl_bsh {
@@ -309,6 +312,12 @@ TEST(RobotWorld, HoldsMeshesAgainstAll)
   EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}); }), testing::HasSubstr("unread.stl, which is not read"));
 }
 
+auto tied(const std::optional<Meeting>& meeting)
+{
+  const Meeting m = meeting.value_or(Meeting{99});
+  return std::tuple(m.link, m.shape, m.other_link, m.other_shape, m.obstacle, m.record);
+}
+
 TEST(RobotWorld, AnswersManyAtOnce)
 {
   MadeScene scene(41, 60, true);
@@ -319,14 +328,45 @@ TEST(RobotWorld, AnswersManyAtOnce)
     states.push_back(test::madeState(scene.random, scene.robot));
     motions.push_back({states.back(), test::madeState(scene.random, scene.robot)});
   }
-  const std::vector<Verdict> of_states = world.checkStates(states), of_motions = world.checkMotions(motions);
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    EXPECT_EQ(of_states[i], world.checkState(states[i]).verdict);
-    EXPECT_EQ(of_motions[i], world.checkMotion(motions[i].from, motions[i].to).verdict);
+  for (const unsigned threads : {1u, 2u}) {
+    const RobotWorld anew(scene.robot, {scene.cloud.get()});
+    const std::vector<StateCheck> of_states = anew.checkStates(states, threads);
+    const std::vector<MotionCheck> of_motions = anew.checkMotions(motions, true, threads);
+    const std::vector<ClearanceResult> of_gaps = anew.clearances(states, 0.1, threads);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const StateCheck state = world.checkState(states[i]);
+      const MotionCheck motion = world.checkMotion(motions[i].from, motions[i].to, true);
+      const ClearanceResult nearest = world.clearance(states[i], 0.1);
+      EXPECT_EQ(of_states[i].verdict, state.verdict);
+      EXPECT_EQ(tied(of_states[i].meeting), tied(state.meeting));
+      EXPECT_EQ(of_motions[i].verdict, motion.verdict);
+      EXPECT_EQ(of_motions[i].fraction, motion.fraction);
+      EXPECT_EQ(of_motions[i].last_valid, motion.last_valid);
+      EXPECT_EQ(of_gaps[i].gap.lower, nearest.gap.lower);
+      EXPECT_EQ(of_gaps[i].gap.upper, nearest.gap.upper);
+      EXPECT_EQ(tied(of_gaps[i].meeting), tied(nearest.meeting));
+    }
   }
-  const RobotWorld anew(scene.robot, {scene.cloud.get()});
-  EXPECT_EQ(anew.checkStates(states, 2), of_states);
-  EXPECT_EQ(anew.checkMotions(motions, 2), of_motions);
+}
+
+TEST(RobotWorld, TellsHowFarManyAreAndStops)
+{
+  const RobotWorld world(pendulum(), {});
+  const std::vector<RobotState> states(100, RobotState{0.0});
+  std::vector<double> told;
+  const Effort effort(2, [&](double done) {
+    told.push_back(done);
+    return true;
+  });
+  world.checkStates(states, effort);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+  const Effort stop(1, [](double) { return false; });
+  EXPECT_THROW(world.checkStates(states, stop), Cancelled);
+  EXPECT_THROW(world.checkMotions({{{0.0}, {1.0}}}, true, stop), Cancelled);
+  EXPECT_THROW(world.clearances(states, 1.0, stop), Cancelled);
+  EXPECT_THAT(test::refusalOf([&] { world.checkStates(states, Effort(Accuracy::level(1))); }),
+              testing::HasSubstr("exact"));
 }
 
 TEST(RobotWorld, RefusesWhatHasNoMeaning)
@@ -342,6 +382,9 @@ TEST(RobotWorld, RefusesWhatHasNoMeaning)
   Robot robot = pendulum();
   robot.links[1].joint->upper = 1.0;
   EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}).checkState({1.5}); }), HasSubstr("its limits are"));
+  EXPECT_THAT(test::refusalOf([&] { world.checkStates({{0}, {0, 1}}); }), HasSubstr("state 1: has 2 values"));
+  EXPECT_THAT(test::refusalOf([&] { world.clearances({{0}, {nan}}); }), HasSubstr("state 1: joint 'turn': has the"));
+  EXPECT_THAT(test::refusalOf([&] { world.checkMotions({{{0}, {nan}}}); }), HasSubstr("motion 0: joint 'turn'"));
 }
 
 } // namespace

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/python/arrays/array_output.h>
+#include <pcl_bsh/python/bindings.h>
+#include <pcl_bsh/python/of_clouds.h>
+#include <pcl_bsh/python/robot_answers.h>
+#include <pcl_bsh/python/robot_model.h>
+#include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/question/warnings/robot_warnings.h>
+#include <pcl_bsh/robot/robot_world.h>
+
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcl_bsh::python {
+namespace {
+
+using robots::ClearanceResult;
+using robots::MotionCheck;
+using robots::StateCheck;
+using Motions = std::vector<robots::RobotWorld::Motion>;
+
+constexpr auto kWorld = R"(A robot among obstacles: whether it is free, how far from them, and whether a motion is free.
+
+A state is free where each link is farther than the clearance from all obstacles, and from links that it is held against.
+A motion is a straight line between two states, continuous joints going the shorter way; it is free where each of its
+instants is. Nothing is sampled: answers hold for exact arithmetic on the given numbers. A state is undecided where it is
+within rounding of the clearance, a motion only where its least gap is within the tolerance of it.
+
+Parameters
+----------
+robot : Robot
+obstacles : SphereHierarchy, ndarray (n, 3), or sequence of these
+    Clouds, balls and surfaces, in one frame, the world's. They are kept. After a `refit` of one the next query sees it.
+clearance : float, default 0
+    From obstacles, m, >= 0; inclusive. At 0, a finger passes between points that have no radii.
+self_clearance : float, default 0
+    Of links from each other, m, >= 0.
+tolerance : float, default 1e-4
+    Motions this near to the clearance may be undecided, m, > 0.
+with_self : bool, default True
+    Links are held against each other, save for parent and child, and for those that the SRDF disables.
+base : array_like, (4, 4) or (3, 4), optional
+    Pose of the robot's root in the world.
+
+Raises
+------
+ValueError
+    A length or a pose without meaning; obstacles that are no points.
+
+Warns
+-----
+UserWarning
+    A link may slip through holes between points; obstacles of which no point, or not every one, is finite.
+
+Notes
+-----
+Several threads may ask one world at once. See `Robot` for an example.
+)";
+
+constexpr auto kIsFree = R"(Whether states are certainly free: False where one collides or is undecided.
+
+Parameters
+----------
+q : array_like, (J,) or (n, J)
+    A state, or several.
+threads : int, default 1
+    0: all of the machine's; any number gives the same result.
+progress : callable, optional
+    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
+
+Returns
+-------
+bool, or ndarray of bool, (n,)
+    `check_states` tells collisions from what is undecided, and what meets.
+
+Raises
+------
+ValueError
+    Naming the state and the joint: a value that is not finite or is out of its limits; another number of values.
+)";
+
+constexpr auto kCheckStates = R"(The verdict of each state, and what collides.
+
+Parameters are those of `is_free`.
+
+Returns
+-------
+StateChecks
+    Arrays of the shape (n,), or () of one state: `verdict` (a `Verdict`: 0 free, 1 colliding, 2 undecided), and what
+    collides, or is undecided: `link` and its `shape`, and either `other_link` and `other_shape`, where the robot meets
+    itself, or `obstacle` and its `record`. -1 is none.
+)";
+
+constexpr auto kIsMotionFree =
+    R"(Whether motions are certainly free at every instant: False where one collides or is undecided.
+
+Parameters
+----------
+q0, q1 : array_like, (J,) or (n, J)
+    From these states to those; one of them goes with all of the others.
+threads : int, default 1
+    0: all of the machine's; any number gives the same result.
+progress : callable, optional
+    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
+
+Returns
+-------
+bool, or ndarray of bool, (n,)
+    `check_motions` tells collisions from what is undecided, and how far a motion is free.
+
+Raises
+------
+ValueError
+    As `is_free`; q0 and q1 of different numbers of states.
+)";
+
+constexpr auto kCheckMotions =
+    R"(The verdict of each motion, where it collides, what collides there, and how far it is free.
+
+Parameters
+----------
+q0, q1 : array_like, (J,) or (n, J)
+    As those of `is_motion_free`; so are `threads` and `progress`.
+with_last_valid : bool, default False
+    Also look for the first instant that is not free.
+
+Returns
+-------
+MotionChecks
+    Arrays of the shape (n,), or () of one motion: `verdict`; `fraction`, where it collides or is undecided, 1 where it is
+    free; `last_valid`: it is certainly free up to there, 1 where it is free, else 0 unless it was asked for; and what
+    collides there, as `check_states` tells it.
+)";
+
+constexpr auto kClearance = R"(How far states are from all that they may meet: obstacles, and links with `with_self`.
+
+Parameters
+----------
+q : array_like, (J,) or (n, J)
+limit : float, optional
+    Greater gaps are not looked for: then the gap is from that to inf.
+threads : int, default 1
+progress : callable, optional
+    As those of `is_free`.
+
+Returns
+-------
+Clearances
+    `gap`, (n, 2), or (2,) of one state: it is at least the first and at most the second number, less all radii and
+    paddings, and negative inside of solids. Two solids that meet are at most at its upper end. And what is nearest, as
+    `check_states` tells it; -1 where nothing is within the limit.
+
+Raises
+------
+ValueError
+    As `is_free`; a limit that is not a number.
+)";
+
+using ObstaclesLike =
+    As<"Union[SphereHierarchy, npt.NDArray[Any], Sequence[Union[SphereHierarchy, npt.NDArray[Any]]]]">;
+using Obstacles = std::vector<std::shared_ptr<Cloud>>;
+
+/// Python's RobotWorld.
+struct PyWorld {
+  using Placed = OfClouds<robots::RobotWorld>;
+
+  std::shared_ptr<RobotModel> robot;
+  Obstacles obstacles;
+  robots::WorldOptions options;
+  std::shared_ptr<const Placed> placed; ///< replaced with the interpreter's lock
+};
+
+std::shared_ptr<Cloud> obstacleOf(const std::string& name, py::handle thing)
+{
+  if (py::isinstance<Cloud>(thing)) return thing.cast<std::shared_ptr<Cloud>>();
+  const PointsView view = viewOfPoints(name, {py::reinterpret_borrow<py::object>(thing)});
+  return unlocked([&] { return std::make_shared<Cloud>(view); });
+}
+
+Obstacles obstaclesOf(const ObstaclesLike& given)
+{
+  if (py::isinstance<Cloud>(given) || py::isinstance<py::array>(given)) return {obstacleOf("obstacles", given)};
+  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given))
+    throw py::type_error("obstacles: give a SphereHierarchy, an array of points, or a list of these");
+  Obstacles obstacles;
+  for (const py::handle one : given)
+    obstacles.push_back(obstacleOf("obstacles[" + std::to_string(obstacles.size()) + "]", one));
+  return obstacles;
+}
+
+Eigen::Isometry3d rootPoseOf(const PoseLike& pose)
+{
+  Eigen::Isometry3d base = poseOf("base", pose);
+  checkPose("base", base);
+  base.linear() = Eigen::Quaterniond(base.linear()).normalized().toRotationMatrix();
+  return base;
+}
+
+/// @throws as robots::RobotWorld does
+std::shared_ptr<const PyWorld::Placed> placedOf(const PyWorld& world)
+{
+  const auto make = [robot = world.robot, obstacles = world.obstacles, options = world.options] {
+    std::vector<const SphereHierarchy*> hierarchies;
+    for (const auto& obstacle : obstacles) hierarchies.push_back(obstacle.get());
+    return std::make_shared<const robots::RobotWorld>(robot->robot, hierarchies, options);
+  };
+  auto placed = std::make_shared<const PyWorld::Placed>(
+      PyWorld::Placed::Clouds(world.obstacles.begin(), world.obstacles.end()), make);
+  unlocked([&] { placed->now(); });
+  return placed;
+}
+
+void warnOfObstacles(const PyWorld& world)
+{
+  std::vector<std::string> texts;
+  unlocked([&] {
+    for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+      const std::string number = world.obstacles.size() == 1 ? "" : "[" + std::to_string(i) + "]";
+      const NamedCloud facts = world.obstacles[i]->named("obstacles" + number).facts(true);
+      addTexts(warningsOf(facts, world.options.clearance), texts);
+      if (const auto holes = warningOfHoles(facts, world.robot->robot.name, world.options.clearance))
+        addTexts({*holes}, texts);
+    }
+  });
+  for (const std::string& text : texts) warn(text);
+}
+
+std::unique_ptr<PyWorld> makeWorld(const std::shared_ptr<RobotModel>& robot, const ObstaclesLike& obstacles,
+                                   double clearance, double self_clearance, double tolerance, bool with_self,
+                                   const PoseLike& base)
+{
+  auto world = std::make_unique<PyWorld>(PyWorld{
+      robot, obstaclesOf(obstacles), {clearance, self_clearance, tolerance, with_self, rootPoseOf(base)}, nullptr});
+  world->placed = placedOf(*world);
+  warnOfObstacles(*world);
+  return world;
+}
+
+void setObstacles(PyWorld& world, const ObstaclesLike& obstacles)
+{
+  PyWorld next{world.robot, obstaclesOf(obstacles), world.options, nullptr};
+  next.placed = placedOf(next);
+  world = next;
+  warnOfObstacles(next);
+}
+
+void setBase(PyWorld& world, const ArrayLike& base)
+{
+  PyWorld next = world;
+  next.options.base = rootPoseOf(base);
+  next.placed = placedOf(next);
+  world = next;
+}
+
+/// Asks the world as it is now, without the interpreter's lock.
+template <class Ask>
+auto askWorld(const PyWorld& world, unsigned threads, const ProgressLike& progress, const Ask& ask)
+{
+  const auto placed = world.placed;
+  const Effort effort(threads, progressOf(progress));
+  return unlocked([&] { return ask(*placed->now(), effort); });
+}
+
+Answers<StateCheck> checkStates(const PyWorld& world, const ArrayLike& q, unsigned threads,
+                                const ProgressLike& progress)
+{
+  const States states = statesOf("q", q, *world.robot);
+  return {askWorld(world, threads, progress,
+                   [&](const robots::RobotWorld& now, const Effort& effort) {
+                     return now.checkStates(states.rows, effort);
+                   }),
+          states.is_one};
+}
+
+Answers<MotionCheck> checkMotions(const PyWorld& world, const ArrayLike& q0, const ArrayLike& q1, bool with_last_valid,
+                                  unsigned threads, const ProgressLike& progress)
+{
+  const States from = statesOf("q0", q0, *world.robot), to = statesOf("q1", q1, *world.robot);
+  const std::size_t count = from.is_one ? to.rows.size() : from.rows.size();
+  if (!to.is_one && to.rows.size() != count)
+    throw InvalidInput(Input::motion, "q1", "has " + counted(to.rows.size(), "state"),
+                       "give as many as q0 has, " + std::to_string(count) + ", or one");
+  Motions motions;
+  for (std::size_t i = 0; i < count; ++i)
+    motions.push_back({from.rows[from.is_one ? 0 : i], to.rows[to.is_one ? 0 : i]});
+  return {askWorld(world, threads, progress,
+                   [&](const robots::RobotWorld& now, const Effort& effort) {
+                     return now.checkMotions(motions, with_last_valid, effort);
+                   }),
+          from.is_one && to.is_one};
+}
+
+Answers<ClearanceResult> clearancesOf(const PyWorld& world, const ArrayLike& q, std::optional<double> limit,
+                                      unsigned threads, const ProgressLike& progress)
+{
+  const States states = statesOf("q", q, *world.robot);
+  const double within = limit.value_or(std::numeric_limits<double>::infinity());
+  return {askWorld(world, threads, progress,
+                   [&](const robots::RobotWorld& now, const Effort& effort) {
+                     return now.clearances(states.rows, within, effort);
+                   }),
+          states.is_one};
+}
+
+} // namespace
+
+void bindRobotWorld(py::module_& module)
+{
+  py::class_<PyWorld>(module, "RobotWorld", kWorld)
+      .def(py::init(&makeWorld), "robot"_a, "obstacles"_a = py::tuple(), py::kw_only(), "clearance"_a = 0.0,
+           "self_clearance"_a = 0.0, "tolerance"_a = 1e-4, "with_self"_a = true, "base"_a = py::none())
+      .def_property_readonly("robot", [](const PyWorld& world) { return world.robot; })
+      .def_property_readonly("obstacles", [](const PyWorld& world) { return world.obstacles; })
+      .def_property_readonly("base", [](const PyWorld& world) { return arrayOf(world.options.base); })
+      .def("set_obstacles", &setObstacles, "obstacles"_a, "Other obstacles, as `RobotWorld` takes them.")
+      .def("set_base", &setBase, "base"_a, "Moves the whole robot: the pose of its root in the world.")
+      .def(
+          "is_free",
+          [](const PyWorld& world, const ArrayLike& q, unsigned threads, const ProgressLike& progress) {
+            return freeOnes(checkStates(world, q, threads, progress));
+          },
+          kIsFree, "q"_a, py::kw_only(), "threads"_a = 1, "progress"_a = py::none())
+      .def("check_states", &checkStates, kCheckStates, "q"_a, py::kw_only(), "threads"_a = 1, "progress"_a = py::none())
+      .def(
+          "is_motion_free",
+          [](const PyWorld& world, const ArrayLike& q0, const ArrayLike& q1, unsigned threads,
+             const ProgressLike& progress) { return freeOnes(checkMotions(world, q0, q1, false, threads, progress)); },
+          kIsMotionFree, "q0"_a, "q1"_a, py::kw_only(), "threads"_a = 1, "progress"_a = py::none())
+      .def("check_motions", &checkMotions, kCheckMotions, "q0"_a, "q1"_a, py::kw_only(), "with_last_valid"_a = false,
+           "threads"_a = 1, "progress"_a = py::none())
+      .def("clearance", &clearancesOf, kClearance, "q"_a, "limit"_a = py::none(), py::kw_only(), "threads"_a = 1,
+           "progress"_a = py::none())
+      .def("__repr__", [](const PyWorld& world) {
+        return "RobotWorld(" + world.robot->robot.name + ", " + counted(world.obstacles.size(), "obstacle") + ")";
+      });
+}
+
+} // namespace pcl_bsh::python
