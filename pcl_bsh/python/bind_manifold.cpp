@@ -31,7 +31,7 @@ cloud : SphereHierarchy
 solid : bool, default False
     The triangles close, and what they enclose counts: gaps inside of them are negative.
 normals : array_like of float, (n, 3), optional
-    Of points: a normal for each record, outward, of any length but 0. None: planes are fitted to points nearby.
+    A normal for each point, outward, of any length but 0. None: planes are fitted to points nearby.
 
 Raises
 ------
@@ -60,8 +60,8 @@ thickness : float, optional
 most, most_patches : int, default 4
     Contacts of a patch; patches.
 height : float, optional
-    Of a patch over the plane of its first contact, both ways. None: twice the margin, the thickness and the size of the
-    first gap together.
+    A patch has this over the plane of its first contact, both ways. None: twice the margin, the thickness and the size
+    of the first gap together.
 fit : float, optional
     Radius of planes that are fitted to points; > 0. None: four of the larger spacing.
 same_within : float, optional
@@ -113,7 +113,7 @@ Parameters
 a, b : Collider
     One of them at least is a solid.
 manifold : Manifold
-    Of these two, which stand where its query had them.
+    The answer about these two, which stand where its query had them.
 contact : int, default 0
     Which of its contacts.
 tolerance : float
@@ -249,7 +249,7 @@ std::pair<double, double> partingAlong(const PyCollider& a, const PyCollider& b,
                                        std::size_t contact, double tolerance, double most)
 {
   if (contact >= manifold.contacts.size())
-    throw py::index_error("contact: " + std::to_string(contact) + " is none of the manifold's " +
+    throw py::index_error("contact: " + std::to_string(contact) + " is not among the manifold's " +
                           counted(manifold.contacts.size(), "contact"));
   return tupleOf(unlocked([&] {
     const auto made_a = a.made.now(), made_b = b.made.now();
@@ -302,7 +302,7 @@ void bindManifold(py::module_& module)
       .def_property_readonly("residual", ofContacts([](const Contact& contact) { return &contact.residual; }))
       .def_property_readonly("id", ofContacts([](const Contact& contact) { return &contact.id; }))
       .def_property_readonly("patch", ofContacts([](const Contact& contact) { return &contact.patch; }))
-      .def_readonly("thickness", &Manifold::thickness, "That was in use.")
+      .def_readonly("thickness", &Manifold::thickness, "The one in use.")
       .def_readonly("work", &Manifold::work)
       .def("__len__", [](const Manifold& found) { return found.contacts.size(); })
       .def("__repr__",

@@ -197,7 +197,7 @@ py::array_t<double> stateOfValues(const RobotModel& model, std::optional<robots:
   if (named) {
     const auto found = model.groups.states.find(*named);
     if (found == model.groups.states.end())
-      throw InvalidInput(Input::motion, "state '" + *named + "'", "is none of the SRDF of " + model.robot.name,
+      throw InvalidInput(Input::motion, "state '" + *named + "'", "is not in the SRDF of " + model.robot.name,
                          "give a name that `states` has");
     all.insert(found->second.begin(), found->second.end());
   }
@@ -230,8 +230,8 @@ void bindRobot(py::module_& module)
       .def_property_readonly("links", &linksOf, "Names; the root first, parents before their children.")
       .def_property_readonly("joints", &jointsOf, "Names of those that move by themselves, in the order of a state.")
       .def_property_readonly("limits", &limitsOf, "(J, 2); -inf and inf of continuous joints.")
-      .def_property_readonly("groups", &groupsOf, "Of the SRDF by name: the columns of a state that a group has.")
-      .def_property_readonly("states", &statesByName, "Of the SRDF by name; joints that one does not name are at 0.")
+      .def_property_readonly("groups", &groupsOf, "The SRDF's, by name: the columns of a state that a group has.")
+      .def_property_readonly("states", &statesByName, "The SRDF's, by name; joints that one does not name are at 0.")
       .def("state", &stateOfValues, kState, "values"_a = py::none(), py::kw_only(), "named"_a = py::none())
       .def("link_poses", &linkPosesOf, kLinkPoses, "q"_a)
       .def("__repr__", [](const RobotModel& model) {

@@ -40,9 +40,9 @@ robot : Robot
 obstacles : SphereHierarchy, ndarray (n, 3), or sequence of these
     Clouds, balls and surfaces, in one frame, the world's. They are kept. After a `refit` of one the next query sees it.
 clearance : float, default 0
-    From obstacles, m, >= 0; inclusive. At 0, a finger passes between points that have no radii.
+    Links this near to an obstacle collide, m, >= 0; inclusive. At 0, a finger passes between points that have no radii.
 self_clearance : float, default 0
-    Of links from each other, m, >= 0.
+    Links this near to each other collide, m, >= 0; inclusive.
 tolerance : float, default 1e-4
     Motions this near to the clearance may be undecided, m, > 0.
 with_self : bool, default True
@@ -96,7 +96,7 @@ Returns
 StateChecks
     Arrays of the shape (n,), or () of one state: `verdict` (a `Verdict`: 0 free, 1 colliding, 2 undecided), and what
     collides, or is undecided: `link` and its `shape`, and either `other_link` and `other_shape`, where the robot meets
-    itself, or `obstacle` and its `record`. -1 is none.
+    itself, or `obstacle` and its `record`. -1 stands for nothing.
 )";
 
 constexpr auto kIsMotionFree =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is prepared from clouds for one query after another, and once more after their points have moved.
+// Things prepared from clouds, for one query after another: once more after the clouds' points have moved.
 #pragma once
 
 #include <pcl_bsh/python/python_question.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a robot's world says of states and motions.
+// Answers of a robot's world about states and motions.
 #pragma once
 
 #include <pcl_bsh/python/typed.h>

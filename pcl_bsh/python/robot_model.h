@@ -15,7 +15,7 @@
 
 namespace pcl_bsh::python {
 
-/// What its files say, checked.
+/// Its files say this; it is checked.
 struct RobotModel {
   RobotModel(robots::Robot read, io::RobotGroups of) : robot(std::move(read)), groups(std::move(of)), kinematics(robot)
   {

@@ -26,7 +26,7 @@ set(needs_SITES ${needs_PIPELINES} VTK MPI)
 set(needs_VTK ${needs_PIPELINES} VTK MPI) # Debian's VTK is built with MPI
 set(needs_CERTIFY CGAL)
 set(needs_PHYSICS Bullet)
-set(needs_PYTHON ${needs_PIPELINES} Python pybind11)
+set(needs_PYTHON ${needs_PIPELINES} Python pybind11 urdfdom assimp)
 set(needs_TOOLS ${needs_PIPELINES} CLI11)
 set(needs_VIEWER ${needs_SITES} CLI11)
 set(needs_SELF_FILTER ${needs_TOOLS} urdfdom assimp)

@@ -47,7 +47,7 @@ def pose_of(shift, rotation=np.eye(3)):
 
 
 def link_poses(q):
-    """Of upper, fore and hand."""
+    """Where upper, fore and hand are."""
     upper = pose_of([0, 0, 0.5], turned_about((0, 0, 1), q[0]))
     fore = upper @ pose_of([0.4, 0, 0], turned_about((1, 0, 0), 0.3) @ turned_about((0, 1, 0), q[1]))
     return {"upper": upper, "fore": fore, "hand": fore @ pose_of([0.3 + q[2], 0, 0])}
@@ -66,7 +66,7 @@ def gap_to_points(q, points, **options):
 
 
 def gap_to_itself(q):
-    """Of hand and upper: the others are parent and child."""
+    """The least gap of hand and upper: the others are parent and child."""
     poses = link_poses(q)
     return min(np.linalg.norm((poses["upper"] @ [x, 0, 0, 1] - poses["hand"] @ [0, 0, 0, 1])[:3]) - r - BALLS["hand"][0][1]
                for x, r in BALLS["upper"])

@@ -307,7 +307,7 @@ def test_wrong_states_are_refused(arm, points):
     for wrong, text in (({"wrist": 1.0}, "joint 'wrist'"), ({"stand": 1.0}, "joint 'stand': is fixed")):
         with pytest.raises(ValueError, match=text):
             arm.state(wrong)
-    with pytest.raises(ValueError, match="state 'rest': is none of the SRDF of arm"):
+    with pytest.raises(ValueError, match="state 'rest': is not in the SRDF of arm"):
         arm.state(named="rest")
 
 

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <set>
 
 namespace pcl_bsh::io {
@@ -20,10 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 using Packages = std::map<std::string, fs::path>;
 
-/// Takes the errors that urdfdom would print, while it lives, and keeps the first.
+/// Takes the errors that urdfdom would print, while it lives, and keeps the first. A process has one such place for
+/// them: other threads wait for their turn.
 class FirstComplaint : public console_bridge::OutputHandler {
 public:
-  FirstComplaint() { console_bridge::useOutputHandler(this); }
+  FirstComplaint() : turn_(turns()) { console_bridge::useOutputHandler(this); }
   ~FirstComplaint() override { console_bridge::restorePreviousOutputHandler(); }
   FirstComplaint(const FirstComplaint&) = delete;
   FirstComplaint& operator=(const FirstComplaint&) = delete;
@@ -36,6 +38,13 @@ public:
   const std::string& text() const { return text_; }
 
 private:
+  static std::mutex& turns()
+  {
+    static std::mutex one;
+    return one;
+  }
+
+  const std::lock_guard<std::mutex> turn_;
   std::string text_;
 };
 
