@@ -42,7 +42,7 @@ inline States statesOf(const std::string& name, const ArrayLike& states, const R
                        "give (J,) or (n, J), with a value for each of the " + std::to_string(joints) + " joints of " +
                            model.robot.name);
   const py::ssize_t count = is_one ? 1 : array.shape(0);
-  const std::vector<double> values = rowsOf(name, array.reshape({count, joints}), joints);
+  const std::vector<double> values = rowsOf(name, array.reshape({count * joints}), 1);
   States made{std::vector<robots::RobotState>(static_cast<std::size_t>(count)), is_one};
   for (py::ssize_t i = 0; i < count; ++i)
     made.rows[static_cast<std::size_t>(i)].assign(values.begin() + i * joints, values.begin() + (i + 1) * joints);
