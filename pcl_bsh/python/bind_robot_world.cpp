@@ -260,12 +260,14 @@ void setBase(PyWorld& world, const ArrayLike& base)
   world = next;
 }
 
-/// Asks the world as it is now, without the interpreter's lock.
+/// Asks the world as it is now, without the interpreter's lock. A state takes a microsecond, and the lock up to five
+/// milliseconds where other threads want it: without `progress` only unlocked() asks for Ctrl-C, after many states.
 template <class Ask>
 auto askWorld(const PyWorld& world, unsigned threads, const ProgressLike& progress, const Ask& ask)
 {
   const auto placed = world.placed;
-  const Effort effort(threads, progressOf(progress));
+  Effort effort(threads);
+  if (!progress.is_none()) effort.progress = progressOf(progress);
   return unlocked([&] { return ask(*placed->now(), effort); });
 }
 
