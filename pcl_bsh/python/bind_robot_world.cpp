@@ -39,6 +39,7 @@ Parameters
 robot : Robot
 obstacles : SphereHierarchy, ndarray (n, 3), or sequence of these
     Clouds, balls and surfaces, in one frame, the world's. They are kept. After a `refit` of one the next query sees it.
+    A mesh is its surface: what is inside of one is not seen. Places are certain.
 clearance : float, default 0
     Links this near to an obstacle collide, m, >= 0; inclusive. At 0, a finger passes between points that have no radii.
 self_clearance : float, default 0
@@ -53,7 +54,7 @@ base : array_like, (4, 4) or (3, 4), optional
 Raises
 ------
 ValueError
-    A length or a pose without meaning; obstacles that are no points.
+    A length or a pose without meaning; obstacles that are no points, or whose places are uncertain.
 
 Warns
 -----

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace pcl_bsh::robots {
@@ -19,7 +20,14 @@ namespace {
 std::vector<Obstacle> obstaclesOf(const std::vector<const SphereHierarchy*>& hierarchies)
 {
   std::vector<Obstacle> obstacles;
-  for (const SphereHierarchy* hierarchy : hierarchies) obstacles.emplace_back(*hierarchy);
+  for (const SphereHierarchy* hierarchy : hierarchies) {
+    if (hierarchy->view().isUncertain())
+      throw InvalidInput(Input::uncertainty, "obstacle " + std::to_string(obstacles.size()),
+                         "its places are uncertain, which no robot's gap counts",
+                         "leave the uncertainty out, and give a larger clearance or radii")
+          .withIndex(obstacles.size());
+    obstacles.emplace_back(*hierarchy);
+  }
   return obstacles;
 }
 

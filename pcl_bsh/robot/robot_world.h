@@ -70,7 +70,8 @@ struct ClearanceResult {
 /// Const methods may run in several threads at once. Robots and options are copied, hierarchies borrowed.
 class RobotWorld {
 public:
-  /// @throws InvalidInput as Kinematics does; for options without meaning; for a mesh that was not read
+  /// @throws InvalidInput as Kinematics does; for options without meaning; for a mesh that was not read; naming the
+  ///   obstacle whose places are uncertain
   RobotWorld(const Robot& robot, const std::vector<const SphereHierarchy*>& obstacles,
              const WorldOptions& options = {});
   ~RobotWorld();

@@ -327,6 +327,8 @@ def test_wrong_worlds_are_refused(arm, points):
         world_of(arm, points[:, :2])
     with pytest.raises(ValueError, match=r"obstacles\[1\]"):
         world_of(arm, [points, points[:, 0]])
+    with pytest.raises(ValueError, match="obstacle 1: its places are uncertain"):
+        world_of(arm, [points, pcl_bsh.SphereHierarchy(points, uncertainty=0.01)])
     for wrong in (3, "scan.pcd", None):
         with pytest.raises(TypeError):
             world_of(arm, wrong)

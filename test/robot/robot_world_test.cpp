@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -367,6 +368,19 @@ TEST(RobotWorld, TellsHowFarManyAreAndStops)
   EXPECT_THROW(world.clearances(states, 1.0, stop), Cancelled);
   EXPECT_THAT(test::refusalOf([&] { world.checkStates(states, Effort(Accuracy::level(1))); }),
               testing::HasSubstr("exact"));
+}
+
+TEST(RobotWorld, RefusesUncertainPlaces)
+{
+  const std::vector<float> xyz = {9, 9, 9};
+  PointsView view = viewOf(xyz.data(), 1);
+  const SphereHierarchy certain(view);
+  view.uncertainty = 0.01;
+  const SphereHierarchy uncertain(view);
+  const std::string told = test::refusalOf([&] { RobotWorld(pendulum(), {&certain, &uncertain}); });
+  EXPECT_THAT(told, testing::HasSubstr("obstacle 1: its places are uncertain"));
+  RobotWorld world(pendulum(), {&certain});
+  EXPECT_EQ(told, test::refusalOf([&] { world.setObstacles({&certain, &uncertain}); }));
 }
 
 TEST(RobotWorld, RefusesWhatHasNoMeaning)
