@@ -66,7 +66,7 @@ array([1, 0], dtype=uint8)
 )";
 
 using Names = std::vector<std::string>;
-using ObstaclesLike = As<"Mapping[str, SphereHierarchy]">;
+using HierarchiesByName = As<"Mapping[str, SphereHierarchy]">;
 using PosesByName = As<"Optional[Mapping[str, npt.ArrayLike]]">;
 using LengthsByName = As<"Optional[Mapping[str, float]]">;
 using SwitchesByName = As<"Optional[Mapping[str, bool]]">;
@@ -117,7 +117,7 @@ Names patternsOf(const py::object& patterns)
   return py::cast<Names>(patterns);
 }
 
-ObstaclesFound collideObstaclesOf(const Cloud& a, const ObstaclesLike& obstacles, double clearance,
+ObstaclesFound collideObstaclesOf(const Cloud& a, const HierarchiesByName& obstacles, double clearance,
                                   const PoseLike& pose_a, const PosesByName& poses, const LengthsByName& clearances,
                                   const SwitchesByName& solids, bool between, const PatternsLike& ignore,
                                   const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
