@@ -33,7 +33,10 @@ endmacro()
 
 set(libraries_of_tools libs)
 if(TARGET pcl_bsh_viewer)
-  set(libraries_of_tools libs vtk)
+  list(APPEND libraries_of_tools vtk)
+endif()
+if(TARGET pcl_bsh_physics)
+  list(APPEND libraries_of_tools physics)
 endif()
 pcl_bsh_add_package(libs pcl_bsh_search "libpcl-bsh${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}" libs
                     "The shared libraries.")

@@ -27,7 +27,7 @@ inline Eigen::Matrix3d turnBy(const Eigen::Vector3d& way)
   return angle > 0.0 ? Eigen::AngleAxisd(angle, way / angle).toRotationMatrix() : Eigen::Matrix3d::Identity().eval();
 }
 
-struct Body {
+struct WorldBody {
   const Collider* collider;
   Material material;
   Eigen::Isometry3d pose, own_axes; ///< T_world_collider, T_collider_axes: of the inertia, about the centre of mass
@@ -88,6 +88,13 @@ inline double reachOf(const PointsView& view, const Eigen::Vector3d& from)
       reach = std::max(reach, (Eigen::Vector3d(p[0], p[1], p[2]) - from).norm() + view.radius(view.record(i)));
   }
   return reach;
+}
+
+/// Whether one of two bodies holds a place of the other: then they are pushed apart, and nothing halts them.
+inline bool areInEachOther(const Manifold& between)
+{
+  return std::any_of(between.contacts.begin(), between.contacts.end(),
+                     [&](const Contact& contact) { return contact.distance < -between.thickness; });
 }
 
 } // namespace pcl_bsh

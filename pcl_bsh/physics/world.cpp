@@ -82,7 +82,7 @@ struct World::State {
   }
   ~State()
   {
-    for (Body& body : bodies) world.removeRigidBody(body.solved.get());
+    for (WorldBody& body : bodies) world.removeRigidBody(body.solved.get());
   }
 
   BodyId add(const Collider& collider, const Eigen::Isometry3d& pose, const MassProperties* mass,
@@ -90,7 +90,7 @@ struct World::State {
   {
     checkPose("pose of a body", pose);
     check(material);
-    Body body;
+    WorldBody body;
     body.collider = &collider;
     body.material = material;
     body.pose = body.target = pose;
@@ -121,7 +121,7 @@ struct World::State {
     return static_cast<BodyId>(bodies.size() - 1);
   }
 
-  bool areNear(const Body& a, const Body& b, double within) const
+  bool areNear(const WorldBody& a, const WorldBody& b, double within) const
   {
     return (a.center() - b.center()).norm() <= a.reach + b.reach + within;
   }
@@ -131,7 +131,7 @@ struct World::State {
   {
     for (BodyId i = 0; i < bodies.size(); ++i)
       for (BodyId j = i + 1; j < bodies.size(); ++j) {
-        const Body &a = bodies[i], &b = bodies[j];
+        const WorldBody &a = bodies[i], &b = bodies[j];
         if (!a.is_free && !b.is_free) continue;
         const std::pair<BodyId, BodyId> key(i, j);
         if (!a.is_free && a.moves()) b.solved->activate();
@@ -159,12 +159,12 @@ struct World::State {
   }
 
   /// Bullet's manifolds have up to four contacts.
-  void give(const Body& a, const Body& b, const std::pair<BodyId, BodyId>& key, double dt, WorldStep& report)
+  void give(const WorldBody& a, const WorldBody& b, const std::pair<BodyId, BodyId>& key, double dt, WorldStep& report)
   {
     btPersistentManifold* into = nullptr;
     const double restitution = a.material.restitution * b.material.restitution;
     for (const Contact& contact : manifolds[key].contacts) {
-      const auto at = [&](const Body& body, const Eigen::Vector3d& place) {
+      const auto at = [&](const WorldBody& body, const Eigen::Vector3d& place) {
         return (body.velocity + body.spin.cross(place - body.center())).eval();
       };
       const double approach = contact.normal.dot(at(b, contact.place_b) - at(a, contact.place_a));
@@ -194,7 +194,7 @@ struct World::State {
   {
     std::size_t free = 0;
     origin.setZero();
-    for (const Body& body : bodies)
+    for (const WorldBody& body : bodies)
       if (body.is_free) origin += body.center(), ++free;
     if (free > 0) origin /= static_cast<double>(free);
   }
@@ -213,9 +213,19 @@ struct World::State {
     while (dispatcher.getNumManifolds() > 0) dispatcher.releaseManifold(dispatcher.getManifoldByIndexInternal(0));
   }
 
+  /// Whether the distance of two bodies shrinks while none of their places moves by more than a quarter of it.
+  static bool approach(const WorldBody& a, const WorldBody& b, double distance, double speed, Work& work)
+  {
+    const double seconds = 0.25 * distance / speed;
+    const DistanceResult found =
+        closestPair({a.collider->thing(), a.after(seconds)}, {b.collider->thing(), b.after(seconds)});
+    work += found.work;
+    return found.interval.upper < 0.999 * distance;
+  }
+
   /// For how many seconds of a step two bodies may move until they come to half of their distance; nothing where they
   /// do not come so near, even if one of them halts.
-  std::optional<double> secondsBefore(const Body& a, const Body& b, double dt, Work& work) const
+  std::optional<double> secondsBefore(const WorldBody& a, const WorldBody& b, double dt, Work& work) const
   {
     const double speed = a.mostSpeed() + b.mostSpeed();
     if (!(speed > 0.0) || !areNear(a, b, speed * dt)) return std::nullopt;
@@ -228,6 +238,8 @@ struct World::State {
       work += found.work;
       if (!found.pair) return std::nullopt;
       const double distance = found.interval.lower;
+      if (looks == 0 && distance > 0.0 && distance <= options.thickness / 16 && approach(a, b, distance, speed, work))
+        return 0.0; // what presses a blocked body would halve the distance in each step, to nothing
       if (looks == 0) halt = distance > 0.0 ? 0.5 * distance : distance - 0.5 * options.thickness;
       if (looks > 0 && distance - halt <= 1e-3 * std::abs(halt)) return seconds;
       seconds += (distance - halt) / speed;
@@ -240,9 +252,11 @@ struct World::State {
   {
     std::vector<double> seconds(bodies.size(), dt);
     std::vector<std::pair<std::size_t, std::size_t>> near;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-      for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+    for (BodyId i = 0; i < bodies.size(); ++i)
+      for (BodyId j = i + 1; j < bodies.size(); ++j) {
         if (!bodies[i].is_free && !bodies[j].is_free) continue;
+        if (const auto known = manifolds.find({i, j}); known != manifolds.end() && areInEachOther(known->second))
+          continue;
         const auto before = secondsBefore(bodies[i], bodies[j], dt, work);
         if (!before) continue;
         near.emplace_back(i, j);
@@ -267,7 +281,7 @@ struct World::State {
   btDbvtBroadphase broad_phase;
   btSequentialImpulseConstraintSolver solver;
   IslandWorld world;
-  std::vector<Body> bodies;
+  std::vector<WorldBody> bodies;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(); ///< of the solver's floats: beside the bodies
   std::map<std::pair<BodyId, BodyId>, Manifold> manifolds;
   std::map<std::tuple<BodyId, BodyId, std::uint32_t>, btScalar> impulses; ///< of the last step, by contact
@@ -322,7 +336,7 @@ bool World::isAsleep(BodyId body) const
 
 void World::setVelocity(BodyId body, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin)
 {
-  Body& of = state_->bodies.at(body);
+  WorldBody& of = state_->bodies.at(body);
   of.velocity = velocity;
   of.spin = spin;
   of.solved->activate(true);
@@ -332,6 +346,12 @@ void World::moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider)
 {
   checkPose("pose of a body", T_world_collider);
   state_->bodies.at(body).target = T_world_collider;
+}
+
+bool World::isThere(BodyId body) const
+{
+  const WorldBody& of = state_->bodies.at(body);
+  return of.pose.matrix() == of.target.matrix();
 }
 
 const Manifold* World::contacts(BodyId a, BodyId b) const
@@ -345,7 +365,7 @@ WorldStep World::step(double dt)
   checkNumber("step", dt, 0.0, 1e30, true);
   State& state = *state_;
   WorldStep report;
-  for (Body& body : state.bodies) {
+  for (WorldBody& body : state.bodies) {
     if (body.is_free) continue;
     body.velocity = body.spin = Eigen::Vector3d::Zero();
     const bool moves = body.target.matrix() != body.pose.matrix();
@@ -356,18 +376,18 @@ WorldStep World::step(double dt)
     body.spin = turn.angle() / dt * turn.axis();
   }
   state.findOrigin();
-  for (Body& body : state.bodies) body.place(state.origin, dt);
+  for (WorldBody& body : state.bodies) body.place(state.origin, dt);
   state.touch(dt, report);
   state.world.stepSimulation(static_cast<btScalar>(dt), 0);
   state.takeImpulses();
-  for (Body& body : state.bodies) {
+  for (WorldBody& body : state.bodies) {
     if (!body.is_free) continue;
     body.velocity = body.isAsleep() ? Eigen::Vector3d::Zero() : eigen(body.solved->getLinearVelocity());
     body.spin = body.isAsleep() ? Eigen::Vector3d::Zero() : eigen(body.solved->getAngularVelocity());
   }
   const std::vector<double> seconds = state.secondsOfBodies(dt, report.work);
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    Body& body = state.bodies[i];
+    WorldBody& body = state.bodies[i];
     if (!body.moves()) continue;
     body.pose = !body.is_free && seconds[i] == dt ? body.target : body.after(seconds[i]);
     if (seconds[i] < dt) ++report.cut;

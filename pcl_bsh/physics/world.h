@@ -80,6 +80,7 @@ public:
   /// Where a fixed body is to be after the next step: it goes there straight, at constant speed. Where it
   /// is cut, it goes on in the next step.
   void moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider);
+  bool isThere(BodyId body) const; ///< whether it is where moveTo() wanted it
 
   /// The last contacts of two bodies; null where there were none. @pre a < b
   const Manifold* contacts(BodyId a, BodyId b) const;

@@ -2,6 +2,7 @@
 // Runs a scene file: many objects in motion, and only the effects it lists.
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
+#include <pcl_bsh/tools/cli/scene_bodies.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/scene/cloud_names.h>
@@ -35,7 +36,8 @@ With --json, what is said of a check, an explanation or a run is JSON on standar
 With --out, DIR gets steps.csv (a row a step), steps.jsonl (all results, a line a step), summary.json, and the
 flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, what may collide, but does not for
 certain, is undecided, flag 2. In steps.jsonl, `unswept` lists objects that did more in a step than first_contact and
-swept look at: those `reshaped` by a wave, and those `detoured` by a response or gravity.
+swept look at: those `reshaped` by a wave, and those `detoured` by a response or gravity. With the effect bodies,
+`bodies` has the pose of each (12 numbers, row by row), its velocity and spin, and `body_contacts` what holds it.
 Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example:
@@ -126,6 +128,7 @@ void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::Sc
 /// Everything that can be known to fail is known before the first cloud is loaded.
 void check(const io::SceneFile& file, const cli::CloudNames& names, const Options& options)
 {
+  cli::requireBodies(file);
   cli::CommandFiles used;
   used.reads("SCENE", options.scene);
   for (const auto& [what, path] : file.files()) used.reads(what, path);
@@ -158,6 +161,7 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
   for (std::size_t e = 0; e < kEffects; ++e)
     if (file.options.effects.has(static_cast<Effect>(e)))
       json["effects"][nameOf(static_cast<Effect>(e))] = cli::toJson(totals.costs[e]);
+  if (file.bodies) json["effects"]["bodies"] = totals.bodies.json();
   if (file.options.effects.any) {
     json["colliding_steps"] = totals.colliding_steps;
     json["undecided_steps"] = totals.undecided_steps;
@@ -180,6 +184,10 @@ void printSummary(const io::SceneFile& file, const cli::SceneTotals& totals, boo
                 counted(cost.pairs), counted(cost.reused), counted(cost.work.node_pairs), counted(cost.work.updates()),
                 counted(cost.work.leaf_pairs), counted(cost.work.exact_decisions), 1e3 * cost.seconds);
   }
+  if (file.bodies)
+    std::printf("%-14s %zu solutions, %zu pairs, %zu contacts, %zu halts before surfaces, %.2f ms\n", "bodies",
+                totals.bodies.steps, totals.bodies.solved.pairs, totals.bodies.solved.contacts,
+                totals.bodies.solved.cut, 1e3 * totals.bodies.seconds);
   const BroadPhaseCost& grid = totals.broad_phase;
   std::printf("%-14s %llu objects moved, %llu voxels left, %llu entered, %llu boxes compared, %.2f ms\n", "grid",
               counted(grid.moved), counted(grid.voxels_left), counted(grid.voxels_entered), counted(grid.box_tests),
@@ -223,29 +231,35 @@ void runScene(const io::SceneFile& file, const Options& options)
   io::SceneWorld world(file);
   loading.done(counted(world.points(), "point"));
   cli::warn(program, world.warnings());
+  const std::unique_ptr<SceneBodies> bodies = cli::bodiesOf(file, world.scene());
+  if (bodies) cli::warn(program, bodies->warnings());
   const double load_seconds = seconds(start);
   if (!options.json)
     std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(),
                 world.points(), file.clouds.size());
 
-  const cli::SceneTable table(file.options.effects, cli::mayBeUndecided(world.scene()));
+  const cli::SceneTable table(file.options.effects, cli::mayBeUndecided(world.scene()), bodies.get());
   if (files) table.writeHeader(files->csv());
   cli::SceneTotals totals;
   Progress progress(file.steps);
   for (std::size_t step = 0; step <= file.steps; ++step) {
     start = Clock::now();
     if (step > 0) world.deform(world.scene().time() + file.dt);
-    const SceneResult result = step == 0 ? world.scene().query() : world.scene().step(file.dt);
-    totals.add(result, seconds(start));
+    BodiesStep done;
+    if (step == 0)
+      done.scene = world.scene().query();
+    else
+      done = cli::stepOf(world.scene(), bodies.get(), file.dt);
+    totals.add(done, seconds(start));
     progress.done(step);
     if (!files) continue;
-    table.writeRow(files->csv(), step, result);
-    files->json() << cli::toJson(step, result, world.scene())
+    table.writeRow(files->csv(), step, done);
+    files->json() << cli::toJson(step, done, world.scene(), bodies.get())
                          .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
                   << '\n';
     if (file.cloud_output == io::CloudOutput::every ||
         (file.cloud_output == io::CloudOutput::last && step == file.steps))
-      writeClouds(file, names, world, result, options.out, step);
+      writeClouds(file, names, world, done.scene, options.out, step);
   }
   const bool tests_pairs = world.scene().testsPairs();
   const nlohmann::ordered_json summary = summaryOf(file, totals, world.points(), load_seconds, tests_pairs);

@@ -2,7 +2,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/physics/world.h>
 
-#include "support/made_meshes.h"
+#include "shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@
 namespace pcl_bsh {
 namespace {
 
+using test::at;
+using test::kGravity;
+using test::kStep;
 using test::TestMesh;
-
-constexpr double kGravity = 9.81;
-constexpr double kStep = 1.0 / 240.0;
 
 /// A surface, and its mass where it closes.
 struct Shape {
@@ -34,16 +34,12 @@ struct Shape {
 
 Shape plane(double reach = 20.0)
 {
-  return Shape(test::gridMesh(1, 1, [&](double u, double v) -> Point3 {
-    return {reach * (2 * u - 1), reach * (2 * v - 1), 0};
-  }));
+  return Shape(test::planeMesh(reach));
 }
 
 Shape box(double x, double y, double z)
 {
-  TestMesh mesh = test::boxMesh(x, y, z);
-  mesh.move(Eigen::Isometry3d(Eigen::Translation3d(-0.5 * x, -0.5 * y, -0.5 * z)));
-  return Shape(std::move(mesh));
+  return Shape(test::crateMesh(x, y, z));
 }
 
 struct Ball {
@@ -62,11 +58,6 @@ struct Ball {
   SphereHierarchy hierarchy;
   Collider collider;
 };
-
-Eigen::Isometry3d at(double x, double y, double z)
-{
-  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
-}
 
 TEST(World, BodiesFallAsTheFormulaSays)
 {
@@ -264,16 +255,7 @@ TEST(World, WhatIsMovedPushesBodiesAndWakesThem)
 TEST(World, AStoneRestsOnScannedTerrain)
 {
   test::Random random(5);
-  std::vector<float> ground, stone;
-  for (int i = 0; i < 40000; ++i) {
-    const double x = random.uniform(-2, 2), y = random.uniform(-2, 2);
-    ground.insert(ground.end(), {float(x), float(y), float(0.1 * std::sin(3 * x) * std::cos(2 * y))});
-  }
-  for (int i = 0; i < 3000; ++i) {
-    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-    const double r = std::sqrt(x * x + y * y + z * z) / 0.4;
-    stone.insert(stone.end(), {float(x / r), float(y / r), float(0.6 * z / r)});
-  }
+  const std::vector<float> ground = test::terrainPoints(random), stone = test::stonePoints(random);
   const SphereHierarchy terrain(viewOf(ground.data(), ground.size() / 3)), hull(viewOf(stone.data(), stone.size() / 3));
   const Collider terrain_collider(terrain), stone_collider(hull);
   MassProperties mass;

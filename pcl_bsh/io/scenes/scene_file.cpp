@@ -44,6 +44,9 @@ public:
     for (const JsonReader& object : root_.at("objects").elements()) parseObject(object);
     for (const JsonReader& scatter : elementsOf(root_, "scatter")) parseScatter(scatter);
     if (file_.objects.empty()) root_.at("objects").fail("the scene has no objects", "give at least one");
+    if (file_.bodies && std::none_of(file_.objects.begin(), file_.objects.end(),
+                                     [](const ObjectEntry& object) { return object.body.falls(); }))
+      root_.at("effects").at("bodies").fail("no object is a body", "give one a 'body' with its mass or density");
     if (root_.has("pairs")) parsePairs(root_.at("pairs"));
     if (root_.has("outputs")) parseOutputs(root_.at("outputs"));
     return std::move(file_);
@@ -97,6 +100,20 @@ private:
       if (gravity.has("down")) effects.gravity->down = direction(gravity.at("down"));
     }
     read(reader, "deform", effects.deform);
+    if (reader.has("bodies")) parseBodies(reader.at("bodies"));
+  }
+
+  void parseBodies(const JsonReader& reader)
+  {
+    if (const char* const other = effectAgainstBodies(file_.options.effects))
+      reader.fail(std::string("does not go with the effect '") + other + "'", "leave one out");
+    BodiesOptions& bodies = file_.bodies.emplace();
+    read(reader, "gravity", bodies.gravity);
+    read(reader, "step", bodies.step);
+    read(reader, "thickness", bodies.thickness);
+    read(reader, "margin", bodies.margin);
+    read(reader, "push", bodies.most_push);
+    read(reader, "damping", bodies.damping);
   }
 
   /// The identity where none is given.
@@ -144,8 +161,29 @@ private:
     if (reader.has("motion")) object.motion = parseMotion(reader.at("motion"));
     if (object.fixed && !std::holds_alternative<NoMotion>(object.motion))
       reader.fail("is fixed and moves", "leave 'fixed' or 'motion' out");
+    parseBody(reader, object);
     if (reader.has("wave")) parseWave(reader.at("wave"), object);
     file_.objects.push_back(std::move(object));
+  }
+
+  void parseBody(const JsonReader& reader, ObjectEntry& object) const
+  {
+    for (const char* key : {"body", "friction", "restitution"})
+      if (!file_.bodies && reader.has(key))
+        reader.at(key).fail("needs the effect 'bodies'", "add \"bodies\": {} to 'effects'");
+    if (!file_.bodies) return;
+    SceneBody& body = object.body;
+    read(reader, "friction", body.material.friction);
+    read(reader, "restitution", body.material.restitution);
+    if (reader.has("body")) {
+      const JsonReader given = reader.at("body");
+      read(given, "mass", body.mass);
+      read(given, "density", body.density);
+      if (given.has("inertia")) body.inertia = given.at("inertia").vector();
+    }
+    const bool moves = !std::holds_alternative<NoMotion>(object.motion);
+    if (const char* const wrong = wrongWith(body, object.fixed, moves, object.parts.size()))
+      reader.fail(wrong, "leave one out");
   }
 
   void parseWave(const JsonReader& reader, ObjectEntry& object)
@@ -261,6 +299,7 @@ private:
 
   void parsePairs(const JsonReader& reader)
   {
+    if (file_.bodies) file_.warnings.push_back("pairs: do not hold for bodies, which touch every object");
     if (reader.has("default")) file_.options.test_pairs = reader.at("default").text() == "tested";
     std::set<std::string> group_set;
     for (const ObjectEntry& object : file_.objects)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/physics/scene_bodies.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/search/uncertainty.h>
 
@@ -58,6 +59,7 @@ struct ObjectEntry {
   bool solid = false; ///< all of its parts are
   Motion motion;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent;
+  SceneBody body;           ///< with the effect bodies
   std::optional<Wave> wave; ///< with the effect deform
   std::string place;        ///< in the document
 };
@@ -74,6 +76,7 @@ enum class CloudOutput { none, last, every };
 struct SceneFile {
   std::filesystem::path path;
   SceneOptions options;
+  std::optional<BodiesOptions> bodies; ///< where the effect bodies is listed
   std::size_t steps = 1;
   double dt = 0.1; ///< seconds
   std::vector<CloudSource> clouds;

@@ -42,6 +42,10 @@ const char* explanationOf(Effect effect)
   return "";
 }
 
+constexpr auto bodies_explained =
+    "objects with a 'body' fall, slide and rest, and what has a motion pushes them; a collider of each cloud, and in "
+    "each solution the contacts of all pairs of which one is a body";
+
 std::size_t fixedObjects(const io::SceneFile& file)
 {
   return static_cast<std::size_t>(std::count_if(file.objects.begin(), file.objects.end(),
@@ -60,19 +64,22 @@ void explain(const io::SceneFile& file, std::ostream& out)
     const auto effect = static_cast<Effect>(e);
     if (effects.has(effect)) out << "  " << nameOf(effect) << ": " << explanationOf(effect) << '\n';
   }
+  if (file.bodies) out << "  bodies: " << bodies_explained << '\n';
   if (!file.options.accuracy.isExact())
     out << "  accuracy of any, flags, distance and self: " << file.options.accuracy.text() << '\n';
   for (const io::CloudSource& cloud : file.clouds)
     if (!cloud.uncertainty.isZero())
       out << "  points of cloud '" << cloud.name << "' may be elsewhere: each verdict about them takes two searches\n";
-  if (effects.none()) out << "  none: objects move, nothing is tested and no voxel is built\n";
+  if (effects.none() && !file.bodies) out << "  none: objects move, nothing is tested and no voxel is built\n";
   out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
   for (std::size_t e = 0; e < kEffects; ++e)
     if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));
+  if (!file.bodies) out << " bodies";
 
   const bool pairs = effects.ofPairs();
   out << "\n\nWhat is built:\n  voxels of every cloud: points are sorted into them when the cloud is read\n";
-  out << "  octree and spheres of a voxel: when an effect first visits it" << (effects.none() ? ", so never\n" : "\n");
+  out << "  octree and spheres of a voxel: when an effect first visits it"
+      << (effects.none() && !file.bodies ? ", so never\n" : "\n");
   out << "  grid over the scene: " << (pairs ? "yes, " : "no, no effect asks for pairs of objects\n");
   if (pairs)
     out << "only objects that share one of its voxels are tested\n  pairs of the " << fixedObjects(file)
@@ -99,7 +106,11 @@ nlohmann::ordered_json explanationJson(const io::SceneFile& file)
     else
       json["off"].push_back(nameOf(effect));
   }
-  json["built"] = {{"voxels", true}, {"spheres", !effects.none()}, {"grid", effects.ofPairs()}};
+  if (file.bodies)
+    json["effects"]["bodies"] = bodies_explained;
+  else
+    json["off"].push_back("bodies");
+  json["built"] = {{"voxels", true}, {"spheres", !effects.none() || file.bodies}, {"grid", effects.ofPairs()}};
   json["fixed_objects"] = fixedObjects(file);
   json["rules"] = file.rules.size();
   return json;

@@ -47,9 +47,11 @@ bool mayBeUndecided(const Scene& scene)
   return false;
 }
 
-void SceneTotals::add(const SceneResult& result, double seconds)
+void SceneTotals::add(const BodiesStep& step, double seconds)
 {
+  const SceneResult& result = step.scene;
   step_seconds.push_back(seconds);
+  bodies.add(step);
   for (std::size_t e = 0; e < kEffects; ++e) {
     costs[e].pairs += result.costs[e].pairs;
     costs[e].reused += result.costs[e].reused;
@@ -91,11 +93,13 @@ void SceneTable::writeHeader(std::ostream& out) const
   }
   if (sweeps()) out << ",unswept_objects";
   if (moves()) out << ",touched,stuck,grounded,travelled,wanted";
+  if (bodies_) writeBodyHeader(out);
   out << '\n';
 }
 
-void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult& result) const
+void SceneTable::writeRow(std::ostream& out, std::size_t step, const BodiesStep& done) const
 {
+  const SceneResult& result = done.scene;
   out << step << ',' << io::numberText(result.time) << ',' << result.broad_phase.moved << ','
       << result.broad_phase.candidates;
   for (std::size_t e = 0; e < kEffects; ++e) {
@@ -137,6 +141,7 @@ void SceneTable::writeRow(std::ostream& out, std::size_t step, const SceneResult
     out << ',' << touched << ',' << stuck << ',' << grounded << ',' << io::numberText(travelled) << ','
         << io::numberText(wanted);
   }
+  if (bodies_) writeBodyRow(out, done, *bodies_);
   out << '\n';
 }
 
@@ -145,9 +150,10 @@ nlohmann::ordered_json toJson(const EffectCost& cost)
   return {{"queries", cost.pairs}, {"reused", cost.reused}, {"work", workJson(cost.work)}, {"seconds", cost.seconds}};
 }
 
-nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const Scene& scene)
+nlohmann::ordered_json toJson(std::size_t step, const BodiesStep& done, const Scene& scene, const SceneBodies* bodies)
 {
   using Json = nlohmann::ordered_json;
+  const SceneResult& result = done.scene;
   const Effects& effects = scene.options().effects;
   const Accuracy& accuracy = scene.options().accuracy;
   const bool open = mayBeUndecided(scene);
@@ -234,6 +240,12 @@ nlohmann::ordered_json toJson(std::size_t step, const SceneResult& result, const
   Json costs = Json::object();
   for (std::size_t e = 0; e < kEffects; ++e)
     if (effects.has(static_cast<Effect>(e))) costs[nameOf(static_cast<Effect>(e))] = toJson(result.costs[e]);
+  if (bodies) {
+    addBodies(json, *bodies, scene);
+    BodyCost cost;
+    cost.add(done);
+    costs["bodies"] = cost.json();
+  }
   json["cost"] = std::move(costs);
   return json;
 }

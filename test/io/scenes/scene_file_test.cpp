@@ -519,6 +519,97 @@ TEST(SceneFile, EffectsAreThoseThatItLists)
               testing::ThrowsMessage<JsonError>(HasSubstr("effects.gravity.down: has length 0: give a direction")));
 }
 
+/// A scene of a floor and a crate. @param bodies of the effect @param crate more members of the crate
+std::string withBodies(const std::string& bodies, const std::string& crate, const std::string& more = "")
+{
+  return R"({"clouds": {"a": {"box": {"size": [1, 1, 1]}}},
+             "objects": [{"name": "floor", "cloud": "a", "fixed": true, "friction": 0.9, "pose": [0, 0, -2]},
+                         {"name": "crate", "cloud": "a")" +
+         crate + R"(}], "effects": {"any": true, "bodies": {)" + bodies + "}" + more + "}}";
+}
+
+TEST(SceneFile, BodiesAreWhatItSays)
+{
+  const SceneFile plain = parseScene(withBodies("", R"(, "body": {"mass": 40})"), "scene.json");
+  ASSERT_TRUE(plain.bodies);
+  EXPECT_EQ(plain.bodies->gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_EQ(plain.bodies->step, 1.0 / 240);
+  EXPECT_EQ(plain.bodies->thickness, 0.001);
+  EXPECT_EQ(plain.bodies->margin, 0.01);
+  EXPECT_EQ(plain.bodies->most_push, 1.0);
+  EXPECT_EQ(plain.bodies->damping, 0.0);
+  EXPECT_FALSE(plain.objects[0].body.falls());
+  EXPECT_EQ(plain.objects[0].body.material.friction, 0.9);
+  EXPECT_TRUE(plain.objects[1].body.falls());
+  EXPECT_EQ(plain.objects[1].body.mass, 40.0);
+  EXPECT_FALSE(plain.objects[1].body.density);
+  EXPECT_FALSE(plain.objects[1].body.inertia);
+  EXPECT_EQ(plain.objects[1].body.material.friction, 0.7);
+  EXPECT_EQ(plain.objects[1].body.material.restitution, 0.0);
+  const SceneFile other = parseScene(
+      withBodies(
+          R"("gravity": [1, 2, 3], "step": 0.01, "thickness": 0.02, "margin": 0.03, "push": 0.5, "damping": 0.25)",
+          R"(, "body": {"density": 2700, "inertia": [4, 5, 6]}, "friction": 0.4, "restitution": 0.1)"),
+      "scene.json");
+  EXPECT_EQ(other.bodies->gravity, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(other.bodies->step, 0.01);
+  EXPECT_EQ(other.bodies->thickness, 0.02);
+  EXPECT_EQ(other.bodies->margin, 0.03);
+  EXPECT_EQ(other.bodies->most_push, 0.5);
+  EXPECT_EQ(other.bodies->damping, 0.25);
+  EXPECT_EQ(other.objects[1].body.density, 2700.0);
+  EXPECT_FALSE(other.objects[1].body.mass);
+  EXPECT_EQ(other.objects[1].body.inertia, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(other.objects[1].body.material.friction, 0.4);
+  EXPECT_EQ(other.objects[1].body.material.restitution, 0.1);
+  EXPECT_FALSE(parseScene(whole, "scene.json").bodies);
+  EXPECT_TRUE(plain.warnings.empty());
+  std::string ruled = withBodies("", R"(, "body": {"mass": 40})");
+  ruled.insert(1, R"("pairs": {"rules": [{"objects": ["floor", "crate"], "tested": false}]},)");
+  EXPECT_THAT(parseScene(ruled, "scene.json").warnings,
+              testing::ElementsAre("pairs: do not hold for bodies, which touch every object"));
+}
+
+TEST(SceneFile, RefusesWhatCannotBeABody)
+{
+  const auto expect = [](const std::string& text, const std::string& message) {
+    EXPECT_EQ(errorOf(text), "scene.json: " + message) << text;
+  };
+  const std::string heavy = R"(, "body": {"mass": 40})";
+  expect(withBodies("", ""), "effects.bodies: no object is a body: give one a 'body' with its mass or density");
+  expect(withBodies("", R"(, "body": {})"), "objects[1].body: has none or several of 'mass', 'density': give one");
+  expect(withBodies("", R"(, "body": {"mass": 1, "density": 1})"),
+         "objects[1].body: has none or several of 'mass', 'density': give one");
+  expect(withBodies("", R"(, "body": {"mass": 0})"), "objects[1].body.mass: 0 is too small: give more than 0");
+  expect(withBodies("", R"(, "body": {"mass": null})"), "objects[1].body.mass: null is no number: give one");
+  EXPECT_THAT(errorOf(withBodies("", R"(, "body": {"mass": NaN})")), HasSubstr("is no JSON"));
+  expect(withBodies("", heavy + R"(, "friction": -0.1)"), "objects[1].friction: -0.1 is too small: give at least 0");
+  expect(withBodies("", heavy + R"(, "restitution": 1.1)"), "objects[1].restitution: 1.1 is too large: give at most 1");
+  expect(withBodies(R"("step": 0)", heavy), "effects.bodies.step: 0 is too small: give more than 0");
+  expect(withBodies(R"("damping": 2)", heavy), "effects.bodies.damping: 2 is too large: give at most 1");
+  expect(withBodies("", heavy + R"(, "fixed": true)"), "objects[1]: is a body and fixed: leave one out");
+  expect(withBodies("", heavy + R"(, "motion": {"velocity": [1, 0, 0]})"),
+         "objects[1]: is a body and has a motion: leave one out");
+  std::string parts = withBodies("", heavy);
+  parts.replace(parts.find(R"("crate", "cloud": "a")"), 21,
+                R"("crate", "parts": [{"name": "b", "cloud": "a"}, {"name": "c", "cloud": "a"}])");
+  expect(parts, "objects[1]: is a body and has several parts: leave one out");
+  for (const auto& [effect, name] : {std::pair{R"("first_contact": true)", "first_contact"},
+                                     {R"("swept": true)", "swept"},
+                                     {R"("response": "stop")", "stop"},
+                                     {R"("response": "slide")", "slide"},
+                                     {R"("gravity": {})", "gravity"},
+                                     {R"("deform": 1.5)", "deform"}})
+    expect(withBodies("", heavy, std::string(", ") + effect),
+           std::string("effects.bodies: does not go with the effect '") + name + "': leave one out");
+  for (const auto& [member, key] : {std::pair{R"("body": {"mass": 40})", "body"},
+                                    {R"("friction": 0.5)", "friction"},
+                                    {R"("restitution": 0.5)", "restitution"}})
+    expect(std::string(R"({"clouds": {"a": {"sphere": {"radius": 1}}}, "objects": [{"name": "A", "cloud": "a", )") +
+               member + "}]}",
+           std::string("objects[0].") + key + ": needs the effect 'bodies': add \"bodies\": {} to 'effects'");
+}
+
 TEST(SceneFile, MotionsAreWhatItSays)
 {
   const auto motionOf = [](const std::string& motion) {

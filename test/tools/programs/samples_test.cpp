@@ -175,14 +175,18 @@ TEST_F(Samples, WhatChangedIsShown)
 TEST_F(Samples, EachSceneRuns)
 {
   std::size_t run = 0;
+  // Links would lead back to the source's folder, where the scans may not be.
+  fs::create_directories(clone / "own/scenes");
+  fs::copy_file(source / "examples/scenes/cube.off", clone / "own/scenes/cube.off");
   for (const auto& entry : fs::directory_iterator(source / "examples/scenes")) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
-    // Links would lead back to the source's folder, where the scans may not be.
-    fs::create_directories(clone / "own/scenes");
     const std::string scene = files::contentOf(entry.path());
     const bool scans = scene.find("build/demo/") != std::string::npos;
     if (scans && !haveScans()) continue;
+#ifndef PCL_BSH_BODIES
+    if (scene.find("\"bodies\"") != std::string::npos) continue;
+#endif
     clone.write("own/scenes/" + name, scene);
     expectDone("build/release/bin/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);
     ++run;

@@ -299,7 +299,7 @@ TEST(SceneProgram, TellsProgramsTheSameAsPeople)
   const Json explained = Json::parse(run("pcl_bsh_scene", scene + " --explain --json").out);
   EXPECT_EQ(explained["effects"].size(), 2u);
   EXPECT_THAT(explained["effects"]["any"].get<std::string>(), HasSubstr("which pairs collide"));
-  EXPECT_EQ(explained["effects"].size() + explained["off"].size(), 11U);
+  EXPECT_EQ(explained["effects"].size() + explained["off"].size(), 12U);
   EXPECT_EQ(explained["built"], (Json{{"voxels", true}, {"spheres", true}, {"grid", true}}));
   EXPECT_EQ(explained["fixed_objects"], 1);
   EXPECT_EQ(explained["accuracy"], "exact");
@@ -323,6 +323,94 @@ TEST(SceneProgram, TellsProgramsTheSameAsPeople)
   EXPECT_EQ("pcl_bsh_scene: " + told["error"].get<std::string>() + "\n", refused.err);
 }
 
+constexpr auto fall = R"({
+  "clouds": { "plate": { "box": { "size": [2, 2, 0.1] }, "spacing": 0.1 },
+              "crate": { "box": { "size": [0.4, 0.4, 0.4] }, "spacing": 0.1 } },
+  "objects": [ { "name": "plate", "cloud": "plate", "fixed": true, "pose": [0, 0, -0.05] },
+               { "name": "crate", "cloud": "crate", "pose": [0.1, 0, HEIGHT], "body": { "mass": 10 } } ],
+  "steps": 30, "dt": 0.1, "effects": { "distance": 5, "bodies": {} }
+})";
+
+std::string fallFrom(const std::string& height)
+{
+  std::string text = fall;
+  return text.replace(text.find("HEIGHT"), 6, height);
+}
+
+TEST(SceneProgram, ExplainsBodies)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("fall.json", fallFrom("0.5")).string();
+  const Json explained = Json::parse(run("pcl_bsh_scene", scene + " --explain --json").out);
+  EXPECT_THAT(explained["effects"]["bodies"].get<std::string>(), HasSubstr("fall, slide and rest"));
+  EXPECT_THAT(run("pcl_bsh_scene", scene + " --explain").out, HasSubstr("\n  bodies: objects with a 'body' fall"));
+  const std::string other = folder.write("crash.json", crashWith(R"("any": true)")).string();
+  EXPECT_THAT(Json::parse(run("pcl_bsh_scene", other + " --explain --json").out)["off"], testing::Contains("bodies"));
+}
+
+TEST(SceneProgram, BodiesFallAndRest)
+{
+#ifndef PCL_BSH_BODIES
+  GTEST_SKIP() << "pcl_bsh::physics is not built: install libbullet-dev";
+#endif
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("fall.json", fallFrom("0.5")).string();
+  const Outcome done = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err, "");
+  EXPECT_THAT(done.out, HasSubstr("720 solutions"));
+  const std::string csv = io::contentOf(folder / "out" / "steps.csv");
+  EXPECT_THAT(csv, HasSubstr(",awake_bodies,body_contacts,bodies_steps,bodies_queries,bodies_cut,bodies_node_pairs,"
+                             "bodies_seconds\n"));
+  const std::string lines = io::contentOf(folder / "out" / "steps.jsonl");
+  const Json first = Json::parse(lines.substr(0, lines.find('\n')));
+  EXPECT_EQ(first["bodies"][0]["pose"], (Json{1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0.5}));
+  EXPECT_TRUE(first["body_contacts"].empty());
+  const Json last = Json::parse(lines.substr(lines.rfind('\n', lines.size() - 2) + 1));
+  EXPECT_EQ(last["bodies"][0]["object"], "crate");
+  EXPECT_EQ(last["bodies"][0]["asleep"], true);
+  EXPECT_NEAR(last["bodies"][0]["pose"][11].get<double>(), 0.25, 0.01) << "two clouds rest by half a spacing";
+  EXPECT_EQ(last["body_contacts"][0]["a"], "plate");
+  EXPECT_EQ(last["body_contacts"][0]["b"], "crate");
+  EXPECT_GE(last["body_contacts"][0]["points"].size(), 3u);
+  EXPECT_LT(last["body_contacts"][0]["points"][0]["normal"][2], -0.5) << "from crate to plate";
+  EXPECT_NEAR(last["distance"][0]["distance"].get<double>(), 0.05, 0.01);
+  const Json summary = Json::parse(io::contentOf(folder / "out" / "summary.json"));
+  EXPECT_EQ(summary["effects"]["bodies"]["steps"], 720);
+  EXPECT_GT(summary["effects"]["bodies"]["contacts"], 0);
+
+  const std::string sunk = folder.write("sunk.json", fallFrom("0.19")).string();
+  EXPECT_THAT(run("pcl_bsh_scene", sunk).err, HasSubstr("objects 'plate' and 'crate' begin in each other"));
+}
+
+TEST(SceneProgram, RefusesBodiesThatDoNotClose)
+{
+#ifndef PCL_BSH_BODIES
+  GTEST_SKIP() << "pcl_bsh::physics is not built: install libbullet-dev";
+#endif
+  const io::TemporaryFolder folder;
+  folder.write("sheet.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string scene = folder
+                                .write("sheet.json", R"({"clouds": {"sheet": "sheet.off"}, "objects": [
+                                  {"name": "leaf", "cloud": "sheet", "body": {"mass": 1}}], "effects": {"bodies": {}}})")
+                                .string();
+  const Outcome refused = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("pcl_bsh_scene: " + scene + ": object 'leaf': "));
+  EXPECT_THAT(refused.err, HasSubstr("3 edges are open"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out" / "steps.csv"));
+}
+
+TEST(SceneProgram, WithoutBodiesNoneOfTheirCodeRuns)
+{
+  const io::TemporaryFolder folder;
+  const std::string scene = folder.write("crash.json", crashWith(R"("any": true)")).string();
+  ASSERT_EQ(run("pcl_bsh_scene", scene + " --out " + (folder / "out").string()).exit_code, 0);
+  EXPECT_THAT(io::contentOf(folder / "out" / "steps.csv"), testing::Not(HasSubstr("bodies")));
+  EXPECT_THAT(io::contentOf(folder / "out" / "steps.jsonl"), testing::Not(HasSubstr("bod")));
+  EXPECT_FALSE(Json::parse(io::contentOf(folder / "out" / "summary.json"))["effects"].contains("bodies"));
+}
+
 TEST(SceneProgram, FailsInOneLine)
 {
   const io::TemporaryFolder folder;
@@ -339,7 +427,7 @@ TEST(SceneProgram, FailsInOneLine)
 
 TEST(SceneProgram, SamplesAreSound)
 {
-  for (const char* sample : {"drift.json", "tunnel.json"}) {
+  for (const char* sample : {"drift.json", "tunnel.json", "falling_stone.json", "push.json"}) {
     const Outcome valid =
         run("pcl_bsh_scene", std::string(PCL_BSH_SOURCE_DIR) + "/examples/scenes/" + sample + " --validate");
     EXPECT_EQ(valid.exit_code, 0) << valid.err;

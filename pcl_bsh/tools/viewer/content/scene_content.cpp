@@ -2,6 +2,7 @@
 #include "scene_content.h"
 
 #include <pcl_bsh/tools/cli/program.h>
+#include <pcl_bsh/tools/cli/scene_bodies.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
@@ -33,6 +34,7 @@ io::SceneFile readScene(const Options& options)
   if (options.step > file.steps)
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the scene has steps 0 to " +
                           std::to_string(file.steps));
+  cli::requireBodies(file);
   file.options.effects = movingOnly(file.options.effects);
   file.options.threads = options.question.threads;
   return file;
@@ -79,6 +81,7 @@ private:
 
   io::SceneFile file_;
   std::unique_ptr<io::SceneWorld> running_scene_; ///< moves the objects from step to step, and reports nothing else
+  std::unique_ptr<SceneBodies> bodies_;           ///< of the running scene; null where it has none
   std::unique_ptr<Scene>
       query_scene_; ///< the same objects without motions: placed as at the step shown, and asked what collides
   std::vector<Place> places_;             ///< of each viewed cloud
@@ -97,6 +100,8 @@ SceneContent::SceneContent(const Options& options) : ViewContent(options), file_
   addClouds();
   if (points_ == 0) throw std::invalid_argument(file_.path.string() + ": has no finite point to show");
   makeQueryScene();
+  bodies_ = cli::bodiesOf(file_, running_scene_->scene());
+  if (bodies_) cli::warn(program, bodies_->warnings());
   states_.push_back(stateAfter({}));
 }
 
@@ -160,7 +165,7 @@ const SceneContent::StepState& SceneContent::at(std::size_t step) const
   while (states_.size() <= step) {
     running.share(static_cast<double>(states_.size() - from) / static_cast<double>(step + 1 - from));
     running_scene_->deform(running_scene_->scene().time() + file_.dt);
-    states_.push_back(stateAfter(running_scene_->scene().step(file_.dt)));
+    states_.push_back(stateAfter(cli::stepOf(running_scene_->scene(), bodies_.get(), file_.dt).scene));
   }
   running.done(counted(step + 1 - from, "step"));
   return states_[step];
