@@ -181,8 +181,8 @@ private:
       const auto found = packages_.find(rest.substr(0, slash));
       if (found != packages_.end()) return found->second / inside;
       if (const auto folder = packageIn(package_path_, rest.substr(0, slash))) return *folder / inside;
-      fail("link '" + link + "' has a mesh " + name,
-           "say where that package is: --package " + rest.substr(0, slash) + "=FOLDER, or in ROS_PACKAGE_PATH");
+      fail("link '" + link + "' has a mesh " + name, "say where that package is: --package " + rest.substr(0, slash) +
+                                                         "=FOLDER, in Python `packages`, or ROS_PACKAGE_PATH");
     }
     if (name.starts_with(file)) return name.substr(file.size());
     return path_.parent_path() / name;
