@@ -172,7 +172,8 @@ TEST_F(RobotTest, FindsPackagesInRosPackagePath)
       ADD_FAILURE() << none;
     }
     catch (const files::FileError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(std::string("--package ") + none + "=FOLDER, in Python `packages`, or ROS_PACKAGE_PATH"));
+      EXPECT_THAT(error.what(),
+                  HasSubstr(std::string("--package ") + none + "=FOLDER, in Python `packages`, or ROS_PACKAGE_PATH"));
     }
   }
 }
