@@ -9,7 +9,6 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/base/counted.h>
-#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/robots/read_robot.h>
@@ -20,12 +19,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <atomic>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace {
@@ -144,10 +142,8 @@ public:
     json["place"] = obstacle.hierarchy->view().point(meeting.record);
   }
 
-  Told state(const RobotState& state) const
+  Told state(const robots::StateCheck& check, const robots::ClearanceResult& nearest) const
   {
-    const robots::StateCheck check = world_.checkState(state);
-    const robots::ClearanceResult nearest = world_.clearance(state);
     Json json = {{"verdict", wordOf(check.verdict)}};
     if (nearest.meeting) json["gap"] = {nearest.gap.lower, nearest.gap.upper};
     const std::optional<Meeting>& meeting = check.meeting ? check.meeting : nearest.meeting;
@@ -155,9 +151,8 @@ public:
     return {json, wordOf(check.verdict) + (meeting ? (check.meeting ? ": " : "; nearest is ") + told(*meeting) : "")};
   }
 
-  Told motion(const RobotState& from, const RobotState& to) const
+  Told motion(const robots::MotionCheck& check) const
   {
-    const robots::MotionCheck check = world_.checkMotion(from, to, true);
     Json json = {{"verdict", wordOf(check.verdict)}, {"last_valid", check.last_valid}};
     if (!check.meeting) return {json, wordOf(check.verdict)};
     json["fraction"] = check.fraction;
@@ -173,18 +168,16 @@ private:
   const std::vector<ReadObstacle>& obstacles_;
 };
 
-/// The answers about `count` states or motions, over threads.
-template <class Check>
-std::vector<Told> checkAll(const char* what, std::size_t count, unsigned threads, const Check& check)
+/// What a world answers about many, as a step of the program.
+template <class Ask>
+auto answered(const std::string& doing, const std::string& all, const Options& options, const Ask& ask)
 {
-  cli::Step step("Checking " + counted(count, what));
-  std::vector<Told> answers(count);
-  std::atomic<std::size_t> done{0};
-  parallelFor(count, threadCount(threads), [&](std::size_t i) {
-    answers[i] = check(i);
-    step.share(static_cast<double>(++done) / static_cast<double>(count));
-  });
-  step.done(counted(count, what));
+  cli::Step step(doing + ' ' + all);
+  auto answers = ask(Effort(options.threads, [&](double done) {
+    step.share(done);
+    return true;
+  }));
+  step.done(all);
   return answers;
 }
 
@@ -243,22 +236,27 @@ int run(Options& options)
                  {"states", Json::array()}};
   std::string table =
       "what,number,verdict,gap_lower,gap_upper,fraction,last_valid,link,other_link,obstacle,record,x,y,z\n";
-  const auto tell = [&](const char* what, const char* key, const std::vector<Told>& answers) {
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      options.files.summary() << what << ' ' << i;
-      if (std::string_view(what) == "motion") options.files.summary() << " to " << i + 1;
-      options.files.summary() << ": " << answers[i].line << '\n';
-      table += rowOf(what, i, answers[i].json);
-      report[key].push_back(answers[i].json);
-    }
+  const auto tell = [&](const char* what, std::size_t i, const std::string& until, const Told& answer) {
+    options.files.summary() << what << ' ' << i << until << ": " << answer.line << '\n';
+    table += rowOf(what, i, answer.json);
+    report[what + std::string("s")].push_back(answer.json);
   };
-  tell("state", "states",
-       checkAll("state", states.size(), options.threads, [&](std::size_t i) { return arm.state(states[i]); }));
+  const std::string all = counted(states.size(), "state");
+  const auto checks =
+      answered("Checking", all, options, [&](const Effort& effort) { return world.checkStates(states, effort); });
+  const auto nearest = answered("Measuring", all, options, [&](const Effort& effort) {
+    return world.clearances(states, std::numeric_limits<double>::infinity(), effort);
+  });
+  for (std::size_t i = 0; i < states.size(); ++i) tell("state", i, "", arm.state(checks[i], nearest[i]));
   if (options.motions) {
     report["motions"] = Json::array();
-    tell("motion", "motions", checkAll("motion", states.size() - 1, options.threads, [&](std::size_t i) {
-           return arm.motion(states[i], states[i + 1]);
-         }));
+    std::vector<robots::RobotWorld::Motion> motions;
+    for (std::size_t i = 0; i + 1 < states.size(); ++i) motions.push_back({states[i], states[i + 1]});
+    const std::string lines = counted(motions.size(), "motion");
+    const auto found = answered("Checking", lines, options,
+                                [&](const Effort& effort) { return world.checkMotions(motions, true, effort); });
+    for (std::size_t i = 0; i < found.size(); ++i)
+      tell("motion", i, " to " + std::to_string(i + 1), arm.motion(found[i]));
   }
   for (const ReadObstacle& obstacle : obstacles)
     if (const auto warning = warningOfHoles(measuredCloud(obstacle.path.string(), *obstacle.hierarchy), robot.name,
