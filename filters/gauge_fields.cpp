@@ -5,25 +5,29 @@
 
 namespace pcl_bsh {
 
-void GaugeFields::add(const Axis& axis, const GaugedPoints& found)
+void GaugeFields::add(const std::vector<Track>& tracks, const GaugedTracks& found)
 {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < found.state.size(); ++i) {
-    const bool placed = hasPlace(found.state[i]);
-    const AxisPlace& at = found.place[i];
-    chainage_.push_back(placed ? axis.chainage(at.distance) : none);
+  const GaugedPoints& told = found.told;
+  for (std::size_t i = 0; i < told.state.size(); ++i) {
+    const bool placed = hasPlace(told.state[i]);
+    const AxisPlace& at = told.place[i];
+    chainage_.push_back(placed ? tracks[static_cast<std::size_t>(found.track[i])].axis.chainage(at.distance) : none);
     offset_.push_back(static_cast<float>(placed ? at.offset : none));
     height_.push_back(static_cast<float>(placed ? at.height : none));
-    clearance_.push_back(static_cast<float>(found.clearance[i]));
-    place_.push_back(static_cast<std::uint8_t>(found.state[i]));
+    clearance_.push_back(static_cast<float>(told.clearance[i]));
+    place_.push_back(static_cast<std::uint8_t>(told.state[i]));
   }
-  envelope_.insert(envelope_.end(), found.envelope.begin(), found.envelope.end());
+  envelope_.insert(envelope_.end(), told.envelope.begin(), told.envelope.end());
+  if (has_names_) track_.insert(track_.end(), found.track.begin(), found.track.end());
 }
 
 std::vector<NewField> GaugeFields::fields() const
 {
-  return {{"chainage", &chainage_},   {"offset", &offset_},     {"height", &height_},
-          {"clearance", &clearance_}, {"envelope", &envelope_}, {"place", &place_}};
+  std::vector<NewField> all = {{"chainage", &chainage_},   {"offset", &offset_},     {"height", &height_},
+                               {"clearance", &clearance_}, {"envelope", &envelope_}, {"place", &place_}};
+  if (has_names_) all.push_back({"track", &track_});
+  return all;
 }
 
 } // namespace pcl_bsh

@@ -4,7 +4,7 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/track/gauge.h>
+#include <pcl_bsh/track/tracks.h>
 
 #include <cstdint>
 #include <vector>
@@ -13,19 +13,23 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// `chainage` (FLOAT64), `offset`, `height` and `clearance` (FLOAT32, NaN without one), `envelope` (INT32, -1 where no
-/// envelope counts) and `place` (UINT8, a PlaceState).
+/// envelope of its track counts) and `place` (UINT8, a PlaceState). Where tracks have names, `track` (INT32), too: the
+/// number of the one that the point is told with, or -1.
 class GaugeFields {
 public:
+  explicit GaugeFields(const std::vector<Track>& tracks) : has_names_(!tracks.front().name.empty()) {}
+
   /// Takes the answer of gauge() for the next points.
-  void add(const Axis& axis, const GaugedPoints& found);
+  void add(const std::vector<Track>& tracks, const GaugedTracks& found);
 
   /// For withFields(). Borrowed.
   std::vector<NewField> fields() const;
 
 private:
+  bool has_names_;
   std::vector<double> chainage_;
   std::vector<float> offset_, height_, clearance_;
-  std::vector<std::int32_t> envelope_;
+  std::vector<std::int32_t> envelope_, track_;
   std::vector<std::uint8_t> place_;
 };
 

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -29,15 +30,36 @@ using Options = cli::GaugeOptions;
 constexpr auto program = cli::gauge_program;
 constexpr std::size_t most_worst_sections = 12, most_section_points = 20'000;
 
-std::vector<Envelope> readEnvelopes(const Options& options, const Axis& axis)
+std::vector<Track> readAxes(const Options& options)
 {
-  std::vector<Envelope> envelopes;
-  for (const io::EnvelopeFiles& files : options.profiles) {
+  std::vector<Track> tracks;
+  for (const cli::GaugeAxis& axis : options.axes) {
     std::vector<std::string> remarks;
-    envelopes.push_back(io::readEnvelope(files, axis, options.profile_unit, &remarks));
+    tracks.push_back({axis.name, io::readAxis(axis.file, axis.settings, &remarks), {}});
+    cli::warnOfFile(program, axis.file, remarks);
+  }
+  return tracks;
+}
+
+void readEnvelopes(const Options& options, std::vector<Track>& tracks)
+{
+  for (const io::EnvelopeFiles& files : options.profiles) {
+    std::vector<std::string> remarks; // the same for each track
+    for (Track& track : tracks) {
+      if (!io::countsOn(files, track.name)) continue;
+      remarks.clear();
+      io::namingTrack(track, [&] {
+        track.envelopes.push_back(io::readEnvelope(files, track.axis, options.profile_unit, &remarks));
+      });
+    }
     cli::warnOfFile(program, files.profile, remarks);
   }
-  return envelopes;
+}
+
+/// Behind a chainage: which track has it.
+std::string ofTrack(const Track& track)
+{
+  return track.name.empty() ? "" : " of track " + track.name;
 }
 
 /// Sections that are wanted: at given chainages, and at the worst places.
@@ -45,17 +67,21 @@ std::vector<io::GaugeSection> sectionsOf(const Options& options, const io::Gauge
 {
   std::vector<io::GaugeSection> sections;
   for (const double chainage : options.at) {
-    const std::vector<double> distances = report.axis.distancesAt(chainage);
-    if (distances.empty())
-      throw cli::UsageError("--at: " + io::numberText(chainage) + ": the axis has no such chainage: give one from " +
-                            io::numberText(report.axis.chainage(0.0)) + " to " +
-                            io::numberText(report.axis.chainage(report.axis.length())));
-    for (const double distance : distances)
-      sections.push_back({"Section " + std::to_string(sections.size() + 1), distance, std::nullopt, {}});
+    const std::size_t before = sections.size();
+    for (std::size_t t = 0; t < report.tracks.size(); ++t)
+      for (const double distance : report.tracks[t].axis.distancesAt(chainage))
+        sections.push_back({"Section " + std::to_string(sections.size() + 1), t, distance, std::nullopt, {}});
+    if (sections.size() > before) continue;
+    std::string given;
+    for (const Track& track : report.tracks)
+      given += (given.empty() ? "" : ", or ") + io::numberText(track.axis.chainage(0.0)) + " to " +
+               io::numberText(track.axis.chainage(track.axis.length())) + ofTrack(track);
+    throw cli::UsageError("--at: " + io::numberText(chainage) + ": the axis has no such chainage: give one from " +
+                          given);
   }
   for (std::size_t i = 0; i < std::min(report.infringements.size(), most_worst_sections); ++i) {
     const Infringing& worst = report.infringements[i].worst;
-    sections.push_back({"Infringement " + std::to_string(i + 1), worst.place.distance, worst, {}});
+    sections.push_back({"Infringement " + std::to_string(i + 1), worst.track, worst.place.distance, worst, {}});
   }
   return sections;
 }
@@ -66,16 +92,19 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
   if (report.sections.empty()) return;
   cli::Step step("Drawing sections");
   std::vector<Point3> origins;
-  for (const io::GaugeSection& section : report.sections) origins.push_back(report.axis.frame(section.distance).origin);
+  for (const io::GaugeSection& section : report.sections)
+    origins.push_back(report.tracks[section.track].axis.frame(section.distance).origin);
   const double near = options.reach.offset + options.thickness + 1.0; // cant moves the middle between the rails
+  std::vector<std::optional<AxisPlaces>> of_tracks;
   scan.forEachBatch([&](const PointsView& points, std::uint64_t first) {
     for (std::size_t i = 0; i < points.count; ++i) {
       const Point3 p = points.point(static_cast<std::uint32_t>(i));
-      std::optional<AxisPlaces> places;
+      of_tracks.assign(report.tracks.size(), std::nullopt);
       for (std::size_t s = 0; s < origins.size(); ++s) {
         if (!(std::abs(p[0] - origins[s][0]) <= near && std::abs(p[1] - origins[s][1]) <= near)) continue;
-        if (!places) places = report.axis.nearest(p, options.reach);
         io::GaugeSection& section = report.sections[s];
+        std::optional<AxisPlaces>& places = of_tracks[section.track];
+        if (!places) places = report.tracks[section.track].axis.nearest(p, options.reach);
         const auto add = [&](const AxisPlace& at) {
           if (std::abs(at.distance - section.distance) <= options.thickness / 2 &&
               section.points.size() < most_section_points)
@@ -103,30 +132,30 @@ void writeSections(const fs::path& folder, const io::GaugeReport& report)
 
 void summarise(const Options& options, const io::GaugeReport& report)
 {
-  std::size_t no_data = 0;
-  for (std::size_t part = 0; part < report.table.parts(); ++part) no_data += report.table.points(part) == 0;
   std::ostream& out = options.files.summary();
   out << counted(report.infringements.size(), "infringement") << " of " << counted(report.infringing, "point");
   if (!report.previous.empty()) out << ", " << io::stateCounts(report.listed);
   if (!report.infringements.empty()) {
     const Infringing& worst = report.infringements.front().worst;
+    const Track& track = report.tracks[worst.track];
     out << ", the worst " << io::numberText(worst.clearance, std::chars_format::fixed, 3) << " at chainage "
-        << io::numberText(report.axis.chainage(worst.place.distance), std::chars_format::fixed, 3);
+        << io::numberText(track.axis.chainage(worst.place.distance), std::chars_format::fixed, 3) << ofTrack(track);
   }
   out << "; " << counted(report.placed(), "point") << " at the axis, " << report.counts[2] + report.counts[3]
       << " beyond its ends, " << report.counts[4] << " too far";
   if (report.counts[5] > 0) out << ", " << report.counts[5] << " not finite";
-  if (no_data > 0) out << "; no data in " << no_data << " of " << counted(report.table.parts(), "part");
+  if (const std::size_t no_data = report.partsWithoutData(); no_data > 0)
+    out << "; no data in " << no_data << " of " << counted(report.parts(), "part");
   out << '\n';
 }
 
-void compare(const Options& options, const Axis& axis)
+void compare(const Options& options, std::vector<Track> tracks)
 {
-  const std::vector<Envelope> envelopes = readEnvelopes(options, axis);
-  axis.requireReach(options.reach);
+  readEnvelopes(options, tracks);
+  for (const Track& track : tracks) io::namingTrack(track, [&] { track.axis.requireReach(options.reach); });
   std::optional<io::GaugeList> earlier;
   if (!options.previous.empty()) earlier = io::readGaugeList(options.previous, options.limit);
-  GaugeTable table(axis, envelopes.size(), options.step);
+  std::vector<GaugeTable> tables = io::tablesOf(tracks, options.step);
   if (!options.output.empty()) io::requireWritableCloud(options.output);
   options.written.requireWritable();
 
@@ -137,16 +166,15 @@ void compare(const Options& options, const Axis& axis)
     step.done(counted(scan->points(), "point"));
   }
   cli::warnOfFile(program, options.input, scan->remarks());
-  GaugeFields fields;
+  GaugeFields fields(tracks);
   if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
 
   io::GaugeReport report{options.input.string(),
-                         options.axis.string(),
                          options.unit,
                          scan->coordinateSystem(),
-                         axis,
-                         envelopes,
-                         table,
+                         tracks,
+                         {},
+                         std::move(tables),
                          options.reach,
                          options.limit,
                          options.thickness,
@@ -154,11 +182,12 @@ void compare(const Options& options, const Axis& axis)
                          {},
                          0,
                          {}};
-  io::GaugeRun run(report, table, options.threads);
+  for (const cli::GaugeAxis& axis : options.axes) report.axis_files.push_back(axis.file.string());
+  io::GaugeRun run(report, options.threads);
   cli::Step step("Gauging");
   scan->forEachBatch([&](const PointsView& points, std::uint64_t first) {
-    const GaugedPoints found = run.add(points, first);
-    if (!options.output.empty()) fields.add(axis, found);
+    const GaugedTracks found = run.add(points, first);
+    if (!options.output.empty()) fields.add(tracks, found);
     step.share(static_cast<double>(first + points.count) / static_cast<double>(scan->points()));
   });
   const std::vector<std::string> remarks = run.finish(options.previous, earlier);
@@ -189,11 +218,9 @@ void makePoses(const Options& options, const Axis& axis)
 int runGauge(const Options& options)
 {
   options.files.requireApart();
-  std::vector<std::string> remarks;
-  const Axis axis = io::readAxis(options.axis, options.axis_settings, &remarks);
-  cli::warnOfFile(program, options.axis, remarks);
-  makePoses(options, axis);
-  if (!options.input.empty()) compare(options, axis);
+  std::vector<Track> tracks = readAxes(options);
+  makePoses(options, tracks.front().axis);
+  if (!options.input.empty()) compare(options, std::move(tracks));
   return 0;
 }
 

@@ -8,9 +8,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 
 namespace pcl_bsh {
+namespace {
+
+/// The smaller one is worse.
+std::tuple<double, std::uint64_t> key(const Infringing& point)
+{
+  return {point.clearance, point.record};
+}
+
+/// Clusters of the points with these numbers.
+void addInfringements(const std::vector<Infringing>& list, const std::vector<std::size_t>& numbers, double distance,
+                      std::vector<Infringement>& found)
+{
+  std::vector<Point3> places;
+  for (const std::size_t i : numbers) places.push_back(list[i].at);
+  const SphereHierarchy cloud(viewOf(places.empty() ? nullptr : places.front().data(), places.size()));
+  const Clusters clusters = euclideanClusters(cloud, distance);
+  const std::size_t first_found = found.size();
+  found.resize(first_found + clusters.sizes.size());
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const Infringing& point = list[numbers[n]];
+    Infringement& infringement = found[first_found + static_cast<std::size_t>(clusters.of[n])];
+    const double at = point.place.distance;
+    const bool first = infringement.members.empty();
+    if (first || key(point) < key(infringement.worst)) infringement.worst = point;
+    infringement.from = first ? at : std::min(infringement.from, at);
+    infringement.to = first ? at : std::max(infringement.to, at);
+    infringement.members.push_back(numbers[n]);
+  }
+}
+
+} // namespace
 
 GaugeTable::GaugeTable(const Axis& axis, std::size_t envelopes, double step)
 : length_(axis.length()),
@@ -63,35 +95,23 @@ double GaugeTable::smallest(std::size_t part, std::size_t envelope) const
 }
 
 void addInfringing(const PointsView& points, const GaugedPoints& found, double limit, std::uint64_t first_record,
-                   std::vector<Infringing>& list)
+                   std::vector<Infringing>& list, std::uint32_t track)
 {
   for (std::size_t i = 0; i < found.clearance.size(); ++i)
     if (found.clearance[i] <= limit)
       list.push_back({points.point(points.record(i)), first_record + points.record(i), found.place[i],
-                      found.clearance[i], found.envelope[i]});
+                      found.clearance[i], found.envelope[i], track});
 }
 
 std::vector<Infringement> infringementsOf(const std::vector<Infringing>& list, double distance)
 {
-  std::vector<Point3> places;
-  for (const Infringing& point : list) places.push_back(point.at);
-  const SphereHierarchy cloud(viewOf(places.empty() ? nullptr : places.front().data(), places.size()));
-  const Clusters clusters = euclideanClusters(cloud, distance);
-  std::vector<Infringement> found(clusters.sizes.size());
-  const auto isWorse = [](const Infringing& a, const Infringing& b) {
-    return std::tie(a.clearance, a.record) < std::tie(b.clearance, b.record);
-  };
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    Infringement& infringement = found[static_cast<std::size_t>(clusters.of[i])];
-    const double at = list[i].place.distance;
-    const bool first = infringement.members.empty();
-    if (first || isWorse(list[i], infringement.worst)) infringement.worst = list[i];
-    infringement.from = first ? at : std::min(infringement.from, at);
-    infringement.to = first ? at : std::max(infringement.to, at);
-    infringement.members.push_back(i);
-  }
-  std::sort(found.begin(), found.end(),
-            [&](const Infringement& a, const Infringement& b) { return isWorse(a.worst, b.worst); });
+  std::map<std::uint32_t, std::vector<std::size_t>> of_tracks = {{0, {}}}; // which checks the distance of no point, too
+  for (std::size_t i = 0; i < list.size(); ++i) of_tracks[list[i].track].push_back(i);
+  std::vector<Infringement> found;
+  for (const auto& of_track : of_tracks) addInfringements(list, of_track.second, distance, found);
+  std::sort(found.begin(), found.end(), [](const Infringement& a, const Infringement& b) {
+    return std::tuple(key(a.worst), a.worst.track) < std::tuple(key(b.worst), b.worst.track);
+  });
   return found;
 }
 

@@ -66,10 +66,11 @@ struct Infringing {
   std::uint64_t record = 0; ///< of the whole scan
   AxisPlace place = {};
   double clearance = 0.0;
-  std::int32_t envelope = -1;
+  std::int32_t envelope = -1; ///< of its track
+  std::uint32_t track = 0;    ///< its number, where there are several
 };
 
-/// Points too near that lie together.
+/// Points too near to one track that lie together.
 struct Infringement {
   Infringing worst;                 ///< the smallest clearance, of equal ones the first record
   double from = 0.0, to = 0.0;      ///< distances along the axis
@@ -78,10 +79,12 @@ struct Infringement {
 
 /// Appends points whose clearance is at most `limit` to the list.
 /// @param first_record of the points among all of the scan
+/// @param track number of the one that was asked about
 void addInfringing(const PointsView& points, const GaugedPoints& found, double limit, std::uint64_t first_record,
-                   std::vector<Infringing>& list);
+                   std::vector<Infringing>& list, std::uint32_t track = 0);
 
-/// Clusters whose neighbours are `distance` apart at most, the worst first. @throws InvalidInput as euclideanClusters()
+/// Clusters of each track's points whose neighbours are `distance` apart at most, the worst first, of equal ones that
+/// of the first track. @throws InvalidInput as euclideanClusters()
 std::vector<Infringement> infringementsOf(const std::vector<Infringing>& list, double distance);
 
 } // namespace pcl_bsh

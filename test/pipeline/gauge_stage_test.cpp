@@ -7,10 +7,11 @@
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/tracks/axis_file.h>
 #include <pcl_bsh/search/cloud_view.h>
-#include <pcl_bsh/track/gauge.h>
+#include <pcl_bsh/track/tracks.h>
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -114,6 +115,49 @@ TEST_F(GaugeStage, WritesTablesAndComparesWithAnEarlierRun)
   const auto report = nlohmann::json::parse(io::contentOf(folder / "week.json"));
   EXPECT_FALSE(report["infringements"].empty());
   for (const auto& one : report["infringements"]) EXPECT_EQ(one["status"], "persisting");
+}
+
+TEST_F(GaugeStage, GaugesSeveralTracksInOnePass)
+{
+  folder.write("right.axis", "start 0 -3 90\nchainage 500\narc 30 47\n");
+  const std::string box = (folder / "box.csv").string();
+  const std::string axes = R"("axes": [{"name": "left", "file": ")" + (folder / "line.axis").string() +
+                           R"("}, {"name": "right", "file": ")" + (folder / "right.axis").string() + R"("}])";
+  const auto stageOf = [&](const std::string& profiles, const std::string& more = "") {
+    return R"({"type": "filters.gauge", )" + axes + R"(, "profiles": [)" + profiles + "]" + more + "}";
+  };
+  const std::string both =
+      R"({"file": ")" + box + R"("}, {"file": ")" + box + R"(", "name": "more", "tracks": ["right"]})";
+  const StageCloudPtr gauged = outputOf(scan, stageOf(both, fileOption("table", "table.csv") + R"(, "step": 50)"));
+  const PointsView points = viewOf(scan->cloud);
+  const Envelope of_box({"box", {{-1.5, 0}, {1.5, 0}, {1.5, 4}, {-1.5, 4}}});
+  const GaugedTracks truth = gauge(points,
+                                   {{"left", io::readAxis(folder / "line.axis"), {of_box}},
+                                    {"right", io::readAxis(folder / "right.axis"), {of_box}}},
+                                   {});
+  std::array<std::size_t, 3> counts{};
+  for (std::size_t i = 0; i < points.count; ++i) {
+    EXPECT_EQ(io::valueOf(gauged->cloud, i, "track"), truth.track[i]);
+    ++counts[static_cast<std::size_t>(truth.track[i] + 1)];
+    if (truth.track[i] < 0) continue;
+    EXPECT_EQ(io::valueOf(gauged->cloud, i, "offset"), static_cast<float>(truth.told.place[i].offset));
+    EXPECT_EQ(io::valueOf(gauged->cloud, i, "chainage") >= 500, truth.track[i] == 1);
+  }
+  EXPECT_GT(counts[1], 500u);
+  EXPECT_GT(counts[2], 500u);
+  const std::string table = io::contentOf(folder / "table.csv");
+  EXPECT_THAT(table, HasSubstr("\nleft,100,130,0,30,box,infringed,"));
+  EXPECT_THAT(table, HasSubstr("\nright,500,530,0,30,more,infringed,"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4) << table;
+
+  const auto error = [&](const std::string& text) { return errorOf([&] { runStage(scan, text); }); };
+  EXPECT_THAT(error(stageOf(both, fileOption("axis", "line.axis"))), HasSubstr("axis: is given beside `axes`"));
+  EXPECT_THAT(error(R"({"type": "filters.gauge", "profiles": [{"file": ")" + box + R"("}]})"),
+              HasSubstr("axis: is missing: give it, or `axes`"));
+  EXPECT_THAT(error(stageOf(R"({"file": ")" + box + R"(", "tracks": ["siding"]})")),
+              HasSubstr("profiles/0: no track is called 'siding'"));
+  EXPECT_THAT(error(stageOf(R"({"file": ")" + box + R"(", "tracks": ["left"]})")),
+              HasSubstr("profiles: no profile counts on the track 'right'"));
 }
 
 TEST_F(GaugeStage, NamesTheOptionThatIsWrong)

@@ -12,7 +12,9 @@
 #include <pcl_bsh/io/tracks/profile_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,9 +22,16 @@
 namespace pcl_bsh::pipeline {
 namespace {
 
+struct NamedAxis {
+  std::string name;
+  InputFile file;
+  std::string alignment;
+};
+
 struct Profile {
   InputFile file;
   std::string name;
+  std::vector<std::string> tracks;
   std::optional<double> from, to;
   std::optional<InputFile> widening;
   std::optional<double> vehicle_pivots;
@@ -30,7 +39,8 @@ struct Profile {
 };
 
 struct Gauge : Stage {
-  InputFile axis;
+  std::optional<InputFile> axis;
+  std::vector<NamedAxis> axes;
   std::string alignment;
   std::optional<double> fit, cant_unit, rail_gauge, profile_unit;
   std::optional<std::string> pivot;
@@ -44,20 +54,15 @@ struct Gauge : Stage {
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
-    std::vector<std::string> remarks;
-    checked("axis", [&] {
-      io::AxisSettings settings;
-      settings.alignment = alignment;
-      settings.fit = fit;
-      settings.cant_unit = cant_unit;
-      settings.gauge = rail_gauge;
-      if (pivot) settings.pivot = *pivot == "centre" ? CantPivot::centre : CantPivot::low_rail;
-      axis_ = io::readAxis(axis.path, settings, &remarks);
-    });
-    warnOf(axis.path, remarks);
+    if (axis.has_value() != axes.empty())
+      throw OptionError("axis", axis ? "is given beside `axes`: give one of both"
+                                     : "is missing: give it, or `axes` with a name for each track");
+    if (axis) readTrack("axis", {"", *axis, alignment});
+    for (std::size_t i = 0; i < axes.size(); ++i) readTrack("axes/" + std::to_string(i), axes[i]);
     readEnvelopes();
-    checked("reach", [&] { axis_->requireReach({reach, below, above}); });
-    checked("step", [&] { GaugeTable(*axis_, envelopes_.size(), step); });
+    for (const Track& track : tracks_)
+      checked("reach", [&] { io::namingTrack(track, [&] { track.axis.requireReach({reach, below, above}); }); });
+    checked("step", [&] { io::tablesOf(tracks_, step); });
     for (const auto& [option, file, path] : {std::tuple{"table", &table, &files_.table},
                                              {"infringements", &infringements, &files_.infringements},
                                              {"report", &report, &files_.report},
@@ -67,21 +72,25 @@ struct Gauge : Stage {
         checked(option, [&, path = path] { files::requireWritable(*path); });
       }
     if (previous) checked("previous", [&] { earlier_ = io::readGaugeList(previous->path, limit); });
-    return withFields(inputs[0], GaugeFields().fields());
+    return withFields(inputs[0], GaugeFields(tracks_).fields());
   }
 
   StageCloudPtr run(StageClouds&& inputs) override
   {
-    GaugeTable parts(*axis_, envelopes_.size(), step);
-    io::GaugeReport told{input_name, axis.path,  unit,  inputs[0]->coordinate_system,
-                         *axis_,     envelopes_, parts, {reach, below, above},
+    io::GaugeReport told{input_name,
+                         unit,
+                         inputs[0]->coordinate_system,
+                         tracks_,
+                         axis_files_,
+                         io::tablesOf(tracks_, step),
+                         {reach, below, above},
                          limit};
     told.cluster_distance = cluster_distance;
-    io::GaugeRun gauging(told, parts, 1);
-    GaugeFields fields;
+    io::GaugeRun gauging(told, 1);
+    GaugeFields fields(tracks_);
     io::forEachGaugeBatch(viewOf(inputs[0]->cloud), [&](const PointsView& batch, std::size_t first) {
       if (isCancelled()) throw Cancelled();
-      fields.add(*axis_, gauging.add(batch, first));
+      fields.add(tracks_, gauging.add(batch, first));
     });
     const std::string earlier = previous ? previous->path : "";
     warnOf(earlier, gauging.finish(earlier, earlier_));
@@ -112,31 +121,77 @@ private:
     for (const std::string& remark : remarks) warn(file + ": " + remark);
   }
 
+  void readTrack(const std::string& option, const NamedAxis& from)
+  {
+    std::vector<std::string> remarks;
+    checked(option, [&] {
+      io::AxisSettings settings;
+      settings.alignment = from.alignment.empty() ? alignment : from.alignment;
+      settings.fit = fit;
+      settings.cant_unit = cant_unit;
+      settings.gauge = rail_gauge;
+      if (pivot) settings.pivot = *pivot == "centre" ? CantPivot::centre : CantPivot::low_rail;
+      tracks_.push_back({from.name, io::readAxis(from.file.path, settings, &remarks), {}});
+    });
+    warnOf(from.file.path, remarks);
+    axis_files_.push_back(from.file.path);
+    if (!axis && from.name.empty()) throw OptionError(option, "has an empty `name`: give the track's");
+    for (std::size_t i = 0; i + 1 < tracks_.size(); ++i)
+      if (tracks_[i].name == from.name)
+        throw OptionError(option, "another track is called '" + from.name + "', too: give another `name`");
+  }
+
   void readEnvelopes()
   {
     if (profiles.empty()) throw OptionError("profiles", "is an empty list: give one profile at least");
-    for (const Profile& profile : profiles) {
-      const std::string place = "profiles/" + std::to_string(envelopes_.size());
-      io::EnvelopeFiles files = {profile.name, profile.file.path};
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < profiles.size(); ++i) {
+      const Profile& profile = profiles[i];
+      const std::string place = "profiles/" + std::to_string(i);
+      io::EnvelopeFiles files = {profile.name, profile.file.path, profile.tracks};
       if (profile.from.has_value() != profile.to.has_value())
         throw OptionError(place, "has one end of a range: give both, `from` and `to`");
       if (profile.from) files.ranges = {{*profile.from, *profile.to}};
       if (profile.widening) files.widening = profile.widening->path;
       if (profile.vehicle_pivots) files.vehicle = Vehicle{*profile.vehicle_pivots, profile.vehicle_overhang};
-      std::vector<std::string> remarks;
-      checked(place, [&] { envelopes_.push_back(io::readEnvelope(files, *axis_, profile_unit, &remarks)); });
+      for (const std::string& track : profile.tracks)
+        if (std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& given) { return given.name == track; }))
+          throw OptionError(place, "no track is called '" + track + "': give names of `axes`");
+      std::vector<std::string> remarks; // the same for each track
+      std::string name;
+      for (Track& track : tracks_) {
+        if (!io::countsOn(files, track.name)) continue;
+        remarks.clear();
+        checked(place, [&] {
+          io::namingTrack(
+              track, [&] { track.envelopes.push_back(io::readEnvelope(files, track.axis, profile_unit, &remarks)); });
+        });
+        name = track.envelopes.back().name();
+      }
       warnOf(profile.file.path, remarks);
-      for (std::size_t i = 0; i + 1 < envelopes_.size(); ++i)
-        if (envelopes_[i].name() == envelopes_.back().name())
-          throw OptionError(place, "another is called '" + envelopes_[i].name() + "', too: give it a `name`");
+      if (!names.insert(name).second)
+        throw OptionError(place, "another is called '" + name + "', too: give it a `name`");
     }
+    for (const Track& track : tracks_)
+      if (track.envelopes.empty())
+        throw OptionError("profiles", "no profile counts on the track '" + track.name + "': name it in `tracks`, too");
   }
 
-  std::optional<Axis> axis_;
-  std::vector<Envelope> envelopes_;
+  std::vector<Track> tracks_;
+  std::vector<std::string> axis_files_;
   std::optional<io::GaugeList> earlier_;
   io::GaugeFiles files_;
 };
+
+Option optionOfAxes()
+{
+  return rowsOption<NamedAxis>(
+      "axes", "instead of `axis`: several tracks, gauged in one pass",
+      {rowOption(&NamedAxis::name, "name", "the track's, for reports").required(),
+       rowOption(&NamedAxis::file, "file", "the axis, as `axis` has it").required(),
+       rowOption(&NamedAxis::alignment, "alignment", "name of the alignment; null: as for all")},
+      [](Stage& stage) -> std::vector<NamedAxis>& { return static_cast<Gauge&>(stage).axes; });
+}
 
 Option optionOfProfiles()
 {
@@ -147,6 +202,7 @@ Option optionOfProfiles()
       "profiles", "the outlines that must stay free",
       {rowOption(&Profile::file, "file", "the outline, as .csv (offset, height) or .dxf").required(),
        rowOption(&Profile::name, "name", "null: the file's, without its extension"),
+       rowOption(&Profile::tracks, "tracks", "names of `axes` where it counts; null: all"),
        rowOption(&Profile::from, "from", "the chainage where it begins to count; null: everywhere"),
        rowOption(&Profile::to, "to", "the chainage where it ends to count, inclusive"),
        rowOption(&Profile::widening, "widening", "how it widens: a .csv of chainage, left, right"), std::move(pivots),
@@ -166,10 +222,11 @@ StageType gaugeStage()
              "Adds where each point is along a track, and how far outside of profiles that must stay free. Fields: "
              "`chainage` (float64), `offset`, `height`, `clearance` (float32; below 0 inside, NaN without one). "
              "`envelope` (int32) is the profile's number, or -1 where no profile counts. `place` (uint8) is 0 at one "
-             "place of the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite. All points stay. The "
+             "place of the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite. With `axes` also `track` "
+             "(int32), the number of the one that it is told with, or -1. All points stay. The "
              "query is that of pcl_bsh_gauge; TRACKS.md has the forms of the files.")
       .option(&Gauge::axis, "axis", "the axis: points as .csv, an alignment of LandXML as .xml, or elements as text")
-      .required()
+      .option(optionOfAxes())
       .option(optionOfProfiles())
       .option(&Gauge::alignment, "alignment", "name of the alignment, where a LandXML holds several")
       .option(&Gauge::fit, "fit",

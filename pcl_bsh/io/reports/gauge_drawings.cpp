@@ -81,13 +81,15 @@ std::string clearanceColor(double clearance, double limit, double range)
 
 /// Where a drawing by chainage has its columns, and its axis below.
 struct AlongAxis {
-  const GaugeReport& report;
+  const Axis& axis;
+  const GaugeTable& table;
+  const std::string& unit;
   double left = 70, width = 970;
-  std::size_t columns = std::min(most_columns, report.table.parts());
+  std::size_t columns = std::min(most_columns, table.parts());
 
   std::pair<std::size_t, std::size_t> partsOf(std::size_t column) const
   {
-    const std::size_t parts = report.table.parts();
+    const std::size_t parts = table.parts();
     return {column * parts / columns, (column + 1) * parts / columns};
   }
   double smallest(std::size_t column, const std::function<double(std::size_t)>& of) const
@@ -97,25 +99,22 @@ struct AlongAxis {
     for (std::size_t part = from; part < to; ++part) least = std::min(least, of(part));
     return least;
   }
-  double x(std::size_t column) const
-  {
-    return left + width * report.table.from(partsOf(column).first) / report.axis.length();
-  }
-  double xOf(double distance) const { return left + width * distance / report.axis.length(); }
+  double x(std::size_t column) const { return left + width * table.from(partsOf(column).first) / axis.length(); }
+  double xOf(double distance) const { return left + width * distance / axis.length(); }
 
   /// Ticks at round distances, which say the chainage there.
   std::string ticks(double top, double bottom) const
   {
     std::string all;
-    const double step = roundLength(report.axis.length() / 5);
-    for (double distance = 0; distance <= report.axis.length() * (1 + 1e-9); distance += step) {
-      const double tick = xOf(std::min(distance, report.axis.length()));
+    const double step = roundLength(axis.length() / 5);
+    for (double distance = 0; distance <= axis.length() * (1 + 1e-9); distance += step) {
+      const double tick = xOf(std::min(distance, axis.length()));
       all += lineOf(tick, top, tick, bottom + 4, "#dde3ea");
-      all += textOfDrawing(tick, bottom + 16, "middle",
-                           numberText(report.axis.chainage(distance), std::chars_format::fixed, 1));
+      all +=
+          textOfDrawing(tick, bottom + 16, "middle", numberText(axis.chainage(distance), std::chars_format::fixed, 1));
     }
     return all + textOfDrawing(left + width / 2, bottom + 32, "middle",
-                               "chainage" + (report.unit.empty() ? std::string() : " [" + report.unit + "]"));
+                               "chainage" + (unit.empty() ? std::string() : " [" + unit + "]"));
   }
 };
 
@@ -138,17 +137,18 @@ struct SectionView {
 std::string sectionDrawing(const GaugeReport& report, const GaugeSection& section)
 {
   constexpr double width = 640, height = 560, margin = 1.2; // beside the envelopes
-  const double chainage = report.axis.chainage(section.distance);
+  const Track& track = report.tracks[section.track];
+  const double chainage = track.axis.chainage(section.distance);
   std::vector<std::pair<std::size_t, std::vector<SectionPoint>>> outlines;
   SectionPoint low{unbounded, unbounded}, high{-unbounded, -unbounded};
   const auto extend = [&](const SectionPoint& p) {
     low = {std::min(low.offset, p.offset), std::min(low.height, p.height)};
     high = {std::max(high.offset, p.offset), std::max(high.height, p.height)};
   };
-  for (std::size_t e = 0; e < report.envelopes.size(); ++e) {
-    if (!report.envelopes[e].countsAt(chainage)) continue;
+  for (std::size_t e = 0; e < track.envelopes.size(); ++e) {
+    if (!track.envelopes[e].countsAt(chainage)) continue;
     std::vector<SectionPoint> room;
-    const auto& outline = report.envelopes[e].outlineAt(report.axis, section.distance, room);
+    const auto& outline = track.envelopes[e].outlineAt(track.axis, section.distance, room);
     outlines.emplace_back(e, outline);
     for (const SectionPoint& corner : outline) extend(corner);
   }
@@ -158,8 +158,10 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
   view.scale = std::min(view.width / (high.offset - low.offset + 2 * margin),
                         view.height / (high.height - low.height + 2 * margin));
 
-  std::string inside =
-      textOfDrawing(20, 24, "start", section.name + ", chainage " + lengthText(report, chainage), "#1c2530");
+  std::string inside = textOfDrawing(20, 24, "start",
+                                     section.name + (report.named() ? ", track " + track.name : "") + ", chainage " +
+                                         lengthText(report, chainage),
+                                     "#1c2530");
   inside += "<rect" +
             attributesOf({{"x", placeText(view.left)},
                           {"y", placeText(view.top)},
@@ -189,8 +191,8 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
     for (const SectionPoint& corner : outline)
       path += (path.empty() ? 'M' : 'L') + placeText(view.x(corner.offset)) + ' ' + placeText(view.y(corner.height));
     inside += "<path fill=\"none\" stroke-width=\"1.4\" stroke=\"" + color + "\" d=\"" + path + "z\"/>\n";
-    inside += textOfDrawing(legend, height - 46, "start", report.envelopes[e].name(), color);
-    legend += 16 + 7.0 * static_cast<double>(report.envelopes[e].name().size());
+    inside += textOfDrawing(legend, height - 46, "start", track.envelopes[e].name(), color);
+    legend += 16 + 7.0 * static_cast<double>(track.envelopes[e].name().size());
   }
   if (section.worst) {
     const SectionPoint worst{section.worst->place.offset, section.worst->place.height};
@@ -221,9 +223,10 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
   return drawing(width, height, "section", inside);
 }
 
-std::string clearanceMap(const GaugeReport& report, std::size_t envelope)
+std::string clearanceMap(const GaugeReport& report, std::size_t track, std::size_t envelope)
 {
-  const AlongAxis along{report};
+  const GaugeTable& table = report.tables[track];
+  const AlongAxis along{report.tracks[track].axis, table, report.unit};
   constexpr double top = 12, row = 5;
   constexpr double bottom = top + row * static_cast<double>(cells_around), range = 1.0;
   std::string inside = "<g shape-rendering=\"crispEdges\">\n";
@@ -231,9 +234,8 @@ std::string clearanceMap(const GaugeReport& report, std::size_t envelope)
     const double y = bottom - row * static_cast<double>(cell + 1);
     for (std::size_t column = 0; column < along.columns;) {
       const auto colorOf = [&](std::size_t c) {
-        return clearanceColor(
-            along.smallest(c, [&](std::size_t part) { return report.table.cell(part, envelope, cell); }), report.limit,
-            range);
+        return clearanceColor(along.smallest(c, [&](std::size_t part) { return table.cell(part, envelope, cell); }),
+                              report.limit, range);
       };
       const std::size_t first = column;
       const std::string color = colorOf(first);
@@ -273,18 +275,19 @@ std::string clearanceMap(const GaugeReport& report, std::size_t envelope)
   return drawing(1080, bottom + 46, "map of clearances", inside);
 }
 
-std::string clearanceChart(const GaugeReport& report, std::size_t envelope)
+std::string clearanceChart(const GaugeReport& report, std::size_t track, std::size_t envelope)
 {
-  const AlongAxis along{report};
+  const GaugeTable& table = report.tables[track];
+  const AlongAxis along{report.tracks[track].axis, table, report.unit};
   constexpr double top = 12, height = 200, bottom = top + height;
   constexpr std::array drawn = {std::pair{Sector::left, "#1f6feb"}, std::pair{Sector::above, "#8250df"},
                                 std::pair{Sector::right, "#b26a00"}, std::pair{Sector::below, "#0a7f7f"}};
   constexpr std::array names = {"left", "above", "right", "below"};
   std::vector<double> all;
   double low = report.limit;
-  for (std::size_t part = 0; part < report.table.parts(); ++part)
+  for (std::size_t part = 0; part < table.parts(); ++part)
     for (const auto& [sector, color] : drawn) {
-      const double least = report.table.smallest(part, envelope, sector);
+      const double least = table.smallest(part, envelope, sector);
       if (std::isfinite(least)) all.push_back(least);
       low = std::min(low, least);
     }
@@ -315,8 +318,8 @@ std::string clearanceChart(const GaugeReport& report, std::size_t envelope)
     std::string path;
     bool goes_on = false;
     for (std::size_t column = 0; column < along.columns; ++column) {
-      const double least = along.smallest(
-          column, [&](std::size_t part) { return report.table.smallest(part, envelope, drawn[s].first); });
+      const double least =
+          along.smallest(column, [&](std::size_t part) { return table.smallest(part, envelope, drawn[s].first); });
       const double end = column + 1 == along.columns ? along.left + along.width : along.x(column + 1);
       if (std::isfinite(least))
         path += (goes_on ? 'L' : 'M') + placeText(along.x(column)) + ' ' + placeText(y(least)) + 'H' + placeText(end);

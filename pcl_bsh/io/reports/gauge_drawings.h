@@ -8,14 +8,14 @@
 
 namespace pcl_bsh::io {
 
-/// The scan near a section, as seen along the axis, with all envelopes that count there, and the worst point's
-/// clearance.
+/// The scan near a section, as seen along the axis, with all envelopes of its track that count there, and the worst
+/// point's clearance.
 std::string sectionDrawing(const GaugeReport& report, const GaugeSection& section);
 
 /// Smallest clearances, chainage across, and up what goes round the envelope: left, above, right, below.
-std::string clearanceMap(const GaugeReport& report, std::size_t envelope);
+std::string clearanceMap(const GaugeReport& report, std::size_t track, std::size_t envelope);
 
 /// Smallest clearances of the four sectors by chainage.
-std::string clearanceChart(const GaugeReport& report, std::size_t envelope);
+std::string clearanceChart(const GaugeReport& report, std::size_t track, std::size_t envelope);
 
 } // namespace pcl_bsh::io

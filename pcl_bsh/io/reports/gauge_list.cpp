@@ -44,6 +44,7 @@ ListedInfringement infringementFrom(const JsonReader& entry)
   clash.high = box.high;
   clash.place = pointFrom(entry.at("at"));
   clash.distance = numberAt("clearance");
+  if (entry.has("track")) listed.track = entry.at("track").text();
   listed.envelope = entry.at("envelope").text();
   listed.chainage_from = numberAt("chainage_from");
   listed.chainage_to = numberAt("chainage_to");
@@ -55,18 +56,26 @@ ListedInfringement infringementFrom(const JsonReader& entry)
   return listed;
 }
 
-/// Why an earlier infringement is not found any more.
-ClashStatus statusOfGone(const GaugeReport& report, const ListedInfringement& gone)
+ListedTrack trackFrom(const JsonReader& entry, const std::string& name)
 {
-  const auto envelope = std::find_if(report.envelopes.begin(), report.envelopes.end(),
+  ListedTrack track{name, entry.at("axis").at("length").number(0), {}};
+  for (const JsonReader& envelope : entry.at("envelopes").elements()) track.envelopes.push_back(envelope.text());
+  return track;
+}
+
+/// Why an earlier infringement of a track is not found any more.
+ClashStatus statusOfGone(const Track& track, const GaugeTable& table, const AxisReach& reach,
+                         const ListedInfringement& gone)
+{
+  const auto envelope = std::find_if(track.envelopes.begin(), track.envelopes.end(),
                                      [&](const Envelope& candidate) { return candidate.name() == gone.envelope; });
-  const AxisPlaces places = report.axis.nearest(gone.clash.place, report.reach);
-  if (envelope == report.envelopes.end() || !hasPlace(places.state)) return ClashStatus::not_visited;
-  const auto counts = [&](const AxisPlace& at) { return envelope->countsAt(report.axis.chainage(at.distance)); };
+  const AxisPlaces places = track.axis.nearest(gone.clash.place, reach);
+  if (envelope == track.envelopes.end() || !hasPlace(places.state)) return ClashStatus::not_visited;
+  const auto counts = [&](const AxisPlace& at) { return envelope->countsAt(track.axis.chainage(at.distance)); };
   const auto isSeen = [&](const AxisPlace& at) {
     const auto sector = static_cast<Sector>(envelope->aroundOf({at.offset, at.height}));
-    const auto number = static_cast<std::size_t>(envelope - report.envelopes.begin());
-    return std::isfinite(report.table.smallest(report.table.partOf(at.distance), number, sector));
+    const auto number = static_cast<std::size_t>(envelope - track.envelopes.begin());
+    return std::isfinite(table.smallest(table.partOf(at.distance), number, sector));
   };
   const bool best_counts = counts(places.best);
   const bool second_counts = places.state == PlaceState::two_places && counts(places.second);
@@ -75,30 +84,79 @@ ClashStatus statusOfGone(const GaugeReport& report, const ListedInfringement& go
                                                                                           : ClashStatus::not_scanned;
 }
 
+/// Tells users how an earlier run of the same track was another one.
+void addRemarks(const GaugeReport& report, const Track& now, const ListedTrack& former,
+                std::vector<std::string>& remarks)
+{
+  const std::string of = now.name.empty() ? "" : " of track '" + now.name + "'";
+  if (std::abs(former.axis_length - now.axis.length()) > report.cluster_distance)
+    remarks.push_back("lists infringements along an axis" + of + ' ' + numberText(former.axis_length) +
+                      " long, now it is " + numberText(now.axis.length()) +
+                      ": chainages of those that are gone are of the earlier axis");
+  for (const std::string& envelope : former.envelopes)
+    if (std::none_of(now.envelopes.begin(), now.envelopes.end(),
+                     [&](const Envelope& given) { return given.name() == envelope; }))
+      remarks.push_back("lists infringements of the profile '" + envelope + "'" + of +
+                        ", which is not given now: those that are gone are called not_visited, and not resolved");
+}
+
+/// compareWithEarlier() for the infringements of one track.
+void compareTrack(GaugeReport& report, std::size_t number, const GaugeList& earlier)
+{
+  const Track& track = report.tracks[number];
+  const auto ofTrack = [&](const std::vector<ListedInfringement>& all) {
+    std::vector<Clash> clashes;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].track != track.name) continue;
+      clashes.push_back(all[i].clash);
+      clashes.back().scan_point = static_cast<std::uint32_t>(i);
+    }
+    return clashes;
+  };
+  std::vector<Clash> now = ofTrack(report.listed);
+  const std::size_t present = now.size();
+  compareWithEarlier(now, ofTrack(earlier.infringements), report.cluster_distance);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (i < present) {
+      report.listed[now[i].scan_point].clash = now[i];
+      continue;
+    }
+    ListedInfringement gone = earlier.infringements[now[i].scan_point];
+    gone.clash.status = statusOfGone(track, report.tables[number], report.reach, gone);
+    report.listed.push_back(std::move(gone));
+  }
+}
+
 } // namespace
 
 std::vector<ListedInfringement> listedOf(const GaugeReport& report, const std::vector<Infringing>& points)
 {
-  std::vector<Clash> clashes;
-  for (const Infringement& infringement : report.infringements) {
-    clashes.push_back(clashOf(infringement, points));
-    clashes.back().scan_point = static_cast<std::uint32_t>(clashes.size() - 1);
-  }
-  nameClashes(clashes, report.cluster_distance);
-  std::vector<ListedInfringement> listed(clashes.size());
-  for (Clash& clash : clashes) {
-    const Infringement& infringement = report.infringements[clash.scan_point];
-    const Infringing& worst = infringement.worst;
-    ListedInfringement& entry = listed[clash.scan_point];
-    entry.clash = std::move(clash);
-    entry.envelope = report.envelopes[static_cast<std::size_t>(worst.envelope)].name();
-    entry.chainage_from = report.axis.chainage(infringement.from);
-    entry.chainage_to = report.axis.chainage(infringement.to);
-    entry.chainage = report.axis.chainage(worst.place.distance);
-    entry.distance = worst.place.distance;
-    entry.offset = worst.place.offset;
-    entry.height = worst.place.height;
-    entry.record = worst.record;
+  std::vector<ListedInfringement> listed(report.infringements.size());
+  for (std::size_t t = 0; t < report.tracks.size(); ++t) {
+    const Track& track = report.tracks[t];
+    std::vector<Clash> clashes;
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+      if (report.infringements[i].worst.track != t) continue;
+      clashes.push_back(clashOf(report.infringements[i], points));
+      clashes.back().scan_point = static_cast<std::uint32_t>(i);
+    }
+    nameClashes(clashes, report.cluster_distance);
+    for (Clash& clash : clashes) {
+      const Infringement& infringement = report.infringements[clash.scan_point];
+      const Infringing& worst = infringement.worst;
+      ListedInfringement& entry = listed[clash.scan_point];
+      if (!track.name.empty()) clash.id = track.name + ':' + clash.id;
+      entry.clash = std::move(clash);
+      entry.track = track.name;
+      entry.envelope = track.envelopes[static_cast<std::size_t>(worst.envelope)].name();
+      entry.chainage_from = track.axis.chainage(infringement.from);
+      entry.chainage_to = track.axis.chainage(infringement.to);
+      entry.chainage = track.axis.chainage(worst.place.distance);
+      entry.distance = worst.place.distance;
+      entry.offset = worst.place.offset;
+      entry.height = worst.place.height;
+      entry.record = worst.record;
+    }
   }
   return listed;
 }
@@ -121,8 +179,11 @@ GaugeList parseGaugeList(std::string_view text, const std::string& name)
   const JsonReader reader(json, beginning);
   GaugeList list;
   list.limit = reader.at("limit").number();
-  list.axis_length = reader.at("axis").at("length").number(0);
-  for (const JsonReader& envelope : reader.at("envelopes").elements()) list.envelopes.push_back(envelope.text());
+  if (reader.has("tracks"))
+    for (const JsonReader& track : reader.at("tracks").elements())
+      list.tracks.push_back(trackFrom(track, track.at("name").text()));
+  else
+    list.tracks.push_back(trackFrom(reader, ""));
   for (const JsonReader& entry : reader.at("infringements").elements())
     list.infringements.push_back(infringementFrom(entry));
   return list;
@@ -131,37 +192,27 @@ GaugeList parseGaugeList(std::string_view text, const std::string& name)
 std::vector<std::string> compareWithList(GaugeReport& report, const std::filesystem::path& file,
                                          const GaugeList& earlier)
 {
+  report.previous = file.string();
   std::vector<std::string> remarks;
-  if (std::abs(earlier.axis_length - report.axis.length()) > report.cluster_distance)
-    remarks.push_back("lists infringements along an axis " + numberText(earlier.axis_length) + " long, now it is " +
-                      numberText(report.axis.length()) + ": chainages of those that are gone are of the earlier axis");
-  for (const std::string& envelope : earlier.envelopes)
-    if (std::none_of(report.envelopes.begin(), report.envelopes.end(),
-                     [&](const Envelope& now) { return now.name() == envelope; }))
-      remarks.push_back("lists infringements of the profile '" + envelope +
-                        "', which is not given now: those that are gone are called not_visited, and not resolved");
-
-  std::vector<Clash> now, before;
-  const auto add = [](std::vector<Clash>& to, const std::vector<ListedInfringement>& from) {
-    for (const ListedInfringement& listed : from) {
-      to.push_back(listed.clash);
-      to.back().scan_point = static_cast<std::uint32_t>(to.size() - 1);
-    }
+  for (std::size_t t = 0; t < report.tracks.size(); ++t) compareTrack(report, t, earlier);
+  const auto trackCalled = [&](const std::string& name) {
+    return std::find_if(report.tracks.begin(), report.tracks.end(),
+                        [&](const Track& track) { return track.name == name; });
   };
-  add(now, report.listed);
-  add(before, earlier.infringements);
-  compareWithEarlier(now, before, report.cluster_distance);
-  const std::size_t present = report.listed.size();
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (i < present) {
-      report.listed[i].clash = now[i];
-      continue;
-    }
-    ListedInfringement gone = earlier.infringements[now[i].scan_point];
-    gone.clash.status = statusOfGone(report, gone);
+  for (const ListedTrack& former : earlier.tracks) {
+    const auto now = trackCalled(former.name);
+    if (now != report.tracks.end())
+      addRemarks(report, *now, former, remarks);
+    else
+      remarks.push_back("lists infringements of " +
+                        (former.name.empty() ? "a track without a name" : "the track '" + former.name + "'") +
+                        ", which is not given now: they are called not_visited, and not resolved");
+  }
+  for (ListedInfringement gone : earlier.infringements) {
+    if (gone.clash.status == ClashStatus::resolved || trackCalled(gone.track) != report.tracks.end()) continue;
+    gone.clash.status = ClashStatus::not_visited;
     report.listed.push_back(std::move(gone));
   }
-  report.previous = file.string();
   return remarks;
 }
 

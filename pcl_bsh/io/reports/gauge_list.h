@@ -23,6 +23,7 @@ struct GaugeReport;
 /// An infringement as the run that found it tells it.
 struct ListedInfringement {
   Clash clash;          ///< id, status, points and box; place and distance are the worst point and its clearance
+  std::string track;    ///< its name; empty where there is only one
   std::string envelope; ///< the worst point's
   double chainage_from = 0.0, chainage_to = 0.0;
   double chainage = 0.0, distance = 0.0; ///< of the worst point along the axis
@@ -30,15 +31,22 @@ struct ListedInfringement {
   std::uint64_t record = 0;              ///< the worst point among those of its scan
 };
 
+/// A track of an earlier run.
+struct ListedTrack {
+  std::string name; ///< empty where there was only one
+  double axis_length = 0.0;
+  std::vector<std::string> envelopes;
+};
+
 /// The list of an earlier run.
 struct GaugeList {
   double limit = 0.0; ///< clearances up to this were infringements
-  double axis_length = 0.0;
-  std::vector<std::string> envelopes;
+  std::vector<ListedTrack> tracks;
   std::vector<ListedInfringement> infringements;
 };
 
-/// The report's infringements with ids, in their order; all are new. An id tells the place, as findClashes() has it.
+/// The report's infringements with ids, in their order; all are new. An id tells the place, as findClashes() has it,
+/// behind the track's name, where it has one: `left:C12_-3_0`.
 /// @param points that infringementsOf() had
 std::vector<ListedInfringement> listedOf(const GaugeReport& report, const std::vector<Infringing>& points);
 
@@ -50,10 +58,11 @@ GaugeList readGaugeList(const std::filesystem::path& path, double limit);
 /// Parses what gaugeJson() wrote. @throws JsonError, whose message begins with `name`
 GaugeList parseGaugeList(std::string_view text, const std::string& name);
 
-/// Tells which infringements were in the earlier list, and appends those that are not found again. Such a place is
-/// not_visited where it has no place at the axis, or its envelope does not count there any more. It is not_scanned
-/// where the envelope's sector has no data in its part of the axis. Else it is resolved.
-/// @return remarks about the file: another axis, an envelope that is not compared any more
+/// Tells which infringements were in the earlier list of the same track, and appends those that are not found again.
+/// Such a place is not_visited where its track is not given any more, it has no place at the axis, or its envelope does
+/// not count there any more. It is not_scanned where the envelope's sector has no data in its part of the axis. Else it
+/// is resolved.
+/// @return remarks about the file: another axis, a track or an envelope that is not compared any more
 std::vector<std::string> compareWithList(GaugeReport& report, const std::filesystem::path& file,
                                          const GaugeList& earlier);
 

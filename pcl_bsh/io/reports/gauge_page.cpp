@@ -25,6 +25,7 @@ Data rowsOf(const GaugeReport& report)
         {"id", plain(clash.id)},
         {"class", nameOf(clash.status)},
         {"status", inWords(clash.status)},
+        {"track", textOrNone(listed.track)},
         {"envelope", plain(listed.envelope)},
         {"chainage", coordinate(listed.chainage)},
         {"from", coordinate(listed.chainage_from)},
@@ -40,25 +41,40 @@ Data rowsOf(const GaugeReport& report)
 }
 
 /// Chainages of parts where an envelope counts and has no data, neighbours joined.
-Data gapsOf(const GaugeReport& report, std::size_t envelope)
+Data gapsOf(const GaugeReport& report, std::size_t t, std::size_t envelope)
 {
+  const Track& track = report.tracks[t];
+  const GaugeTable& table = report.tables[t];
   std::string text;
   std::size_t gaps = 0;
-  for (std::size_t part = 0; part < report.table.parts(); ++part) {
+  for (std::size_t part = 0; part < table.parts(); ++part) {
     const auto isGap = [&](std::size_t p) {
-      const double middle = 0.5 * (report.table.from(p) + report.table.to(p));
-      return stateOf(report, p, envelope) == PartState::no_data &&
-             report.envelopes[envelope].countsAt(report.axis.chainage(middle));
+      const double middle = 0.5 * (table.from(p) + table.to(p));
+      return stateOf(report, t, p, envelope) == PartState::no_data &&
+             track.envelopes[envelope].countsAt(track.axis.chainage(middle));
     };
     if (!isGap(part)) continue;
     const std::size_t first = part;
-    while (part + 1 < report.table.parts() && isGap(part + 1)) ++part;
+    while (part + 1 < table.parts() && isGap(part + 1)) ++part;
     if (++gaps <= most_gaps)
-      text += (gaps == 1 ? "" : ", ") + number(report.axis.chainage(report.table.from(first)), 9) + " to " +
-              number(report.axis.chainage(report.table.to(part)), 9);
+      text += (gaps == 1 ? "" : ", ") + number(track.axis.chainage(table.from(first)), 9) + " to " +
+              number(track.axis.chainage(table.to(part)), 9);
   }
   if (gaps > most_gaps) text += " and " + std::to_string(gaps - most_gaps) + " more";
   return textOrNone(text);
+}
+
+/// The axes and their chainages.
+std::string alongOf(const GaugeReport& report)
+{
+  std::string text;
+  for (std::size_t t = 0; t < report.tracks.size(); ++t) {
+    const auto& [name, axis, envelopes] = report.tracks[t];
+    text += (t == 0 ? "" : "; ") +
+            (name.empty() ? plain(report.axis_files[t]) : plain(name) + " (" + plain(report.axis_files[t]) + ")");
+    text += ", chainage " + coordinate(axis.chainage(0.0)) + " to " + coordinate(axis.chainage(axis.length()));
+  }
+  return text;
 }
 
 } // namespace
@@ -66,20 +82,19 @@ Data gapsOf(const GaugeReport& report, std::size_t envelope)
 void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report)
 {
   List envelopes, sections;
-  std::size_t no_data = 0;
-  for (std::size_t part = 0; part < report.table.parts(); ++part) no_data += report.table.points(part) == 0;
-  for (std::size_t e = 0; e < report.envelopes.size(); ++e)
-    envelopes.push_back(Object{{"name", plain(report.envelopes[e].name())},
-                               {"chart", clearanceChart(report, e)},
-                               {"map", clearanceMap(report, e)},
-                               {"gaps", gapsOf(report, e)}});
+  for (std::size_t t = 0; t < report.tracks.size(); ++t)
+    for (std::size_t e = 0; e < report.tracks[t].envelopes.size(); ++e)
+      envelopes.push_back(Object{{"track", textOrNone(report.tracks[t].name)},
+                                 {"name", plain(report.tracks[t].envelopes[e].name())},
+                                 {"chart", clearanceChart(report, t, e)},
+                                 {"map", clearanceMap(report, t, e)},
+                                 {"gaps", gapsOf(report, t, e)}});
   for (const GaugeSection& section : report.sections)
     sections.push_back(Object{{"drawing", sectionDrawing(report, section)}});
   const Object page = {{"style", std::string(page_style_css)},
                        {"scan", plain(report.scan)},
-                       {"axis", plain(report.axis_file)},
-                       {"from", coordinate(report.axis.chainage(0.0))},
-                       {"to", coordinate(report.axis.chainage(report.axis.length()))},
+                       {"along", alongOf(report)},
+                       {"named", report.named()},
                        {"unit", textOrNone(report.unit)},
                        {"coordinate_system", textOrNone(report.coordinate_system)},
                        {"program", reportProgram()},
@@ -91,8 +106,8 @@ void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report
                                      : Data(coordinate(report.infringements.front().worst.clearance))},
                        {"limit", number(report.limit)},
                        {"placed", std::to_string(report.placed())},
-                       {"no_data", std::to_string(no_data)},
-                       {"parts", std::to_string(report.table.parts())},
+                       {"no_data", std::to_string(report.partsWithoutData())},
+                       {"parts", std::to_string(report.parts())},
                        {"two", std::to_string(report.counts[1])},
                        {"before", std::to_string(report.counts[2])},
                        {"behind", std::to_string(report.counts[3])},

@@ -14,13 +14,6 @@ namespace {
 constexpr std::array table_sectors = {std::pair{Sector::left, "left"}, std::pair{Sector::above, "above"},
                                       std::pair{Sector::right, "right"}, std::pair{Sector::below, "below"}};
 
-bool countsIn(const GaugeReport& report, std::size_t part, std::size_t envelope)
-{
-  const double middle = 0.5 * (report.table.from(part) + report.table.to(part));
-  return report.envelopes[envelope].countsAt(report.axis.chainage(middle)) ||
-         std::isfinite(report.table.smallest(part, envelope));
-}
-
 std::string cellOf(double clearance)
 {
   return std::isfinite(clearance) ? numberText(clearance) : "";
@@ -31,37 +24,92 @@ Json jsonOf(double clearance)
   return std::isfinite(clearance) ? Json(clearance) : Json();
 }
 
-/// Chainages where a part begins and ends: at a jump it ends with the chainage before.
-std::pair<double, double> chainagesOf(const GaugeReport& report, std::size_t part)
+/// A part of a track, and an envelope that counts there.
+struct TablePart {
+  const Track& track;
+  const GaugeTable& table;
+  std::size_t part, envelope;
+  double chainage_from, chainage_to; ///< at a jump it ends with the chainage before
+  PartState state;
+
+  const std::string& envelopeName() const { return track.envelopes[envelope].name(); }
+  double smallest() const { return table.smallest(part, envelope); }
+  double smallest(Sector sector) const { return table.smallest(part, envelope, sector); }
+};
+
+template <typename Use>
+void forEachPart(const GaugeReport& report, const Use& use)
 {
-  const double from = report.table.from(part), to = report.table.to(part);
-  return {report.axis.chainage(from), report.axis.chainage(std::nextafter(to, from))};
+  for (std::size_t t = 0; t < report.tracks.size(); ++t) {
+    const Track& track = report.tracks[t];
+    const GaugeTable& table = report.tables[t];
+    for (std::size_t part = 0; part < table.parts(); ++part) {
+      const double from = table.from(part), to = table.to(part), middle = track.axis.chainage(0.5 * (from + to));
+      for (std::size_t e = 0; e < track.envelopes.size(); ++e)
+        if (track.envelopes[e].countsAt(middle) || std::isfinite(table.smallest(part, e)))
+          use(TablePart{track, table, part, e, track.axis.chainage(from), track.axis.chainage(std::nextafter(to, from)),
+                        stateOf(report, t, part, e)});
+    }
+  }
+}
+
+Json jsonOf(const Axis& axis, const std::string& file)
+{
+  return {{"file", file},
+          {"length", axis.length()},
+          {"chainage_from", axis.chainage(0.0)},
+          {"chainage_to", axis.chainage(axis.length())},
+          {"gap", axis.fit().gap},
+          {"deviation", axis.fit().deviation}};
+}
+
+Json namesOf(const std::vector<Envelope>& envelopes)
+{
+  Json names = Json::array();
+  for (const Envelope& envelope : envelopes) names.push_back(envelope.name());
+  return names;
 }
 
 Json jsonOf(const ListedInfringement& listed)
 {
   const Clash& clash = listed.clash;
-  return {{"id", clash.id},
-          {"status", nameOf(clash.status)},
-          {"envelope", listed.envelope},
-          {"chainage_from", listed.chainage_from},
-          {"chainage_to", listed.chainage_to},
-          {"chainage", listed.chainage},
-          {"distance", listed.distance},
-          {"offset", listed.offset},
-          {"height", listed.height},
-          {"clearance", clash.distance},
-          {"points", clash.points},
-          {"record", listed.record},
-          {"at", clash.place},
-          {"box", {{"min", clash.low}, {"max", clash.high}}}};
+  Json json = {{"id", clash.id}, {"status", nameOf(clash.status)}};
+  if (!listed.track.empty()) json["track"] = listed.track;
+  json.update({{"envelope", listed.envelope},
+               {"chainage_from", listed.chainage_from},
+               {"chainage_to", listed.chainage_to},
+               {"chainage", listed.chainage},
+               {"distance", listed.distance},
+               {"offset", listed.offset},
+               {"height", listed.height},
+               {"clearance", clash.distance},
+               {"points", clash.points},
+               {"record", listed.record},
+               {"at", clash.place},
+               {"box", {{"min", clash.low}, {"max", clash.high}}}});
+  return json;
 }
 
 } // namespace
 
-PartState stateOf(const GaugeReport& report, std::size_t part, std::size_t envelope)
+std::size_t GaugeReport::parts() const
 {
-  const double least = report.table.smallest(part, envelope);
+  std::size_t all = 0;
+  for (const GaugeTable& table : tables) all += table.parts();
+  return all;
+}
+
+std::size_t GaugeReport::partsWithoutData() const
+{
+  std::size_t without = 0;
+  for (const GaugeTable& table : tables)
+    for (std::size_t part = 0; part < table.parts(); ++part) without += table.points(part) == 0;
+  return without;
+}
+
+PartState stateOf(const GaugeReport& report, std::size_t track, std::size_t part, std::size_t envelope)
+{
+  const double least = report.tables[track].smallest(part, envelope);
   return !std::isfinite(least) ? PartState::no_data : least <= report.limit ? PartState::infringed : PartState::clear;
 }
 
@@ -73,33 +121,33 @@ const char* textOf(PartState state)
 void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& report)
 {
   files::replaceFile(path, [&](std::ostream& out) {
+    if (report.named()) out << "track,";
     out << "chainage_from,chainage_to,distance_from,distance_to,envelope,state,points,smallest,left,above,right,"
            "below\n";
-    for (std::size_t part = 0; part < report.table.parts(); ++part) {
-      const auto [from, to] = chainagesOf(report, part);
-      for (std::size_t e = 0; e < report.envelopes.size(); ++e) {
-        if (!countsIn(report, part, e)) continue;
-        out << numberText(from) << ',' << numberText(to) << ',' << numberText(report.table.from(part)) << ','
-            << numberText(report.table.to(part)) << ',' << csvText(report.envelopes[e].name()) << ','
-            << textOf(stateOf(report, part, e)) << ',' << report.table.points(part) << ','
-            << cellOf(report.table.smallest(part, e));
-        for (const auto& [sector, name] : table_sectors) out << ',' << cellOf(report.table.smallest(part, e, sector));
-        out << '\n';
-      }
-    }
+    forEachPart(report, [&](const TablePart& row) {
+      if (report.named()) out << csvText(row.track.name) << ',';
+      out << numberText(row.chainage_from) << ',' << numberText(row.chainage_to) << ','
+          << numberText(row.table.from(row.part)) << ',' << numberText(row.table.to(row.part)) << ','
+          << csvText(row.envelopeName()) << ',' << textOf(row.state) << ',' << row.table.points(row.part) << ','
+          << cellOf(row.smallest());
+      for (const auto& [sector, name] : table_sectors) out << ',' << cellOf(row.smallest(sector));
+      out << '\n';
+    });
   });
 }
 
 void writeInfringements(const std::filesystem::path& path, const GaugeReport& report)
 {
   files::replaceFile(path, [&](std::ostream& out) {
-    out << "rank,id,status,envelope,chainage_from,chainage_to,chainage,distance,offset,height,clearance,points,record,"
-           "x,y,z\n";
+    out << "rank,id,status," << (report.named() ? "track," : "")
+        << "envelope,chainage_from,chainage_to,chainage,distance,offset,height,clearance,points,record,x,y,z\n";
     std::size_t rank = 0;
     for (const ListedInfringement& listed : report.listed) {
       const Clash& clash = listed.clash;
       if (isPresent(clash.status)) out << ++rank;
-      out << ',' << clash.id << ',' << nameOf(clash.status) << ',' << csvText(listed.envelope);
+      out << ',' << csvText(clash.id) << ',' << nameOf(clash.status) << ',';
+      if (report.named()) out << csvText(listed.track) << ',';
+      out << csvText(listed.envelope);
       for (const double value : {listed.chainage_from, listed.chainage_to, listed.chainage, listed.distance,
                                  listed.offset, listed.height, clash.distance})
         out << ',' << numberText(value);
@@ -112,50 +160,48 @@ void writeInfringements(const std::filesystem::path& path, const GaugeReport& re
 
 Json gaugeJson(const GaugeReport& report)
 {
-  Json json = {
-      {"program", reportProgram()},
-      {"date", reportDate()},
-      {"scan", report.scan},
-      {"axis",
-       {{"file", report.axis_file},
-        {"length", report.axis.length()},
-        {"chainage_from", report.axis.chainage(0.0)},
-        {"chainage_to", report.axis.chainage(report.axis.length())},
-        {"gap", report.axis.fit().gap},
-        {"deviation", report.axis.fit().deviation}}},
-      {"unit", report.unit},
-      {"coordinate_system", report.coordinate_system},
-      {"limit", report.limit},
-      {"cluster_distance", report.cluster_distance},
-      {"previous", report.previous.empty() ? Json() : Json(report.previous)},
-      {"reach", {{"offset", report.reach.offset}, {"below", report.reach.below}, {"above", report.reach.above}}},
-      {"points",
-       {{"at_one_place", report.counts[0]},
-        {"at_two_places", report.counts[1]},
-        {"before_the_beginning", report.counts[2]},
-        {"behind_the_end", report.counts[3]},
-        {"too_far", report.counts[4]},
-        {"not_finite", report.counts[5]},
-        {"infringing", report.infringing}}}};
-  Json& envelopes = json["envelopes"] = Json::array();
-  for (const Envelope& envelope : report.envelopes) envelopes.push_back(envelope.name());
+  Json json = {{"program", reportProgram()}, {"date", reportDate()}, {"scan", report.scan}};
+  if (!report.named()) json["axis"] = jsonOf(report.tracks.front().axis, report.axis_files.front());
+  json.update(
+      {{"unit", report.unit},
+       {"coordinate_system", report.coordinate_system},
+       {"limit", report.limit},
+       {"cluster_distance", report.cluster_distance},
+       {"previous", report.previous.empty() ? Json() : Json(report.previous)},
+       {"reach", {{"offset", report.reach.offset}, {"below", report.reach.below}, {"above", report.reach.above}}},
+       {"points",
+        {{"at_one_place", report.counts[0]},
+         {"at_two_places", report.counts[1]},
+         {"before_the_beginning", report.counts[2]},
+         {"behind_the_end", report.counts[3]},
+         {"too_far", report.counts[4]},
+         {"not_finite", report.counts[5]},
+         {"infringing", report.infringing}}}});
+  if (report.named()) {
+    Json& tracks = json["tracks"] = Json::array();
+    for (std::size_t t = 0; t < report.tracks.size(); ++t)
+      tracks.push_back({{"name", report.tracks[t].name},
+                        {"axis", jsonOf(report.tracks[t].axis, report.axis_files[t])},
+                        {"envelopes", namesOf(report.tracks[t].envelopes)}});
+  }
+  else {
+    json["envelopes"] = namesOf(report.tracks.front().envelopes);
+  }
   Json& infringements = json["infringements"] = Json::array();
   for (const ListedInfringement& listed : report.listed) infringements.push_back(jsonOf(listed));
   Json& table = json["table"] = Json::array();
-  for (std::size_t part = 0; part < report.table.parts(); ++part) {
-    const auto [from, to] = chainagesOf(report, part);
-    for (std::size_t e = 0; e < report.envelopes.size(); ++e) {
-      if (!countsIn(report, part, e)) continue;
-      Json row = {{"chainage_from", from},
-                  {"chainage_to", to},
-                  {"envelope", report.envelopes[e].name()},
-                  {"state", textOf(stateOf(report, part, e))},
-                  {"points", report.table.points(part)},
-                  {"smallest", jsonOf(report.table.smallest(part, e))}};
-      for (const auto& [sector, name] : table_sectors) row[name] = jsonOf(report.table.smallest(part, e, sector));
-      table.push_back(std::move(row));
-    }
-  }
+  forEachPart(report, [&](const TablePart& part) {
+    Json row = Json::object();
+    if (report.named()) row["track"] = part.track.name;
+    row.update({{"chainage_from", part.chainage_from},
+                {"chainage_to", part.chainage_to},
+                {"envelope", part.envelopeName()},
+                {"state", textOf(part.state)},
+                {"points", part.table.points(part.part)},
+                {"smallest", jsonOf(part.smallest())}});
+    for (const auto& [sector, name] : table_sectors) row[name] = jsonOf(part.smallest(sector));
+    table.push_back(std::move(row));
+  });
   return json;
 }
 

@@ -7,26 +7,28 @@
 
 namespace pcl_bsh::io {
 
-GaugeRun::GaugeRun(GaugeReport& report, GaugeTable& table, unsigned threads)
-: report_(report),
-  table_(table),
-  threads_(threads)
+std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step)
 {
+  std::vector<GaugeTable> tables;
+  for (const Track& track : tracks) tables.emplace_back(track.axis, track.envelopes.size(), step);
+  return tables;
 }
 
-GaugedPoints GaugeRun::add(const PointsView& points, std::uint64_t first)
+GaugedTracks GaugeRun::add(const PointsView& points, std::uint64_t first)
 {
-  GaugedPoints found = gauge(points, report_.axis, report_.envelopes, {report_.reach, threads_});
-  table_.add(found, report_.envelopes);
-  addInfringing(points, found, report_.limit, first, infringing_);
-  for (std::size_t state = 0; state < found.counts.size(); ++state) report_.counts[state] += found.counts[state];
+  GaugedTracks found = gauge(points, report_.tracks, {report_.reach, threads_});
+  for (std::uint32_t track = 0; track < found.each.size(); ++track) {
+    report_.tables[track].add(found.each[track], report_.tracks[track].envelopes);
+    addInfringing(points, found.each[track], report_.limit, first, infringing_, track);
+  }
+  for (const double clearance : found.told.clearance) report_.infringing += clearance <= report_.limit;
+  for (std::size_t state = 0; state < report_.counts.size(); ++state) report_.counts[state] += found.told.counts[state];
   return found;
 }
 
 std::vector<std::string> GaugeRun::finish(const std::filesystem::path& previous,
                                           const std::optional<GaugeList>& earlier)
 {
-  report_.infringing = infringing_.size();
   report_.infringements = infringementsOf(infringing_, report_.cluster_distance);
   report_.listed = listedOf(report_, infringing_);
   return earlier ? compareWithList(report_, previous, *earlier) : std::vector<std::string>();

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A gauging run, batch by batch, and the files that it makes: for the program and for pipelines.
 //
-//   GaugeRun run(report, table, threads);
+//   GaugeRun run(report, threads);
 //   run.add(points, first); // for each batch
 //   remarks = run.finish(previous, earlier);
 #pragma once
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/reports/gauge_report.h>
-#include <pcl_bsh/track/gauge.h>
+#include <pcl_bsh/track/tracks.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,14 +37,35 @@ void forEachGaugeBatch(const PointsView& all, const Use& use)
   }
 }
 
+/// Calls `ask`, whose errors then name the track, if it has a name. @throws std::runtime_error
+template <class Ask>
+void namingTrack(const Track& track, const Ask& ask)
+{
+  const auto fail = [&](const std::exception& error) {
+    throw std::runtime_error("track " + track.name + ": " + error.what());
+  };
+  if (track.name.empty()) return ask();
+  try {
+    ask();
+  }
+  catch (const InvalidInput& error) {
+    fail(error);
+  }
+  catch (const files::FileError& error) {
+    fail(error);
+  }
+}
+
+/// A table for each track. @param step length of a part @throws InvalidInput as GaugeTable does
+std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step);
+
 /// Gathers a report. The report is told the same, however its points are divided into batches.
 class GaugeRun {
 public:
-  /// @param table the report's
-  GaugeRun(GaugeReport& report, GaugeTable& table, unsigned threads);
+  GaugeRun(GaugeReport& report, unsigned threads) : report_(report), threads_(threads) {}
 
   /// @param first number of the batch's first point among all
-  GaugedPoints add(const PointsView& points, std::uint64_t first);
+  GaugedTracks add(const PointsView& points, std::uint64_t first);
 
   /// After the last batch: infringements, with their names and states.
   /// @param earlier the list in the file `previous`, where there is one @return remarks about that file
@@ -49,7 +73,6 @@ public:
 
 private:
   GaugeReport& report_;
-  GaugeTable& table_;
   unsigned threads_;
   std::vector<Infringing> infringing_;
 };

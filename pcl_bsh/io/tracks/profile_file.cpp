@@ -9,6 +9,8 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 
+#include <algorithm>
+
 namespace pcl_bsh::io {
 namespace {
 
@@ -82,6 +84,11 @@ WideningTable readWidening(const std::filesystem::path& path, const Axis& axis)
     return WideningTable{Piecewise::through(left, Piecewise::Ends::held),
                          Piecewise::through(right, Piecewise::Ends::held)};
   });
+}
+
+bool countsOn(const EnvelopeFiles& files, const std::string& track)
+{
+  return files.tracks.empty() || std::find(files.tracks.begin(), files.tracks.end(), track) != files.tracks.end();
 }
 
 Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optional<double> unit,

@@ -40,10 +40,13 @@ WideningTable readWidening(const std::filesystem::path& path, const Axis& axis);
 struct EnvelopeFiles {
   std::string name; ///< empty: the profile's file, without its extension
   std::filesystem::path profile;
+  std::vector<std::string> tracks = {};          ///< names of those where it counts; none: all
   std::vector<ChainageRange> ranges = {};        ///< where it counts; none: everywhere
   std::filesystem::path widening = {};           ///< empty: none
   std::optional<Vehicle> vehicle = std::nullopt; ///< by whose overthrow it widens
 };
+
+bool countsOn(const EnvelopeFiles& files, const std::string& track);
 
 /// @param unit, remarks as readProfile() has them @throws as readProfile(), readWidening(), Envelope and overthrowOf()
 Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optional<double> unit = std::nullopt,

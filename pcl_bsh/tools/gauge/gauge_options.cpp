@@ -27,8 +27,55 @@ Example: the same with two profiles, of which one is a vehicle's that widens in 
       --sections sections --at 1200 --at 1350
 Example: what infringes since last week, and what is gone?
   pcl_bsh_gauge w48.las --axis line.xml --profile gauge.dxf --report w48.json --previous w47.json
+Example: both tracks of a line in one pass, and a profile that counts on one of them
+  pcl_bsh_gauge scan.las --axis left=left.csv --axis right=right.csv --profile gauge.csv --profile platform.csv \
+      --track platform=right --table table.csv --page gauging.html
 Example: poses of a wagon whose pivots are 19 m apart, for pcl_bsh_collide
   pcl_bsh_gauge --axis line.axis --pivots 19 --step 0.5 --poses-out poses.txt)";
+
+/// Axes as they are given, each FILE or NAME=FILE. A name has no slash, so ./a=b is a file.
+std::vector<GaugeAxis> axesOf(const std::vector<std::string>& given)
+{
+  std::vector<GaugeAxis> axes;
+  for (const std::string& axis : given) {
+    const std::size_t equals = axis.find('=');
+    const bool has_name = equals != std::string::npos && axis.find('/') > equals;
+    axes.push_back({has_name ? axis.substr(0, equals) : "", has_name ? axis.substr(equals + 1) : axis});
+    const GaugeAxis& last = axes.back();
+    if ((has_name && last.name.empty()) || last.file.empty())
+      throw UsageError("--axis: " + axis + ": lacks one of both: give NAME=FILE");
+    if (given.size() > 1 && !has_name)
+      throw UsageError("--axis: " + axis + ": several tracks need names: give NAME=FILE");
+    for (std::size_t i = 0; i + 1 < axes.size(); ++i)
+      if (axes[i].name == last.name)
+        throw UsageError("--axis: " + axis + ": another track is called '" + last.name + "', too: give another name");
+  }
+  return axes;
+}
+
+/// TRACK=NAME of an alignment, or NAME for all axes.
+void setAlignment(std::vector<GaugeAxis>& axes, const std::string& given)
+{
+  const std::size_t equals = given.find('=');
+  const auto named = std::find_if(axes.begin(), axes.end(), [&](const GaugeAxis& axis) {
+    return !axis.name.empty() && axis.name == given.substr(0, equals);
+  });
+  if (equals != std::string::npos && named != axes.end())
+    named->settings.alignment = given.substr(equals + 1);
+  else
+    for (GaugeAxis& axis : axes) axis.settings.alignment = given;
+}
+
+void requireTrack(const std::vector<GaugeAxis>& axes, const std::string& name)
+{
+  std::string names;
+  for (const GaugeAxis& axis : axes) {
+    if (axis.name == name) return;
+    names += (names.empty() ? "" : ", ") + axis.name;
+  }
+  throw UsageError("--track: no track is called '" + name + "': give " +
+                   (names.empty() ? "--axis " + name + "=FILE" : "one of " + names));
+}
 
 /// NAME=VALUE, or VALUE for all profiles.
 void forProfiles(std::vector<io::EnvelopeFiles>& profiles, const std::string& option, const std::string& given,
@@ -71,6 +118,7 @@ void requireTogether(const GaugeOptions& options)
   if (poses != (options.pivots > 0.0))
     refuse(poses ? "--poses-out" : "--pivots",
            poses ? "needs the vehicle: give --pivots L" : "makes poses: give --poses-out FILE");
+  if (poses && options.axes.size() > 1) refuse("--poses-out", "follows one axis: give --axis once");
   if (options.input.empty()) {
     if (!poses) refuse("command line", std::string("INPUT is required: see ") + gauge_program + " --help");
     if (!options.profiles.empty()) refuse("--profile", "is compared with a scan: give INPUT");
@@ -90,6 +138,10 @@ void requireTogether(const GaugeOptions& options)
       if (options.profiles[i].name == options.profiles[j].name)
         refuse("--profile", options.profiles[i].profile.string() + ": another is called '" + options.profiles[i].name +
                                 "', too: rename a file");
+  for (const GaugeAxis& axis : options.axes)
+    if (std::none_of(options.profiles.begin(), options.profiles.end(),
+                     [&](const io::EnvelopeFiles& profile) { return io::countsOn(profile, axis.name); }))
+      refuse("--track", "no profile counts on the track '" + axis.name + "': name it, too");
   if (!options.at.empty() && !options.draws())
     refuse("--at", "draws sections: give --sections FOLDER or --page FILE.html");
 }
@@ -100,7 +152,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
 {
   GaugeOptions options;
   std::vector<std::filesystem::path> profiles;
-  std::vector<std::string> ranges, widenings, vehicles;
+  std::vector<std::string> axes, alignments, tracks, ranges, widenings, vehicles;
+  io::AxisSettings settings;
   bool in_place = false;
   const auto positive = [] {
     return number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); });
@@ -113,28 +166,33 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   app.add_option("OUTPUT", options.output,
                  "INPUT's points with all their fields, and chainage, offset, height,\n"
                  "clearance, envelope (its number, -1: none) and place (0 at one place of\n"
-                 "the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite)")
+                 "the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite);\n"
+                 "of tracks with names also track (its number, -1: none)")
       ->type_name("");
-  app.add_option("--axis", options.axis, "points as .csv, an alignment of LandXML as .xml, or elements as text")
-      ->type_name("FILE")
+  app.add_option("--axis", axes,
+                 "points as .csv, an alignment of LandXML as .xml, or elements as text; may\n"
+                 "be given again, with a name for each track")
+      ->type_name("[TRACK=]FILE")
+      ->allow_extra_args(false)
       ->required();
-  app.add_option("--alignment", options.axis_settings.alignment, "name of the alignment, where a LandXML holds several")
-      ->type_name("NAME");
-  app.add_option("--fit", options.axis_settings.fit,
+  app.add_option("--alignment", alignments, "name of the alignment, where a LandXML holds several")
+      ->type_name("[TRACK=]NAME")
+      ->allow_extra_args(false);
+  app.add_option("--fit", settings.fit,
                  "of an axis of measured points: as few arcs as come so near to them\n"
                  "(default: arcs through each point)")
       ->type_name("L")
       ->transform(positive());
-  app.add_option("--cant-unit", options.axis_settings.cant_unit,
+  app.add_option("--cant-unit", settings.cant_unit,
                  "cant is in so many of the clouds' units (default: 0.001 in LandXML, else 1)")
       ->type_name("L")
       ->transform(positive());
-  app.add_option("--gauge", options.axis_settings.gauge,
+  app.add_option("--gauge", settings.gauge,
                  "between the rails' heads, whose heights cant tells (default: the file's, or 1.5)")
       ->type_name("L")
       ->transform(positive());
   app.add_option(
-         "--pivot", options.axis_settings.pivot,
+         "--pivot", settings.pivot,
          "what cant turns about: low_rail, whose height is the axis', or centre\n(default: the file's, or low_rail)")
       ->type_name("WHICH")
       ->transform(choice<CantPivot>({{"low_rail", CantPivot::low_rail}, {"centre", CantPivot::centre}}));
@@ -147,6 +205,10 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
                  "profiles are in so many of the clouds' units (default: as a .dxf says, or 1)")
       ->type_name("L")
       ->transform(positive());
+  app.add_option("--track", tracks,
+                 "a profile counts on this track alone (default: on all); may be given more\nthan once")
+      ->type_name("[NAME=]TRACK")
+      ->allow_extra_args(false);
   app.add_option("--range", ranges, "chainages where a profile counts; may be given more than once")
       ->type_name("[NAME=]FROM:TO")
       ->allow_extra_args(false);
@@ -214,8 +276,15 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   if (!understood(app, gauge_program, argc, argv)) return std::nullopt;
 
-  for (const std::filesystem::path& file : profiles)
-    options.profiles.push_back({file.stem().string(), file, {}, {}, {}});
+  options.axes = axesOf(axes);
+  for (GaugeAxis& axis : options.axes) axis.settings = settings;
+  for (const std::string& alignment : alignments) setAlignment(options.axes, alignment);
+  for (const std::filesystem::path& file : profiles) options.profiles.push_back({file.stem().string(), file});
+  for (const std::string& track : tracks)
+    forProfiles(options.profiles, "--track", track, [&](io::EnvelopeFiles& profile, const std::string& value) {
+      requireTrack(options.axes, value);
+      profile.tracks.push_back(value);
+    });
   for (const std::string& range : ranges)
     forProfiles(options.profiles, "--range", range, [](io::EnvelopeFiles& profile, const std::string& value) {
       const auto [from, to] = twoNumbers("--range", value, ':', "FROM:TO, such as 1200:1350");
@@ -233,7 +302,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   if (!options.input.empty()) options.reading = reading.read({options.input});
 
   CommandFiles& files = options.files;
-  files.reads("INPUT", options.input).reads("--axis", options.axis);
+  files.reads("INPUT", options.input);
+  for (const GaugeAxis& axis : options.axes) files.reads("--axis", axis.file);
   for (const io::EnvelopeFiles& profile : options.profiles)
     files.reads("--profile", profile.profile).reads("--widening", profile.widening);
   files.writes("OUTPUT", options.output, in_place ? "INPUT" : "")

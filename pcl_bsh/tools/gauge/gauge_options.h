@@ -19,10 +19,15 @@ namespace pcl_bsh::cli {
 
 inline constexpr auto gauge_program = "pcl_bsh_gauge";
 
+struct GaugeAxis {
+  std::string name; ///< of its track; empty where it is the only one
+  std::filesystem::path file;
+  io::AxisSettings settings = {};
+};
+
 struct GaugeOptions {
   std::filesystem::path input, output; ///< each may be empty
-  std::filesystem::path axis;
-  io::AxisSettings axis_settings;
+  std::vector<GaugeAxis> axes;         ///< at least one
   std::vector<io::EnvelopeFiles> profiles;
   std::optional<double> profile_unit;
   double limit = 0.0, step = 1.0, cluster_distance = 0.5, thickness = 0.1;

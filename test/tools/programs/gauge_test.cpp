@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -164,6 +165,135 @@ TEST_F(GaugeProgram, DrawsPagesAndSections)
   EXPECT_THAT(io::contentOf(folder / "drawn/infringement_1.svg"), HasSubstr("-0.250 m"));
   EXPECT_THAT(io::contentOf(folder / "drawn/section_1.svg"), HasSubstr("1 point within 0.05"));
   EXPECT_THAT(io::contentOf(folder / "drawn/section_2.svg"), HasSubstr("no data: no point within 0.05"));
+}
+
+/// Two tracks, 4 apart, and an alignment of the second that counts its chainage from 1000.
+class GaugeProgramOfTracks : public GaugeProgram {
+protected:
+  GaugeProgramOfTracks()
+  {
+    folder.write("right.axis", "start 500000 3999996 90\nchainage 1000\nstraight 30\nheight 1000 30\n");
+    // in both boxes of 5, at both, at right alone (chainage 1025), at none
+    folder.write("both.xyz", "500005 3999998.2 32\n500012 4000000 35\n500025 3999996.5 31\n500012 4000050 31\n");
+    folder.write("wide.csv", "offset,height\n-2.5,0\n2.5,0\n2.5,4\n-2.5,4\n");
+  }
+
+  const std::string both = " --axis left={line.axis} --axis right={right.axis} ";
+};
+
+TEST_F(GaugeProgramOfTracks, EachIsTabledAsIfItWereAlone)
+{
+  const std::string rest = " --profile {wide.csv} --profile {tall.csv} --track tall=right --step 10 --table {";
+  const Outcome done = gauge("{both.xyz} {out.pcd}" + both + rest + "both.csv} --infringements {list.csv} --page " +
+                             "{page.html} --sections {drawn} --at 1005 --report {report.json}");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, "3 infringements of 2 points, the worst -1.000 at chainage 1025.000 of track right; 3 points at "
+                      "the axis, 0 beyond its ends, 1 too far\n");
+  std::vector<std::string> table = {"track," + linesOf("both.csv")[0].substr(6)};
+  for (const std::string track : {"left", "right"}) {
+    const std::string file = track == "left" ? "line" : "right";
+    const std::string profiles =
+        track == "left" ? " --profile {wide.csv}" : " --profile {wide.csv} --profile {tall.csv}";
+    ASSERT_EQ(gauge("{both.xyz} --axis {" + file + ".axis}" + profiles + " --step 10 --table {alone.csv}").exit_code,
+              0);
+    const std::vector<std::string> alone = linesOf("alone.csv");
+    for (std::size_t i = 1; i < alone.size(); ++i) table.push_back(track + ',' + alone[i]);
+  }
+  EXPECT_EQ(linesOf("both.csv"), table);
+
+  const std::vector<std::string> list = linesOf("list.csv");
+  ASSERT_EQ(list.size(), 4u);
+  EXPECT_THAT(list[0], testing::StartsWith("rank,id,status,track,envelope,"));
+  EXPECT_THAT(list[1], testing::StartsWith("1,right:C250012_1999998_15,new,right,wide,1025,1025,1025,25,"));
+  EXPECT_THAT(list[2], testing::StartsWith("2,left:C250002_1999999_16,new,left,wide,105,")) << "0.7 deep";
+  EXPECT_THAT(list[3], testing::StartsWith("3,right:C250002_1999999_16,new,right,wide,1005,")) << "0.3 deep";
+
+  const auto report = nlohmann::json::parse(io::contentOf(folder / "report.json"));
+  EXPECT_FALSE(report.contains("axis"));
+  EXPECT_EQ(report["tracks"][1]["name"], "right");
+  EXPECT_EQ(report["tracks"][1]["axis"]["chainage_from"], 1000);
+  EXPECT_EQ(report["tracks"][1]["envelopes"].size(), 2u);
+  EXPECT_EQ(report["infringements"][0]["track"], "right");
+  EXPECT_EQ(report["table"][0]["track"], "left");
+
+  const pcl::PCLPointCloud2 cloud = io::readCloud(folder / "out.pcd");
+  const std::array<double, 4> tracks = {0, 0, 1, -1};
+  for (std::size_t i = 0; i < tracks.size(); ++i) EXPECT_EQ(io::valueOf(cloud, i, "track"), tracks[i]) << i;
+  EXPECT_EQ(io::valueOf(cloud, 2, "chainage"), 1025);
+
+  const std::string page = io::contentOf(folder / "page.html");
+  for (const char* text :
+       {"<th>track</th>", "<td>right</td>", "Track left, envelope wide", "Track right, envelope tall"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_THAT(page, testing::Not(HasSubstr("{{")));
+  EXPECT_THAT(page, testing::Not(HasSubstr("Track left, envelope tall")));
+  EXPECT_THAT(io::contentOf(folder / "drawn/section_1.svg"), HasSubstr("Section 1, track right, chainage 1005.000"));
+}
+
+TEST_F(GaugeProgramOfTracks, EachIsComparedWithItsOwnEarlierList)
+{
+  const std::string rest = " --profile {wide.csv} --report {week.json} ";
+  ASSERT_EQ(gauge("{both.xyz}" + both + rest).exit_code, 0);
+  folder.write("next.xyz", "500005 3999998.6 32\n500025 3999996 29.5\n"); // left alone; right is free where it was not
+  const Outcome next = gauge("{next.xyz}" + both + rest + "--previous {week.json} --infringements {list.csv}");
+  EXPECT_EQ(next.err, "");
+  EXPECT_THAT(next.out, testing::StartsWith("1 infringement of 1 point, 0 new, 1 persisting, 2 resolved"));
+  const std::vector<std::string> list = linesOf("list.csv");
+  ASSERT_EQ(list.size(), 4u);
+  EXPECT_THAT(list[1], testing::StartsWith("1,left:C250002_1999999_16,persisting,left,"));
+  EXPECT_THAT(list[2], HasSubstr(",resolved,right,"));
+  EXPECT_THAT(list[3], HasSubstr(",resolved,right,"));
+
+  ASSERT_EQ(gauge("{both.xyz}" + both + rest).exit_code, 0);
+  const Outcome one = gauge("{both.xyz} --axis right={right.axis}" + rest + "--previous {week.json}");
+  EXPECT_THAT(one.err, HasSubstr("week.json: lists infringements of the track 'left', which is not given now"));
+  EXPECT_THAT(one.out, HasSubstr("0 new, 2 persisting, 0 resolved, 1 not visited"));
+  const Outcome again = gauge("{both.xyz}" + both + rest + "--previous {week.json}");
+  EXPECT_EQ(again.err, "");
+  EXPECT_THAT(again.out, HasSubstr("0 new, 3 persisting, 0 resolved, the worst"));
+  const Outcome unnamed = gauge("{both.xyz} --axis {line.axis}" + rest + "--previous {week.json}");
+  EXPECT_THAT(unnamed.out, HasSubstr("1 new, 0 persisting, 0 resolved, 3 not visited"));
+}
+
+TEST_F(GaugeProgramOfTracks, TakesTheirAlignmentsFromOneFile)
+{
+  const auto alignment = [](const std::string& name, int y) {
+    const std::string north = std::to_string(y);
+    return "<Alignment name=\"" + name + "\" length=\"20\" staStart=\"" + north + "\"><CoordGeom><Line><Start>" +
+           north + " 500000</Start><End>" + north + " 500020</End></Line></CoordGeom></Alignment>\n";
+  };
+  folder.write("line.xml",
+               "<?xml version=\"1.0\"?><LandXML version=\"1.2\"><Units><Metric linearUnit=\"meter\"/></Units>"
+               "<Alignments>" +
+                   alignment("A", 4000000) + alignment("B", 3999996) + "</Alignments></LandXML>");
+  const Outcome done =
+      gauge("{both.xyz} --axis left={line.xml} --axis right={line.xml} --alignment right=B --alignment "
+            "left=A --profile {wide.csv} --above 40 --table {table.csv} --step 20");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const std::vector<std::string> table = linesOf("table.csv");
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_THAT(table[1], testing::StartsWith("left,4e+06,4000020,"));
+  EXPECT_THAT(table[2], testing::StartsWith("right,3999996,4000016,"));
+}
+
+TEST_F(GaugeProgramOfTracks, RefusesWhatNamesNoTrack)
+{
+  folder.write("bend.axis", "start 0 0 0\narc 20 9\n");
+  const std::string wide = " --profile {wide.csv} ";
+  expectRefused("{both.xyz} --axis {line.axis} --axis right={right.axis}" + wide, 2, "several tracks need names");
+  expectRefused("{both.xyz} --axis a={line.axis} --axis a={right.axis}" + wide, 2, "another track is called 'a', too");
+  expectRefused("{both.xyz} --axis a= --axis b={right.axis}" + wide, 2, "--axis: a=: lacks one of both");
+  expectRefused("{both.xyz}" + both + wide + "--track middle", 2,
+                "--track: no track is called 'middle': give one of left, right");
+  expectRefused("{both.xyz} --axis {line.axis}" + wide + "--track left", 2, "give --axis left=FILE");
+  expectRefused("{both.xyz}" + both + wide + "--track left", 2, "no profile counts on the track 'right'");
+  expectRefused("{both.xyz} --axis left={line.axis} --axis bend={bend.axis}" + wide, 1,
+                "track bend: reach: 10 beside the axis is more than 0.8");
+  expectRefused("{both.xyz} --axis left={line.axis} --axis bend={bend.axis} --reach 5 --vehicle 19,3" + wide, 1,
+                "track bend: vehicle: its pivots, 19 apart, do not fit");
+  expectRefused("{both.xyz} {o.pcd}" + both + wide + "--page {p.html} --at 7", 2,
+                "give one from 100 to 220 of track left, or 1000 to 1030 of track right");
+  expectRefused(both + "--pivots 8 --poses-out {poses.txt}", 2, "--poses-out: follows one axis: give --axis once");
 }
 
 TEST_F(GaugeProgram, PosesOfAVehicleOnPivots)
