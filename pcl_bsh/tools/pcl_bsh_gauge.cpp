@@ -4,6 +4,7 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/gauge/gauge_options.h>
 #include <pcl_bsh/tools/gauge/scan.h>
+#include <pcl_bsh/tools/gauge/section_picture.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/gauge_fields.h>
@@ -119,14 +120,16 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
   step.done(counted(report.sections.size(), "section"));
 }
 
-void writeSections(const fs::path& folder, const io::GaugeReport& report)
+void writeSections(const Options& options, const io::GaugeReport& report)
 {
-  if (folder.empty()) return;
-  const files::OutputFolder made(folder);
+  if (options.sections.empty()) return;
+  const files::OutputFolder made(options.sections);
   for (const io::GaugeSection& section : report.sections) {
-    std::string name = section.name + ".svg";
+    std::string name = section.name;
     for (char& c : name) c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    files::replaceFile(folder / name, [&](std::ostream& out) { out << io::sectionDrawing(report, section); });
+    const std::string drawing = io::sectionDrawing(report, section);
+    files::replaceFile(options.sections / (name + ".svg"), [&](std::ostream& out) { out << drawing; });
+    if (options.pictures) cli::writePicture(options.sections / (name + ".png"), drawing);
   }
 }
 
@@ -202,7 +205,7 @@ void compare(const Options& options, std::vector<Track> tracks)
     io::writeCloud(options.output, withFields(scan->whole(), fields.fields()), scan->facts().viewpoint,
                    scan->facts().las);
   options.written.write(report);
-  writeSections(options.sections, report);
+  writeSections(options, report);
   summarise(options, report);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gauge_options.h"
+#include "section_picture.h"
 
 #include <pcl_bsh/tools/cli/command_line.h>
 
@@ -142,6 +143,8 @@ void requireTogether(const GaugeOptions& options)
     if (std::none_of(options.profiles.begin(), options.profiles.end(),
                      [&](const io::EnvelopeFiles& profile) { return io::countsOn(profile, axis.name); }))
       refuse("--track", "no profile counts on the track '" + axis.name + "': name it, too");
+  if (options.pictures && options.sections.empty()) refuse("--png", "draws sections: give --sections FOLDER");
+  if (options.pictures) requirePictures();
   if (!options.at.empty() && !options.draws())
     refuse("--at", "draws sections: give --sections FOLDER or --page FILE.html");
 }
@@ -253,6 +256,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
       ->type_name("FILE.html");
   app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
       ->type_name("FOLDER");
+  app.add_flag("--png", options.pictures,
+               "a .png beside each drawing of --sections, where this was built with librsvg");
   app.add_option("--at", options.at, "chainage of a section to draw; may be given more than once")
       ->type_name("C")
       ->allow_extra_args(false)

@@ -34,6 +34,7 @@ struct GaugeOptions {
   AxisReach reach;
   io::GaugeFiles written;
   std::filesystem::path previous, sections, poses;
+  bool pictures = false;  ///< of sections, beside their drawings
   std::vector<double> at; ///< chainages of sections
   double pivots = 0.0;
   std::string unit;

@@ -167,6 +167,26 @@ TEST_F(GaugeProgram, DrawsPagesAndSections)
   EXPECT_THAT(io::contentOf(folder / "drawn/section_2.svg"), HasSubstr("no data: no point within 0.05"));
 }
 
+TEST_F(GaugeProgram, DrawsPictures)
+{
+  const std::string rest = "{scan.xyz} --axis {line.axis} --profile {box.csv} --at 212.5 ";
+  expectRefused(rest + "--page {page.html} --png", 2, "--png: draws sections: give --sections FOLDER");
+  const Outcome done = gauge(rest + "--sections {drawn} --png");
+  if (done.err.find("librsvg2-dev") != std::string::npos) {
+    expectRefused(rest + "--sections {drawn} --png", 2,
+                  "--png: this program was built without librsvg: build it where");
+    GTEST_SKIP() << "the program was built without librsvg: install librsvg2-dev";
+  }
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  for (const char* name : {"drawn/section_1.png", "drawn/infringement_1.png"}) {
+    const std::string png = io::contentOf(folder / name);
+    ASSERT_GT(png.size(), 10'000u);
+    EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x07\x80\0\0\x06\x90", 8)) << "1920 x 1680";
+    EXPECT_TRUE(std::filesystem::exists((folder / name).replace_extension(".svg")));
+  }
+}
+
 /// Two tracks, 4 apart, and an alignment of the second that counts its chainage from 1000.
 class GaugeProgramOfTracks : public GaugeProgram {
 protected:
