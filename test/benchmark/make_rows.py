@@ -38,6 +38,7 @@ PROGRAMS = {
     "flags_terrain.csv": ["bench_flags --scene terrain --sizes 1000000 --distances 1,5,20 --orders scan,shuffled --clock cpu --repeat 5"],
     "flags_uneven.csv": ["bench_flags --scene hall,sweep,lidar,lion --sizes 300000 --distances 1,5,20 --orders scan --threads 1 "
                          "--racers pcl_bsh,pcl_bsh_warm,fitted_grid,nanoflann --clock cpu --repeat 3"],
+    "gauge.csv": ["bench_gauge --clock cpu --repeat 5"],
     "growth.csv": ["bench_growth --clock cpu --repeat 1 --sizes 1000,8000"],
     "laz.csv": ["bench_laz --clock cpu --threads 1 --repeat 3"],
     "motions.csv": ["bench_rigid --sizes 100000 --poses 12 --racers pcl_bsh --motions 200 --clock cpu"],
