@@ -290,6 +290,14 @@ def laz(rows):
         yield f"| {row['points']} | {row['format']} | {short(seconds, ' s')} | {short(las, ' s')} | {ratio(seconds / las)} |"
 
 
+def gauge(rows):
+    yield "| axis | tracks | profiles | reading | all | million points a second |"
+    yield "|---|---:|---:|---|---|---:|"
+    for row in rows:
+        reading, whole = (float(row[f"{what} [us a point]"]) for what in ("reading", "all"))
+        yield f"| {row['axis']} | {row['tracks']} | {row['profiles']} | {short(reading, ' us')} | {short(whole, ' us')} | {short(1 / whole)} |"
+
+
 def scene(rows):
     yield "| what | size | time | that is | counted |"
     yield "|---|---|---|---|---|"
@@ -379,5 +387,5 @@ def dial(rows):
 
 
 TABLES = [flags, uneven, cold, rigid, motions, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
-          surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, sites]
+          surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, gauge, sites]
 TABLES = {table.__name__: table for table in TABLES}
