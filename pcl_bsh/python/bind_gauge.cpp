@@ -4,6 +4,7 @@
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/track/gauge_table.h>
+#include <pcl_bsh/track/tracks.h>
 
 #include <pybind11/stl.h>
 
@@ -11,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,41 @@ Examples
 array([ 0,  0, -1], dtype=int32)
 )";
 
+constexpr auto kGaugeTracks =
+    R"(Gauges several tracks beside one another in one pass.
+
+Parameters
+----------
+points : array_like, (n, 3), or structured with x, y, z
+tracks : sequence of (str, Axis, sequence of Envelope)
+    Name, axis and envelopes of each track.
+reach, below, above, threads
+    As `gauge` has them.
+
+Returns
+-------
+GaugedTracks
+    A point that is near several tracks counts at each. It is told with that of its smallest clearance, of equal ones
+    with the nearer one; a track where no envelope counts comes last.
+
+Raises
+------
+ValueError
+    Without tracks, and as `gauge` does.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> left = pcl_bsh.Axis([[0, 4, 0], [100, 4, 0]], [1000, 1100])
+>>> right = pcl_bsh.Axis([[0, 0, 0], [100, 0, 0]], [0, 100])
+>>> box = pcl_bsh.Envelope("box", [[-1.5, 0], [1.5, 0], [1.5, 4], [-1.5, 4]])
+>>> found = pcl_bsh.gauge_tracks([[20.0, 3, 2], [30, 1.5, 2]], [("left", left, [box]), ("right", right, [box])])
+>>> found.track, found.told.clearance, found.told.chainage
+(array([0, 1], dtype=int32), array([-0.5,  0. ]), array([1020.,   30.]))
+>>> found.each[1].clearance
+array([1.5, 0. ])
+)";
+
 constexpr auto kTable =
     R"(The smallest clearance of each part of the axis.
 
@@ -139,20 +176,59 @@ struct GaugedRun {
   std::vector<double> chainage;
 };
 
+/// @param axis_at the axis of the track that a point with a place is told with
+template <class AxisAt>
+GaugedRun runOf(Axis axis, std::vector<Envelope> envelopes, GaugedPoints found, const AxisAt& axis_at)
+{
+  GaugedRun run{std::move(axis), std::move(envelopes), std::move(found), {}};
+  run.chainage.reserve(run.found.state.size());
+  for (std::size_t i = 0; i < run.found.state.size(); ++i) {
+    const bool placed = hasPlace(run.found.state[i]);
+    if (!placed) run.found.place[i] = {no_number, no_number, no_number};
+    run.chainage.push_back(placed ? axis_at(i).chainage(run.found.place[i].distance) : no_number);
+  }
+  return run;
+}
+
 GaugedRun gaugeOf(const ArrayLike& points, const Axis& axis, const std::vector<Envelope>& envelopes, double reach,
                   double below, double above, unsigned threads)
 {
   py::array kept;
   const PointsView view = viewForCall("points", points, kept);
   return unlocked([&] {
-    GaugedRun run{axis, envelopes, gauge(view, axis, envelopes, {{reach, below, above}, threads}), {}};
-    run.chainage.reserve(run.found.state.size());
-    for (std::size_t i = 0; i < run.found.state.size(); ++i) {
-      const bool placed = hasPlace(run.found.state[i]);
-      if (!placed) run.found.place[i] = {no_number, no_number, no_number};
-      run.chainage.push_back(placed ? axis.chainage(run.found.place[i].distance) : no_number);
+    return runOf(axis, envelopes, gauge(view, axis, envelopes, {{reach, below, above}, threads}),
+                 [&](std::size_t) -> const Axis& { return axis; });
+  });
+}
+
+/// Answers for several tracks.
+struct GaugedLines {
+  std::vector<std::string> names;
+  std::vector<GaugedRun> each;
+  GaugedRun told;
+  std::vector<std::int32_t> track;
+};
+
+GaugedLines gaugeTracks(const ArrayLike& points,
+                        const std::vector<std::tuple<std::string, Axis, std::vector<Envelope>>>& given, double reach,
+                        double below, double above, unsigned threads)
+{
+  py::array kept;
+  const PointsView view = viewForCall("points", points, kept);
+  return unlocked([&] {
+    std::vector<Track> tracks;
+    for (const auto& [name, axis, envelopes] : given) tracks.push_back({name, axis, envelopes});
+    GaugedTracks found = gauge(view, tracks, {{reach, below, above}, threads});
+    const auto axis_at = [&](std::size_t i) -> const Axis& {
+      return tracks[static_cast<std::size_t>(found.track[i])].axis;
+    };
+    GaugedLines lines{{}, {}, runOf(tracks.front().axis, {}, std::move(found.told), axis_at), std::move(found.track)};
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      lines.names.push_back(tracks[t].name);
+      lines.each.push_back(runOf(tracks[t].axis, tracks[t].envelopes, std::move(found.each[t]),
+                                 [&](std::size_t) -> const Axis& { return tracks[t].axis; }));
     }
-    return run;
+    return lines;
   });
 }
 
@@ -255,6 +331,19 @@ void bindGauge(py::module_& module)
                std::to_string(run.found.state.size()) + ")";
       });
   module.def("gauge", &gaugeOf, kGauge, "points"_a, "axis"_a, "envelopes"_a, py::kw_only(), "reach"_a = 10.0,
+             "below"_a = 5.0, "above"_a = 15.0, "threads"_a = 1);
+  py::class_<GaugedLines>(module, "GaugedTracks", "The answer of `gauge_tracks`.")
+      .def_readonly("names", &GaugedLines::names, "list of str: the tracks' names.")
+      .def_readonly("each", &GaugedLines::each, "list of Gauged: the answer of each track, as if it were alone.")
+      .def_readonly("told", &GaugedLines::told,
+                    "Gauged: the answer of the track that each point is told with; it has no envelopes of its own.")
+      .def_property_readonly("track", column(&GaugedLines::track),
+                             "int32: the number of that track; -1: the point has a place at none.")
+      .def("__repr__", [](const GaugedLines& lines) {
+        return "GaugedTracks(" + counted(lines.names.size(), "track") + ", " + counted(lines.track.size(), "point") +
+               ")";
+      });
+  module.def("gauge_tracks", &gaugeTracks, kGaugeTracks, "points"_a, "tracks"_a, py::kw_only(), "reach"_a = 10.0,
              "below"_a = 5.0, "above"_a = 15.0, "threads"_a = 1);
 }
 

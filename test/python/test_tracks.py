@@ -102,7 +102,32 @@ def test_points_without_a_place():
     assert np.isnan(nothing.table(step=100)["smallest"]).all()
 
 
+def test_several_tracks_are_each_its_own_run():
+    points, _, _, _ = about_the_bend()
+    points[5] = [0, 0, 0]
+    left, right = pcl_bsh.Axis.elements(BEND), pcl_bsh.Axis.elements(BEND.replace("500000", "500003").replace("200", "197", 1))
+    box, wide = pcl_bsh.Envelope("box", BOX), pcl_bsh.Envelope("wide", BOX, widening=[[0, 0.5, 0.5]])
+    found = pcl_bsh.gauge_tracks(points, [("left", left, [box, wide]), ("right", right, [box])], threads=2)
+    assert found.names == ["left", "right"] and repr(found) == "GaugedTracks(2 tracks, 2000 points)"
+    for of, alone in zip(found.each, (pcl_bsh.gauge(points, left, [box, wide]), pcl_bsh.gauge(points, right, [box]))):
+        for column in ("chainage", "offset", "height", "clearance", "envelope", "place", "each"):
+            np.testing.assert_array_equal(getattr(of, column), getattr(alone, column))
+        table, table_alone = of.table(step=50), alone.table(step=50)
+        for column in table.dtype.names:
+            np.testing.assert_array_equal(table[column], table_alone[column])
+    both = np.stack([of.clearance for of in found.each])
+    np.testing.assert_array_equal(found.told.clearance, np.fmin(*both))
+    assert found.track[5] == -1 and set(found.track) == {-1, 0, 1} and np.isnan(found.told.chainage[5])
+    for number, of in enumerate(found.each):
+        mine = found.track == number
+        for column in ("chainage", "offset", "height", "envelope", "place"):
+            np.testing.assert_array_equal(getattr(found.told, column)[mine], getattr(of, column)[mine])
+    assert found.told.each.shape == (2000, 0) and len(found.told.table()) == 0
+
+
 @pytest.mark.parametrize("call, message", [
+    (lambda axis, box: pcl_bsh.gauge_tracks(np.zeros((1, 3)), []), "tracks: there are none: give one at least"),
+    (lambda axis, box: pcl_bsh.gauge_tracks(np.zeros((1, 3)), [("a", axis, [])]), "envelopes: there are none"),
     (lambda axis, box: pcl_bsh.gauge(np.zeros((1, 3)), axis, []), "envelopes: there are none: give one at least"),
     (lambda axis, box: pcl_bsh.gauge(np.zeros((1, 3)), axis, [box], reach=-1), "reach"),
     (lambda axis, box: pcl_bsh.gauge(np.zeros((1, 2)), axis, [box]), "points"),
@@ -134,4 +159,7 @@ def test_types(tmp_path):
         "found.table(step=2)['smallest'].dtype\n"
         "pcl_bsh.gauge(np.zeros((1, 3)), axis, box)  # error: not a list\n"
         "pcl_bsh.Axis(np.zeros((2, 3)), [0, 1], pivot='left')  # error\n"
-        "axis.length = 3.0  # error\n") == [8, 9, 10]
+        "axis.length = 3.0  # error\n"
+        "both = pcl_bsh.gauge_tracks(np.zeros((1, 3)), [('left', axis, [box]), ('right', axis, [box])])\n"
+        "both.each[0].clearance.min() + both.told.clearance[both.track >= 0].min()\n"
+        "pcl_bsh.gauge_tracks(np.zeros((1, 3)), [axis])  # error\n") == [8, 9, 10, 13]
