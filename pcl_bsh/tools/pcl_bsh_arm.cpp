@@ -168,7 +168,7 @@ private:
   const std::vector<ReadObstacle>& obstacles_;
 };
 
-/// What a world answers about many, as a step of the program.
+/// The answers about many, as a step of the program.
 template <class Ask>
 auto answered(const std::string& doing, const std::string& all, const Options& options, const Ask& ask)
 {
