@@ -34,6 +34,10 @@ view "${man[@]}" --pose=-7,0,-2.6,0,0,0 --clearance 0.5 --trace --camera=-9.4,-2
 view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-17,-7.5,-0.4,-6.6,0.3,-2.9 \
   --screenshot examples/pictures/scene.png
 
+# Bodies: a man of points pushes two crates, which are meshes, before him.
+view --scene examples/scenes/push.json --step 95 --size 1000x620 --camera=-3.2,-5.6,3.6,-0.1,0,0.6 \
+  --title "A man walks on, and two crates give way" --screenshot examples/pictures/bodies.png
+
 # A robot cut out of what its own camera sees (where it was built: bash cmake/setup.sh release self_filter).
 if [[ -x "$programs/pcl_bsh_self_filter" ]]; then
   "$programs/pcl_bsh_made_robot" "$work/robot" >/dev/null
