@@ -17,6 +17,7 @@ namespace pcl_bsh {
 /// number of the one that the point is told with, or -1.
 class GaugeFields {
 public:
+  /// @param tracks all of them, at least one
   explicit GaugeFields(const std::vector<Track>& tracks) : has_names_(!tracks.front().name.empty()) {}
 
   /// Takes the answer of gauge() for the next points.
