@@ -39,6 +39,8 @@ ignore : sequence of str, optional
     Pairs that are not compared, "FIRST:SECOND", of names of obstacles or 'input'; * is any letters.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
+progress : callable, optional
+    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
 **options of collisions
 
 Returns
@@ -120,7 +122,8 @@ Names patternsOf(const py::object& patterns)
 ObstaclesFound collideObstaclesOf(const Cloud& a, const HierarchiesByName& obstacles, double clearance,
                                   const PoseLike& pose_a, const PosesByName& poses, const LengthsByName& clearances,
                                   const SwitchesByName& solids, bool between, const PatternsLike& ignore,
-                                  const AccuracyLike& accuracy, unsigned threads, const py::kwargs& options)
+                                  const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
+                                  const py::kwargs& options)
 {
   ObstaclesFound found;
   std::vector<PlacedShape> shapes;
@@ -147,6 +150,7 @@ ObstaclesFound collideObstaclesOf(const Cloud& a, const HierarchiesByName& obsta
   question.clearance = clearance;
   question.accuracy = accuracyOf(accuracy);
   question.threads = threads;
+  question.progress = progressOf(progress);
   setOptions(question, options, QuestionKind::collisions);
   if (question.seen)
     throw InvalidOption("seen", "is about points of obstacles, which this does not tell",
@@ -246,7 +250,7 @@ void bindObstacles(py::module_& module)
   const auto none = py::none();
   module.def("collide_obstacles", &collideObstaclesOf, kCollideObstacles, "a"_a, "obstacles"_a, "clearance"_a = 0.0,
              py::kw_only(), "pose_a"_a = none, "poses"_a = none, "clearances"_a = none, "solids"_a = none,
-             "between"_a = false, "ignore"_a = none, "accuracy"_a = none, "threads"_a = 1);
+             "between"_a = false, "ignore"_a = none, "accuracy"_a = none, "threads"_a = 1, "progress"_a = none);
 }
 
 } // namespace pcl_bsh::python

@@ -248,6 +248,16 @@ bool maySpare(const Question& question)
          !question.accuracy.stopsEarly();
 }
 
+/// The progress of one of several equal parts: it never falls from one to the next.
+std::function<bool(double)> progressOfPart(const std::function<bool(double)>& progress, std::size_t part,
+                                           std::size_t parts)
+{
+  if (!progress) return nullptr;
+  return [progress, part, parts](double done) {
+    return progress((static_cast<double>(part) + done) / static_cast<double>(parts));
+  };
+}
+
 /// Asks about one obstacle, whose records are not told where it is free.
 Answer askOrSpare(const Question& question, Shape& input, Shape& obstacle)
 {
@@ -255,8 +265,10 @@ Answer askOrSpare(const Question& question, Shape& input, Shape& obstacle)
   Question any = question;
   any.wanted = {};
   any.wanted.any = true;
+  any.progress = progressOfPart(question.progress, 0, 2);
   const Answer found = ask(any, input, obstacle);
   Question rest = question;
+  rest.progress = progressOfPart(question.progress, 1, 2);
   if (found.any.verdict == Verdict::free) rest.wanted = withoutCollisions(question.wanted);
   Answer answer = ask(rest, input, obstacle);
   answer.work += found.work;
@@ -316,10 +328,7 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
       continue;
     }
     Question one = questionOf(question, obstacles[i]);
-    if (question.progress)
-      one.progress = [&, i](double done) {
-        return question.progress((i + done) / static_cast<double>(obstacles.size()));
-      };
+    one.progress = progressOfPart(question.progress, i, obstacles.size());
     Answer answer =
         obstacles.size() == 1 ? ask(one, input, obstacles[i].shape) : askOrSpare(one, input, obstacles[i].shape);
     joined.add(i, answer);

@@ -91,6 +91,17 @@ def test_refuse_what_is_none(arguments, message):
         pcl_bsh.collide_obstacles(a, named, **{k: v for k, v in arguments.items() if k != "obstacles"})
 
 
+def test_tell_their_progress_and_stop(named):
+    points, _, _ = named
+    a = pcl_bsh.SphereHierarchy(cloud("random", 1))
+    hierarchies = {name: pcl_bsh.SphereHierarchy(xyz) for name, xyz in points.items()}
+    told = []
+    pcl_bsh.collide_obstacles(a, hierarchies, 0.15, progress=told.append)
+    assert told == sorted(told) and told[-1] <= 1
+    with pytest.raises(pcl_bsh.Cancelled):
+        pcl_bsh.collide_obstacles(a, hierarchies, 0.15, progress=lambda done: False)
+
+
 def test_refuse_other_types():
     a = pcl_bsh.SphereHierarchy(np.zeros((1, 3)))
     with pytest.raises(TypeError, match=r"obstacles\['mill'\]: is no SphereHierarchy"):

@@ -271,6 +271,31 @@ TEST(Obstacles, StandAgainstEachOther)
   EXPECT_THAT(askBetween(question, boxes, [](std::uint32_t, std::uint32_t) { return false; }), IsEmpty());
 }
 
+TEST(Obstacles, TellProgressThatNeverFalls)
+{
+  const Crowd crowd(11);
+  Question question = contactsWithin(0.05);
+  double last = 0;
+  question.progress = [&](double done) {
+    EXPECT_GE(done, last);
+    EXPECT_LE(done, 1);
+    last = done;
+    return true;
+  };
+  for (const bool along_a_path : {false, true}) {
+    last = 0;
+    if (along_a_path) question.path.emplace(3, Eigen::Isometry3d::Identity());
+    Shape input = crowd.input();
+    std::vector<PlacedShape> obstacles = crowd.obstacles();
+    ask(question, input, obstacles);
+    EXPECT_GT(last, 0.5) << "it is asked until the last one";
+    last = 0;
+    Question stopped = question;
+    stopped.progress = [](double done) { return done < 0.5; };
+    EXPECT_THROW(ask(stopped, input, obstacles), Cancelled);
+  }
+}
+
 TEST(Obstacles, OfAListWithoutAnyAreRefused)
 {
   const Crowd crowd(17);
