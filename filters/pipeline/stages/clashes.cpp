@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the collisions, place by place, as a list.
-#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
 namespace pcl_bsh::pipeline {
@@ -41,13 +40,10 @@ struct ClashWriter : Stage, QuestionStage {
 private:
   static void requireWritable(const std::string& option, const OutputFile& file)
   {
-    try {
+    namingOption(option, [&] {
       io::requireClashFormat(file.path);
       files::requireWritable(file.path);
-    }
-    catch (const files::FileError& error) {
-      throw OptionError(option, error.what());
-    }
+    });
   }
 
   /// Reads the facts about the list that are known before clouds are read.
@@ -61,23 +57,13 @@ private:
     }
     if (names.empty() && (between || !ignore.empty()))
       throw OptionError(between ? "between" : "ignore", "is given, and there is one obstacle: give `obstacles`");
-    try {
-      ignored_ = {ignore, names};
-    }
-    catch (const InvalidInput& error) {
-      throw OptionError("ignore", error.advice());
-    }
+    ignored_ = namingOption("ignore", [&] { return IgnoredPairs(ignore, names); });
     listing_ = {input_name, unit};
     listing_.cluster_distance = cluster_distance;
     if (!previous) return;
     listing_.previous = previous->path;
     warnings.clear();
-    try {
-      listing_.readEarlier(compared, warnings);
-    }
-    catch (const std::runtime_error& error) {
-      throw OptionError("previous", error.what());
-    }
+    namingOption("previous", [&] { listing_.readEarlier(compared, warnings); });
     for (std::string& warning : warnings) warn(std::move(warning));
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far two clouds are from each other, in numbers and as a page.
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 
@@ -47,13 +47,10 @@ struct DistanceWriter : Stage, QuestionStage {
 private:
   static void requireWritable(const std::string& option, const OutputFile& file)
   {
-    try {
+    namingOption(option, [&] {
       io::requireDistanceFormat(file.path);
       files::requireWritable(file.path);
-    }
-    catch (const files::FileError& error) {
-      throw OptionError(option, error.what());
-    }
+    });
   }
 };
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where points are along a track, and how far outside of what must stay free.
 #include <pcl_bsh/base/cancelled.h>
-#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/gauge_fields.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/filters/pipeline/stages/row_options.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/gauge_run.h>
 #include <pcl_bsh/io/tracks/axis_file.h>
@@ -61,17 +60,17 @@ struct Gauge : Stage {
     for (std::size_t i = 0; i < axes.size(); ++i) readTrack("axes/" + std::to_string(i), axes[i]);
     readEnvelopes();
     for (const Track& track : tracks_)
-      checked("reach", [&] { io::namingTrack(track, [&] { track.axis.requireReach({reach, below, above}); }); });
-    checked("step", [&] { io::tablesOf(tracks_, step); });
+      namingOption("reach", [&] { io::namingTrack(track, [&] { track.axis.requireReach({reach, below, above}); }); });
+    namingOption("step", [&] { io::tablesOf(tracks_, step); });
     for (const auto& [option, file, path] : {std::tuple{"table", &table, &files_.table},
                                              {"infringements", &infringements, &files_.infringements},
                                              {"report", &report, &files_.report},
                                              {"page", &page, &files_.page}})
       if (*file) {
         *path = (*file)->path;
-        checked(option, [&, path = path] { files::requireWritable(*path); });
+        namingOption(option, [&, path = path] { files::requireWritable(*path); });
       }
-    if (previous) checked("previous", [&] { earlier_ = io::readGaugeList(previous->path, limit); });
+    if (previous) namingOption("previous", [&] { earlier_ = io::readGaugeList(previous->path, limit); });
     return withFields(inputs[0], GaugeFields(tracks_).fields());
   }
 
@@ -101,21 +100,6 @@ struct Gauge : Stage {
   }
 
 private:
-  /// An error while this runs is the option's fault.
-  template <typename Check>
-  static void checked(const std::string& option, const Check& check)
-  {
-    try {
-      check();
-    }
-    catch (const std::runtime_error& error) {
-      throw OptionError(option, error.what());
-    }
-    catch (const InvalidInput& error) {
-      throw OptionError(option, error.what());
-    }
-  }
-
   void warnOf(const std::string& file, const std::vector<std::string>& remarks)
   {
     for (const std::string& remark : remarks) warn(file + ": " + remark);
@@ -124,7 +108,7 @@ private:
   void readTrack(const std::string& option, const NamedAxis& from)
   {
     std::vector<std::string> remarks;
-    checked(option, [&] {
+    namingOption(option, [&] {
       io::AxisSettings settings;
       settings.alignment = from.alignment.empty() ? alignment : from.alignment;
       settings.fit = fit;
@@ -162,7 +146,7 @@ private:
       for (Track& track : tracks_) {
         if (!io::countsOn(files, track.name)) continue;
         remarks.clear();
-        checked(place, [&] {
+        namingOption(place, [&] {
           io::namingTrack(
               track, [&] { track.envelopes.push_back(io::readEnvelope(files, track.axis, profile_unit, &remarks)); });
         });

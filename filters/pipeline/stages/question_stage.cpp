@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/row_options.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -22,12 +22,7 @@ namespace {
 
 std::vector<Eigen::Isometry3d> readTrajectory(const InputFile& file, std::vector<std::string>& warnings)
 {
-  try {
-    return io::readPoses(file.path, &warnings);
-  }
-  catch (const files::FileError& error) {
-    throw OptionError("trajectory", error.what());
-  }
+  return namingOption("trajectory", [&] { return io::readPoses(file.path, &warnings); });
 }
 
 /// A matrix of few printed digits stands for its nearest rotation, with a warning. A pose farther from rigid stays as
@@ -44,12 +39,7 @@ Eigen::Isometry3d rigidPoseOf(const Pose& pose, const std::string& option, std::
 /// By the fields of a cloud to come: its points are seen when the stage runs.
 void checkField(const std::string& option, const Uncertainty& uncertainty, const CloudHeader& cloud)
 {
-  try {
-    withUncertainty(PointsView(), cloud.fields, "cloud", uncertainty);
-  }
-  catch (const InvalidInput& error) {
-    throw OptionError(option, error.advice());
-  }
+  namingOption(option, [&] { withUncertainty(PointsView(), cloud.fields, "cloud", uncertainty); });
 }
 
 /// Warns of points, or of other parts, that are not decided.
@@ -79,12 +69,9 @@ io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const
   if (!cloud->corners_alone.empty() && !question.vertices_only)
     throw OptionError(option,
                       "is of " + cloud->corners_alone + ": give `vertices_only`: true to compare its corners alone");
-  try {
-    return {{cloud, &cloud->cloud}, cloud->triangles, {question.vertices_only}};
-  }
-  catch (const InvalidInput& error) {
-    throw OptionError(option, error.advice());
-  }
+  return namingOption(option, [&] {
+    return io::Obstacle({cloud, &cloud->cloud}, cloud->triangles, {question.vertices_only});
+  });
 }
 
 Value valueOf(const Uncertainty& uncertainty)
@@ -180,12 +167,7 @@ Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> ques
         using T = std::decay_t<decltype(std::declval<Question>().*member)>;
         option.kind = kindOf<T>();
         option.set = [question, member, name = option.name](Stage& stage, const Value& value) {
-          try {
-            assign(question(stage).*member, value);
-          }
-          catch (const InvalidInput& error) {
-            throw OptionError(name, error.advice());
-          }
+          namingOption(name, [&] { assign(question(stage).*member, value); });
         };
         option.get = [question, member](const Stage& stage) {
           return valueOf(question(const_cast<Stage&>(stage)).*member); // NOLINT: which is not changed
@@ -236,12 +218,7 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
                one.question.obstacle_uncertainty, named.file.header);
     names.push_back(one.name);
   }
-  try {
-    checkObstacleNames(names);
-  }
-  catch (const InvalidInput& error) {
-    throw OptionError("obstacles", error.advice());
-  }
+  namingOption("obstacles", [&] { checkObstacleNames(names); });
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
