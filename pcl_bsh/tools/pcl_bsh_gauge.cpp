@@ -45,14 +45,8 @@ std::vector<Track> readAxes(const Options& options)
 void readEnvelopes(const Options& options, std::vector<Track>& tracks)
 {
   for (const io::EnvelopeFiles& files : options.profiles) {
-    std::vector<std::string> remarks; // the same for each track
-    for (Track& track : tracks) {
-      if (!io::countsOn(files, track.name)) continue;
-      remarks.clear();
-      io::namingTrack(track, [&] {
-        track.envelopes.push_back(io::readEnvelope(files, track.axis, options.profile_unit, &remarks));
-      });
-    }
+    std::vector<std::string> remarks;
+    io::addEnvelope(files, tracks, options.profile_unit, remarks);
     cli::warnOfFile(program, files.profile, remarks);
   }
 }

@@ -141,17 +141,9 @@ private:
       for (const std::string& track : profile.tracks)
         if (std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& given) { return given.name == track; }))
           throw OptionError(place, "no track is called '" + track + "': give names of `axes`");
-      std::vector<std::string> remarks; // the same for each track
-      std::string name;
-      for (Track& track : tracks_) {
-        if (!io::countsOn(files, track.name)) continue;
-        remarks.clear();
-        namingOption(place, [&] {
-          io::namingTrack(
-              track, [&] { track.envelopes.push_back(io::readEnvelope(files, track.axis, profile_unit, &remarks)); });
-        });
-        name = track.envelopes.back().name();
-      }
+      std::vector<std::string> remarks;
+      const std::string name =
+          namingOption(place, [&] { return io::addEnvelope(files, tracks_, profile_unit, remarks); });
       warnOf(profile.file.path, remarks);
       if (!names.insert(name).second)
         throw OptionError(place, "another is called '" + name + "', too: give it a `name`");

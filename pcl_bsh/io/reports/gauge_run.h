@@ -6,8 +6,6 @@
 //   remarks = run.finish(previous, earlier);
 #pragma once
 
-#include <pcl_bsh/base/invalid_input.h>
-#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/reports/gauge_report.h>
 #include <pcl_bsh/track/tracks.h>
 
@@ -16,7 +14,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,25 +31,6 @@ void forEachGaugeBatch(const PointsView& all, const Use& use)
     batch.data = static_cast<const unsigned char*>(all.data) + first * all.stride;
     batch.count = std::min(gauge_batch_points, all.count - first);
     use(batch, first);
-  }
-}
-
-/// Calls `ask`, whose errors then name the track, if it has a name. @throws std::runtime_error
-template <class Ask>
-void namingTrack(const Track& track, const Ask& ask)
-{
-  const auto fail = [&](const std::exception& error) {
-    throw std::runtime_error("track " + track.name + ": " + error.what());
-  };
-  if (track.name.empty()) return ask();
-  try {
-    ask();
-  }
-  catch (const InvalidInput& error) {
-    fail(error);
-  }
-  catch (const files::FileError& error) {
-    fail(error);
   }
 }
 

@@ -109,4 +109,17 @@ Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optiona
   return envelope;
 }
 
+std::string addEnvelope(const EnvelopeFiles& files, std::vector<Track>& tracks, std::optional<double> unit,
+                        std::vector<std::string>& remarks)
+{
+  std::string name;
+  for (Track& track : tracks) {
+    if (!countsOn(files, track.name)) continue;
+    remarks.clear();
+    namingTrack(track, [&] { track.envelopes.push_back(readEnvelope(files, track.axis, unit, &remarks)); });
+    name = track.envelopes.back().name();
+  }
+  return name;
+}
+
 } // namespace pcl_bsh::io

@@ -2,10 +2,14 @@
 // Outlines of envelopes from files, and tables of how they widen.
 #pragma once
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/track/envelope.h>
+#include <pcl_bsh/track/tracks.h>
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,5 +55,30 @@ bool countsOn(const EnvelopeFiles& files, const std::string& track);
 /// @param unit, remarks as readProfile() has them @throws as readProfile(), readWidening(), Envelope and overthrowOf()
 Envelope readEnvelope(const EnvelopeFiles& files, const Axis& axis, std::optional<double> unit = std::nullopt,
                       std::vector<std::string>* remarks = nullptr);
+
+/// Calls `ask`, whose errors then name the track, if it has a name. @throws std::runtime_error
+template <class Ask>
+void namingTrack(const Track& track, const Ask& ask)
+{
+  const auto fail = [&](const std::exception& error) {
+    throw std::runtime_error("track " + track.name + ": " + error.what());
+  };
+  if (track.name.empty()) return ask();
+  try {
+    ask();
+  }
+  catch (const InvalidInput& error) {
+    fail(error);
+  }
+  catch (const files::FileError& error) {
+    fail(error);
+  }
+}
+
+/// Gives an envelope to each track that it counts on. @param remarks are replaced, the same for each track
+/// @return its name; empty where it counts on none
+/// @throws as readEnvelope() does, naming the track
+std::string addEnvelope(const EnvelopeFiles& files, std::vector<Track>& tracks, std::optional<double> unit,
+                        std::vector<std::string>& remarks);
 
 } // namespace pcl_bsh::io
