@@ -99,13 +99,9 @@ public:
         each.next = std::min(passed, each.reached + kCatchingUp * dt / count);
         world_.moveTo(each.body, poseAt(each.motion, each.start, each.next) * each.part);
       }
-      const WorldStep solved = world_.step(dt / count);
+      report.solved += world_.step(dt / count);
       for (Moved& each : moved_)
         if (!each.falls && world_.isThere(each.body)) each.reached = each.next;
-      report.solved.pairs += solved.pairs;
-      report.solved.contacts += solved.contacts;
-      report.solved.cut += solved.cut;
-      report.solved.work += solved.work;
     }
     time_ += dt;
     followWorld();
@@ -127,12 +123,10 @@ public:
   std::vector<BodyContacts> contacts() const override
   {
     std::map<std::pair<ObjectId, ObjectId>, std::vector<Contact>> found; // objects may have several parts
-    for (BodyId a = 0; a < objects_.size(); ++a)
-      for (BodyId b = a + 1; b < objects_.size(); ++b)
-        if (const Manifold* const between = world_.contacts(a, b)) {
-          std::vector<Contact>& into = found[{objects_[a], objects_[b]}];
-          into.insert(into.end(), between->contacts.begin(), between->contacts.end());
-        }
+    for (const auto& [bodies, between] : world_.contacts()) {
+      std::vector<Contact>& into = found[{objects_[bodies.first], objects_[bodies.second]}];
+      into.insert(into.end(), between.contacts.begin(), between.contacts.end());
+    }
     std::vector<BodyContacts> all;
     for (auto& [pair, contacts] : found)
       if (!contacts.empty()) all.push_back({pair.first, pair.second, std::move(contacts)});

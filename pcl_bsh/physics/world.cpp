@@ -354,10 +354,9 @@ bool World::isThere(BodyId body) const
   return of.pose.matrix() == of.target.matrix();
 }
 
-const Manifold* World::contacts(BodyId a, BodyId b) const
+const std::map<std::pair<BodyId, BodyId>, Manifold>& World::contacts() const
 {
-  const auto found = state_->manifolds.find({a, b});
-  return found == state_->manifolds.end() ? nullptr : &found->second;
+  return state_->manifolds;
 }
 
 WorldStep World::step(double dt)

@@ -18,7 +18,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <utility>
 
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
@@ -49,6 +51,16 @@ struct WorldStep {
   std::size_t contacts = 0; ///< given to the solver
   std::size_t cut = 0;      ///< bodies that would have passed a surface, and halt before it until the next step
   Work work;
+
+  /// Sums of all counts.
+  WorldStep& operator+=(const WorldStep& more)
+  {
+    pairs += more.pairs;
+    contacts += more.contacts;
+    cut += more.cut;
+    work += more.work;
+    return *this;
+  }
 };
 
 /// Not to be used from several threads at once. Colliders are borrowed, and must stay as they are.
@@ -82,8 +94,8 @@ public:
   void moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider);
   bool isThere(BodyId body) const; ///< whether it is where moveTo() wanted it
 
-  /// The last contacts of two bodies; null where there were none. @pre a < b
-  const Manifold* contacts(BodyId a, BodyId b) const;
+  /// The last contacts of all pairs that have any, by their bodies, the smaller first; borrowed, until the next step.
+  const std::map<std::pair<BodyId, BodyId>, Manifold>& contacts() const;
 
   /// Moves all bodies. A body that would come to half of its distance from a surface halts there: before it, it is at
   /// no instant nearer, whatever its speed. @param dt seconds, finite, > 0. @throws InvalidInput

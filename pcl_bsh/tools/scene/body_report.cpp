@@ -30,10 +30,7 @@ nlohmann::ordered_json jsonOf(const Eigen::Isometry3d& pose)
 void BodyCost::add(const BodiesStep& step)
 {
   steps += step.steps;
-  solved.pairs += step.solved.pairs;
-  solved.contacts += step.solved.contacts;
-  solved.cut += step.solved.cut;
-  solved.work += step.solved.work;
+  solved += step.solved;
   seconds += step.seconds;
 }
 
