@@ -108,9 +108,8 @@ Parameters
 q0, q1 : array_like, (J,) or (n, J)
     From these states to those; one of them goes with all of the others.
 threads : int, default 1
-    0: all of the machine's; any number gives the same result.
 progress : callable, optional
-    Called now and then with the fraction done; by returning False it stops the query, which raises `Cancelled`.
+    As those of `is_free`.
 
 Returns
 -------

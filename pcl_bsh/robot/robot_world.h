@@ -104,9 +104,9 @@ public:
   /// @param limit gaps beyond it are not looked for: then the gap is from that to infinity
   ClearanceResult clearance(const RobotState& state, double limit = std::numeric_limits<double>::infinity()) const;
 
-  /// Many states at once, each as checkState() does it. @throws InvalidInput as checkState() does, which names the
-  /// first
-  ///   wrong one; for an accuracy other than exact. Cancelled
+  /// Many states at once, each as checkState() does it.
+  /// @throws InvalidInput as checkState() does, naming the first wrong one, and for an accuracy other than exact;
+  ///   Cancelled
   std::vector<StateCheck> checkStates(const std::vector<RobotState>& states, const Effort& effort = {}) const;
   /// A line in joint space.
   struct Motion {

@@ -238,7 +238,7 @@ int run(Options& options)
       "what,number,verdict,gap_lower,gap_upper,fraction,last_valid,link,other_link,obstacle,record,x,y,z\n";
   const auto tell = [&](const char* what, std::size_t i, const std::string& until, const Told& answer) {
     options.files.summary() << what << ' ' << i << until << ": " << answer.line << '\n';
-    table += rowOf(what, i, answer.json);
+    if (options.table) table += rowOf(what, i, answer.json);
     report[what + std::string("s")].push_back(answer.json);
   };
   const std::string all = counted(states.size(), "state");
