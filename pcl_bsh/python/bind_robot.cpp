@@ -64,8 +64,8 @@ Examples
 >>> world.is_free([0.0]), world.is_free([[0.0], [1.5]])
 (True, array([ True, False]))
 >>> found = world.check_motions([0.0], [3.0], with_last_valid=True)
->>> found.verdict == pcl_bsh.Verdict.COLLIDING, crane.links[found.link], 0.43 < found.last_valid < 0.45
-(True, 'beam', True)
+>>> print(found.verdict == pcl_bsh.Verdict.COLLIDING, crane.links[found.link], 0.43 < found.last_valid < 0.45)
+True beam True
 )";
 
 constexpr auto kState = R"(A state from values by the names of joints.

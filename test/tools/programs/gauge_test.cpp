@@ -97,7 +97,7 @@ TEST_F(GaugeProgram, TellsWhatIsNewAndWhatIsGone)
   const std::string more = "--previous {week.json} --range 100:218 --infringements {list.csv} --page {page.html}";
   const Outcome done = gauge("{w48.xyz}" + rest + more);
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(done.told(), "");
   EXPECT_THAT(done.out, testing::StartsWith("2 infringements of 2 points, 1 new, 1 persisting, 1 resolved, 1 not "
                                             "visited, 1 not scanned, the worst -0.200 at"));
   const auto report = nlohmann::json::parse(io::contentOf(folder / "week.json"));
@@ -256,7 +256,7 @@ TEST_F(GaugeProgramOfTracks, EachIsComparedWithItsOwnEarlierList)
   ASSERT_EQ(gauge("{both.xyz}" + both + rest).exit_code, 0);
   folder.write("next.xyz", "500005 3999998.6 32\n500025 3999996 29.5\n"); // left alone; right is free where it was not
   const Outcome next = gauge("{next.xyz}" + both + rest + "--previous {week.json} --infringements {list.csv}");
-  EXPECT_EQ(next.err, "");
+  EXPECT_EQ(next.told(), "");
   EXPECT_THAT(next.out, testing::StartsWith("1 infringement of 1 point, 0 new, 1 persisting, 2 resolved"));
   const std::vector<std::string> list = linesOf("list.csv");
   ASSERT_EQ(list.size(), 4u);
@@ -269,7 +269,7 @@ TEST_F(GaugeProgramOfTracks, EachIsComparedWithItsOwnEarlierList)
   EXPECT_THAT(one.err, HasSubstr("week.json: lists infringements of the track 'left', which is not given now"));
   EXPECT_THAT(one.out, HasSubstr("0 new, 2 persisting, 0 resolved, 1 not visited"));
   const Outcome again = gauge("{both.xyz}" + both + rest + "--previous {week.json}");
-  EXPECT_EQ(again.err, "");
+  EXPECT_EQ(again.told(), "");
   EXPECT_THAT(again.out, HasSubstr("0 new, 3 persisting, 0 resolved, the worst"));
   const Outcome unnamed = gauge("{both.xyz} --axis {line.axis}" + rest + "--previous {week.json}");
   EXPECT_THAT(unnamed.out, HasSubstr("1 new, 0 persisting, 0 resolved, 3 not visited"));

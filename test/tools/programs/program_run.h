@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,16 @@ struct ProgramOutcome {
   int exit_code = -1;
   std::string out;
   std::string err;
+
+  /// Standard error without lines of progress: whether there are any depends on the machine.
+  std::string told() const
+  {
+    std::istringstream lines(err);
+    std::string all;
+    for (std::string line; std::getline(lines, line);)
+      if (!line.starts_with("> ")) all += line + '\n';
+    return all;
+  }
 };
 using Outcome = ProgramOutcome; // a scene's move has an Outcome, too
 

@@ -357,7 +357,7 @@ TEST(SceneProgram, BodiesFallAndRest)
   const std::string scene = folder.write("fall.json", fallFrom("0.5")).string();
   const Outcome done = run("pcl_bsh_scene", scene + " --out " + (folder / "out").string());
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(done.told(), "");
   EXPECT_THAT(done.out, HasSubstr("720 solutions"));
   const std::string csv = io::contentOf(folder / "out" / "steps.csv");
   EXPECT_THAT(csv, HasSubstr(",awake_bodies,body_contacts,bodies_steps,bodies_queries,bodies_cut,bodies_node_pairs,"
