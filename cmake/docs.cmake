@@ -8,7 +8,7 @@ endif()
 
 set(documented "")
 foreach(target IN ITEMS pcl_bsh_core pcl_bsh_search pcl_bsh_filters pcl_bsh_pipeline pcl_bsh_sites pcl_bsh_vtk pcl_bsh_certify
-                      pcl_bsh_physics)
+                      pcl_bsh_physics pcl_bsh_ompl)
   if(TARGET ${target})
     get_target_property(headers ${target} HEADER_SET)
     get_target_property(source_dir ${target} SOURCE_DIR)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # For find_package(pcl_bsh). Components: libs, dev (headers, CMake package), with the programs tools, and where they are
-# built vtk, physics and certify, libraries with their headers (all that falls under the GPL is certify), python and self_filter.
+# built vtk, physics, ompl and certify, libraries with their headers (all that falls under the GPL is certify), python and
+# self_filter.
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pcl_bsh")
 
@@ -17,7 +18,7 @@ install(
   ARCHIVE COMPONENT dev
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT dev)
 install(EXPORT pcl_bsh FILE pcl_bshTargets.cmake NAMESPACE pcl_bsh:: DESTINATION "${package_dir}" COMPONENT dev)
-foreach(name IN ITEMS certify physics vtk) # only for those who ask: find_package(pcl_bsh COMPONENTS certify)
+foreach(name IN ITEMS certify ompl physics vtk) # only for those who ask: find_package(pcl_bsh COMPONENTS certify)
   if(TARGET pcl_bsh_${name})
     install(
       TARGETS pcl_bsh_${name}

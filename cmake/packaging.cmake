@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Three .deb packages, with VTK, CGAL, urdfdom, Python and VTK's Python one more each, by
+# Three .deb packages, with VTK, CGAL, Bullet, OMPL, urdfdom, Python and VTK's Python one more each, by
 # `cmake --workflow --preset package` or, from any build, by `cpack -G DEB`. The build of ParaView's plugin has one.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The pcl_bsh authors")
@@ -46,6 +46,8 @@ pcl_bsh_add_package(certify pcl_bsh_certify pcl-bsh-certify science
                     "Exact certification of sphere hierarchies; under GPL-3.0-or-later, by CGAL." libs)
 pcl_bsh_add_package(physics pcl_bsh_physics libpcl-bsh-physics libs
                     "Bodies that fall and rest on point clouds, by Bullet; library and headers." libs)
+pcl_bsh_add_package(ompl pcl_bsh_ompl libpcl-bsh-ompl-dev libdevel
+                    "Validators for OMPL's planners, among point clouds; headers." dev)
 pcl_bsh_add_package(vtk pcl_bsh_vtk libpcl-bsh-vtk libs
                     "Hierarchies and flags as VTK's data, pictures of them; library and headers." libs)
 pcl_bsh_add_package(self_filter pcl_bsh_self_filter pcl-bsh-self-filter science
@@ -58,6 +60,7 @@ pcl_bsh_add_package(python_vtk pcl_bsh_python_vtk python3-pcl-bsh-vtk python
 pcl_bsh_add_package(paraview BoundingSphereHierarchies pcl-bsh-paraview science
                     "Collisions and distances of point clouds in ParaView: a plugin.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libpcl-dev")
+set(CPACK_DEBIAN_OMPL_PACKAGE_DEPENDS "libompl-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${PCL_BSH_PYTHON_DEPENDS}")
 set(CPACK_DEBIAN_PYTHON_VTK_PACKAGE_DEPENDS "python3-vtk9")
 

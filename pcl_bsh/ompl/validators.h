@@ -4,8 +4,12 @@
 //   information->setStateValidityChecker(std::make_shared<pcl_bsh::ompl::StateValidity>(information, world));
 //   information->setMotionValidator(std::make_shared<pcl_bsh::ompl::MotionValidity>(information, world));
 //
-// The space is a RealVectorStateSpace with a dimension for each value of a state. States out of the joints' limits are
-// not valid, and nothing undecided is. Both may run in several threads at once, while nobody changes the world.
+// The space is a JointSpace, or, for robots without continuous joints, another RealVectorStateSpace with a dimension
+// for each value of a state. States out of the joints' limits are not valid, and nothing undecided is. Both may run in
+// several threads at once, while nobody changes the world.
+//
+// Simplifiers of OMPL cut motions that were certified, at states that are rounded, and do not ask about the parts
+// again. PathGeometric::check() certifies a path as a whole.
 #pragma once
 
 #include <pcl_bsh/robot/robot_world.h>

@@ -51,7 +51,7 @@ run(${CMAKE_COMMAND} -S "${WORK}/told" -B "${WORK}/told/build" -G Ninja -D CMAKE
 run(${CMAKE_COMMAND} --build "${WORK}/told/build")
 
 # Each component but vtk is found in a project of C++ alone, which then does without PCL's io.
-foreach(component IN ITEMS core search filters pipeline sites certify)
+foreach(component IN ITEMS core search filters pipeline sites certify ompl)
   set(optional "OPTIONAL_COMPONENTS ${component}")
   if(component STREQUAL core) # CMake refuses one that is both required and optional
     set(optional "")
@@ -69,9 +69,11 @@ endforeach()
 run("${WORK}/build/core_only")
 run("${WORK}/build/own_point_type")
 run("${WORK}/build/site_error")
-if(EXISTS "${WORK}/build/certified")
-  run("${WORK}/build/certified")
-endif()
+foreach(program IN ITEMS certified validated)
+  if(EXISTS "${WORK}/build/${program}")
+    run("${WORK}/build/${program}")
+  endif()
+endforeach()
 if(EXISTS "${WORK}/build/spheres_file")
   run("${WORK}/build/spheres_file" "${WORK}/spheres.vtp")
 endif()
