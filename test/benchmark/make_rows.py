@@ -42,6 +42,7 @@ PROGRAMS = {
     "growth.csv": ["bench_growth --clock cpu --repeat 1 --sizes 1000,8000"],
     "laz.csv": ["bench_laz --clock cpu --threads 1 --repeat 3"],
     "motions.csv": ["bench_rigid --sizes 100000 --poses 12 --racers pcl_bsh --motions 200 --clock cpu"],
+    "plan.csv": ["bench_plan --clock cpu"],
     "rigid_100k.csv": ["bench_rigid --sizes 100000 --poses 300"],
     "scene.csv": ["bench_scene --clock cpu --cloud 1000000 --objects 300 --steps 30"],
     "search.csv": ["bench_search --scene terrain,lion --size 300000 --queries 10000 --orders scan --clock cpu --repeat 3"],
