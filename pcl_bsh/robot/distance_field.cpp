@@ -19,16 +19,20 @@ DistanceField::DistanceField(const std::vector<Obstacle>& obstacles, const Eigen
   values_(static_cast<Value*>(std::calloc(count * count * count, sizeof(Value))))
 {
   if (!values_) throw std::bad_alloc();
-  for (const Obstacle& obstacle : obstacles) // squared distances are rounded to floats
-    rounding_ = std::max(rounding_, kRounding * (farthest + obstacle.hierarchy().storage().largest_radius));
+  for (const Obstacle& obstacle : obstacles) {
+    const double uncertain = obstacle.mostUncertain();
+    spread_ = std::max(spread_, 2.0 * uncertain);
+    rounding_ += 0x1p-50 * obstacle.pose.translation.lpNorm<1>();
+    // squared distances are rounded to floats
+    rounding_ = std::max(rounding_, kRounding * (farthest + obstacle.hierarchy().storage().largest_radius + uncertain));
+  }
 }
 
 float DistanceField::measure(const Eigen::Vector3d& middle, Value& value) const
 {
   double gap = farthest_;
   for (const Obstacle& obstacle : *obstacles_) {
-    const Gap found = obstacle.gap(middle, gap);
-    gap = std::min(gap, 0.5 * (found.lower + std::min(found.upper, gap)));
+    gap = std::min(gap, obstacle.gap(middle, gap).lower);
   }
   const float kept = gap == 0.0 ? -0x1p-100f : static_cast<float>(gap);
   value.store(kept, std::memory_order_relaxed);

@@ -42,7 +42,7 @@ public:
     if (gap == kUnknown) gap = measure(middle, value);
     const double way = (point - middle).norm() + rounding_, known = static_cast<double>(gap);
     return {known - way - kRounding * std::abs(known),
-            known < farthest_ ? known + way + kRounding * std::abs(known) : Interval().upper};
+            known < farthest_ ? known + way + kRounding * std::abs(known) + spread_ : Interval().upper};
   }
 
 private:
@@ -61,6 +61,7 @@ private:
   const std::vector<Obstacle>* obstacles_;
   std::size_t count_;
   double edge_, inverse_edge_, farthest_, rounding_;
+  double spread_ = 0.0; ///< upper bounds are no more above lower ones, where places of points are uncertain
   Eigen::Vector3d low_;
   std::unique_ptr<Value[], Free> values_;
 };

@@ -16,11 +16,6 @@ namespace {
 
 constexpr std::size_t kCoarse = 8, kFine = 48; ///< cubes of a field along an edge
 
-Kinematics::Pose operator*(const Kinematics::Pose& a, const Kinematics::Pose& b)
-{
-  return {a.rotation * b.rotation, a * b.translation};
-}
-
 Eigen::Isometry3d isometry(const Kinematics::Pose& pose)
 {
   Eigen::Isometry3d all = Eigen::Isometry3d::Identity();
@@ -37,31 +32,64 @@ void require(double length, const char* name, bool above_zero)
       .withValue(length);
 }
 
+void requirePose(const Eigen::Isometry3d& pose, const std::string& name)
+{
+  const Eigen::Matrix3d r = pose.linear();
+  const bool rigid = pose.matrix().allFinite() && r.determinant() > 0.0 &&
+                     (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= kRigid;
+  if (!rigid) throw InvalidInput(Input::pose, name, "is not rigid within 1e-12", "normalise its rotation");
+}
+
 WorldOptions checked(const WorldOptions& options)
 {
   require(options.clearance, "clearance", false);
   require(options.self_clearance, "self_clearance", false);
   require(options.tolerance, "tolerance", true);
-  const Eigen::Matrix3d r = options.base.linear();
-  if (!(options.base.matrix().allFinite() && (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= 1e-12))
-    throw InvalidInput(Input::pose, "base", "is not rigid within 1e-12", "normalise its rotation");
+  requirePose(options.base, "base");
   return options;
 }
 
-Interval less(Interval gap, double length)
+/// @param doubt how far either bound may be off
+Interval less(const Interval& gap, double length, double doubt = 0.0)
 {
-  return {gap.lower - length, gap.upper - length};
+  return {gap.lower - length - doubt, gap.upper - length + doubt};
+}
+
+double uncertaintyOf(const SphereHierarchy& cloud, std::uint32_t record)
+{
+  return cloud.view().uncertainty + cloud.view().ownUncertainty(record);
+}
+
+const std::vector<double>& checkedUncertainties(const std::vector<double>& of_joints, const Kinematics& kinematics,
+                                                const Robot& robot)
+{
+  if (!of_joints.empty() && of_joints.size() != kinematics.variables())
+    throw InvalidInput(Input::uncertainty, "joint_uncertainties", "are " + std::to_string(of_joints.size()),
+                       "give one for each of the " + std::to_string(kinematics.variables()) + " joints of " +
+                           robot.name + ", or none")
+        .withValue(static_cast<double>(of_joints.size()));
+  for (std::size_t i = 0; i < of_joints.size(); ++i)
+    if (!(of_joints[i] >= 0.0 && std::isfinite(of_joints[i])))
+      throw InvalidInput(Input::uncertainty, "joint_uncertainties",
+                         "has " + std::to_string(of_joints[i]) + " for joint '" +
+                             robot.links[kinematics.linkOfVariable(i)].joint->name + "'",
+                         "give an angle or a length that is finite and >= 0")
+          .withValue(of_joints[i])
+          .withIndex(i);
+  return of_joints;
 }
 
 Interval ofMeshes(const SphereHierarchy& a, const Kinematics::Pose& pose_a, const SphereHierarchy& b,
                   const Kinematics::Pose& pose_b, double limit, std::uint32_t* record = nullptr)
 {
-  DistanceRequest request;
-  request.max_distance = std::max(limit, 0.0);
+  const double uncertain = a.storage().uncertainty.most + b.storage().uncertainty.most;
+  DistanceRequest request; // of the measured places
+  request.max_distance = std::max(limit + uncertain, 0.0);
   const DistanceResult found = closestPair({a, isometry(pose_a)}, {b, isometry(pose_b)}, request);
-  if (!found.pair) return {std::min(limit, request.max_distance), kInfinity};
+  if (!found.pair) return {limit, kInfinity};
   if (record) *record = found.pair->b;
-  return found.interval;
+  return {found.interval.lower - uncertain,
+          found.interval.upper + uncertaintyOf(a, found.pair->a) + uncertaintyOf(b, found.pair->b)};
 }
 
 } // namespace
@@ -71,48 +99,90 @@ Gaps::Gaps(Robot robot_given, std::vector<Obstacle> obstacles_given, const World
   options(checked(options_given)),
   kinematics(robot),
   base{options.base.linear(), options.base.translation()},
-  parts(robot, kinematics),
-  obstacles(std::move(obstacles_given))
+  parts(robot, kinematics, checkedUncertainties(options.joint_uncertainties, kinematics, robot))
+{
+  setObstacles(std::move(obstacles_given));
+}
+
+Gaps::Surroundings::Surroundings(std::vector<Obstacle> given, const Eigen::Vector3d& middle, double reach)
+: obstacles(std::move(given)),
+  coarse(obstacles, middle, reach, kCoarse, reach),
+  fine(obstacles, middle, reach, kFine, 0.25 * reach)
+{
+}
+
+void Gaps::setObstacles(std::vector<Obstacle> given)
 {
   double reach = parts.extent;
   for (const Kinematics::Body& body : kinematics.bodies()) reach = std::max(reach, body.reach + parts.extent);
-  reach = std::max(reach, 1e-30);
-  coarse_.emplace(obstacles, base.translation, reach, kCoarse, reach);
-  fine_.emplace(obstacles, base.translation, reach, kFine, 0.25 * reach);
+  surroundings_ = std::make_unique<const Surroundings>(std::move(given), base.translation, std::max(reach, 1e-30));
+}
+
+void Gaps::placeObstacles(const std::vector<Eigen::Isometry3d>& T_world_obstacle)
+{
+  std::vector<Obstacle> placed = obstacles();
+  if (T_world_obstacle.size() != placed.size())
+    throw InvalidInput(Input::pose, "obstacles", "get " + std::to_string(T_world_obstacle.size()) + " poses",
+                       "give one for each of the " + std::to_string(placed.size()));
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    requirePose(T_world_obstacle[i], "pose of obstacle " + std::to_string(i));
+    placed[i].pose = {T_world_obstacle[i].linear(), T_world_obstacle[i].translation()};
+  }
+  setObstacles(std::move(placed));
 }
 
 Gap Gaps::meshToObstacle(const Piece& piece, const Kinematics::Pose& pose, const Obstacle& obstacle, double limit) const
 {
   Gap gap;
-  static_cast<Interval&>(gap) = ofMeshes(*piece.surface, pose, obstacle.hierarchy(), {}, limit, &gap.record);
+  static_cast<Interval&>(gap) = ofMeshes(*piece.surface, pose, obstacle.hierarchy(), obstacle.pose, limit, &gap.record);
+  gap.possible = gap.record;
   return gap;
 }
 
-Gap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit, std::size_t& which) const
+double Gaps::doubt(const Ball& ball, std::size_t rest) const
+{
+  if (ball.doubts.empty() || ball.body == rest) return 0.0;
+  const std::vector<std::size_t>& chain = parts.chains[ball.body];
+  const auto first = rest == 0 ? chain.begin() : std::find(chain.begin(), chain.end(), rest) + 1;
+  return ball.doubts[static_cast<std::size_t>(first - chain.begin())];
+}
+
+ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit) const
 {
   const Piece& piece = parts.pieces[ball.piece];
   const Kinematics::Pose pose = poses[ball.body] * piece.pose;
-  const double padded = limit + ball.padding;
-  Gap best{{padded, kInfinity}};
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+  const double off = doubt(ball, 0), padded = limit + ball.padding + off;
+  ObstacleGap best{{{padded, kInfinity}}};
+  for (std::size_t i = 0; i < obstacles().size(); ++i) {
     const double within = std::min(padded, best.upper);
-    const Gap gap =
-        piece.solid ? obstacles[i].gap(*piece.solid, pose, within) : meshToObstacle(piece, pose, obstacles[i], within);
-    best.lower = std::min(best.lower, gap.lower);
-    if (!(gap.upper < best.upper)) continue;
-    best.upper = gap.upper;
-    best.record = gap.record;
-    which = i;
+    const Gap gap = piece.solid ? obstacles()[i].gap(*piece.solid, pose, within)
+                                : meshToObstacle(piece, pose, obstacles()[i], within);
+    if (gap.record == kNothing) continue;
+    if (gap.lower < best.lower || best.possible == kNothing) {
+      best.lower = std::min(best.lower, gap.lower);
+      best.possible = gap.possible;
+      best.of_possible = i;
+    }
+    if (gap.upper < best.upper || best.record == kNothing) {
+      best.upper = std::min(best.upper, gap.upper);
+      best.record = gap.record;
+      best.of_record = i;
+    }
   }
-  static_cast<Interval&>(best) = less(best, ball.padding);
+  static_cast<Interval&>(best) = less(best, ball.padding, off);
   return best;
 }
 
-Interval Gaps::between(const Ball& a, const Ball& b, const Poses& poses, double limit) const
+Interval Gaps::between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const
 {
+  const double off = doubt(a, common) + doubt(b, common);
+  if (a.is_sphere && b.is_sphere) {
+    const double apart = (centerOf(a, poses) - centerOf(b, poses)).norm();
+    return less({apart, apart}, a.radius + b.radius, off);
+  }
   const Piece &piece_a = parts.pieces[a.piece], &piece_b = parts.pieces[b.piece];
   const Kinematics::Pose pose_a = poses[a.body] * piece_a.pose, pose_b = poses[b.body] * piece_b.pose;
-  const double padding = a.padding + b.padding, padded = limit + padding;
+  const double padding = a.padding + b.padding, padded = limit + padding + off;
   if (piece_a.solid && piece_b.solid) {
     const double round = roundness(*piece_a.solid) + roundness(*piece_b.solid);
     const auto reachOf = [](const Solid& solid, const Kinematics::Pose& pose) {
@@ -121,21 +191,26 @@ Interval Gaps::between(const Ball& a, const Ball& b, const Poses& poses, double 
       };
     };
     return less(convexDistance(reachOf(*piece_a.solid, pose_a), reachOf(*piece_b.solid, pose_b), padded + round),
-                round + padding);
+                round + padding, off);
   }
   if (!piece_a.solid && !piece_b.solid)
-    return less(ofMeshes(*piece_a.surface, pose_a, *piece_b.surface, pose_b, padded), padding);
+    return less(ofMeshes(*piece_a.surface, pose_a, *piece_b.surface, pose_b, padded), padding, off);
   const bool first = piece_a.solid.has_value();
   const Kinematics::Pose &of_solid = first ? pose_a : pose_b, &of_mesh = first ? pose_b : pose_a;
-  const Kinematics::Pose inverse{of_mesh.rotation.transpose(), -(of_mesh.rotation.transpose() * of_mesh.translation)};
-  const Obstacle mesh(first ? *piece_b.surface : *piece_a.surface);
-  return less(mesh.gap(first ? *piece_a.solid : *piece_b.solid, inverse * of_solid, padded), padding);
+  Obstacle mesh(first ? *piece_b.surface : *piece_a.surface);
+  mesh.pose = of_mesh;
+  return less(mesh.gap(first ? *piece_a.solid : *piece_b.solid, of_solid, padded), padding, off);
 }
 
-Meeting Gaps::meetingOf(const Ball& ball, std::size_t obstacle, std::uint32_t record) const
+Meeting Gaps::meetingOf(const Ball& ball, const ObstacleGap& gap, bool for_certain) const
 {
   const Piece& piece = parts.pieces[ball.piece];
-  return {piece.link, piece.shape, std::nullopt, 0, obstacle, record};
+  return {piece.link,
+          piece.shape,
+          std::nullopt,
+          0,
+          for_certain ? gap.of_record : gap.of_possible,
+          for_certain ? gap.record : gap.possible};
 }
 
 Meeting Gaps::meetingOf(const Ball& a, const Ball& b) const
@@ -149,9 +224,17 @@ double Gaps::error(const RobotState& largest) const
   // For coordinates in the world, which are turned into a shape's frame.
   constexpr double kOfGaps = 0x1p-45;
   const double away = base.translation.norm();
-  double reach = 0.0;
+  double reach = 0.0, of_obstacles = 0.0;
   for (const Kinematics::Body& body : kinematics.bodies()) reach = std::max(reach, body.reach);
-  return kinematics.error(largest, parts.extent, away) +
+  for (const Obstacle& obstacle : obstacles()) {
+    const double placed = obstacle.pose.translation.norm();
+    double error = kOfGaps * (placed + obstacle.mostUncertain());
+    // The way back of a rotation that is not quite one, and lengths in the obstacle's frame.
+    if (!obstacle.pose.rotation.isIdentity(0.0))
+      error += 4.0 * kRigid * (away + reach + parts.extent + placed + options.clearance);
+    of_obstacles = std::max(of_obstacles, error);
+  }
+  return kinematics.error(largest, parts.extent, away) + of_obstacles +
          kOfGaps * (away + 2.0 * (reach + parts.extent) + options.clearance + options.self_clearance);
 }
 

@@ -6,17 +6,28 @@
 #include <pcl_bsh/robot/parts.h>
 #include <pcl_bsh/robot/robot_world.h>
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 namespace pcl_bsh::robots {
 
-/// A robot in one place among obstacles. Expects the DefaultFloatEnvironment.
+/// The gap between a piece and all obstacles, and which of these its records are of.
+struct ObstacleGap : Gap {
+  std::size_t of_record = 0, of_possible = 0;
+};
+
+/// A robot in one place among obstacles. Gaps hold for all values of joints and all places of points within their
+/// uncertainties at once: some piece is certainly farther than a lower bound, or certainly no farther than an upper
+/// one. Expects the DefaultFloatEnvironment.
 class Gaps {
 public:
   Gaps(Robot robot, std::vector<Obstacle> obstacles, const WorldOptions& options);
   Gaps(const Gaps&) = delete;
   Gaps& operator=(const Gaps&) = delete;
+
+  void setObstacles(std::vector<Obstacle> obstacles);
+  /// @throws InvalidInput for another number of poses, and for one that is not rigid
+  void placeObstacles(const std::vector<Eigen::Isometry3d>& T_world_obstacle);
 
   /// Places of a body's parts are in the world.
   using Poses = std::vector<Kinematics::Pose>;
@@ -26,17 +37,22 @@ public:
   /// Bounds of the gap between a place and all obstacles; the nearer one takes longer.
   Interval roughly(const Eigen::Vector3d& place, double enough) const
   {
-    const Interval gap = coarse_->gap(place);
-    return gap.lower > enough ? gap : fine_->gap(place);
+    const Interval gap = surroundings_->coarse.gap(place);
+    return gap.lower > enough ? gap : surroundings_->fine.gap(place);
   }
 
+  /// How far the places that the ball's motion is about may be off, seen from the body `rest`, by uncertain joints.
+  double doubt(const Ball& ball, std::size_t rest) const;
+
   /// The gap between a ball's piece, with its padding, and all obstacles, up to the limit.
-  Gap toObstacles(const Ball& ball, const Poses& poses, double limit, std::size_t& obstacle) const;
+  ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit) const;
 
   /// The gap between the pieces of two balls, with their paddings. Beyond the limit the upper bound may be infinite.
-  Interval between(const Ball& a, const Ball& b, const Poses& poses, double limit) const;
+  /// @param common the body that neither moves against (LinkPair)
+  Interval between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const;
 
-  Meeting meetingOf(const Ball& ball, std::size_t obstacle, std::uint32_t record) const;
+  /// @param for_certain what is nearest for certain; else what may be
+  Meeting meetingOf(const Ball& ball, const ObstacleGap& gap, bool for_certain) const;
   Meeting meetingOf(const Ball& a, const Ball& b) const;
 
   /// At least how far a computed gap is off, at values up to these.
@@ -50,12 +66,22 @@ public:
   const Kinematics kinematics;
   const Kinematics::Pose base;
   const Parts parts;
-  const std::vector<Obstacle> obstacles;
+
+  const std::vector<Obstacle>& obstacles() const noexcept { return surroundings_->obstacles; }
 
 private:
+  /// Replaced as a whole: what fails leaves the one before.
+  struct Surroundings {
+    /// @param reach of the robot about the middle
+    Surroundings(std::vector<Obstacle> obstacles, const Eigen::Vector3d& middle, double reach);
+
+    const std::vector<Obstacle> obstacles;
+    const DistanceField coarse, fine;
+  };
+
   Gap meshToObstacle(const Piece& piece, const Kinematics::Pose& pose, const Obstacle& obstacle, double limit) const;
 
-  std::optional<DistanceField> coarse_, fine_;
+  std::unique_ptr<const Surroundings> surroundings_;
 };
 
 } // namespace pcl_bsh::robots

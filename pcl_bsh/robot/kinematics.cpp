@@ -13,7 +13,6 @@ namespace pcl_bsh::robots {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-constexpr double kRigid = 1e-12; ///< how far a rotation may be from one
 
 [[noreturn]] void refuse(const std::string& subject, const std::string& wrong, const std::string& remedy)
 {

@@ -56,6 +56,11 @@ public:
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
     /** A point. */ Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return rotation * x + translation; }
+    /** First the other. */ Pose operator*(const Pose& other) const
+    {
+      return {rotation * other.rotation, *this * other.translation};
+    }
+    /** The way back. */ Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
   };
 
   /// A joint that moves, and what hangs on it up to the next ones. Body 0 is what stands still.

@@ -97,24 +97,32 @@ double MotionSearch::way(const Ball& ball, const Eigen::Vector3d& center, std::s
   return kOutward * h * (speed + 0.5 * h * bendOf(ball, rest));
 }
 
+/// @param gap now. @param moved how much it can change in the time
+MotionSearch::Outcome MotionSearch::outcomeOf(const Interval& gap, double clearance, double moved) const
+{
+  if (gap.lower > clearance + moved + error_) return Outcome::free;
+  if (gap.upper + error_ <= clearance) return Outcome::colliding;
+  // Not free now, nor colliding for so long: shorter times would not tell more.
+  const bool stays = gap.lower <= clearance + error_ && gap.upper - moved + error_ > clearance;
+  return moved > gaps_.options.tolerance && !stays ? Outcome::open : Outcome::undecided;
+}
+
 MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
 {
   const Ball& ball = gaps_.parts.balls[index];
-  const double clearance = gaps_.options.clearance;
+  const double clearance = gaps_.options.clearance, doubt = gaps_.doubt(ball, 0);
   const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
-  const double moved = way(ball, center, 0, h), still = ball.radius + clearance, needed = moved + error_;
+  const double moved = way(ball, center, 0, h), still = ball.radius + clearance + doubt, needed = moved + error_;
   const Interval rough = gaps_.roughly(center, still + needed);
   if (rough.lower > still + needed) return Outcome::free;
   if (ball.piece == kNoPart) return Outcome::open;
-  // Neither free for so long nor colliding now: nothing nearer would tell more.
+  // Neither free for so long nor anything but free now: nothing nearer would tell more.
   if (moved > gaps_.options.tolerance && rough.upper < still + moved && rough.lower > still) return Outcome::open;
-  std::size_t obstacle = 0;
-  const Gap gap = gaps_.toObstacles(ball, s_.poses, clearance + needed, obstacle);
-  if (gap.isBeyond(clearance + needed)) return Outcome::free;
-  const bool colliding = gap.upper + error_ <= clearance;
-  if (!colliding && moved > gaps_.options.tolerance) return Outcome::open;
-  meeting_ = gaps_.meetingOf(ball, obstacle, gap.record);
-  return colliding ? Outcome::colliding : Outcome::undecided;
+  const ObstacleGap gap = gaps_.toObstacles(ball, s_.poses, clearance + needed);
+  if (gap.record == kNothing) return Outcome::free;
+  const Outcome outcome = outcomeOf(gap, clearance, moved);
+  if (outcome >= Outcome::colliding) meeting_ = gaps_.meetingOf(ball, gap, outcome == Outcome::colliding);
+  return outcome;
 }
 
 MotionSearch::Outcome MotionSearch::ofPair(const LinkPair& pair, double h)
@@ -124,14 +132,13 @@ MotionSearch::Outcome MotionSearch::ofPair(const LinkPair& pair, double h)
   const Eigen::Vector3d center_a = gaps_.centerOf(a, s_.poses), center_b = gaps_.centerOf(b, s_.poses);
   const double moved = way(a, center_a, pair.common, h) + way(b, center_b, pair.common, h);
   const double least = (center_a - center_b).norm() - a.radius - b.radius, needed = clearance + moved + error_;
-  if (least > needed) return Outcome::free;
+  if (least > needed + gaps_.doubt(a, pair.common) + gaps_.doubt(b, pair.common)) return Outcome::free;
   if (a.piece == kNoPart || b.piece == kNoPart) return Outcome::open;
-  const Interval gap = a.is_sphere && b.is_sphere ? Interval{least, least} : gaps_.between(a, b, s_.poses, needed);
-  if (gap.lower > needed || gap.upper == kInfinity) return Outcome::free;
-  const bool colliding = gap.upper + error_ <= clearance;
-  if (!colliding && moved > gaps_.options.tolerance) return Outcome::open;
-  meeting_ = gaps_.meetingOf(a, b);
-  return colliding ? Outcome::colliding : Outcome::undecided;
+  const Interval gap = gaps_.between(a, b, pair.common, s_.poses, needed);
+  if (gap.upper == kInfinity) return Outcome::free;
+  const Outcome outcome = outcomeOf(gap, clearance, moved);
+  if (outcome >= Outcome::colliding) meeting_ = gaps_.meetingOf(a, b);
+  return outcome;
 }
 
 /// @param open what is to be looked at again, appended to the lists
@@ -225,10 +232,9 @@ bool MotionSearch::isFreeUntilEnd(const Task& task)
     return of;
   };
   bool free = outcome == Outcome::free;
-  if (free || outcome == Outcome::undecided ||
-      (outcome == Outcome::colliding && speed_ * task.h <= gaps_.options.tolerance))
+  if (free || (outcome >= Outcome::colliding && speed_ * task.h <= gaps_.options.tolerance))
     valid_ = free ? task.m + task.h : task.m - task.h;
-  else if (outcome == Outcome::colliding) {
+  else if (outcome >= Outcome::colliding) {
     s_.balls.resize(balls);
     s_.pairs.resize(pairs);
     isFreeUntilEnd(before(task));

@@ -62,6 +62,7 @@ private:
   void place(const Task& task);
   Outcome ofBall(std::uint32_t index, double h);
   Outcome ofPair(const LinkPair& pair, double h);
+  Outcome outcomeOf(const Interval& gap, double clearance, double moved) const;
   bool isFreeUntilEnd(const Task& task);
 
   double bendOf(const Ball& ball, std::size_t rest) const;

@@ -33,9 +33,8 @@ public:
         visit(voxel.frame, voxel.nodes, 0,
               [&](const Node& leaf, std::uint32_t k) { compare(voxel, leaf.begin[k], leaf.begin[k + 1]); });
       });
-    if (!(best_.upper <= limit_) && !(lower_ <= limit_)) return {{limit_, kInfinity}};
-    best_.lower = lower_;
-    return best_;
+    if (!(best_.upper <= limit_) && !(lowest_.lower <= limit_)) return {{limit_, kInfinity}};
+    return {{lowest_.lower, best_.upper}, best_.record, lowest_.record};
   }
 
 private:
@@ -54,7 +53,8 @@ private:
       const Eigen::Vector3d center(at(node.x, 0), at(node.y, 1), at(node.z, 2));
       const double radius = frame.unit * static_cast<double>(node.r[i]);
       constexpr double roundings = 0x1p-44;
-      const double gap = probe_.toPoint(center) - radius - roundings * (center.lpNorm<1>() + radius);
+      const double gap =
+          probe_.toPoint(center) - radius - roundings * (center.lpNorm<1>() + radius) - cloud_.uncertainty.most;
       if (gap <= reach()) children[count++] = {gap, i};
     }
     std::sort(children.begin(), children.begin() + count);
@@ -71,10 +71,14 @@ private:
   {
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t record = voxel.records()[i];
-      const Interval gap = cloud_.view.triangles ? probe_.toTriangle(cloud_.view.triangles->triangle(record), reach())
-                                                 : ofPoint(voxel.point(cloud_.view, i), record);
+      const double uncertain = cloud_.view.uncertainty + cloud_.view.ownUncertainty(record);
+      Interval gap = cloud_.view.triangles
+                         ? probe_.toTriangle(cloud_.view.triangles->triangle(record), reach() + uncertain)
+                         : ofPoint(voxel.point(cloud_.view, i), record);
+      gap.lower -= uncertain;
+      gap.upper += uncertain;
       if (gap.lower > reach()) continue;
-      lower_ = std::min(lower_, gap.lower);
+      if (gap.lower < lowest_.lower) lowest_ = {gap, record};
       if (gap.upper < best_.upper) best_ = {gap, record};
     }
   }
@@ -88,8 +92,7 @@ private:
   const SphereHierarchy::Storage& cloud_;
   const Probe& probe_;
   const double limit_;
-  Gap best_{{kInfinity, kInfinity}};
-  double lower_ = kInfinity; ///< of all that were compared
+  Gap best_{{kInfinity, kInfinity}}, lowest_{{kInfinity, kInfinity}}; ///< by their upper and lower bounds
   BuildWork work_;
 };
 
@@ -141,7 +144,7 @@ struct SolidProbe {
 Obstacle::Obstacle(const SphereHierarchy& hierarchy) : hierarchy_(&hierarchy)
 {
   const PointsView& view = hierarchy.view();
-  if (view.triangles) return;
+  if (view.triangles || view.uncertainties) return;
   if (!view.radii) {
     radius_ = 0.0;
     return;
@@ -153,37 +156,46 @@ Obstacle::Obstacle(const SphereHierarchy& hierarchy) : hierarchy_(&hierarchy)
   radius_ = first;
 }
 
-Gap Obstacle::gap(const Eigen::Vector3d& point, double limit) const
+double Obstacle::mostUncertain() const noexcept
 {
+  return hierarchy_->storage().uncertainty.most;
+}
+
+Gap Obstacle::gap(const Eigen::Vector3d& place, double limit) const
+{
+  const Eigen::Vector3d point = pose.inverse() * place;
   if (!radius_) return GapWalk<PointProbe>(*hierarchy_, {point}, limit).run();
   Gap gap{{limit, kInfinity}};
-  if (limit + *radius_ < 0.0) return gap;
+  const double uncertain = hierarchy_->view().uncertainty, within = limit + *radius_ + uncertain;
+  if (within < 0.0) return gap;
   const ScratchLease<NeighborScratch> scratch;
   Work work;
-  findNearest(hierarchy_->storage(), {point.x(), point.y(), point.z()}, 1, limit + *radius_, *scratch, work);
+  findNearest(hierarchy_->storage(), {point.x(), point.y(), point.z()}, 1, within, *scratch, work);
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < (*scratch).squared.size(); ++i) {
     if (!((*scratch).squared.data()[i] < least)) continue;
     least = (*scratch).squared.data()[i];
     gap.record = (*scratch).records.data()[i];
   }
+  gap.possible = gap.record;
   if (gap.record == kNothing) return gap;
   // Squares are rounded once to float; those that are denormal err by an absolute amount.
   const double distance = std::sqrt(static_cast<double>(least));
-  gap.lower = distance * (1.0 - 0x1p-23) - 0x1p-70 - *radius_;
-  gap.upper = distance * (1.0 + 0x1p-23) + 0x1p-70 - *radius_;
+  gap.lower = distance * (1.0 - 0x1p-23) - 0x1p-70 - *radius_ - uncertain;
+  gap.upper = distance * (1.0 + 0x1p-23) + 0x1p-70 - *radius_ + uncertain;
   return gap;
 }
 
-Gap Obstacle::gap(const Solid& solid, const Kinematics::Pose& pose, double limit) const
+Gap Obstacle::gap(const Solid& solid, const Kinematics::Pose& place, double limit) const
 {
   if (const auto* ball = std::get_if<Sphere>(&solid)) {
-    Gap found = gap(pose.translation, limit + ball->radius);
+    Gap found = gap(place.translation, limit + ball->radius);
     found.lower -= ball->radius;
     found.upper -= ball->radius;
     return found;
   }
-  return GapWalk<SolidProbe>(*hierarchy_, {solid, pose}, limit).run();
+  const Kinematics::Pose seen = pose.inverse() * place;
+  return GapWalk<SolidProbe>(*hierarchy_, {solid, seen}, limit).run();
 }
 
 } // namespace pcl_bsh::robots

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far one solid is from one cloud, or from one mesh, up to a limit.
+//
+// Where places of points are uncertain, a solid is certainly no nearer to any of them than the lower bound. It is
+// certainly no farther from one of them than the upper bound.
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -15,17 +18,21 @@ namespace pcl_bsh::robots {
 
 /// Bounds of a gap: of a distance less radii.
 struct Gap : Interval {
-  std::uint32_t record = kNothing; ///< the nearest; none: all are beyond the limit
+  std::uint32_t record = kNothing;   ///< the nearest, whose upper bound is least; none: all are beyond the limit
+  std::uint32_t possible = kNothing; ///< the one whose lower bound is least
 
   bool isBeyond(double limit) const noexcept { return record == kNothing || lower > limit; }
 };
 
-/// A cloud or a mesh that solids are held against. The hierarchy is borrowed.
+/// A cloud or a mesh that solids are held against, where it stands. The hierarchy is borrowed.
 class Obstacle {
 public:
   explicit Obstacle(const SphereHierarchy& hierarchy);
 
   const SphereHierarchy& hierarchy() const noexcept { return *hierarchy_; }
+  double mostUncertain() const noexcept; ///< no place is more uncertain, m
+
+  Kinematics::Pose pose; ///< T_world_obstacle
 
   /// The gap of a point. Beyond the limit: from that to infinity. Expects the DefaultFloatEnvironment.
   Gap gap(const Eigen::Vector3d& point, double limit) const;
@@ -35,7 +42,7 @@ public:
 
 private:
   const SphereHierarchy* hierarchy_;
-  std::optional<double> radius_; ///< of all points
+  std::optional<double> radius_; ///< of all points, where they are as uncertain as each other
 };
 
 } // namespace pcl_bsh::robots

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace pcl_bsh::robots {
@@ -30,10 +31,11 @@ std::pair<Eigen::Vector3d, double> around(const PointsView& view)
 
 class Maker {
 public:
-  Maker(Parts& parts, const Robot& robot, const Kinematics& kinematics)
+  Maker(Parts& parts, const Robot& robot, const Kinematics& kinematics, const std::vector<double>& joint_uncertainties)
   : parts_(parts),
     robot_(robot),
-    kinematics_(kinematics)
+    kinematics_(kinematics),
+    joint_uncertainties_(joint_uncertainties)
   {
   }
 
@@ -54,12 +56,31 @@ public:
     }
     for (Ball& ball : parts_.balls) {
       ball.axis_distances = kinematics_.axisDistances(ball.body, ball.center, ball.spread);
+      if (!joint_uncertainties_.empty()) ball.doubts = doubtsOf(ball);
       parts_.extent = std::max(parts_.extent, ball.center.norm() + ball.radius);
     }
     addPairs(of_links);
   }
 
 private:
+  /// A turn moves a place by no more than its angle times the distance from the axis. Beyond the joint's limits a slide
+  /// adds to the distances from the axes before it.
+  std::vector<double> doubtsOf(const Ball& ball) const
+  {
+    const std::vector<std::size_t>& chain = parts_.chains[ball.body];
+    std::vector<double> doubts(chain.size());
+    double sum = 0.0, slid = 0.0;
+    for (std::size_t i = chain.size(); i-- > 0;) {
+      const Kinematics::Body& body = kinematics_.bodies()[chain[i]];
+      const bool slides = body.kind == Joint::Kind::prismatic;
+      const double off = std::abs(body.multiplier) * joint_uncertainties_[body.variable];
+      sum += off * (slides ? 1.0 : ball.axis_distances[i] + slid);
+      if (slides) slid += off;
+      doubts[i] = kOutward * sum;
+    }
+    return doubts;
+  }
+
   std::uint32_t add(Ball ball)
   {
     parts_.balls.push_back(std::move(ball));
@@ -181,13 +202,14 @@ private:
   Parts& parts_;
   const Robot& robot_;
   const Kinematics& kinematics_;
+  const std::vector<double>& joint_uncertainties_;
 };
 
 } // namespace
 
-Parts::Parts(const Robot& robot, const Kinematics& kinematics)
+Parts::Parts(const Robot& robot, const Kinematics& kinematics, const std::vector<double>& joint_uncertainties)
 {
-  Maker(*this, robot, kinematics).make();
+  Maker(*this, robot, kinematics, joint_uncertainties).make();
 }
 
 } // namespace pcl_bsh::robots

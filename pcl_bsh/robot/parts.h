@@ -34,6 +34,7 @@ struct Ball {
   double padding = 0.0;               ///< of the piece
   std::uint32_t first = 0, count = 0; ///< balls that it holds, one after another
   std::vector<double> axis_distances; ///< from the axes of the chain (kinematics.h)
+  std::vector<double> doubts; ///< how far these places may be off by joints of the chain from each on; empty: by none
 };
 
 /// Two links to be held against each other, by the balls that hold them, and the body that neither moves against.
@@ -43,8 +44,9 @@ struct LinkPair {
 };
 
 struct Parts {
+  /// @param joint_uncertainties of a state's values; empty: they are certain
   /// @throws InvalidInput for a mesh that was not read
-  Parts(const Robot& robot, const Kinematics& kinematics);
+  Parts(const Robot& robot, const Kinematics& kinematics, const std::vector<double>& joint_uncertainties);
 
   std::vector<Piece> pieces;
   std::vector<Ball> balls;

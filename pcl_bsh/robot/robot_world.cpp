@@ -20,14 +20,7 @@ namespace {
 std::vector<Obstacle> obstaclesOf(const std::vector<const SphereHierarchy*>& hierarchies)
 {
   std::vector<Obstacle> obstacles;
-  for (const SphereHierarchy* hierarchy : hierarchies) {
-    if (hierarchy->view().isUncertain())
-      throw InvalidInput(Input::uncertainty, "obstacle " + std::to_string(obstacles.size()),
-                         "its places are uncertain, which no robot's gap counts",
-                         "leave the uncertainty out, and give a larger clearance or radii")
-          .withIndex(obstacles.size());
-    obstacles.emplace_back(*hierarchy);
-  }
+  for (const SphereHierarchy* hierarchy : hierarchies) obstacles.emplace_back(*hierarchy);
   return obstacles;
 }
 
@@ -72,7 +65,8 @@ public:
     for (const std::uint32_t ball : gaps.parts.of_bodies)
       if (ball != kNoPart) ofBall(gaps.parts.balls[ball]);
     if (gaps.options.with_self)
-      for (const LinkPair& pair : gaps.parts.pairs) ofPair(gaps.parts.balls[pair.a], gaps.parts.balls[pair.b]);
+      for (const LinkPair& pair : gaps.parts.pairs)
+        ofPair(gaps.parts.balls[pair.a], gaps.parts.balls[pair.b], pair.common);
   }
 
   ClearanceResult result(double error) const
@@ -95,25 +89,23 @@ private:
 
   void ofBall(const Ball& ball)
   {
-    const double reach = best_.gap.upper + ball.radius;
+    const double reach = best_.gap.upper + ball.radius + gaps_.doubt(ball, 0);
     if (gaps_.roughly(gaps_.centerOf(ball, poses_), reach).lower > reach) return;
     for (std::uint32_t i = 0; i < ball.count; ++i) ofBall(gaps_.parts.balls[ball.first + i]);
     if (ball.piece == kNoPart) return;
-    std::size_t obstacle = 0;
-    const Gap gap = gaps_.toObstacles(ball, poses_, best_.gap.upper, obstacle);
-    if (gap.record != kNothing) take(gap, gaps_.meetingOf(ball, obstacle, gap.record));
+    const ObstacleGap gap = gaps_.toObstacles(ball, poses_, best_.gap.upper);
+    if (gap.record != kNothing) take(gap, gaps_.meetingOf(ball, gap, true));
   }
 
-  void ofPair(const Ball& a, const Ball& b)
+  void ofPair(const Ball& a, const Ball& b, std::size_t common)
   {
     const double least = (gaps_.centerOf(a, poses_) - gaps_.centerOf(b, poses_)).norm() - a.radius - b.radius;
-    if (least > best_.gap.upper) return;
-    for (std::uint32_t i = 0; i < a.count; ++i) ofPair(gaps_.parts.balls[a.first + i], b);
+    if (least > best_.gap.upper + gaps_.doubt(a, common) + gaps_.doubt(b, common)) return;
+    for (std::uint32_t i = 0; i < a.count; ++i) ofPair(gaps_.parts.balls[a.first + i], b, common);
     if (a.piece == kNoPart) return;
-    for (std::uint32_t i = 0; i < b.count; ++i) ofPair(a, gaps_.parts.balls[b.first + i]);
+    for (std::uint32_t i = 0; i < b.count; ++i) ofPair(a, gaps_.parts.balls[b.first + i], common);
     if (b.piece == kNoPart) return;
-    take(a.is_sphere && b.is_sphere ? Interval{least, least} : gaps_.between(a, b, poses_, best_.gap.upper),
-         gaps_.meetingOf(a, b));
+    take(gaps_.between(a, b, common, poses_, best_.gap.upper), gaps_.meetingOf(a, b));
   }
 
   const Gaps& gaps_;
@@ -183,14 +175,19 @@ const WorldOptions& RobotWorld::options() const noexcept
 
 void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacles)
 {
-  inside_ = std::make_unique<Inside>(robot(), obstaclesOf(obstacles), options());
+  inside_->gaps.setObstacles(obstaclesOf(obstacles));
+}
+
+void RobotWorld::setObstaclePoses(const std::vector<Eigen::Isometry3d>& T_world_obstacle)
+{
+  inside_->gaps.placeObstacles(T_world_obstacle);
 }
 
 void RobotWorld::setBase(const Eigen::Isometry3d& T_world_root)
 {
   WorldOptions options = this->options();
   options.base = T_world_root;
-  inside_ = std::make_unique<Inside>(robot(), inside_->gaps.obstacles, options);
+  inside_ = std::make_unique<Inside>(robot(), inside_->gaps.obstacles(), options);
 }
 
 void RobotWorld::attach(const std::string& name, std::size_t link, std::vector<Shape> shapes,
@@ -208,7 +205,7 @@ void RobotWorld::attach(const std::string& name, std::size_t link, std::vector<S
   joint.parent = link;
   for (const std::size_t other : ignored) robot.disabled_pairs.push_back({robot.links.size(), other});
   robot.links.push_back({name, std::move(shapes), joint});
-  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles, options());
+  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles(), options());
 }
 
 void RobotWorld::detach(const std::string& name)
@@ -226,7 +223,7 @@ void RobotWorld::detach(const std::string& name)
   std::erase_if(robot.disabled_pairs, [&](const auto& pair) { return pair[0] == link || pair[1] == link; });
   for (auto& pair : robot.disabled_pairs)
     for (std::size_t& of : pair) of -= of > link ? 1 : 0;
-  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles, options());
+  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles(), options());
 }
 
 StateCheck RobotWorld::checkState(const RobotState& state) const

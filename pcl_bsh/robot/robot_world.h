@@ -9,6 +9,8 @@
 //
 // Answers hold for exact arithmetic on the given numbers (kinematics.h). A state is undecided where it is within
 // rounding of the clearance. A motion is undecided only where its least gap is within the tolerance of the clearance.
+// Where places of points (PointsView) or values of joints are uncertain, free and colliding hold for all of these: what
+// is neither is undecided, too.
 // Boxes, cylinders, capsules and spheres are solid, and meshes are surfaces: two that cross are at 0 from each other,
 // which is undecided where the clearance is 0. Obstacles are in one frame, the world's.
 // Points may have radii; at clearance 0 without radii, a finger passes between points.
@@ -39,6 +41,8 @@ struct WorldOptions {
   double tolerance = 1e-4;     ///< m, > 0: see above
   bool with_self = true;       ///< whether links are held against each other
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity(); ///< T_world_root
+  /// How far each value of a state may be from the joint's true one, rad or m, finite and >= 0; empty: not at all.
+  std::vector<double> joint_uncertainties = {};
 };
 
 /// Two things that are nearest to each other, or collide.
@@ -64,14 +68,13 @@ struct MotionCheck {
 struct ClearanceResult {
   Interval gap;                   ///< the least one, less all radii and paddings; negative inside of solids. Two
                                   ///< solids that meet are at most at its upper end
-  std::optional<Meeting> meeting; ///< none: there is nothing within the limit
+  std::optional<Meeting> meeting; ///< none: nothing is for certain within the limit
 };
 
 /// Const methods may run in several threads at once. Robots and options are copied, hierarchies borrowed.
 class RobotWorld {
 public:
-  /// @throws InvalidInput as Kinematics does; for options without meaning; for a mesh that was not read; naming the
-  ///   obstacle whose places are uncertain
+  /// @throws InvalidInput as Kinematics does; for options without meaning; for a mesh that was not read
   RobotWorld(const Robot& robot, const std::vector<const SphereHierarchy*>& obstacles,
              const WorldOptions& options = {});
   ~RobotWorld();
@@ -82,8 +85,12 @@ public:
   const Kinematics& kinematics() const noexcept; ///< of the robot with what is attached
   const WorldOptions& options() const noexcept;  ///< as given, with the base of now
 
-  /// Other obstacles; or the same, after a HierarchyUpdate or a refit has changed them.
+  /// Other obstacles; or the same, after a HierarchyUpdate or a refit has changed them. They stand where they are
+  /// given.
   void setObstacles(const std::vector<const SphereHierarchy*>& obstacles);
+  /// Moves obstacles; no hierarchy is built anew. @throws InvalidInput for a pose that is not rigid within 1e-12
+  /// @param T_world_obstacle one for each
+  void setObstaclePoses(const std::vector<Eigen::Isometry3d>& T_world_obstacle);
   /// Moves the whole robot.
   void setBase(const Eigen::Isometry3d& T_world_root);
 

@@ -54,7 +54,8 @@ struct Options {
   std::vector<fs::path> obstacles;
   std::string state, base;
   robots::WorldOptions world;
-  double radius = 0.0;
+  double radius = 0.0, uncertainty = 0.0;
+  std::vector<double> joint_uncertainties;
   bool motions = false, no_self = false;
   unsigned threads = 1;
   std::optional<fs::path> report, table;
@@ -85,6 +86,7 @@ ReadObstacle readObstacle(const Options& options, const fs::path& path, std::vec
     obstacle.radii.assign(view.count, static_cast<float>(options.radius));
     view.radii = obstacle.radii.data();
   }
+  if (!view.triangles) view.uncertainty = options.uncertainty;
   obstacle.hierarchy = std::make_unique<const SphereHierarchy>(view);
   return obstacle;
 }
@@ -227,6 +229,9 @@ int run(Options& options)
   for (const JointValues& values : valuesOf(options, groups)) states.push_back(stateOf(robot, values));
 
   options.world.with_self = !options.no_self;
+  options.world.joint_uncertainties = options.joint_uncertainties;
+  if (options.joint_uncertainties.size() == 1)
+    options.world.joint_uncertainties.assign(variablesOf(robot).size(), options.joint_uncertainties[0]);
   const robots::RobotWorld world(robot, hierarchies, options.world);
   const Arm arm(world, obstacles);
   Json report = {{"robot", robot.name},
@@ -311,6 +316,14 @@ int main(int argc, char** argv)
     length("--self-clearance", options.world.self_clearance, "links this near to each other collide");
     length("--tolerance", options.world.tolerance, "motions this near to the clearance may be undecided");
     length("--radius", options.radius, "points are balls of this radius");
+    length("--uncertainty", options.uncertainty, "points may be this far from where they were measured");
+    app.add_option("--joint-uncertainty", options.joint_uncertainties,
+                   "values of joints may be off by this, in radians or metres: one number for\nall of them, or one for "
+                   "each in the order of links; what depends on it is undecided")
+        ->type_name("Q,...")
+        ->transform(cli::number<double>("give an angle or a length, >= 0", [](double given) { return given >= 0.0; }))
+        ->delimiter(',')
+        ->allow_extra_args(false);
     app.add_flag("--no-self", options.no_self, "do not hold links against each other");
     app.add_option("--base", options.base,
                    "pose of the robot's root among the obstacles:\nx,y,z,roll,pitch,yaw or a file")

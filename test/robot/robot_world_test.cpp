@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -29,7 +32,8 @@ class GapTwin {
 public:
   GapTwin(const Robot& robot, const PointsView& points) : robot_(robot), kinematics_(robot), points_(points) {}
 
-  long double toPoints(const std::vector<long double>& values) const
+  /// @param off uncertainties of points, times this, are added
+  long double toPoints(const std::vector<long double>& values, double off = 0.0) const
   {
     long double least = std::numeric_limits<long double>::infinity();
     const std::vector<test::LongPose> poses = test::longPoses(kinematics_, values);
@@ -44,7 +48,9 @@ public:
         const auto* ball = std::get_if<Sphere>(&shape.form);
         const long double gap =
             ball ? seen.norm() - ball->radius : signedDistance(*solidOf(shape), Eigen::Vector3d(seen.cast<double>()));
-        least = std::min(least, gap - static_cast<long double>(points_.radius(i)) - robot_.links[link].padding);
+        const double uncertain = points_.uncertainty + points_.ownUncertainty(i);
+        least = std::min(least, gap - static_cast<long double>(points_.radius(i)) - robot_.links[link].padding +
+                                    static_cast<long double>(off * uncertain));
       }
     });
     return least;
@@ -81,7 +87,7 @@ private:
       for (const Shape& shape : robot_.links[link].shapes) visit(link, kinematics_.inBody(link) * shape.pose, shape);
   }
 
-  static constexpr long double kLargest = 0.4L; ///< of shapes and points, at least
+  static constexpr long double kLargest = 0.5L; ///< of shapes, points and uncertainties, at least
 
   const Robot& robot_;
   const Kinematics kinematics_;
@@ -99,9 +105,17 @@ struct MadeScene {
     cloud = std::make_unique<SphereHierarchy>(view);
   }
 
+  void setUncertain(double all, double most_own)
+  {
+    view.uncertainty = all;
+    for (std::size_t i = 0; i < view.count; ++i) own.push_back(static_cast<float>(random.uniform(0, most_own)));
+    if (most_own > 0.0) view.uncertainties = own.data();
+    cloud = std::make_unique<SphereHierarchy>(view);
+  }
+
   test::Random random;
   Robot robot;
-  std::vector<float> xyz, radii;
+  std::vector<float> xyz, radii, own;
   PointsView view;
   std::unique_ptr<SphereHierarchy> cloud;
 };
@@ -370,17 +384,186 @@ TEST(RobotWorld, TellsHowFarManyAreAndStops)
               testing::HasSubstr("exact"));
 }
 
-TEST(RobotWorld, RefusesUncertainPlaces)
+/// Values of joints at the ends of their intervals, all of these, and some between.
+std::vector<std::vector<long double>> valuesAbout(test::Random& random, const std::vector<long double>& values,
+                                                  const std::vector<double>& uncertainties)
 {
-  const std::vector<float> xyz = {9, 9, 9};
-  PointsView view = viewOf(xyz.data(), 1);
+  std::vector<std::vector<long double>> all;
+  if (uncertainties.empty()) return {values};
+  const std::size_t corners = std::size_t{1} << values.size();
+  for (std::size_t k = 0; k < corners + 20; ++k) {
+    all.push_back(values);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      all.back()[i] += uncertainties[i] * (k >= corners ? random.uniform(-1, 1) : (k >> i & 1u) != 0 ? 1.0 : -1.0);
+  }
+  return all;
+}
+
+/// Free and colliding hold at all corners of joints' intervals and in them, wherever points truly are. Where joints are
+/// certain, undecided is no more than what depends on where the points are.
+TEST(RobotWorld, AnswersForAllUncertainPlacesAndValues)
+{
+  std::array<std::array<int, 3>, 2> seen = {};
+  for (std::uint64_t seed = 51; seed < 67; ++seed) {
+    MadeScene scene(seed, 60, seed % 4 < 2);
+    scene.setUncertain(seed % 3 == 0 ? 0.0 : 0.02, seed % 3 == 1 ? 0.0 : 0.05);
+    WorldOptions options;
+    options.clearance = 0.03;
+    options.with_self = false;
+    const bool of_joints = seed % 2 == 1;
+    for (std::size_t i = 0; of_joints && i < variablesOf(scene.robot).size(); ++i)
+      options.joint_uncertainties.push_back(scene.random.uniform(0, 0.015));
+    const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
+    const GapTwin twin(scene.robot, scene.view);
+    for (int i = 0; i < 30; ++i) {
+      const RobotState state = test::madeState(scene.random, scene.robot);
+      const StateCheck check = world.checkState(state);
+      const ClearanceResult nearest = world.clearance(state);
+      ++seen[of_joints ? 1 : 0][static_cast<std::size_t>(check.verdict)];
+      EXPECT_EQ(check.meeting.has_value(), check.verdict != Verdict::free);
+      for (const auto& values : valuesAbout(scene.random, {state.begin(), state.end()}, options.joint_uncertainties)) {
+        const long double low = twin.toPoints(values, -1), high = twin.toPoints(values, 1);
+        ASSERT_LE(nearest.gap.lower, low + 1e-12L);
+        ASSERT_GE(nearest.gap.upper, high - 1e-12L);
+        if (check.verdict == Verdict::free) {
+          ASSERT_GT(low, options.clearance) << seed << " " << i;
+        }
+        if (check.verdict == Verdict::colliding) {
+          ASSERT_LE(high, options.clearance + 1e-12L) << seed << " " << i;
+        }
+        if (check.verdict == Verdict::undecided && !of_joints) {
+          ASSERT_LE(low, options.clearance + 1e-12L);
+          ASSERT_GT(high, options.clearance - 1e-12L);
+        }
+      }
+    }
+  }
+  for (const std::array<int, 3>& verdicts : seen)
+    for (const int count : verdicts) EXPECT_GT(count, 5);
+}
+
+TEST(RobotWorld, CertifiesMotionsOfUncertainPlacesAndValues)
+{
+  std::array<int, 3> seen = {};
+  for (std::uint64_t seed = 71; seed < 77; ++seed) {
+    MadeScene scene(seed, 60, seed % 2 == 0);
+    scene.setUncertain(0.01, seed % 3 == 0 ? 0.03 : 0.0);
+    WorldOptions options;
+    options.with_self = false;
+    options.joint_uncertainties.assign(variablesOf(scene.robot).size(), seed % 4 == 0 ? 0.0 : 0.004);
+    const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
+    const GapTwin twin(scene.robot, scene.view);
+    for (int i = 0; i < 8; ++i) {
+      const RobotState from = test::madeState(scene.random, scene.robot);
+      RobotState to = test::madeState(scene.random, scene.robot);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + 0.2 * (to[k] - from[k]);
+      const MotionCheck check = world.checkMotion(from, to, true);
+      ++seen[static_cast<std::size_t>(check.verdict)];
+      for (int sample = 0; sample <= 16; ++sample) {
+        const long double t = sample / 16.0L;
+        if (!(t < check.last_valid)) break;
+        for (const auto& values :
+             valuesAbout(scene.random, test::longValues(scene.robot, from, to, t), options.joint_uncertainties)) {
+          ASSERT_GT(twin.toPoints(values, -1), 0.0L) << seed << " " << i << " " << sample;
+        }
+      }
+      if (check.verdict != Verdict::colliding) continue;
+      for (const auto& values : valuesAbout(scene.random, test::longValues(scene.robot, from, to, check.fraction),
+                                            options.joint_uncertainties)) {
+        ASSERT_LE(twin.toPoints(values, 1), 1e-12L);
+      }
+    }
+  }
+  EXPECT_GT(seen[0], 2);
+  EXPECT_GT(seen[1], 5);
+  EXPECT_GT(seen[2], 0);
+}
+
+TEST(RobotWorld, NamesWhatIsUncertain)
+{
+  // Point 0 is certain and nearer, point 1 may be nearer.
+  const std::vector<double> xyz = {1.2, 0, 0, 1, 0, 0.3};
+  const std::vector<float> own = {0.0f, 0.25f};
+  PointsView view = viewOf(xyz.data(), 2);
+  view.uncertainties = own.data();
+  const SphereHierarchy cloud(view);
+  WorldOptions options;
+  options.clearance = 0.05;
+  const StateCheck state = RobotWorld(pendulum(), {&cloud}, options).checkState({0});
+  EXPECT_EQ(state.verdict, Verdict::undecided);
+  EXPECT_EQ(state.meeting->record, 1u);
+  // 5 mrad at 1 m, where the gap is 0.1
+  options.joint_uncertainties = {0.005};
+  view.uncertainties = nullptr;
   const SphereHierarchy certain(view);
-  view.uncertainty = 0.01;
-  const SphereHierarchy uncertain(view);
-  const std::string told = test::refusalOf([&] { RobotWorld(pendulum(), {&certain, &uncertain}); });
-  EXPECT_THAT(told, testing::HasSubstr("obstacle 1: its places are uncertain"));
-  RobotWorld world(pendulum(), {&certain});
-  EXPECT_EQ(told, test::refusalOf([&] { world.setObstacles({&certain, &uncertain}); }));
+  for (const auto& [clearance, verdict] :
+       {std::pair(0.0949, Verdict::free), std::pair(0.0951, Verdict::undecided), std::pair(0.1049, Verdict::undecided),
+        std::pair(0.1051, Verdict::colliding)}) {
+    options.clearance = clearance;
+    EXPECT_EQ(RobotWorld(pendulum(), {&certain}, options).checkState({0}).verdict, verdict) << clearance;
+  }
+  // A motion is free until the first instant that may not be.
+  options.clearance = 0.0;
+  const MotionCheck motion = RobotWorld(pendulum(), {&cloud}, options).checkMotion({-1}, {1}, true);
+  EXPECT_EQ(motion.verdict, Verdict::undecided);
+  EXPECT_EQ(motion.meeting->record, 1u);
+  // The point is 0.35 + 0.005 from the bob's centre there: a chord of sqrt(0.355^2 - 0.3^2).
+  EXPECT_NEAR(motion.last_valid, 0.5 - std::asin(0.5 * std::sqrt(0.355 * 0.355 - 0.09)), 2e-4);
+}
+
+TEST(RobotWorld, RefusesUncertaintiesWithoutMeaning)
+{
+  const auto refused = [](const std::vector<double>& uncertainties) {
+    WorldOptions options;
+    options.joint_uncertainties = uncertainties;
+    return test::refusalOf([&] { RobotWorld(pendulum(), {}, options); });
+  };
+  EXPECT_THAT(refused({0.1, 0.1}), testing::HasSubstr("joint_uncertainties: are 2"));
+  EXPECT_THAT(refused({-0.1}), testing::HasSubstr("has -0.100000 for joint 'turn'"));
+  EXPECT_THAT(refused({std::numeric_limits<double>::infinity()}), testing::HasSubstr("for joint 'turn'"));
+}
+
+/// An obstacle that is moved is one whose points are.
+TEST(RobotWorld, MovesObstacles)
+{
+  for (const std::uint64_t seed : {81u, 82u, 83u, 84u}) {
+    MadeScene scene(seed, 60, seed % 2 == 0);
+    const Eigen::Isometry3d pose = test::madePose(scene.random, 0.5);
+    std::vector<double> moved;
+    for (std::uint32_t i = 0; i < scene.view.size(); ++i) {
+      const Point3 p = scene.view.point(i);
+      const Eigen::Vector3d there = pose * Eigen::Vector3d(p[0], p[1], p[2]);
+      moved.insert(moved.end(), there.data(), there.data() + 3);
+    }
+    PointsView view = viewOf(moved.data(), scene.view.size());
+    view.radii = scene.view.radii;
+    const SphereHierarchy cloud(view);
+    RobotWorld world(scene.robot, {&cloud, scene.cloud.get()});
+    world.checkState(test::madeState(scene.random, scene.robot)); // what it keeps of gaps is of the old places
+    world.setObstaclePoses({Eigen::Isometry3d::Identity(), pose});
+    RobotWorld alone(scene.robot, {scene.cloud.get()}), expected(scene.robot, {&cloud});
+    alone.setObstaclePoses({pose});
+    for (int i = 0; i < 20; ++i) {
+      const RobotState from = test::madeState(scene.random, scene.robot);
+      RobotState to = test::madeState(scene.random, scene.robot);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + 0.2 * (to[k] - from[k]);
+      EXPECT_EQ(alone.checkState(from).verdict, expected.checkState(from).verdict);
+      EXPECT_EQ(alone.checkMotion(from, to).verdict, expected.checkMotion(from, to).verdict);
+      const Interval a = alone.clearance(from).gap, b = expected.clearance(from).gap;
+      EXPECT_NEAR(a.lower, b.lower, 1e-6);
+      EXPECT_NEAR(a.upper, b.upper, 1e-6);
+    }
+    const RobotState state = test::madeState(scene.random, scene.robot);
+    EXPECT_NEAR(world.clearance(state).gap.lower, expected.clearance(state).gap.lower, 1e-6);
+    EXPECT_THAT(test::refusalOf([&] { world.setObstaclePoses({pose}); }),
+                testing::HasSubstr("get 1 poses: give one for each of the 2"));
+    Eigen::Isometry3d bent = pose;
+    bent.linear() *= 1.0 + 1e-9;
+    EXPECT_THAT(test::refusalOf([&] {
+                  world.setObstaclePoses({pose, bent});
+                }),
+                testing::HasSubstr("pose of obstacle 1: is not rigid"));
+  }
 }
 
 TEST(RobotWorld, RefusesWhatHasNoMeaning)

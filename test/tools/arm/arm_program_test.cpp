@@ -72,6 +72,18 @@ TEST_F(ArmProgram, WritesATableOfAnyNumberOfThreads)
   expectFailure("arm.urdf points.csv --states states.csv --table none/a.csv", 1, "none");
 }
 
+TEST_F(ArmProgram, AnswersForUncertainPointsAndJoints)
+{
+  folder.write("beside.csv", "turn\n1.5707963267948966\n");
+  const std::string asked = "arm.urdf points.csv --states beside.csv --clearance 0.06"; // the gap is 0.05
+  EXPECT_THAT(arm(asked).out, StartsWith("state 0: colliding: bob with point 1"));
+  EXPECT_THAT(arm(asked + " --uncertainty 0.02").out, StartsWith("state 0: undecided: bob with point 1"));
+  EXPECT_THAT(arm(asked + " --uncertainty 0.005 --joint-uncertainty 0.004").out, StartsWith("state 0: colliding"));
+  EXPECT_THAT(arm(asked + " --uncertainty 0.005 --joint-uncertainty 0.006").out, StartsWith("state 0: undecided"));
+  expectFailure(asked + " --joint-uncertainty -1", 2, "--joint-uncertainty");
+  expectFailure(asked + " --joint-uncertainty 0.1,0.1", 1, "joint_uncertainties: are 2: give one for each of the 1");
+}
+
 TEST_F(ArmProgram, TellsWhatCollidesWhereAndWhen)
 {
   const Outcome done = arm("arm.urdf points.csv --states states.csv --motions --clearance 0.06 --report report.json");
