@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -86,6 +87,18 @@ Raises
 ------
 ValueError
     A joint that is not there, does not move or mimics another; a state that the SRDF has not.
+)";
+
+constexpr auto kShape = R"(A solid that `RobotWorld.attach` hangs on a link: a ball, a capsule, a cylinder or a box.
+
+Lengths are in metres, > 0. Capsules and cylinders lie about z, and all are centred where `pose` puts them, in the link's
+frame. A capsule's length is that between the centres of its ends.
+
+Examples
+--------
+>>> import pcl_bsh
+>>> pcl_bsh.Shape.capsule(0.02, 0.3)
+Shape(capsule)
 )";
 
 constexpr auto kLinkPoses = R"(Where the links are, seen from the root.
@@ -219,10 +232,43 @@ py::array_t<double> linkPosesOf(const RobotModel& model, const ArrayLike& q)
   return poses;
 }
 
+template <class Form>
+robots::Shape madeSolid(Form form, const PoseLike& given)
+{
+  return {std::move(form), rigidPoseOf("pose", given)};
+}
+
 } // namespace
 
 void bindRobot(py::module_& module)
 {
+  using robots::Shape;
+  py::class_<Shape>(module, "Shape", kShape)
+      .def_static(
+          "sphere", [](double radius, const PoseLike& pose) { return madeSolid(robots::Sphere{radius}, pose); },
+          "radius"_a, "pose"_a = py::none(), "A ball.")
+      .def_static(
+          "capsule",
+          [](double radius, double length, const PoseLike& pose) {
+            return madeSolid(robots::Capsule{radius, length}, pose);
+          },
+          "radius"_a, "length"_a, "pose"_a = py::none(), "All within the radius of a segment about z.")
+      .def_static(
+          "cylinder",
+          [](double radius, double length, const PoseLike& pose) {
+            return madeSolid(robots::Cylinder{radius, length}, pose);
+          },
+          "radius"_a, "length"_a, "pose"_a = py::none(), "A cylinder with flat ends, about z.")
+      .def_static(
+          "box",
+          [](const std::array<double, 3>& size, const PoseLike& pose) {
+            return madeSolid(robots::Box{Eigen::Vector3d(size[0], size[1], size[2])}, pose);
+          },
+          "size"_a, "pose"_a = py::none(), "A box along the axes, of these three sizes.")
+      .def("__repr__", [](const Shape& shape) {
+        constexpr const char* names[] = {"box", "cylinder", "sphere", "mesh", "capsule"};
+        return "Shape(" + std::string(names[shape.form.index()]) + ")";
+      });
   py::class_<RobotModel, std::shared_ptr<RobotModel>>(module, "Robot", kRobot)
       .def(py::init(&makeRobot), "urdf"_a, "srdf"_a = py::none(), py::kw_only(), "packages"_a = py::none(),
            "padding"_a = 0.0)

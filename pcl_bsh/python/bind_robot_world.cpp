@@ -3,17 +3,13 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/of_clouds.h>
 #include <pcl_bsh/python/robot_answers.h>
-#include <pcl_bsh/python/robot_model.h>
-#include <pcl_bsh/query/request_check.h>
-#include <pcl_bsh/question/warnings/robot_warnings.h>
+#include <pcl_bsh/python/robot_world.h>
 #include <pcl_bsh/robot/robot_world.h>
 
 #include <pybind11/stl.h>
 
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,7 +35,7 @@ Parameters
 robot : Robot
 obstacles : SphereHierarchy, ndarray (n, 3), or sequence of these
     Clouds, balls and surfaces, in one frame, the world's. They are kept. After a `refit` of one the next query sees it.
-    A mesh is its surface: what is inside of one is not seen. Places are certain.
+    A mesh is its surface: what is inside of one is not seen.
 clearance : float, default 0
     Links this near to an obstacle collide, m, >= 0; inclusive. At 0, a finger passes between points that have no radii.
 self_clearance : float, default 0
@@ -50,11 +46,14 @@ with_self : bool, default True
     Links are held against each other, save for parent and child, and for those that the SRDF disables.
 base : array_like, (4, 4) or (3, 4), optional
     Pose of the robot's root in the world.
+joint_uncertainties : array_like, (J,), optional
+    How far each value of a state may be from the joint's true one, rad or m, >= 0. Where these or places of obstacles are
+    uncertain, free and colliding hold for all that may be; the rest is undecided.
 
 Raises
 ------
 ValueError
-    A length or a pose without meaning; obstacles that are no points, or whose places are uncertain.
+    A length, a pose or an uncertainty without meaning; obstacles that are no points.
 
 Warns
 -----
@@ -164,101 +163,39 @@ ValueError
     As `is_free`; a limit that is not a number.
 )";
 
-using ObstaclesLike =
-    As<"Union[SphereHierarchy, npt.NDArray[Any], Sequence[Union[SphereHierarchy, npt.NDArray[Any]]]]">;
-using Obstacles = std::vector<std::shared_ptr<Cloud>>;
+constexpr auto kSetObstaclePoses = R"(Moves the obstacles; hierarchies are not built anew.
 
-/// Python's RobotWorld.
-struct PyWorld {
-  using Placed = OfClouds<robots::RobotWorld>;
+Parameters
+----------
+poses : array_like, (n, 4, 4) or (n, 3, 4), or sequence of these
+    One for each obstacle, in the world. Other obstacles (`set_obstacles`) stand where they are given.
 
-  std::shared_ptr<RobotModel> robot;
-  Obstacles obstacles;
-  robots::WorldOptions options;
-  std::shared_ptr<const Placed> placed; ///< replaced with the interpreter's lock
-};
+Raises
+------
+ValueError
+    Another number of poses; a pose that is not rigid.
+)";
 
-std::shared_ptr<Cloud> obstacleOf(const std::string& name, py::handle thing)
-{
-  if (py::isinstance<Cloud>(thing)) return thing.cast<std::shared_ptr<Cloud>>();
-  const PointsView view = viewOfPoints(name, {py::reinterpret_borrow<py::object>(thing)});
-  return unlocked([&] { return std::make_shared<Cloud>(view); });
-}
+constexpr auto kAttach = R"(Hangs something on a link: a load in a gripper, or a tool.
 
-Obstacles obstaclesOf(const ObstaclesLike& given)
-{
-  if (py::isinstance<Cloud>(given) || py::isinstance<py::array>(given)) return {obstacleOf("obstacles", given)};
-  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given))
-    throw py::type_error("obstacles: give a SphereHierarchy, an array of points, or a list of these");
-  Obstacles obstacles;
-  for (const py::handle one : given)
-    obstacles.push_back(obstacleOf("obstacles[" + std::to_string(obstacles.size()) + "]", one));
-  return obstacles;
-}
+It is a new link of `robot`, the last one, and is not held against the link that carries it, nor against `ignored`.
 
-Eigen::Isometry3d rootPoseOf(const PoseLike& pose)
-{
-  Eigen::Isometry3d base = poseOf("base", pose);
-  checkPose("base", base);
-  base.linear() = Eigen::Quaterniond(base.linear()).normalized().toRotationMatrix();
-  return base;
-}
+Parameters
+----------
+name : str
+    The name of the new link.
+link : str
+    The link that carries it.
+shapes : sequence of Shape
+    In the frame of that link.
+ignored : sequence of str, optional
+    Links that it may touch: fingers.
 
-/// @throws as robots::RobotWorld does
-std::shared_ptr<const PyWorld::Placed> placedOf(const PyWorld& world)
-{
-  const auto make = [robot = world.robot, obstacles = world.obstacles, options = world.options] {
-    std::vector<const SphereHierarchy*> hierarchies;
-    for (const auto& obstacle : obstacles) hierarchies.push_back(obstacle.get());
-    return std::make_shared<const robots::RobotWorld>(robot->robot, hierarchies, options);
-  };
-  auto placed = std::make_shared<const PyWorld::Placed>(
-      PyWorld::Placed::Clouds(world.obstacles.begin(), world.obstacles.end()), make);
-  unlocked([&] { placed->now(); });
-  return placed;
-}
-
-void warnOfObstacles(const PyWorld& world)
-{
-  std::vector<std::string> texts;
-  unlocked([&] {
-    for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
-      const std::string number = world.obstacles.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      const NamedCloud facts = world.obstacles[i]->named("obstacles" + number).facts(true);
-      addTexts(warningsOf(facts, world.options.clearance), texts);
-      if (const auto holes = warningOfHoles(facts, world.robot->robot.name, world.options.clearance))
-        addTexts({*holes}, texts);
-    }
-  });
-  for (const std::string& text : texts) warn(text);
-}
-
-std::unique_ptr<PyWorld> makeWorld(const std::shared_ptr<RobotModel>& robot, const ObstaclesLike& obstacles,
-                                   double clearance, double self_clearance, double tolerance, bool with_self,
-                                   const PoseLike& base)
-{
-  auto world = std::make_unique<PyWorld>(PyWorld{
-      robot, obstaclesOf(obstacles), {clearance, self_clearance, tolerance, with_self, rootPoseOf(base)}, nullptr});
-  world->placed = placedOf(*world);
-  warnOfObstacles(*world);
-  return world;
-}
-
-void setObstacles(PyWorld& world, const ObstaclesLike& obstacles)
-{
-  PyWorld next{world.robot, obstaclesOf(obstacles), world.options, nullptr};
-  next.placed = placedOf(next);
-  world = next;
-  warnOfObstacles(next);
-}
-
-void setBase(PyWorld& world, const ArrayLike& base)
-{
-  PyWorld next = world;
-  next.options.base = rootPoseOf(base);
-  next.placed = placedOf(next);
-  world = next;
-}
+Raises
+------
+ValueError
+    A name that a link has; a link that is not there; a shape without a size.
+)";
 
 /// Asks the world as it is now, without the interpreter's lock. A state takes a microsecond, and the lock up to five
 /// milliseconds where other threads want it: without `progress` only unlocked() asks for Ctrl-C, after many states.
@@ -318,12 +255,16 @@ void bindRobotWorld(py::module_& module)
 {
   py::class_<PyWorld>(module, "RobotWorld", kWorld)
       .def(py::init(&makeWorld), "robot"_a, "obstacles"_a = py::tuple(), py::kw_only(), "clearance"_a = 0.0,
-           "self_clearance"_a = 0.0, "tolerance"_a = 1e-4, "with_self"_a = true, "base"_a = py::none())
+           "self_clearance"_a = 0.0, "tolerance"_a = 1e-4, "with_self"_a = true, "base"_a = py::none(),
+           "joint_uncertainties"_a = py::none())
       .def_property_readonly("robot", [](const PyWorld& world) { return world.robot; })
       .def_property_readonly("obstacles", [](const PyWorld& world) { return world.obstacles; })
       .def_property_readonly("base", [](const PyWorld& world) { return arrayOf(world.options.base); })
       .def("set_obstacles", &setObstacles, "obstacles"_a, "Other obstacles, as `RobotWorld` takes them.")
+      .def("set_obstacle_poses", &setObstaclePoses, kSetObstaclePoses, "poses"_a)
       .def("set_base", &setBase, "base"_a, "Moves the whole robot: the pose of its root in the world.")
+      .def("attach", &attachTo, kAttach, "name"_a, "link"_a, "shapes"_a, "ignored"_a = py::tuple())
+      .def("detach", &detachFrom, "name"_a, "Takes off what `attach` added last, by its name.")
       .def(
           "is_free",
           [](const PyWorld& world, const ArrayLike& q, unsigned threads, const ProgressLike& progress) {

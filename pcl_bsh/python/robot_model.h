@@ -6,7 +6,11 @@
 #include <pcl_bsh/io/robots/read_robot.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/array_layout.h>
+#include <pcl_bsh/python/typed.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/robot/kinematics.h>
+
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <string>
@@ -31,6 +35,15 @@ struct States {
   std::vector<robots::RobotState> rows;
   bool is_one = false; ///< (J,), not (n, J)
 };
+
+/// A pose that is rigid within 1e-6, made so to the last digits. @throws InvalidInput naming it
+inline Eigen::Isometry3d rigidPoseOf(const std::string& name, const PoseLike& given)
+{
+  Eigen::Isometry3d pose = poseOf(name, given);
+  checkPose(name, pose);
+  pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+  return pose;
+}
 
 inline States statesOf(const std::string& name, const ArrayLike& states, const RobotModel& model)
 {

@@ -231,6 +231,51 @@ def test_a_world_follows_its_obstacles(arm, points):
     assert world.is_free(q).all() and (world.clearance(q).gap == np.inf).all()
 
 
+def test_uncertain_places_and_values(arm, points):
+    q = states(200, 11)
+    own = np.random.default_rng(12).uniform(0, 0.05, 60).astype(np.float32)
+    cloud = pcl_bsh.SphereHierarchy(points, uncertainties=own)
+    world = world_of(arm, cloud, with_self=False)
+    checks = world.check_states(q)
+    for state, verdict in zip(q, checks.verdict):
+        low = min((gap - own).min() for _, _, gap in ball_gaps(state, points))
+        high = min((gap + own).min() for _, _, gap in ball_gaps(state, points))
+        assert verdict == (FREE if low > 0 else COLLIDING if high <= 0 else UNDECIDED)
+    assert np.bincount(checks.verdict, minlength=3).min() > 5
+    off = np.array([0.02, 0.01, 0.005])
+    unsure = world_of(arm, points, with_self=False, joint_uncertainties=off).check_states(q).verdict
+    signs = np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T
+    for state, verdict in zip(q, unsure):
+        gaps = np.array([gap_to_points(state + sign * off, points) for sign in [*signs, np.zeros(3)]])
+        assert verdict == UNDECIDED or ((gaps > 0).all() if verdict == FREE else (gaps <= 0).all())
+    assert np.bincount(unsure, minlength=3).min() > 5
+
+
+def test_obstacles_are_moved_and_loads_are_attached(arm, points):
+    q = states(200, 13)
+    world = world_of(arm, [points[:30], points[30:]], with_self=False)
+    pose = pose_of([0.2, -0.1, 0.3], turned_about((0, 0, 1), 0.7))
+    world.set_obstacle_poses([np.eye(4), pose])
+    moved = np.vstack([points[:30], points[30:] @ pose[:3, :3].T + pose[:3, 3]])
+    np.testing.assert_array_equal(world.is_free(q), [gap_to_points(state, moved) > 0 for state in q])
+    world.set_obstacle_poses(np.tile(np.eye(4), (2, 1, 1)))
+    expected = np.array([gap_to_points(state, points) for state in q])
+    np.testing.assert_array_equal(world.is_free(q), expected > 0)
+    world.attach("cup", "hand", [pcl_bsh.Shape.sphere(0.2, pose_of([0.1, 0, 0]))], ignored=["fore"])
+    assert world.robot.links == [*arm.links, "cup"] and arm.links[-1] == "hand"
+    of_cup = np.array([np.linalg.norm(points - (link_poses(state)["hand"] @ [0.1, 0, 0, 1])[:3], axis=1).min() - 0.2
+                       for state in q])
+    np.testing.assert_array_equal(world.is_free(q), (expected > 0) & (of_cup > 0))
+    found = world.check_states(q[(expected > 0) & (of_cup <= 0)])
+    assert len(found.link) > 0 and {world.robot.links[link] for link in found.link} == {"cup"}
+    world.detach("cup")
+    np.testing.assert_array_equal(world.is_free(q), expected > 0)
+    for shape in (pcl_bsh.Shape.box((0.3, 0.4, 0.5)), pcl_bsh.Shape.cylinder(0.2, 0.4), pcl_bsh.Shape.capsule(0.2, 0.3)):
+        world.attach(repr(shape), "hand", [shape])
+        assert world.is_free(q).sum() < (expected > 0).sum()
+        world.detach(repr(shape))
+
+
 def test_meshes_and_packages(tmp_path):
     faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6),
              (1, 3, 5), (3, 7, 5)]
@@ -327,8 +372,20 @@ def test_wrong_worlds_are_refused(arm, points):
         world_of(arm, points[:, :2])
     with pytest.raises(ValueError, match=r"obstacles\[1\]"):
         world_of(arm, [points, points[:, 0]])
-    with pytest.raises(ValueError, match="obstacle 1: its places are uncertain"):
-        world_of(arm, [points, pcl_bsh.SphereHierarchy(points, uncertainty=0.01)])
+    for wrong, text in (([0.1], "are 1: give one for each of the 3 joints"), ([0, -1, 0], "for joint 'elbow'")):
+        with pytest.raises(ValueError, match=f"joint_uncertainties: .*{text}"):
+            world_of(arm, points, joint_uncertainties=wrong)
+    world = world_of(arm, points)
+    for poses, text in (([], "poses: are 0: give one for each of the 1 obstacle"), ([2 * np.eye(4)], r"poses\[0\]")):
+        with pytest.raises(ValueError, match=text):
+            world.set_obstacle_poses(poses)
+    for name, link, shapes, text in (("hand", "hand", [], "name of a link"), ("cup", "head", [], "link 'head'"),
+                                     ("cup", "hand", [pcl_bsh.Shape.sphere(0)], "size 0")):
+        with pytest.raises(ValueError, match=text):
+            world.attach(name, link, shapes)
+    with pytest.raises(ValueError, match="link 'hand': is not attached"):
+        world.detach("hand")
+    assert world.robot is arm
     for wrong in (3, "scan.pcd", None):
         with pytest.raises(TypeError):
             world_of(arm, wrong)
