@@ -252,6 +252,16 @@ bool MotionSearch::isFreeUntilEnd(const Task& task)
   return free;
 }
 
+void MotionSearch::addSwept(double m, double h, std::vector<SweptBall>& swept)
+{
+  place(roots(m, h));
+  for (const Ball& ball : gaps_.parts.balls) {
+    if (ball.piece == kNoPart) continue;
+    const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
+    swept.push_back({center, kOutward * (ball.radius + way(ball, center, 0, h) + gaps_.doubt(ball, 0) + error_)});
+  }
+}
+
 double MotionSearch::lastValid()
 {
   valid_ = 0.0;

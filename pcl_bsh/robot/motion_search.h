@@ -53,6 +53,9 @@ public:
   /// How far it is certainly free.
   double lastValid();
 
+  /// Adds the balls that hold each piece at all instants [m - h, m + h].
+  void addSwept(double m, double h, std::vector<SweptBall>& swept);
+
 private:
   using Task = MotionScratch::Task;
   enum class Outcome : std::uint8_t { free, open, colliding, undecided };

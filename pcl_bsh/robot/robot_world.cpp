@@ -249,6 +249,19 @@ ClearanceResult RobotWorld::clearance(const RobotState& state, double limit) con
   return clearanceOf(inside_->gaps, state, limit);
 }
 
+std::vector<SweptBall> RobotWorld::sweptBalls(const RobotState& from, const RobotState& to, std::size_t parts) const
+{
+  const DefaultFloatEnvironment environment;
+  inside_->gaps.requireState(from);
+  inside_->gaps.requireState(to);
+  const ScratchLease<MotionScratch> scratch;
+  MotionSearch search(inside_->gaps, from, to, *scratch);
+  std::vector<SweptBall> balls;
+  const double h = 0.5 / static_cast<double>(parts);
+  for (std::size_t i = 0; i < parts; ++i) search.addSwept((2.0 * static_cast<double>(i) + 1.0) * h, h, balls);
+  return balls;
+}
+
 std::vector<StateCheck> RobotWorld::checkStates(const std::vector<RobotState>& states, const Effort& effort) const
 {
   const DefaultFloatEnvironment environment;

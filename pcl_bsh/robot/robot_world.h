@@ -71,6 +71,12 @@ struct ClearanceResult {
   std::optional<Meeting> meeting; ///< none: nothing is for certain within the limit
 };
 
+/// Holds a shape of a robot for some time.
+struct SweptBall {
+  Eigen::Vector3d center; ///< in the world, m
+  double radius = 0.0;    ///< with the link's padding, m
+};
+
 /// Const methods may run in several threads at once. Robots and options are copied, hierarchies borrowed.
 class RobotWorld {
 public:
@@ -110,6 +116,10 @@ public:
   /// The least gap, of obstacles and, with WorldOptions::with_self, of links. @throws as checkState() does
   /// @param limit gaps beyond it are not looked for: then the gap is from that to infinity
   ClearanceResult clearance(const RobotState& state, double limit = std::numeric_limits<double>::infinity()) const;
+
+  /// Balls, one for each shape and part of a motion, that hold the robot at each instant of it, wherever uncertain
+  /// joints are. The shorter parts are, the smaller are balls. @throws as checkState() does
+  std::vector<SweptBall> sweptBalls(const RobotState& from, const RobotState& to, std::size_t parts = 4) const;
 
   /// Many states at once, each as checkState() does it.
   /// @throws InvalidInput as checkState() does, naming the first wrong one, and for an accuracy other than exact;

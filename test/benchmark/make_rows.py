@@ -48,6 +48,7 @@ PROGRAMS = {
     "search.csv": ["bench_search --scene terrain,lion --size 300000 --queries 10000 --orders scan --clock cpu --repeat 3"],
     "seen.csv": ["bench_seen --clock cpu --repeat 5"],
     "self_filter.csv": ["bench_self_filter --clock cpu --frames 10"],
+    "separation.csv": ["bench_separation --clock cpu --repeat 5"],
     "sites.csv": ["bench_sites {work} --scales 0.53,5.3,53 --repeat 1"],
     "surface.csv": ["bench_surface --clock cpu"],
     "trajectory.csv": ["bench_trajectory --scale 0.1"],

@@ -273,6 +273,15 @@ def self_filter(rows):
                f"{short(float(row['frame [ms]']), ' ms')} | {short(float(row['slowest [ms]']), ' ms')} |")
 
 
+def separation(rows):
+    yield "| motion | points | near it | free | last valid, median | frame, median | 99 % | slowest |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for row in rows:
+        yield (f"| {'as planned' if float(row['speed']) == 1 else str(round(float(row['speed']))) + ' times as fast'} | {int(row['points']):,} | {short(float(row['near [median]']))} | "
+               f"{short(float(row['free [%]']), ' %')} | {row['last valid [median]']} | {short(float(row['frame [ms]']), ' ms')} | "
+               f"{short(float(row['99 % [ms]']), ' ms')} | {short(float(row['slowest [ms]']), ' ms')} |")
+
+
 def budgets(rows):
     yield "| clouds | budget | calls | within 1.1 of it | an empty loop | median / budget | 99 % of calls / budget | no wider than other settings | interrupted |"
     yield "|---|---|---:|---:|---:|---:|---:|---:|---:|"
@@ -386,6 +395,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, motions, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter,
+TABLES = [flags, uneven, cold, rigid, motions, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, gauge, sites]
 TABLES = {table.__name__: table for table in TABLES}

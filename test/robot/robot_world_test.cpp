@@ -511,6 +511,44 @@ TEST(RobotWorld, NamesWhatIsUncertain)
   EXPECT_NEAR(motion.last_valid, 0.5 - std::asin(0.5 * std::sqrt(0.355 * 0.355 - 0.09)), 2e-4);
 }
 
+/// Each shape is in its ball at all instants, wherever uncertain joints are.
+TEST(RobotWorld, HoldsMotionsInBalls)
+{
+  for (const std::uint64_t seed : {91u, 92u, 93u, 94u}) {
+    MadeScene scene(seed, 0, seed % 2 == 0);
+    WorldOptions options;
+    if (seed > 92) options.joint_uncertainties.assign(variablesOf(scene.robot).size(), 0.02);
+    const RobotWorld world(scene.robot, {}, options);
+    const RobotState from = test::madeState(scene.random, scene.robot), to = test::madeState(scene.random, scene.robot);
+    const std::size_t parts = seed % 3 + 1;
+    const std::vector<SweptBall> balls = world.sweptBalls(from, to, parts);
+    std::size_t shapes = 0;
+    for (const Link& link : scene.robot.links) shapes += link.shapes.size();
+    ASSERT_EQ(balls.size(), parts * shapes);
+    for (int sample = 0; sample <= 100; ++sample) {
+      const long double t = sample / 100.0L;
+      const std::size_t part = std::min(static_cast<std::size_t>(t * static_cast<long double>(parts)), parts - 1);
+      for (const auto& values :
+           valuesAbout(scene.random, test::longValues(scene.robot, from, to, t), options.joint_uncertainties)) {
+        const std::vector<test::LongPose> poses = test::longPoses(world.kinematics(), values);
+        for (std::size_t link = 0; link < scene.robot.links.size(); ++link)
+          for (const Shape& shape : scene.robot.links[link].shapes) {
+            const LongVector at =
+                poses[world.kinematics().bodyOf(link)] *
+                LongVector((world.kinematics().inBody(link) * shape.pose).translation().cast<long double>());
+            const double radius = enclosingRadius(*solidOf(shape));
+            const bool held = std::any_of(
+                balls.begin() + static_cast<std::ptrdiff_t>(part * shapes),
+                balls.begin() + static_cast<std::ptrdiff_t>((part + 1) * shapes), [&](const SweptBall& ball) {
+                  return (at - ball.center.cast<long double>()).norm() + radius <= ball.radius;
+                });
+            ASSERT_TRUE(held) << seed << " " << sample << " " << link;
+          }
+      }
+    }
+  }
+}
+
 TEST(RobotWorld, RefusesUncertaintiesWithoutMeaning)
 {
   const auto refused = [](const std::vector<double>& uncertainties) {

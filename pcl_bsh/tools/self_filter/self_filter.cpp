@@ -59,6 +59,11 @@ double SelfFilter::leastPadding() const
   return *std::min_element(paddings_.begin(), paddings_.end());
 }
 
+double SelfFilter::greatestPadding() const
+{
+  return *std::max_element(paddings_.begin(), paddings_.end());
+}
+
 void SelfFilter::flagSolids(const SphereHierarchy& points, const Part& part, const Eigen::Isometry3d& T_scan_link)
 {
   if (part.body.solids.empty()) return;

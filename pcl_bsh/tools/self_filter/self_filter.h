@@ -41,6 +41,7 @@ public:
   std::size_t triangles() const; ///< of the meshes of all links
   std::size_t solids() const;    ///< of all links: boxes, cylinders, spheres and meshes that close
   double leastPadding() const;   ///< of all links
+  double greatestPadding() const;
 
   /// Warnings about the links, a sentence each: meshes that do not close.
   const std::vector<std::string>& warnings() const { return warnings_; }

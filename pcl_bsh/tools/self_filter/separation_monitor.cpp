@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "separation_monitor.h"
+
+#include <pcl_bsh/io/robots/read_robot.h>
+#include <pcl_bsh/robot/swept_region.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace pcl_bsh::self_filter {
+
+namespace {
+
+Robot withMeshes(Robot robot)
+{
+  io::readMeshes(robot);
+  return robot;
+}
+
+JointValues valuesOf(const robots::RobotWorld& world, const robots::RobotState& state)
+{
+  JointValues values;
+  for (std::size_t i = 0; i < state.size(); ++i)
+    values[world.robot().links[world.kinematics().linkOfVariable(i)].joint->name] = state[i];
+  return values;
+}
+
+/// Beyond it no point matters, m.
+double marginOf(const PointsView& frame, double padding, double clearance)
+{
+  double radius = 0.0, own = 0.0;
+  for (std::size_t i = 0; i < frame.size() && (frame.radii || frame.uncertainties); ++i) {
+    radius = std::max(radius, frame.ownRadius(frame.record(i)));
+    own = std::max(own, frame.ownUncertainty(frame.record(i)));
+  }
+  return std::max(padding, clearance) + radius + own + frame.uncertainty;
+}
+
+} // namespace
+
+SeparationMonitor::SeparationMonitor(const Robot& robot, const Settings& filter, const robots::WorldOptions& options)
+: filter_(robot, filter),
+  world_(withMeshes(robot), {}, options)
+{
+}
+
+SeparationCheck SeparationMonitor::check(const PointsView& frame, const Eigen::Isometry3d& T_world_camera,
+                                         const robots::RobotState& now, const robots::RobotState& next)
+{
+  const double margin = marginOf(frame, filter_.greatestPadding(), world_.options().clearance);
+  robots::SweptRegion(world_.sweptBalls(now, next), margin, T_world_camera).recordsInside(frame, records_);
+  Eigen::Isometry3d rigid = T_world_camera;
+  rigid.linear() = Eigen::Quaterniond(rigid.linear()).normalized().toRotationMatrix();
+
+  SeparationCheck check;
+  check.near = records_.size();
+  PointsView points = frame;
+  points.restrictTo(records_.data(), records_.size());
+  const Eigen::Isometry3d T_camera_root = rigid.inverse() * world_.options().base;
+  const std::vector<Verdict>& flags = filter_.flags(points, T_camera_root, valuesOf(world_, now));
+  others_.clear();
+  std::copy_if(records_.begin(), records_.end(), std::back_inserter(others_),
+               [&](std::int32_t record) { return flags[static_cast<std::size_t>(record)] == Verdict::free; });
+  check.self = records_.size() - others_.size();
+
+  points.restrictTo(others_.data(), others_.size());
+  world_.setObstacles({});
+  obstacle_ = std::make_unique<const SphereHierarchy>(points);
+  world_.setObstacles({obstacle_.get()});
+  world_.setObstaclePoses({rigid});
+  check.motion = world_.checkMotion(now, next, true);
+  return check;
+}
+
+} // namespace pcl_bsh::self_filter
