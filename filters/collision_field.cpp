@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/search/cloud_view.h>

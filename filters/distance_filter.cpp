@@ -3,7 +3,7 @@
 
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/removed_points.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <pcl/impl/instantiate.hpp>
 #include <pcl/point_types.h>

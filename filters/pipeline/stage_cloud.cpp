@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <atomic>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
@@ -120,6 +121,44 @@ vertices : ndarray
 triangles : ndarray of uint32, (t, 3)
 )";
 
+constexpr auto kReadMeshParts =
+    R"(The named parts of a mesh file, each as `read_mesh` gives a whole: objects or groups of an .obj, solids of a text .stl.
+
+An .obj with objects (o) has these as parts, and one without has its groups (g). Faces without a name and names without
+faces are left out, with a warning.
+
+Parameters
+----------
+path : str or path-like
+    .obj, or an .stl that is text.
+unit : str, optional
+    Unit of the file's lengths: mm, cm, m, ft or us-ft.
+to_unit : str, optional
+    Unit that lengths are converted to, as float64. Default: they stay as they are.
+
+Returns
+-------
+dict of str to (vertices, triangles)
+    In the order of the file.
+
+Raises
+------
+FileError
+    As `read_mesh`; a file without named faces, and two objects or solids of one name.
+
+Examples
+--------
+>>> import pcl_bsh, tempfile, os
+>>> with tempfile.TemporaryDirectory() as folder:
+...     path = os.path.join(folder, "plant.obj")
+...     with open(path, "w") as file:
+...         _ = file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\no press\nf 1 2 3\no mill\nf 4 2 3\n")
+...     parts = pcl_bsh.read_mesh_parts(path)
+>>> machines = {name: pcl_bsh.SphereHierarchy.of_triangles(*mesh) for name, mesh in parts.items()}
+>>> list(machines)
+['press', 'mill']
+)";
+
 using FileHeader = io::CloudFacts;
 
 /// How a file is read, by the arguments that readers share.
@@ -165,6 +204,15 @@ void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, c
   unlocked([&] { io::writeCloud(file, cloud, kept.viewpoint, kept.las); });
 }
 
+/// The vertices and triangles of a mesh.
+std::pair<Records, py::array_t<std::uint32_t>> arraysOf(io::Mesh&& mesh)
+{
+  py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
+  std::uint32_t* corner = triangles.mutable_data();
+  for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
+  return {recordsFrom(std::move(mesh.vertices)), triangles};
+}
+
 std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale,
                                                           const std::optional<std::string>& unit,
                                                           const std::optional<std::string>& to_unit,
@@ -175,10 +223,27 @@ std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, 
   const io::ReadSettings settings = readSettings({}, allow_scale, unit, to_unit, length_fields);
   io::Mesh mesh = unlocked([&] { return io::readMesh(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
-  py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
-  std::uint32_t* corner = triangles.mutable_data();
-  for (const Triangle& triangle : mesh.triangles) corner = std::copy(triangle.begin(), triangle.end(), corner);
-  return {recordsFrom(std::move(mesh.vertices)), triangles};
+  return arraysOf(std::move(mesh));
+}
+
+As<"Dict[str, Tuple[npt.NDArray[Any], npt.NDArray[np.uint32]]]">
+readMeshPartsOf(const PathLike& path, const std::optional<std::string>& unit, const std::optional<std::string>& to_unit)
+{
+  const std::string file = pathOf(path);
+  FileHeader header;
+  const io::ReadSettings settings = readSettings({}, false, unit, to_unit, std::nullopt);
+  io::MeshParts parts;
+  std::vector<io::Mesh> meshes = unlocked([&] {
+    parts = io::readMeshParts(file);
+    const io::Mesh whole = io::readMesh(file, &header, settings);
+    return io::meshesOf(parts, whole.vertices, whole.triangles);
+  });
+  for (const auto* const remarks : {&parts.remarks, &header.remarks})
+    for (const std::string& remark : *remarks) warn(file + ": " + remark);
+  py::dict found;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    found[py::str(parts.names[i])] = py::cast(arraysOf(std::move(meshes[i])));
+  return {found};
 }
 
 } // namespace
@@ -218,6 +283,8 @@ void bindFiles(py::module_& module)
              "length_fields"_a = py::none());
   module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
              "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none());
+  module.def("read_mesh_parts", &readMeshPartsOf, kReadMeshParts, "path"_a, py::kw_only(), "unit"_a = py::none(),
+             "to_unit"_a = py::none());
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());
 }
 

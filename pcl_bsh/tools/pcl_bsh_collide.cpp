@@ -12,7 +12,7 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/replace_file.h>

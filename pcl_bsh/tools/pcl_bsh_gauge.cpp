@@ -8,7 +8,7 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/gauge_fields.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>

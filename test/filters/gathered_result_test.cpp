@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results of triangles, gathered for groups of them, and the rest of a mesh.
+// Results of triangles, gathered for groups of them.
 #include <pcl_bsh/filters/gathered_result.h>
-#include <pcl_bsh/filters/used_vertices.h>
 
 #include <gmock/gmock.h>
 
@@ -102,24 +101,6 @@ TEST(GatheredResult, KeepsContactsAndWorkAndNoSummaries)
   EXPECT_EQ(result.certain_contact->fraction, 0.5);
   EXPECT_EQ(result.work.leaf_pairs, 7U);
   EXPECT_THAT(result.poses, IsEmpty());
-}
-
-TEST(UsedVertices, AreNumberedInTheirOrder)
-{
-  std::vector<std::vector<int>> faces = {{4, 1, 6}, {}, {1, 4}};
-  EXPECT_THAT(keepUsedVertices(8, faces), ElementsAre(1, 4, 6));
-  EXPECT_THAT(faces, ElementsAre(ElementsAre(1, 0, 2), IsEmpty(), ElementsAre(0, 1)));
-  faces = {{0}, {2}};
-  EXPECT_THAT(keepUsedVertices(3, faces), ElementsAre(0, 2)) << "the first and the last";
-  faces.clear();
-  EXPECT_THAT(keepUsedVertices(3, faces), IsEmpty());
-}
-
-TEST(UsedVertices, ValuesAreThoseOfWhatIsKept)
-{
-  EXPECT_THAT(keptValues(std::vector<float>{1, 2, 3}, {1, 0, 1}), ElementsAre(1.0f, 3.0f));
-  EXPECT_THAT(keptValues(std::vector<float>{1}, {1, 1, 1}), ElementsAre(1.0f)) << "of fewer values than flags";
-  EXPECT_THAT(keptValues(std::vector<float>{}, {}), IsEmpty());
 }
 
 } // namespace

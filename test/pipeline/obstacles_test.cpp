@@ -113,6 +113,35 @@ TEST_F(Obstacles, AreOneListWithTheirNames)
   EXPECT_EQ(list(two, R"(, "ignore": ["input:press"])")["obstacles"][0]["state"], "ignored");
 }
 
+TEST_F(Obstacles, AreThePartsOfAFile)
+{
+  folder.write(
+      "plant.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 9 9 9\nv 5 0 0\nv 6 0 0\nv 6 1 0\nf 1 2 3\no left\nf 1 2 3\no right\nf 5 6 7\n");
+  const std::string parts =
+      R"([{"file": )" + quoted("plant.obj") + R"(, "parts": true, "pose": [0, 0, 0.05, 0, 0, 0]})";
+  const ListJson all = list(parts + ", " + one + "]", R"(, "between": true, "ignore": ["*:press"])");
+  ASSERT_EQ(all["obstacles"].size(), 3U);
+  EXPECT_EQ(all["obstacles"][0]["name"], "left");
+  EXPECT_EQ(all["obstacles"][0]["state"], "clash");
+  EXPECT_EQ(all["obstacles"][0]["surface"]["triangles"], 1);
+  EXPECT_EQ(all["obstacles"][1]["name"], "right");
+  EXPECT_EQ(all["obstacles"][1]["state"], "clear");
+  EXPECT_EQ(all["obstacles"][2]["state"], "ignored");
+  ASSERT_EQ(all["between"].size(), 1U);
+  EXPECT_EQ(all["between"][0]["distance"], 4.0);
+  const PipelineResult done = run("filters.bsh_flag", R"("clearance": 0.1, "obstacles": )" + parts + "]");
+  EXPECT_THAT(done.warnings,
+              testing::Contains(HasSubstr("plant.obj: 1 triangle before the first part's name: left out")));
+  EXPECT_THAT(done.warnings, testing::Contains(HasSubstr("plant: the obstacle is a surface of 3 triangles")));
+  EXPECT_EQ(list(R"([{"name": "plant", "parts": true, "file": )" + quoted("plant.obj") + "}]")["obstacles"][1]["name"],
+            "plant/right");
+  EXPECT_THAT(refused(R"("obstacles": [{"file": )" + quoted("press.off") + R"(, "parts": true}])"),
+              HasSubstr("/obstacles/0/parts: " + press.string() + ": has no parts with names: give an .obj"));
+  EXPECT_THAT(refused(R"("obstacles": )" + parts + R"(, {"file": )" + quoted("press.off") + R"(, "name": "left"}])"),
+              EndsWith("/obstacles: two obstacles have the name 'left': give each its own"));
+}
+
 TEST_F(Obstacles, AreComparedWithAnEarlierListByName)
 {
   list(two);

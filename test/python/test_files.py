@@ -145,6 +145,21 @@ def test_meshes(tmp_path):
     assert pcl_bsh.closest_pair(above, square).distance == 0.25
 
 
+def test_parts_of_meshes(tmp_path):
+    path = tmp_path / "plant.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 9 9 9\nv 5 0 0\nv 6 0 0\nf 1 2 3\no left\nf 1 2 3\no right\nf 5 6 3\n")
+    with pytest.warns(UserWarning, match="plant.obj: 1 triangle before the first part's name: left out"):
+        parts = pcl_bsh.read_mesh_parts(path, unit="m", to_unit="mm")
+    assert list(parts) == ["left", "right"]
+    vertices, triangles = parts["right"]
+    assert vertices["x"].tolist() == [1000, 5000, 6000] and triangles.tolist() == [[1, 2, 0]]
+    machines = {name: pcl_bsh.SphereHierarchy.of_triangles(*mesh) for name, mesh in parts.items()}
+    found = pcl_bsh.collide_obstacles(pcl_bsh.SphereHierarchy(np.array([[0.0, 0, 0]])), machines, 1.0)
+    assert found.each["left"].colliding == 1 and found.each["right"].colliding == 0
+    with pytest.raises(pcl_bsh.FileError, match="square.off: has no parts with names"):
+        pcl_bsh.read_mesh_parts(tmp_path / "square.off")
+
+
 def test_files_that_cannot_be(tmp_path):
     for error in (ValueError, OSError, pcl_bsh.FileError):
         with pytest.raises(error, match="missing.pcd"):

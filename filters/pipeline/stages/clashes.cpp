@@ -51,7 +51,7 @@ private:
   {
     std::vector<std::string> names, warnings; // those of poses are told
     std::vector<io::ComparedObstacle> compared;
-    for (auto& [one, shape] : asked(warnings)) {
+    for (auto& [row, one, shape] : asked(warnings)) {
       if (!one.name.empty()) names.push_back(one.name);
       compared.push_back(std::move(one));
     }

@@ -10,6 +10,7 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/uncertainty.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -74,6 +75,14 @@ io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const
   });
 }
 
+/// The parts of a row's cloud. @pre it has some
+std::vector<io::Obstacle> partsOf(const NamedObstacle& row, bool vertices_only)
+{
+  const StageCloud& cloud = *row.file.cloud;
+  const std::vector<Triangle> none;
+  return io::obstaclesOf(*row.parts, cloud.cloud, cloud.triangles ? *cloud.triangles : none, {vertices_only});
+}
+
 Value valueOf(const Uncertainty& uncertainty)
 {
   return OptionType<LengthOrField>::to({uncertainty.length, uncertainty.field});
@@ -121,7 +130,9 @@ std::vector<RowOption<NamedObstacle>> optionsOfObstacles()
       rowOption(&NamedObstacle::clearance, "clearance", "in place of the stage's").length(),
       rowOption(&NamedObstacle::solid, "solid", "in place of the stage's"),
       rowOption(&NamedObstacle::uncertainty, "uncertainty", "of its points, in place of `obstacle_uncertainty`")
-          .length()};
+          .length(),
+      rowOption(&NamedObstacle::in_parts, "parts",
+                "an obstacle of each object or group of an .obj, or solid of an .stl, named PART or NAME/PART")};
   for (const auto& [name, doc] : {std::pair{"unit", "the unit of the file's lengths"},
                                   {"to_unit", "the unit that they are read in, as `to_unit` of readers"}}) {
     RowOption<NamedObstacle> row;
@@ -201,8 +212,16 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   if (pose) question.pose = rigidPoseOf(*pose, "pose", warnings);
   question.wanted = wanted;
   checkField("uncertainty", question.uncertainty, input);
+  for (std::size_t row = 0; row < obstacles.size(); ++row) {
+    NamedObstacle& named = obstacles[row];
+    if (!named.in_parts.value_or(false)) continue;
+    named.parts = namingOption(placeOf(row, "parts"), [&] {
+      return std::make_shared<const io::MeshParts>(io::readMeshParts(named.file.name));
+    });
+    for (const std::string& remark : named.parts->remarks) stage.warn(named.file.name + ": " + remark);
+  }
   std::vector<std::string> names;
-  for (const auto& [one, shape] : asked(warnings)) {
+  for (const auto& [row, one, shape] : asked(warnings)) {
     try {
       check(one.question);
     }
@@ -213,8 +232,8 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
       checkField("obstacle_uncertainty", question.obstacle_uncertainty, obstacle->header);
       continue;
     }
-    const NamedObstacle& named = obstacles[names.size()];
-    checkField(named.uncertainty ? placeOf(names.size(), "uncertainty") : "obstacle_uncertainty",
+    const NamedObstacle& named = obstacles[row];
+    checkField(named.uncertainty ? placeOf(row, "uncertainty") : "obstacle_uncertainty",
                one.question.obstacle_uncertainty, named.file.header);
     names.push_back(one.name);
   }
@@ -222,20 +241,22 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   for (std::string& warning : warnings) stage.warn(std::move(warning));
 }
 
-std::vector<std::pair<io::ComparedObstacle, PlacedShape>> QuestionStage::asked(std::vector<std::string>& warnings) const
+std::vector<QuestionStage::Asked> QuestionStage::asked(std::vector<std::string>& warnings) const
 {
-  std::vector<std::pair<io::ComparedObstacle, PlacedShape>> all;
-  const auto add = [&](const std::string& name, const OtherCloud& file, PlacedShape&& shape) {
-    io::ComparedObstacle one = {name, file.name};
-    one.question = questionOf(question, shape);
-    all.emplace_back(std::move(one), std::move(shape));
+  std::vector<Asked> all;
+  const auto add = [&](std::size_t row, const std::string& name, const OtherCloud& file, const PlacedShape& shape) {
+    all.push_back({row, {name, file.name}, shape});
+    all.back().one.question = questionOf(question, shape);
   };
-  if (obstacle) add("", *obstacle, {});
-  for (const NamedObstacle& one : obstacles) {
+  if (obstacle) add(0, "", *obstacle, {});
+  for (std::size_t row = 0; row < obstacles.size(); ++row) {
+    const NamedObstacle& one = obstacles[row];
     PlacedShape shape = {Shape(), Eigen::Isometry3d::Identity(), one.clearance, one.solid};
-    if (one.pose) shape.pose = rigidPoseOf(*one.pose, placeOf(all.size(), "pose"), warnings);
+    if (one.pose) shape.pose = rigidPoseOf(*one.pose, placeOf(row, "pose"), warnings);
     if (one.uncertainty) assign(shape.uncertainty.emplace(), OptionType<LengthOrField>::to(*one.uncertainty));
-    add(nameOf(one), one.file, std::move(shape));
+    if (!one.parts) add(row, nameOf(one), one.file, shape);
+    for (std::size_t part = 0; one.parts && part < one.parts->names.size(); ++part)
+      add(row, one.parts->nameOf(part, one.name), one.file, shape);
   }
   return all;
 }
@@ -254,13 +275,21 @@ QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, S
   }
   AnsweredQuestion found;
   found.input = shapeOf(input, question, "input").shape("the input");
-  std::vector<std::string> told; // by plan(), already
-  for (auto& [one, shape] : this->asked(told)) {
-    const std::size_t i = found.shapes.size();
-    one.loaded = shapeOf(obstacle ? obstacle->cloud : obstacles[i].file.cloud, question,
-                         obstacle ? "obstacle" : placeOf(i, "file"));
-    const std::string label = one.name.empty() ? "" : one.name + ": ";
-    if (one.loaded.isSurface()) stage.warn(label + io::promiseOf(one.loaded, one.question.solid));
+  std::vector<std::string> told;    // by plan(), already
+  std::vector<io::Obstacle> shapes; // of a row that are not asked about yet, the next one last
+  for (auto& [row, one, shape] : this->asked(told)) {
+    if (shapes.empty()) {
+      const std::string option = obstacle ? "obstacle" : placeOf(row, "file");
+      const io::Obstacle whole = shapeOf(obstacle ? obstacle->cloud : obstacles[row].file.cloud, question, option);
+      if (whole.isSurface())
+        stage.warn((obstacle ? "" : nameOf(obstacles[row]) + ": ") + io::promiseOf(whole, one.question.solid));
+      shapes = {whole};
+      if (!obstacle && obstacles[row].parts)
+        shapes = namingOption(option, [&, at = row] { return partsOf(obstacles[at], question.vertices_only); });
+      std::reverse(shapes.begin(), shapes.end());
+    }
+    one.loaded = std::move(shapes.back());
+    shapes.pop_back();
     shape.shape = one.loaded.shape(one.name.empty() ? "the obstacle" : one.name);
     shape.ignores_input = !one.name.empty() && ignored.holds(kInputName, one.name);
     found.obstacles.push_back(std::move(one));

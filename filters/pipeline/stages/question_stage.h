@@ -3,11 +3,14 @@
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_type.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/io/reports/compared_obstacles.h>
 #include <pcl_bsh/question/ask.h>
 #include <pcl_bsh/question/options.h>
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +26,8 @@ struct NamedObstacle {
   std::optional<double> clearance;
   std::optional<bool> solid;
   std::optional<LengthOrField> uncertainty;
+  std::optional<bool> in_parts;
+  std::shared_ptr<const io::MeshParts> parts; ///< of the file, once it is planned; null: it is one obstacle
 };
 
 /// The options of a stage that derives from it, beside Stage; those of the question are in the core's table.
@@ -39,8 +44,15 @@ protected:
   /// @throws OptionError
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
-  /// The only obstacle, without a name, or several, each with its pose and the question about it. Clouds are not read.
-  std::vector<std::pair<io::ComparedObstacle, PlacedShape>> asked(std::vector<std::string>& warnings) const;
+  /// An obstacle to come: its cloud is not read.
+  struct Asked {
+    std::size_t row = 0; ///< of `obstacles`
+    io::ComparedObstacle one;
+    PlacedShape shape;
+  };
+
+  /// The only obstacle, without a name, or several, each with its pose and the question about it.
+  std::vector<Asked> asked(std::vector<std::string>& warnings) const;
 
   /// A question, and its answer.
   struct AnsweredQuestion {

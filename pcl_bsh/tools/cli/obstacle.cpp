@@ -6,7 +6,7 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 
 namespace pcl_bsh::cli {
 
@@ -27,9 +27,7 @@ std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::Surfac
 {
   Step step("Loading " + parts.file.string());
   const io::Mesh whole = io::readMesh(parts.file, &facts, reading, threads);
-  std::vector<io::Obstacle> obstacles;
-  for (io::Mesh& mesh : meshesOf(parts, whole))
-    obstacles.push_back(io::obstacleOf(parts.file, std::move(mesh), settings));
+  std::vector<io::Obstacle> obstacles = obstaclesOf(parts, whole.vertices, whole.triangles, settings);
   obstacles.front().addRemarks(facts.remarks);
   seconds += step.done(counted(obstacles.size(), "part") + ", " + counted(whole.triangles.size(), "triangle"));
   return obstacles;

@@ -20,7 +20,7 @@ io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSe
 
 /// Reads a file's parts, each an obstacle, as a step of the program. The first has the remarks about the file.
 /// @param seconds that it took are added
-/// @throws as io::readMesh(), whose last arguments these are, and io::meshesOf() do
+/// @throws as io::readMesh(), whose last arguments these are, and io::obstaclesOf() do
 std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::SurfaceSettings& settings, double& seconds,
                                     const io::ReadSettings& reading, io::CloudFacts& facts, unsigned threads);
 

@@ -99,7 +99,7 @@ void addParts(const ObstacleChoice& choice, std::vector<ObstacleChoice>& choices
   for (std::size_t i = 0; i < choice.parts->names.size(); ++i) {
     choices.push_back(choice);
     choices.back().part = i;
-    choices.back().name = (choice.name.empty() ? "" : choice.name + '/') + choice.parts->names[i];
+    choices.back().name = choice.parts->nameOf(i, choice.name);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <pcl_bsh/tools/cli/obstacle.h>
 
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/filters/selected_records.h>
+#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/question/options.h>
 
 #include <boost/crc.hpp>

@@ -42,7 +42,7 @@ TEST_F(MeshPartsOfFiles, AreObjectsOfAnObj)
   EXPECT_THAT(found.part_of, ElementsAre(0, 0, 0, 1));
   EXPECT_THAT(found.remarks, IsEmpty());
   const Mesh whole = readMesh(folder / "a.obj");
-  const std::vector<Mesh> meshes = meshesOf(found, whole);
+  const std::vector<Mesh> meshes = meshesOf(found, whole.vertices, whole.triangles);
   ASSERT_EQ(meshes.size(), 2u);
   const Mesh &plate = meshes[0], &flag = meshes[1];
   EXPECT_EQ(plate.vertices.width, 4u);
@@ -65,7 +65,8 @@ TEST_F(MeshPartsOfFiles, AreGroupsOfAnObjWithoutObjects)
   EXPECT_EQ(found.part_of[4], 0u) << "a group goes on";
   EXPECT_THAT(found.remarks, ElementsAre("1 part without faces, 'c' first: left out",
                                          "1 triangle before the first part's name: left out"));
-  EXPECT_EQ(meshesOf(found, readMesh(folder / "a.obj"))[0].triangles.size(), 2u);
+  const Mesh whole = readMesh(folder / "a.obj");
+  EXPECT_EQ(meshesOf(found, whole.vertices, whole.triangles)[0].triangles.size(), 2u);
 }
 
 TEST_F(MeshPartsOfFiles, AreSolidsOfAnStl)
@@ -92,7 +93,8 @@ TEST_F(MeshPartsOfFiles, AreThoseOfTheFileThatWasRead)
 {
   const MeshParts found = parts("a.obj", vertices + "o a\nf 1 2 3\n");
   folder.write("a.obj", vertices + "o a\nf 1 2 3\nf 1 2 3\n");
-  EXPECT_THROW(meshesOf(found, readMesh(folder / "a.obj")), files::FileError);
+  const Mesh whole = readMesh(folder / "a.obj");
+  EXPECT_THROW(meshesOf(found, whole.vertices, whole.triangles), files::FileError);
 }
 
 } // namespace

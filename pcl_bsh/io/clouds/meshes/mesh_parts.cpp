@@ -4,14 +4,14 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 #include <pcl_bsh/io/clouds/meshes/stl.h>
-#include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/small_letters.h>
+#include <pcl_bsh/search/selected_records.h>
+#include <pcl_bsh/search/used_vertices.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <map>
 
@@ -54,8 +54,7 @@ public:
       parts.names.push_back(std::move(names[i]));
     }
     if (parts.names.empty())
-      throw FormatError("has no parts with names",
-                        "give it objects (o), groups (g) or solids, or leave out parts=true");
+      throw FormatError("has no parts with names", "give it objects (o), groups (g) or solids, or leave out `parts`");
     if (!empty.empty())
       parts.remarks.push_back(counted(empty.size(), "part") + " without faces, '" + empty.front() +
                               "' first: left out");
@@ -104,32 +103,13 @@ NamedTriangles partsOfObj(std::string_view file)
   return named;
 }
 
-/// Gives triangles the vertices that they use, of those that they name.
-void takeVertices(Mesh& mesh, const pcl::PCLPointCloud2& all)
-{
-  std::vector<std::uint32_t> used;
-  for (const Triangle& triangle : mesh.triangles) used.insert(used.end(), triangle.begin(), triangle.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle)
-      corner = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), corner) - used.begin());
-  mesh.vertices.fields = all.fields;
-  mesh.vertices.point_step = all.point_step;
-  allocate(mesh.vertices, static_cast<std::uint32_t>(used.size()));
-  for (std::size_t i = 0; i < used.size(); ++i)
-    std::memcpy(&mesh.vertices.data[i * all.point_step], &all.data[std::size_t{used[i]} * all.point_step],
-                all.point_step);
-}
-
 } // namespace
 
 MeshParts readMeshParts(const std::filesystem::path& file)
 {
   const std::string extension = extensionOf(file);
   if (extension != ".obj" && extension != ".stl")
-    throw files::FileError(file, "has no parts with names",
-                           "give an .obj, an .stl that is text, or leave out parts=true");
+    throw files::FileError(file, "has no parts with names", "give an .obj, an .stl that is text, or leave out `parts`");
   const FileBytes bytes(file);
   try {
     MeshParts parts = (extension == ".obj" ? partsOfObj : partsOfStl)(bytes.view()).finished();
@@ -141,14 +121,23 @@ MeshParts readMeshParts(const std::filesystem::path& file)
   }
 }
 
-std::vector<Mesh> meshesOf(const MeshParts& parts, const Mesh& whole)
+std::string MeshParts::nameOf(std::size_t part, const std::string& whole) const
 {
-  if (whole.triangles.size() != parts.part_of.size())
+  return whole.empty() ? names[part] : whole + '/' + names[part];
+}
+
+std::vector<Mesh> meshesOf(const MeshParts& parts, const pcl::PCLPointCloud2& vertices,
+                           const std::vector<Triangle>& triangles)
+{
+  if (triangles.size() != parts.part_of.size())
     throw files::FileError(parts.file, "changed while it was read", "run this again");
   std::vector<Mesh> meshes(parts.names.size());
-  for (std::size_t i = 0; i < whole.triangles.size(); ++i)
-    if (parts.part_of[i] != nameless) meshes[parts.part_of[i]].triangles.push_back(whole.triangles[i]);
-  for (Mesh& mesh : meshes) takeVertices(mesh, whole.vertices);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (parts.part_of[i] != nameless) meshes[parts.part_of[i]].triangles.push_back(triangles[i]);
+  UsedVertices used(std::size_t{vertices.width} * vertices.height);
+  for (Mesh& mesh : meshes)
+    mesh.vertices = selectedRecords(vertices, used.keep(
+                                                  mesh.triangles, [](Triangle & face) -> auto& { return face; }));
   return meshes;
 }
 

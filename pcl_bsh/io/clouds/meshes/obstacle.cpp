@@ -12,6 +12,7 @@
 #include <pcl_bsh/search/uncertainty.h>
 
 #include <string_view>
+#include <utility>
 
 namespace pcl_bsh::io {
 
@@ -83,6 +84,15 @@ Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceS
   catch (const InvalidInput& error) {
     throw files::FileError(path, error.wrong(), error.remedy());
   }
+}
+
+std::vector<Obstacle> obstaclesOf(const MeshParts& parts, const pcl::PCLPointCloud2& vertices,
+                                  const std::vector<Triangle>& triangles, const SurfaceSettings& settings)
+{
+  std::vector<Obstacle> obstacles;
+  for (Mesh& mesh : meshesOf(parts, vertices, triangles))
+    obstacles.push_back(obstacleOf(parts.file, std::move(mesh), settings));
+  return obstacles;
 }
 
 } // namespace pcl_bsh::io

@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/question/shape.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -83,6 +84,11 @@ Obstacle readObstacle(const std::filesystem::path& path, const SurfaceSettings& 
 /// The obstacle of a file whose mesh is read already.
 /// @throws files::FileError naming the file, where its faces are no surface
 Obstacle obstacleOf(const std::filesystem::path& path, Mesh mesh, const SurfaceSettings& settings);
+
+/// Each part of a file as an obstacle. Arguments and errors are those of meshesOf().
+/// @throws files::FileError naming the file, where the faces of a part are no surface
+std::vector<Obstacle> obstaclesOf(const MeshParts& parts, const pcl::PCLPointCloud2& vertices,
+                                  const std::vector<Triangle>& triangles, const SurfaceSettings& settings);
 
 /// Whether files of that name's extension may have faces.
 bool mayHaveFaces(const std::filesystem::path& path);
