@@ -65,31 +65,35 @@ void giveIds(std::vector<Clash>& clashes, const char* letter, double cluster_dis
   for (Clash* clash : by_place) clash->id = taken.free(idAt(letter, middleOf(*clash), cell));
 }
 
-void add(Clash& clash, std::uint32_t record, const PointsView& scan, const TrajectoryResult& found)
+/// Adds the record of an entry of the result.
+void add(Clash& clash, std::uint32_t record, std::size_t entry, const PointsView& scan, const TrajectoryResult& found)
 {
   clash.records.push_back(record);
+  clash.distances.push_back(found.distance[entry]);
+  clash.closest_poses.push_back(found.closest_pose[entry]);
   ++clash.points;
-  if (found.flags[record] == Verdict::colliding) ++clash.certain_points;
+  if (found.flags[entry] == Verdict::colliding) ++clash.certain_points;
   const Extent extent = extentOf(scan, record);
   for (std::size_t k = 0; k < 3; ++k) { // of -0 and 0 the latter, so that boxes tell no order of points
     clash.low[k] = std::min(clash.low[k], extent.low[k] + 0.0);
     clash.high[k] = std::max(clash.high[k], extent.high[k] + 0.0);
   }
-  clash.first_pose = std::min(clash.first_pose, found.first_pose[record]);
-  const double distance = toldDistance(found, record);
-  if (!found.interval.empty() && !std::isnan(found.interval[record].lower)) {
-    clash.interval.lower = std::fmin(clash.interval.lower, found.interval[record].lower);
-    clash.interval.upper = std::fmin(clash.interval.upper, found.interval[record].upper);
+  clash.first_pose = std::min(clash.first_pose, found.first_pose[entry]);
+  const double distance = toldDistance(found, entry);
+  if (!found.interval.empty() && !std::isnan(found.interval[entry].lower)) {
+    clash.interval.lower = std::fmin(clash.interval.lower, found.interval[entry].lower);
+    clash.interval.upper = std::fmin(clash.interval.upper, found.interval[entry].upper);
   }
   if (!(distance < clash.distance)) return;
   clash.distance = distance;
   clash.scan_point = record;
   clash.place = scan.point(record);
-  clash.model_point = found.closest_point[record];
-  clash.closest_pose = found.closest_pose[record];
+  clash.model_point = found.closest_point[entry];
+  clash.closest_pose = found.closest_pose[entry];
 }
 
-void check(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
+/// @param records that the result is about
+void check(std::size_t records, const TrajectoryResult& found, double cluster_distance)
 {
   if (!(std::isfinite(cluster_distance) && cluster_distance > 0.0)) {
     throw InvalidInput(Input::cluster_distance, "cluster distance", plainText(cluster_distance),
@@ -98,9 +102,8 @@ void check(const PointsView& scan, const TrajectoryResult& found, double cluster
   }
   for (const std::size_t size : {found.flags.size(), found.distance.size(), found.first_pose.size(),
                                  found.closest_pose.size(), found.closest_point.size()}) {
-    if (size == scan.count) continue;
-    throw InvalidInput(Input::result, "result",
-                       "has " + counted(size, "value") + " for " + counted(scan.count, "point"),
+    if (size == records) continue;
+    throw InvalidInput(Input::result, "result", "has " + counted(size, "value") + " for " + counted(records, "point"),
                        "ask for flags, distances, first_poses and closest_poses of this scan");
   }
 }
@@ -121,16 +124,43 @@ const char* nameOf(ClashStatus status) noexcept
   return names[static_cast<std::size_t>(status)];
 }
 
+CollidingRecords::CollidingRecords(const TrajectoryResult& of_all)
+{
+  for (std::size_t i = 0; i < of_all.flags.size(); ++i)
+    if (of_all.flags[i] != Verdict::free) records.push_back(static_cast<std::int32_t>(i));
+  const auto keep = [&](const auto& of_each, auto& kept) {
+    if (of_each.size() != of_all.flags.size()) return; // was not asked for
+    kept.reserve(records.size());
+    for (const std::int32_t i : records) kept.push_back(of_each[static_cast<std::size_t>(i)]);
+  };
+  keep(of_all.flags, found.flags);
+  keep(of_all.distance, found.distance);
+  keep(of_all.first_pose, found.first_pose);
+  keep(of_all.closest_pose, found.closest_pose);
+  keep(of_all.closest_point, found.closest_point);
+  keep(of_all.interval, found.interval);
+  keep(of_all.certain_pose, found.certain_pose);
+  found.colliding = of_all.colliding;
+  found.undecided = of_all.undecided;
+  found.poses = of_all.poses;
+  found.first_contact = of_all.first_contact;
+  found.certain_contact = of_all.certain_contact;
+  found.work = of_all.work;
+}
+
 std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance)
 {
-  check(scan, found, cluster_distance);
-  std::vector<std::int32_t> colliding;
-  for (std::size_t i = 0; i < scan.count; ++i) {
-    if (found.flags[i] != Verdict::free) colliding.push_back(static_cast<std::int32_t>(i));
-  }
-  if (colliding.empty()) return {};
+  check(scan.count, found, cluster_distance);
+  return findClashes(scan, CollidingRecords(found), cluster_distance);
+}
+
+std::vector<Clash> findClashes(const PointsView& scan, const CollidingRecords& colliding, double cluster_distance)
+{
+  const std::vector<std::int32_t>& records = colliding.records;
+  check(records.size(), colliding.found, cluster_distance);
+  if (records.empty()) return {};
   PointsView subset = scan;
-  subset.restrictTo(colliding.data(), colliding.size());
+  subset.restrictTo(records.data(), records.size());
   const Clusters clusters = euclideanClusters(SphereHierarchy(subset), cluster_distance);
 
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -140,9 +170,9 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
   none.distance = infinity;
   none.first_pose = std::numeric_limits<std::int32_t>::max();
   std::vector<Clash> clashes(clusters.sizes.size(), none);
-  for (const std::int32_t i : colliding) {
-    const auto record = static_cast<std::uint32_t>(i);
-    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, scan, found);
+  for (std::size_t entry = 0; entry < records.size(); ++entry) {
+    const auto record = static_cast<std::uint32_t>(records[entry]);
+    add(clashes[static_cast<std::size_t>(clusters.of[record])], record, entry, scan, colliding.found);
   }
   nameClashes(clashes, cluster_distance);
   return clashes;
@@ -210,7 +240,7 @@ std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<
     if (there_still[j] || earlier[j].wasNoClash()) continue;
     clashes.push_back(earlier[j]);
     clashes.back().status = ClashStatus::resolved;
-    clashes.back().records.clear(); // of an earlier scan
+    clashes.back().clearRecords(); // of an earlier scan
   }
   return now.compared;
 }

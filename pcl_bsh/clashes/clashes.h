@@ -36,7 +36,9 @@ constexpr bool isPresent(ClashStatus status) noexcept
 struct Clash {
   std::string id;
   ClashStatus status = ClashStatus::fresh;
-  std::vector<std::uint32_t> records; ///< its points, ascending; empty unless it is there now
+  std::vector<std::uint32_t> records;      ///< its points, ascending; empty unless it is there now
+  std::vector<float> distances;            ///< of `records`, the smallest of each, as a TrajectoryResult has it
+  std::vector<std::int32_t> closest_poses; ///< of `records`, where that is
   std::size_t points = 0;
   std::size_t certain_points = 0;   ///< of these: that collide wherever the points truly are; the others are undecided
   std::size_t points_in_shadow = 0; ///< of what is unseen and was no clash: of these, in shadow; the others in the skin
@@ -51,6 +53,13 @@ struct Clash {
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
 
+  void clearRecords() ///< and what is known of each
+  {
+    records.clear();
+    distances.clear();
+    closest_poses.clear();
+  }
+
   bool isCertain() const { return certain_points > 0; } ///< else it collides only perhaps
 
   bool isDeep() const { return distance < 0.0; } ///< inside a solid, or balls overlap
@@ -61,6 +70,15 @@ struct Clash {
 /// Whether a clash stands before another: certain before perhaps, then the smaller distance, more points, the id.
 /// Unseen places come last, those of most points first.
 bool isMoreSevere(const Clash& one, const Clash& other);
+
+/// The records of a scan that collide or may, out of a result about all of its records.
+struct CollidingRecords {
+  std::vector<std::int32_t> records; ///< ascending
+  TrajectoryResult found;            ///< its vectors of records have one entry for each of these
+
+  CollidingRecords() = default;
+  /** Copies what is not free. */ explicit CollidingRecords(const TrajectoryResult& of_all);
+};
 
 /// Clusters of the points that collide or are undecided (euclideanClusters() with that distance), the most severe
 /// first. Clusters with a point that collides for certain come before those that collide only perhaps. Then the order
@@ -74,6 +92,9 @@ bool isMoreSevere(const Clash& one, const Clash& other);
 /// @param cluster_distance finite, > 0
 /// @throws std::invalid_argument for another distance, or a result without these vectors or of another scan
 std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& found, double cluster_distance);
+
+/// As above, of a result that has been cut down to what collides.
+std::vector<Clash> findClashes(const PointsView& scan, const CollidingRecords& colliding, double cluster_distance);
 
 /// Gives clashes their ids and puts the most severe first, as findClashes() does: for those that were found in parts.
 /// @param clashes in the order of their smallest records, which decides nothing but which of two with one box is first

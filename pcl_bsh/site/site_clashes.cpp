@@ -43,7 +43,7 @@ public:
       of_tile.some.insert(of_tile.some.end(), some.begin(), some.end());
       const Member nearest = memberOf(clash.scan_point, piece);
       const MetPoint of_model = met ? (*met)[clash.model_point] : MetPoint{{0, clash.model_point}, {0, 0, 0}};
-      clash.records.clear();
+      clash.clearRecords();
       of_tile.pieces.push_back({std::move(clash), nearest, of_model});
     }
     return of_tile;
@@ -138,10 +138,10 @@ private:
         const auto number = static_cast<std::uint32_t>(list.points.size());
         if (member.point == nearest.point) clash.scan_point = number;
         clash.records.push_back(number);
+        clash.distances.push_back(member.distance);
+        clash.closest_poses.push_back(member.closest_pose);
         list.points.push_back(member.point);
         list.places.push_back(member.place);
-        list.distance.push_back(member.distance);
-        list.closest_pose.push_back(member.closest_pose);
       }
       list.clashes.push_back(std::move(clash));
     }

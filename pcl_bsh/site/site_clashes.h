@@ -33,8 +33,6 @@ struct SiteClashes {
   std::vector<Clash> clashes;
   std::vector<SitePoint> points; ///< some points of all clashes
   std::vector<Point3> places;    ///< where they are
-  std::vector<float> distance;   ///< their smallest distances
-  std::vector<std::int32_t> closest_pose;
   /// Where the model is a site: its points of the closest pairs. The clashes' model_point are their numbers.
   std::vector<MetPoint> met;
 };

@@ -57,6 +57,8 @@ TEST(Clashes, GroupsAndSortsBySeverity)
   EXPECT_EQ(clashes[2].scan_point, 5u);
   const Clash& three = clashes[1];
   EXPECT_EQ(three.records, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(three.distances, (std::vector<float>{0.04f, 0.02f, 0.03f}));
+  EXPECT_EQ(three.closest_poses, (std::vector<std::int32_t>{6, 7, 9}));
   EXPECT_EQ(three.low, (Point3{0, 0, 0}));
   EXPECT_EQ(three.high, (Point3{1.5, 0.25, 0}));
   EXPECT_EQ(three.distance, static_cast<double>(0.02f));
@@ -64,6 +66,31 @@ TEST(Clashes, GroupsAndSortsBySeverity)
   EXPECT_EQ(three.model_point, 101u);
   EXPECT_EQ(three.first_pose, 4);
   EXPECT_EQ(three.closest_pose, 7);
+}
+
+TEST(Clashes, AreThoseOfWhatCollidesAlone)
+{
+  Scan scan({{0, 0, 0, free_point}, {1, 0, 0, 0.04f, 5, 6}, {2, 0, 0, free_point}, {9, 9, 9, 0.01f, 2, 3}});
+  scan.found.interval.assign(4, Interval{0.0, 1.0});
+  scan.found.colliding = 2;
+  const CollidingRecords few(scan.found);
+  EXPECT_EQ(few.records, (std::vector<std::int32_t>{1, 3}));
+  EXPECT_EQ(few.found.closest_point, (std::vector<std::uint32_t>{101, 103}));
+  EXPECT_EQ(few.found.interval.size(), 2u);
+  EXPECT_TRUE(few.found.certain_pose.empty()) << "was not asked for";
+  EXPECT_EQ(few.found.colliding, 2u);
+  const std::vector<Clash> found = findClashes(scan.view(), few, 1.0), expected = scan.clashes(1.0);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].id, expected[i].id);
+    EXPECT_EQ(found[i].records, expected[i].records);
+    EXPECT_EQ(found[i].distance, expected[i].distance);
+    EXPECT_EQ(found[i].interval.upper, expected[i].interval.upper);
+    EXPECT_EQ(found[i].first_pose, expected[i].first_pose);
+    EXPECT_EQ(found[i].closest_pose, expected[i].closest_pose);
+    EXPECT_EQ(found[i].model_point, expected[i].model_point);
+  }
+  EXPECT_TRUE(findClashes(scan.view(), CollidingRecords(), 1.0).empty());
 }
 
 TEST(Clashes, HoldTrianglesWhole)

@@ -204,8 +204,8 @@ protected:
       for (std::size_t k = 0; k < found.records.size(); ++k) {
         const std::uint32_t record = expected.records[k];
         EXPECT_TRUE(list.points[found.records[k]] == nameOf(record));
-        EXPECT_EQ(list.distance[found.records[k]], in_memory.distance[record]);
-        EXPECT_EQ(list.closest_pose[found.records[k]], in_memory.closest_pose[record]);
+        EXPECT_EQ(found.distances[k], in_memory.distance[record]);
+        EXPECT_EQ(found.closest_poses[k], in_memory.closest_pose[record]);
       }
     }
   }

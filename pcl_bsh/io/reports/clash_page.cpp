@@ -159,9 +159,9 @@ private:
       for (std::size_t k = 0; k < report.found.poses.size(); ++k)
         nearest[k] = std::min(nearest[k], report.found.poses[k].distance);
       for (const Clash& clash : report.clashes) {
-        for (const std::uint32_t record : clash.records) {
-          double& at_pose = nearest[static_cast<std::size_t>(report.found.closest_pose[record])];
-          at_pose = std::min(at_pose, static_cast<double>(report.found.distance[record]));
+        for (std::size_t i = 0; i < clash.records.size(); ++i) {
+          double& at_pose = nearest[static_cast<std::size_t>(clash.closest_poses[i])];
+          at_pose = std::min(at_pose, static_cast<double>(clash.distances[i]));
         }
       }
     }
@@ -293,17 +293,16 @@ private:
   }
 
   /// Some of its points, evenly picked, as circles. These are too many to be data of the template.
-  /// @param x, y where a record lies in the drawing
+  /// @param x, y where the clash's record of a number lies in the drawing
   template <typename X, typename Y>
-  std::string dotsOf(const ClashReport& report, const Clash& clash, const X& x, const Y& y) const
+  std::string dotsOf(const Clash& clash, const X& x, const Y& y) const
   {
     std::string dots;
     const std::size_t count = std::min(clash.records.size(), most_dots);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t record = clash.records[i * clash.records.size() / count];
-      const auto distance = static_cast<double>(report.found.distance[record]);
-      dots += "<circle cx=\"" + coordinate(x(record)) + "\" cy=\"" + coordinate(y(record)) + "\" r=\"2\" fill=\"" +
-              colorOf(distance) + "\"/>";
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = k * clash.records.size() / count;
+      dots += "<circle cx=\"" + coordinate(x(i)) + "\" cy=\"" + coordinate(y(i)) + "\" r=\"2\" fill=\"" +
+              colorOf(static_cast<double>(clash.distances[i])) + "\"/>";
     }
     return dots;
   }
@@ -316,17 +315,16 @@ private:
     const double least = std::max({box.sizes().maxCoeff() * 0.1, report.cluster_distance, 1e-9});
     const Eigen::Vector2d size = box.sizes().array() + least;
     const ViewFromAbove seen{top_view_area, box.center(), size};
-    return Object{
-        {"dots", dotsOf(
-                     report, clash, [&](std::uint32_t record) { return seen.x(report.scan.point(record)[0]); },
-                     [&](std::uint32_t record) { return seen.y(report.scan.point(record)[1]); })},
-        {"scan_x", coordinate(seen.x(scan.x()))},
-        {"scan_y", coordinate(seen.y(scan.y()))},
-        {"model_x", coordinate(seen.x(model.x()))},
-        {"model_y", coordinate(seen.y(model.y()))},
-        {"scale_width", coordinate(seen.bar * seen.scale)},
-        {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
-        {"scale_length", number(seen.bar)}};
+    return Object{{"dots", dotsOf(
+                               clash, [&](std::size_t i) { return seen.x(report.scan.point(clash.records[i])[0]); },
+                               [&](std::size_t i) { return seen.y(report.scan.point(clash.records[i])[1]); })},
+                  {"scan_x", coordinate(seen.x(scan.x()))},
+                  {"scan_y", coordinate(seen.y(scan.y()))},
+                  {"model_x", coordinate(seen.x(model.x()))},
+                  {"model_y", coordinate(seen.y(model.y()))},
+                  {"scale_width", coordinate(seen.bar * seen.scale)},
+                  {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
+                  {"scale_length", number(seen.bar)}};
   }
 
   /// Poses across, distances up.
@@ -334,31 +332,29 @@ private:
   {
     constexpr const Area& area = approach_area;
     std::int32_t first = clash.closest_pose, last = clash.closest_pose;
-    for (const std::uint32_t record : clash.records) {
-      first = std::min(first, report.found.closest_pose[record]);
-      last = std::max(last, report.found.closest_pose[record]);
+    for (const std::int32_t pose : clash.closest_poses) {
+      first = std::min(first, pose);
+      last = std::max(last, pose);
     }
     const auto x = [&](std::int32_t pose) {
       if (first == last) return area.left + area.width / 2;
       return area.left + 6 + (area.width - 12) * static_cast<double>(pose - first) / (last - first);
     };
     const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
-    const auto distanceOf = [&](std::uint32_t record) { return static_cast<double>(report.found.distance[record]); };
     const double limit_y = y(*report.question.clearance);
-    return Object{
-        {"dots", dotsOf(
-                     report, clash, [&](std::uint32_t record) { return x(report.found.closest_pose[record]); },
-                     [&](std::uint32_t record) { return y(distanceOf(record)); })},
-        {"limit", number(*report.question.clearance, 3)},
-        {"limit_y", number(limit_y, 6)},
-        {"limit_text_y", number(limit_y + 4, 6)},
-        {"lowest", number(lowest_, 3)},
-        {"lowest_text_y", number(y(lowest_) + 2, 6)},
-        {"closest_x", coordinate(x(clash.closest_pose))},
-        {"closest_y", coordinate(y(clash.distance))},
-        {"only", first == last ? Data(std::to_string(first)) : Data(false)},
-        {"first", std::to_string(first)},
-        {"last", std::to_string(last)}};
+    return Object{{"dots", dotsOf(
+                               clash, [&](std::size_t i) { return x(clash.closest_poses[i]); },
+                               [&](std::size_t i) { return y(static_cast<double>(clash.distances[i])); })},
+                  {"limit", number(*report.question.clearance, 3)},
+                  {"limit_y", number(limit_y, 6)},
+                  {"limit_text_y", number(limit_y + 4, 6)},
+                  {"lowest", number(lowest_, 3)},
+                  {"lowest_text_y", number(y(lowest_) + 2, 6)},
+                  {"closest_x", coordinate(x(clash.closest_pose))},
+                  {"closest_y", coordinate(y(clash.distance))},
+                  {"only", first == last ? Data(std::to_string(first)) : Data(false)},
+                  {"first", std::to_string(first)},
+                  {"last", std::to_string(last)}};
   }
 
   const ClashLists& lists_;

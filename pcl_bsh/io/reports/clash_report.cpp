@@ -263,27 +263,6 @@ std::string clashCounts(const ClashLists& lists)
   return text;
 }
 
-ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const std::optional<Extent>& box,
-                      const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses, const Answer& answer,
-                      double cluster_distance, const Obstacle* surface)
-{
-  const bool seen = question.seen;
-  const TrajectoryResult& found = answer.collisions;
-  ClashReport report{.question = std::move(question),
-                     .cluster_distance = cluster_distance,
-                     .clashes =
-                         found.flags.empty() ? std::vector<Clash>() : findClashes(scan.view(), found, cluster_distance),
-                     .scan = scan.view(),
-                     .model = model.view(),
-                     .poses = poses,
-                     .found = found,
-                     .survey = {poses, box},
-                     .surface = surface,
-                     .unseen = seen ? &answer.unseen : nullptr};
-  listUnseen(report);
-  return report;
-}
-
 void listUnseen(ClashReport& report)
 {
   if (!report.unseen) return;

@@ -38,7 +38,7 @@ struct ClashReport {
   const PointsView& scan;
   const PointsView& model;
   const std::vector<Eigen::Isometry3d>& poses;
-  const TrajectoryResult& found;
+  const TrajectoryResult& found; ///< its counts and poses; `clashes` have what is known of records
   Survey survey;
   std::string unit = {};                    ///< of the clouds' lengths; empty: not known
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
@@ -167,13 +167,6 @@ void requireClashFormat(const std::filesystem::path& path);
 /// Counts the clashes in a line, as programs print it: "3 clashes, 140 perhaps, 2 resolved".
 std::string clashCounts(const ClashLists& lists);
 
-/// The clashes of two clouds in memory, and the unseen records of the obstacle. All except the question is borrowed.
-/// @param box the extent of the scan
-/// @param answer one without flags has no clashes: ask() does not tell them of one of several obstacles that is free
-ClashReport clashesOf(ClashQuestion question, const SphereHierarchy& scan, const std::optional<Extent>& box,
-                      const SphereHierarchy& model, const std::vector<Eigen::Isometry3d>& poses, const Answer& answer,
-                      double cluster_distance, const Obstacle* surface);
-
 /// Appends the unseen places of the obstacle along the path (findUnseenPlaces()), where they were asked for. To be
 /// called before lists are compared.
 void listUnseen(ClashReport& report);
@@ -190,7 +183,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
 std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::filesystem::path& file,
                                         const std::vector<ClashList>& earlier);
 
-/// As above, of what clashesOf() made of these hierarchies.
+/// As above, of a report about these hierarchies.
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const SphereHierarchy& scan,
                                          const SphereHierarchy& model);

@@ -36,6 +36,8 @@ ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<Pla
     if (!keep) return;
     obstacles[i].question = asked;
     obstacles[i].question.progress = nullptr;
+    obstacles[i].colliding = CollidingRecords(answer.collisions);
+    answer.collisions = {}; // which has an entry for each record
     obstacles[i].answer = std::move(answer);
   });
   if (!keep) return found;
@@ -79,13 +81,22 @@ ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
     ComparedObstacle& one = obstacles[i];
     one.poses = one.question.poses();
     const bool has_name = !one.name.empty();
-    ClashReport list =
-        clashesOf({one.question, listing.input, one.file}, scan, box, *hierarchies[i], one.poses,
-                  has_name ? one.answer : alone, distance, one.loaded.isSurface() ? &one.loaded : nullptr);
-    list.unit = listing.unit;
-    list.coordinate_system = listing.coordinate_system;
-    list.name = one.name;
-    if (has_name) list.answer = &one.found;
+    ClashReport list{.question = {one.question, listing.input, one.file},
+                     .cluster_distance = distance,
+                     .clashes = has_name ? findClashes(scan.view(), one.colliding, distance)
+                                         : findClashes(scan.view(), alone.collisions, distance),
+                     .scan = scan.view(),
+                     .model = hierarchies[i]->view(),
+                     .poses = one.poses,
+                     .found = has_name ? one.colliding.found : alone.collisions,
+                     .survey = {one.poses, box},
+                     .unit = listing.unit,
+                     .coordinate_system = listing.coordinate_system,
+                     .surface = one.loaded.isSurface() ? &one.loaded : nullptr,
+                     .name = one.name,
+                     .answer = has_name ? &one.found : nullptr};
+    if (one.question.seen) list.unseen = has_name ? &one.answer.unseen : &alone.unseen;
+    listUnseen(list);
     if (const ClashList* const before = findList(listing.earlier, one.name, list.question))
       addEachOnce(compareWithList(list, *listing.previous, *before, scan, *hierarchies[i]), warnings);
     else if (listing.previous)

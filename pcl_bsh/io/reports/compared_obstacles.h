@@ -24,7 +24,8 @@ struct ComparedObstacle {
   Obstacle loaded = {};
   CloudFacts facts = {};
   Question question = {};
-  Answer answer = {}; ///< where it is one of several
+  Answer answer = {};              ///< where it is one of several; `collisions` are empty
+  CollidingRecords colliding = {}; ///< of that answer
   ObstacleAnswer found = {};
   std::vector<Eigen::Isometry3d> poses = {};
 };

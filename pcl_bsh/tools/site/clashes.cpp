@@ -77,16 +77,13 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
   const std::vector<Eigen::Isometry3d> poses = options_.question.poses();
   const PointsView places =
       viewOf(clashes.places.empty() ? nullptr : clashes.places.front().data(), clashes.places.size());
-  TrajectoryResult of_places = found.collisions;
-  of_places.distance = std::move(clashes.distance);
-  of_places.closest_pose = std::move(clashes.closest_pose);
   io::ClashReport list{.question = questionOf(options_),
                        .cluster_distance = distance_,
                        .clashes = std::move(clashes.clashes),
                        .scan = places,
                        .model = model,
                        .poses = poses,
-                       .found = of_places,
+                       .found = found.collisions,
                        .survey = {poses, extentOf(site_.bounds)},
                        .unit = options_.unit,
                        .coordinate_system = site::coordinateSystemOf(site_),
