@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/question/ignored_points.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/question/record_numbers.h>
@@ -16,15 +17,16 @@ namespace {
 using IgnoredKind = IgnoredPoints::Kind;
 using IgnoredTerm = IgnoredPoints::Term;
 
-constexpr auto box_name = "box", plane_name = "plane";
+constexpr auto box_name = "box", plane_name = "plane", mask_name = "mask";
 
 std::optional<IgnoredTerm> termOf(std::string_view text)
 {
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos || equals == 0) return std::nullopt;
-  const auto numbers = numbersOf(text.substr(equals + 1));
-  if (!numbers) return std::nullopt;
+  if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size()) return std::nullopt;
   const std::string_view name = text.substr(0, equals);
+  const auto numbers = numbersOf(text.substr(equals + 1));
+  if (!numbers && name == mask_name) return IgnoredTerm{IgnoredKind::mask, std::string(text.substr(equals + 1)), {}};
+  if (!numbers) return std::nullopt;
   const std::vector<double>& n = *numbers;
   if (name == box_name) {
     const bool is_box = n.size() == 6 && n[0] <= n[3] && n[1] <= n[4] && n[2] <= n[5];
@@ -35,6 +37,19 @@ std::optional<IgnoredTerm> termOf(std::string_view text)
     return is_plane ? std::optional(IgnoredTerm{IgnoredKind::plane, {}, n}) : std::nullopt;
   }
   return IgnoredTerm{IgnoredKind::values, std::string(name), n};
+}
+
+/// @throws InvalidInput
+void requireMaskOf(const IgnoredTerm& term, const PointsView& view, const std::string& cloud)
+{
+  if (!term.mask)
+    throw InvalidInput(Input::points, "ignored points", "mask " + term.field + " is not read",
+                       "read it before the question is asked, as programs and stages do");
+  if (term.mask->size() != view.count)
+    throw InvalidInput(Input::points, cloud,
+                       "has " + counted(view.count, "point") + ", and mask " + term.field + " has " +
+                           counted(term.mask->size(), "value"),
+                       "give the mask a value for each point, in the order of the file");
 }
 
 bool isIn(const std::vector<double>& n, IgnoredKind kind, const Point3& p)
@@ -48,6 +63,7 @@ bool isIn(const std::vector<double>& n, IgnoredKind kind, const Point3& p)
 
 std::string IgnoredPoints::Term::text() const
 {
+  if (kind == IgnoredKind::mask) return plainText(mask_name, '=', field);
   std::string all = kind == IgnoredKind::box ? box_name : kind == IgnoredKind::plane ? plane_name : field;
   for (const double& number : numbers) all += (&number == numbers.data() ? "=" : ",") + textOfNumbers(number);
   return all;
@@ -62,8 +78,8 @@ IgnoredPoints IgnoredPoints::parse(const std::string& text)
     if (!term) {
       throw InvalidInput(
           Input::points, "ignored points", "'" + std::string(part) + "' is none",
-          "give FIELD=N,N, box=X,Y,Z,X,Y,Z of the least and the greatest, or plane=NX,NY,NZ,D,TOLERANCE, "
-          "with ; between several");
+          "give FIELD=N,N, box=X,Y,Z,X,Y,Z of the least and the greatest, plane=NX,NY,NZ,D,TOLERANCE, or "
+          "mask=FILE, with ; between several");
     }
     ignored.terms.push_back(*term);
   }
@@ -87,6 +103,7 @@ CountedPoints countedPoints(const PointsView& view, const std::vector<RecordFiel
   for (std::size_t t = 0; t < ignored.terms.size(); ++t) {
     const IgnoredTerm& term = ignored.terms[t];
     found[t].resize(term.kind == IgnoredKind::values ? term.numbers.size() : 1);
+    if (term.kind == IgnoredKind::mask) requireMaskOf(term, view, cloud);
     if (term.kind == IgnoredKind::values)
       numbers[t].emplace(view, fields, term.field, cloud,
                          RecordNumbers::Purpose{Input::points, "of points to ignore", "give one of its fields"});
@@ -99,7 +116,8 @@ CountedPoints countedPoints(const PointsView& view, const std::vector<RecordFiel
       if (value == term.numbers.end()) return false;
       place = static_cast<std::size_t>(value - term.numbers.begin());
     }
-    else if (!isIn(term.numbers, term.kind, view.point(record))) {
+    else if (term.kind == IgnoredKind::mask ? (*term.mask)[record] == 0
+                                            : !isIn(term.numbers, term.kind, view.point(record))) {
       return false;
     }
     ++found[t][place];

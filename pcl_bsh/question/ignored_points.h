@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,19 +19,22 @@ namespace pcl_bsh {
 
 /// Points that meet any of these terms. Coordinates are in the cloud's frame and unit.
 struct IgnoredPoints {
-  /** By a field, or by place. */ enum class Kind : std::uint8_t { values, box, plane };
-  /// Points of some values, in a box, or near a plane.
+  /** By a field, by place, or one by one. */ enum class Kind : std::uint8_t { values, box, plane, mask };
+  /// Points of some values, in a box, near a plane, or marked.
   struct Term {
     Kind kind = Kind::values;
-    std::string field; ///< of values
+    std::string field; ///< of values; the file of a mask
     /// Values of the field. A box has its least x, y, z, then the greatest, inclusive. A plane has nx, ny,
     /// nz, d and t: points with |n p - d| <= t |n|, as double computes it.
     std::vector<double> numbers;
+    std::shared_ptr<const std::vector<std::uint8_t>> mask =
+        nullptr; ///< one a record, not 0: it does not count; null: not read
 
     std::string text() const; ///< as parse() reads it
     /** All members. */ bool operator==(const Term& other) const
     {
-      return kind == other.kind && field == other.field && numbers == other.numbers;
+      return kind == other.kind && field == other.field && numbers == other.numbers &&
+             (mask == other.mask || (mask && other.mask && *mask == *other.mask));
     }
   };
 
@@ -39,7 +43,8 @@ struct IgnoredPoints {
   bool empty() const noexcept { return terms.empty(); } ///< all points count
   /** All terms. */ bool operator==(const IgnoredPoints& other) const { return terms == other.terms; }
 
-  /// `FIELD=N,N;box=X,Y,Z,X,Y,Z;plane=NX,NY,NZ,D,T`, in any order and number; empty: none.
+  /// `FIELD=N,N;box=X,Y,Z,X,Y,Z;plane=NX,NY,NZ,D,T;mask=FILE`, in any order and number; empty: none. Files are not
+  /// read (io::readMasks()). A field of the name `mask` has numbers behind it, a file has not.
   /// @throws InvalidInput quoting the text
   static IgnoredPoints parse(const std::string& text);
   std::string text() const; ///< what parse() reads
@@ -53,8 +58,9 @@ struct CountedPoints {
 };
 
 /// @param fields of the view's records. @param cloud its name in errors
-/// @throws InvalidInput for a field that is missing or holds several numbers a point, and for a value, a box or a plane
-///   that no point has, or that terms before it have all points of
+/// @throws InvalidInput for a field that is missing or holds several numbers a point, for a mask that is not read or is
+///   of another number of records, and for a value, a box, a plane or a mask that no point has, or that terms before it
+///   have all points of
 CountedPoints countedPoints(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
                             const IgnoredPoints& ignored);
 

@@ -358,6 +358,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, std::vector<Place
       between.clearance = std::max(first.clearance.value_or(0.0), second.clearance.value_or(0.0));
       between.uncertainty = first.obstacle_uncertainty;
       between.obstacle_uncertainty = second.obstacle_uncertainty;
+      between.ignore_points = between.obstacle_ignore_points = question.obstacle_ignore_points;
       between.input_solid = first.solid;
       between.solid = second.solid;
       between.wanted.any = between.wanted.closest = true;

@@ -84,10 +84,11 @@ std::vector<Point3> machineInHall()
 TEST(IgnoredPoints, AreReadAsTheyAreWritten)
 {
   for (const char* text : {"", "classification=2", "classification=2,9;box=0,0,-1,5,5.5,1e-300;plane=0,0,1,0.5,0.01",
-                           "plane=1,-1,0,0,0;scan=-0.5"})
+                           "plane=1,-1,0,0,0;scan=-0.5", "mask=floor of week 12.txt;mask=1,0"})
     EXPECT_EQ(IgnoredPoints::parse(text).text(), text);
-  for (const char* text : {"classification", "classification=", "=2", "classification=2;", "box=1,2,3", "class=2,x",
-                           "box=0,0,1,1,1,0", "plane=0,0,0,1,1", "plane=0,0,1,1,-1", "plane=0,0,1,1", "scan=nan"})
+  for (const char* text :
+       {"classification", "classification=", "=2", "classification=2;", "box=1,2,3", "class=2,x", "box=0,0,1,1,1,0",
+        "plane=0,0,0,1,1", "plane=0,0,1,1,-1", "plane=0,0,1,1", "scan=nan", "mask="})
     EXPECT_THAT(refusalOfText(text), HasSubstr("is none: give FIELD=N,N, box=")) << text;
 }
 
@@ -117,6 +118,34 @@ TEST(IgnoredPoints, RefuseWhatIsNotThere)
   EXPECT_THAT(refusalToCount(points, "plane=0,0,1,-1,0.01"), HasSubstr("of 'plane=0,0,1,-1,0.01'"));
   EXPECT_THAT(refusalToCount(points, "class=2"), HasSubstr("hall: field 'class' of points to ignore is missing"));
   EXPECT_EQ(refusalToCount(points, "plane=0,0,1,0,0.005;classification=6"), "");
+}
+
+TEST(IgnoredPoints, MayBeMarkedOneByOne)
+{
+  const std::vector<ClassedPoint> points = {{0, 0, 0, 2}, {1, 0, 0, 6}, {2, 0, 0, 6}, {3, 0, 0, 6}};
+  IgnoredPoints ignored = IgnoredPoints::parse("classification=2;mask=marks.txt");
+  EXPECT_EQ(
+      refusalToCount(points, ignored.text()),
+      "ignored points: mask marks.txt is not read: read it before the question is asked, as programs and stages do");
+  const auto count = [&](const std::vector<std::uint8_t>& mask) {
+    ignored.terms[1].mask = std::make_shared<const std::vector<std::uint8_t>>(mask);
+    return countedPoints(viewOfClassed(points), classed_fields, "hall", ignored);
+  };
+  EXPECT_THAT(count({1, 0, 1, 0}).records, ElementsAre(1, 3));
+  EXPECT_THAT(count({1, 0, 1, 0}).ignored, ElementsAre(1u, 1u));
+  try {
+    count({0, 1, 0});
+    FAIL() << "a mask of another length is taken";
+  }
+  catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "hall: has 4 points, and mask marks.txt has 3 values: give the mask a value for each "
+                               "point, in the order of the file");
+  }
+  EXPECT_THROW(count({1, 0, 0, 0}), InvalidInput) << "the term before has all of its points";
+  const IgnoredPoints before = ignored;
+  EXPECT_TRUE(ignored == before);
+  count({1, 1, 0, 0});
+  EXPECT_FALSE(ignored == before) << "what a shape is built with has changed";
 }
 
 class IgnoringHall : public testing::Test {

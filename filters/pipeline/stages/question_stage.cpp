@@ -4,6 +4,7 @@
 #include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/row_options.h>
+#include <pcl_bsh/io/clouds/point_masks.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
@@ -212,6 +213,8 @@ void QuestionStage::plan(const CloudHeader& input, const Wanted& wanted, Stage& 
   if (pose) question.pose = rigidPoseOf(*pose, "pose", warnings);
   question.wanted = wanted;
   checkField("uncertainty", question.uncertainty, input);
+  namingOption("ignore_points", [&] { io::readMasks(question.ignore_points); });
+  namingOption("obstacle_ignore_points", [&] { io::readMasks(question.obstacle_ignore_points); });
   for (std::size_t row = 0; row < obstacles.size(); ++row) {
     NamedObstacle& named = obstacles[row];
     if (!named.in_parts.value_or(false)) continue;

@@ -2,6 +2,7 @@
 #include <pcl_bsh/io/scenes/scene_clouds.h>
 
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/io/clouds/formats.h>
+#include <pcl_bsh/io/clouds/point_masks.h>
 
 #include <cmath>
 #include <utility>
@@ -220,6 +221,11 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   for (const ObstacleChoice& one : options.obstacles)
     if (one.part == 0) files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
   files.reads("--trajectory", path.file).readsPose("--from", path.from).readsPose("--to", path.to);
+  for (const auto& [option, ignored] : {std::pair{"--ignore-points", &question.ignore_points},
+                                        {"--obstacle-ignore-points", &question.obstacle_ignore_points}}) {
+    for (const std::filesystem::path& mask : io::maskFilesOf(*ignored)) files.reads(option, mask);
+    io::readMasks(*ignored);
+  }
   files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));
   files.writes("--obstacle-out", options.obstacle_out.value_or(""));

@@ -140,6 +140,18 @@ TEST_F(CollideUnits, TheFloorDoesNotCount)
             found["colliding"]);
   const auto list = nlohmann::json::parse(io::contentOf(folder / "c.json"));
   EXPECT_EQ(list["unit"], "m");
+  const pcl::PCLPointCloud2 hall = io::readCloud(folder / "hall.csv");
+  std::string marks;
+  for (std::size_t i = 0; i < hall.width; ++i) marks += io::valueOf(hall, i, "classification") == 2.0 ? "1\n" : "0\n";
+  folder.write("marks.txt", marks);
+  const auto marked = done("hall.csv machine.obj out.pcd --ignore-points mask=marks.txt" + in_units + place);
+  EXPECT_EQ(marked["colliding"], found["colliding"]);
+  EXPECT_EQ(marked["input"]["ignored"], 10000);
+  folder.write("marks.txt", marks + "1\n");
+  EXPECT_THAT(refused("hall.csv machine.obj out.pcd --ignore-points mask=marks.txt" + in_units + place),
+              HasSubstr("hall.csv: has 13900 points, and mask marks.txt has 13901 values: give the mask a value for "));
+  EXPECT_THAT(refused("hall.csv machine.obj marks.txt --ignore-points mask=marks.txt" + in_units + place),
+              HasSubstr("--ignore-points"));
   EXPECT_THAT(refused("hall.csv machine.obj out.pcd --ignore-points classification=2,7" + in_units + place),
               HasSubstr("hall.csv: has no point to ignore of 'classification=7'"));
   EXPECT_THAT(refused("hall.csv machine.obj out.pcd --ignore-points class=2" + in_units + place),
