@@ -36,7 +36,8 @@ solids : mapping of str to bool, optional
 between : bool, default False
     Obstacles are compared with each other, too.
 ignore : sequence of str, optional
-    Pairs that are not compared, "FIRST:SECOND", of names of obstacles or 'input'; * is any letters.
+    Pairs that are not compared, "FIRST:SECOND", of names of obstacles or 'input'; * is any letters, and a
+    backslash stands before a colon within a name.
 accuracy : Accuracy or str, default exact
 threads : int, default 1
 progress : callable, optional

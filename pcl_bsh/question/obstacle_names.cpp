@@ -10,12 +10,31 @@
 namespace pcl_bsh {
 namespace {
 
+/// Whether a backslash takes the next letter's meaning away.
+bool isEscape(const char* text)
+{
+  return *text == '\\' && (text[1] == ':' || text[1] == '*' || text[1] == '\\');
+}
+
 /// @param pattern where * stands for any letters, none among them
 bool matches(const char* pattern, const char* name)
 {
   if (*pattern == '\0') return *name == '\0';
+  if (isEscape(pattern)) return pattern[1] == *name && matches(pattern + 2, name + 1);
   if (*pattern == '*') return matches(pattern + 1, name) || (*name != '\0' && matches(pattern, name + 1));
   return *pattern == *name && matches(pattern + 1, name + 1);
+}
+
+/// Where a text has its first colon that ends a name; npos: nowhere.
+std::size_t colonOf(const std::string& text, std::size_t from)
+{
+  for (std::size_t i = from; i < text.size(); ++i) {
+    if (isEscape(&text[i]))
+      ++i;
+    else if (text[i] == ':')
+      return i;
+  }
+  return text.npos;
 }
 
 InvalidInput wrongName(const char* option, const std::string& wrong, const std::string& remedy)
@@ -41,9 +60,10 @@ IgnoredPairs::IgnoredPairs(const std::vector<std::string>& texts, const std::vec
   std::vector<std::string> names = {kInputName};
   names.insert(names.end(), obstacles.begin(), obstacles.end());
   for (const std::string& text : texts) {
-    const std::size_t colon = text.find(':');
-    if (colon == text.npos || colon == 0 || colon + 1 == text.size() || text.find(':', colon + 1) != text.npos)
-      throw wrongName("ignore", "'" + text + "' is no pair of names", "give FIRST:SECOND, where * is any letters");
+    const std::size_t colon = colonOf(text, 0);
+    if (colon == text.npos || colon == 0 || colon + 1 == text.size() || colonOf(text, colon + 1) != text.npos)
+      throw wrongName("ignore", "'" + text + "' is no pair of names",
+                      "give FIRST:SECOND, where * is any letters and \\: a colon within a name");
     const std::pair two(text.substr(0, colon), text.substr(colon + 1));
     for (const std::string& pattern : {two.first, two.second}) {
       const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };

@@ -27,9 +27,24 @@ TEST(IgnoredPairs, RefuseWhatIsNoPair)
     EXPECT_EQ(test::refusalOf([&] {
                 IgnoredPairs({text}, {"press", "a", "b", "c"});
               }),
-              "ignore: '" + text + "' is no pair of names: give FIRST:SECOND, where * is any letters");
+              "ignore: '" + text +
+                  "' is no pair of names: give FIRST:SECOND, where * is any letters and \\: a colon within a name");
   EXPECT_EQ(test::refusalOf([] { IgnoredPairs({"press:m*"}, {"press"}); }),
             "ignore: 'm*' matches no obstacle: give input, or one of their names");
+}
+
+TEST(IgnoredPairs, HaveColonsInNames)
+{
+  const std::vector<std::string> names = {"press:1", "press:2", R"(C:\plant*)", "C:other", "mill"};
+  const IgnoredPairs ignored({R"(press\:1:mill)", R"(C\:\plant\*:input)"}, names);
+  EXPECT_TRUE(ignored.holds("mill", "press:1"));
+  EXPECT_FALSE(ignored.holds("mill", "press:2"));
+  EXPECT_TRUE(ignored.holds("input", R"(C:\plant*)")) << "a backslash before a letter is itself";
+  EXPECT_FALSE(ignored.holds("input", "C:other"));
+  EXPECT_TRUE(IgnoredPairs({R"(C\:\\plant\*:mill)"}, names).holds(R"(C:\plant*)", "mill"));
+  EXPECT_TRUE(IgnoredPairs({R"(press\:*:mill)"}, names).holds("press:2", "mill"));
+  for (const char* const text : {R"(press\:1)", R"(press\:1\:mill)", "press:1:mill", R"(press\:1:)"})
+    EXPECT_THROW(IgnoredPairs({text}, names), InvalidInput) << text;
 }
 
 TEST(ObstacleNames, RefuseOnesThatTellNothingApart)

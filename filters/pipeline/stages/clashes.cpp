@@ -113,7 +113,8 @@ StageType clashWriter()
       .option(&ClashWriter::between, "between", "the `obstacles` are compared with each other, too, as they stand")
       .option(
           &ClashWriter::ignore, "ignore",
-          "pairs of names that are not compared, of `obstacles` or `input`: \"FIRST:SECOND\", where * is any letters")
+          "pairs of names that are not compared, of `obstacles` or `input`: \"FIRST:SECOND\", where * is any letters, "
+          "and a backslash stands before a colon within a name")
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");
 }

@@ -142,7 +142,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
   app.add_option("--ignore", options.ignored,
                  "two names that are not compared, of obstacles or 'input'; * is any\n"
-                 "letters; may be given again and again")
+                 "letters, \\: a colon within a name; may be given again and again")
       ->type_name("FIRST:SECOND")
       ->allow_extra_args(false);
   addQuestionOptions(app, question, {"clearance"});
