@@ -2,9 +2,9 @@
 #include <pcl_bsh/filters/mesh_collision_filter.h>
 
 #include <pcl_bsh/filters/gathered_result.h>
+#include <pcl_bsh/hierarchy/points_checksum.h>
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/search/used_vertices.h>
-#include <pcl_bsh/hierarchy/points_checksum.h>
 
 #include <array>
 #include <stdexcept>

@@ -35,6 +35,8 @@ solids : mapping of str to bool, optional
     In place of `solid`: whether an obstacle counts with what its faces enclose.
 between : bool, default False
     Obstacles are compared with each other, too.
+overlap : bool, default False
+    With `between`: the area of each surface inside another obstacle that is a solid.
 ignore : sequence of str, optional
     Pairs that are not compared, "FIRST:SECOND", of names of obstacles or 'input'; * is any letters, and a
     backslash stands before a colon within a name.
@@ -91,6 +93,11 @@ struct ObstaclesFound {
   std::vector<NamedPair> between;
 };
 
+std::optional<std::pair<double, double>> endsOf(const std::optional<Interval>& area)
+{
+  return area ? std::optional(std::pair{area->lower, area->upper}) : std::nullopt;
+}
+
 /// Calls with the number of an obstacle and its value, for each that a mapping names.
 /// @throws InvalidInput for a name that no obstacle has
 template <class Use>
@@ -122,7 +129,7 @@ Names patternsOf(const py::object& patterns)
 
 ObstaclesFound collideObstaclesOf(const Cloud& a, const HierarchiesByName& obstacles, double clearance,
                                   const PoseLike& pose_a, const PosesByName& poses, const LengthsByName& clearances,
-                                  const SwitchesByName& solids, bool between, const PatternsLike& ignore,
+                                  const SwitchesByName& solids, bool between, bool overlap, const PatternsLike& ignore,
                                   const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
                                   const py::kwargs& options)
 {
@@ -157,6 +164,7 @@ ObstaclesFound collideObstaclesOf(const Cloud& a, const HierarchiesByName& obsta
     throw InvalidOption("seen", "is about points of obstacles, which this does not tell",
                         "ask collision_flags() about each");
   question.wanted.flags = question.wanted.closest = question.wanted.spacings = true;
+  question.wanted.overlap = overlap;
   Shape input = a.named("a");
   std::vector<ObstaclePair> pairs;
   unlocked([&] {
@@ -224,6 +232,11 @@ void bindObstacles(py::module_& module)
           "clearance", [](const NamedPair& pair) { return pair.clearance; }, "The greater of theirs.")
       .def_property_readonly("verdict", [](const NamedPair& pair) { return verdictOf(pair.verdict); })
       .def_property_readonly("closest", [](const NamedPair& pair) { return pair.closest; })
+      .def_property_readonly(
+          "first_within", [](const NamedPair& pair) { return endsOf(pair.first_within); },
+          "With `overlap`, the area of the first's surface inside the second, a solid: an interval that holds it.")
+      .def_property_readonly(
+          "second_within", [](const NamedPair& pair) { return endsOf(pair.second_within); }, "The other way.")
       .def("__repr__", [](const NamedPair& pair) {
         return "ObstaclePair('" + pair.first_name + "', '" + pair.second_name + "', distance " +
                numberText(pair.closest.distance) + ")";
@@ -251,7 +264,8 @@ void bindObstacles(py::module_& module)
   const auto none = py::none();
   module.def("collide_obstacles", &collideObstaclesOf, kCollideObstacles, "a"_a, "obstacles"_a, "clearance"_a = 0.0,
              py::kw_only(), "pose_a"_a = none, "poses"_a = none, "clearances"_a = none, "solids"_a = none,
-             "between"_a = false, "ignore"_a = none, "accuracy"_a = none, "threads"_a = 1, "progress"_a = none);
+             "between"_a = false, "overlap"_a = false, "ignore"_a = none, "accuracy"_a = none, "threads"_a = 1,
+             "progress"_a = none);
 }
 
 } // namespace pcl_bsh::python

@@ -3,11 +3,13 @@
 
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/overlap.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -297,6 +299,14 @@ std::pair<DistanceResult, std::int32_t> closestAlong(const Question& question, S
   return best;
 }
 
+/// The area of a surface of an obstacle in another, which is asked about as the question says.
+std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
+{
+  if (!between.solid || !surface.isSurface()) return std::nullopt;
+  if (!(closest.distance <= 0.0)) return Interval{0.0, 0.0};
+  return areaWithin(between, surface, solid);
+}
+
 } // namespace
 
 Question questionOf(const Question& question, const PlacedShape& obstacle)
@@ -364,6 +374,14 @@ std::vector<ObstaclePair> askBetween(const Question& question, std::vector<Place
       between.wanted.any = between.wanted.closest = true;
       const Answer answer = ask(between, obstacles[i].shape, obstacles[k].shape);
       pairs.push_back({i, k, *between.clearance, answer.any.verdict, answer.closest});
+      if (question.wanted.overlap) {
+        Shape &one = obstacles[i].shape, &other = obstacles[k].shape;
+        pairs.back().first_within = overlapOf(between, answer.closest, one, other);
+        std::swap(between.pose, between.pose_of_input);
+        std::swap(between.uncertainty, between.obstacle_uncertainty);
+        between.solid = first.solid;
+        pairs.back().second_within = overlapOf(between, answer.closest, other, one);
+      }
       if (question.progress && !question.progress(1.0)) throw Cancelled();
     }
   }

@@ -41,6 +41,7 @@ struct Wanted {
   bool within = false;        ///< which points of the input have a distance within the limits, at one pose
   bool intervals = false;     ///< distances that an early stop leaves open are answers, too: their intervals tell
   bool unseen_places = false; ///< with `seen`: which of the obstacle are unseen at each pose
+  bool overlap = false;       ///< of askBetween(): how much of each surface lies within the other, a solid
   bool spacings = false;      ///< how far points are apart, for the warning of holes: builds a few voxels
 
   bool collisions() const

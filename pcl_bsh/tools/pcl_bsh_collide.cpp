@@ -12,7 +12,6 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/files/replace_file.h>
@@ -23,6 +22,7 @@
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <optional>
 #include <stdexcept>

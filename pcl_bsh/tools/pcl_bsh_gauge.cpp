@@ -8,12 +8,12 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/gauge_fields.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/gauge_drawings.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/track/bogies.h>
 
 #include <cmath>

@@ -110,6 +110,7 @@ TEST_F(Obstacles, AreOneListWithTheirNames)
   EXPECT_EQ(all["between"][0]["state"], "clear");
   EXPECT_EQ(all["between"][0]["distance"], 4.0);
   EXPECT_EQ(list(two, R"(, "between": true, "ignore": ["press:the*"])")["between"].size(), 0U);
+  EXPECT_EQ(list(two, R"(, "between": true, "overlap": true)")["between"][0]["area_of_first_within"][1], 0.0);
   EXPECT_EQ(list(two, R"(, "ignore": ["input:press"])")["obstacles"][0]["state"], "ignored");
 }
 
@@ -197,6 +198,8 @@ TEST_F(Obstacles, RefuseWhatIsNoObstacle)
   const std::string to_list = R"("filename": )" + quoted("a.json") + R"(, "obstacle)";
   EXPECT_THAT(refused(to_list + R"(": )" + quoted("press.off") + R"(, "between": true)", "writers.clashes"),
               EndsWith("/between: is given, and there is one obstacle: give `obstacles`"));
+  EXPECT_THAT(refused(to_list + R"(s": )" + two + R"(, "overlap": true)", "writers.clashes"),
+              EndsWith("/overlap: is of obstacles that are compared: give `between`: true"));
   EXPECT_THAT(refused(to_list + R"(s": )" + two + R"(, "ignore": ["a:b"])", "writers.clashes"),
               EndsWith("/ignore: 'a' matches no obstacle: give input, or one of their names"));
   EXPECT_THAT(refused(to_list + R"(s": )" + two + R"(, "ignore": [3])", "writers.clashes"),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Several obstacles in one question, against brute force."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -71,6 +73,24 @@ def test_count_with_their_inside():
     assert (found.each["full"].colliding, found.each["empty"].colliding) == (1, 0)
     assert (found.each["full"].closest.distance, found.each["empty"].closest.distance) == (-0.25, 0.25)
     assert found.closest_obstacle == "full" and "1 point" in repr(found)
+
+
+def test_tell_how_much_is_inside():
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+    faces = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2],
+                      [2, 4, 6], [1, 3, 5], [3, 7, 5]], dtype=np.uint32)
+    crate = pcl_bsh.SphereHierarchy.of_triangles(corners, faces)
+    up = np.eye(4)
+    up[:3, 3] = [0.25, 0.25, 0.5]
+    scan = pcl_bsh.SphereHierarchy(np.array([[9.0, 9, 9]]))
+    ask = functools.partial(pcl_bsh.collide_obstacles, scan, {"low": crate, "high": crate}, poses={"high": up},
+                            solids={"low": True}, between=True)
+    pair = ask(overlap=True).between[0]
+    lower, upper = pair.second_within
+    expected = 0.75 * 0.75 + 2 * 0.75 * 0.5
+    assert lower <= expected <= upper <= lower * 1.002
+    assert pair.first_within is None
+    assert ask().between[0].second_within is None
 
 
 @pytest.mark.parametrize("arguments, message", [

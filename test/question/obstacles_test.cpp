@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -269,6 +270,32 @@ TEST(Obstacles, StandAgainstEachOther)
   boxes[2].clearance = 3.0;
   EXPECT_EQ(askBetween(question, boxes, all)[1].verdict, Verdict::colliding);
   EXPECT_THAT(askBetween(question, boxes, [](std::uint32_t, std::uint32_t) { return false; }), IsEmpty());
+}
+
+TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
+{
+  const test::TestMesh box = test::boxMesh(1, 1, 1);
+  std::vector<PlacedShape> boxes(3, {Shape("box", viewOf(box.trianglesView()))});
+  boxes[1].pose.translation().z() = 0.75;
+  boxes[1].pose.translation().x() = 0.5;
+  boxes[2].pose.translation().x() = 4.0;
+  boxes[0].solid = true;
+  boxes[2].solid = true;
+  Question question;
+  question.clearance = 5.0;
+  const auto all = [](std::uint32_t, std::uint32_t) { return true; };
+  EXPECT_FALSE(askBetween(question, boxes, all)[0].second_within) << "it was not asked for";
+  question.wanted.overlap = true;
+  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, all);
+  ASSERT_TRUE(pairs[0].second_within);
+  EXPECT_FALSE(pairs[0].first_within) << "the second is no solid";
+  constexpr double expected = 0.5 + 0.25; // of its bottom and a side, beside what lies in the first's sides
+  EXPECT_LE(pairs[0].second_within->lower, expected);
+  EXPECT_GE(pairs[0].second_within->upper, expected);
+  EXPECT_EQ(pairs[1].first_within->upper, 0.0) << "near is not within";
+  EXPECT_EQ(pairs[1].second_within->upper, 0.0);
+  std::swap(boxes[0], boxes[1]);
+  EXPECT_EQ(askBetween(question, boxes, all)[0].first_within->upper, pairs[0].second_within->upper);
 }
 
 TEST(Obstacles, TellProgressThatNeverFalls)

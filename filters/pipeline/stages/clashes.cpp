@@ -16,6 +16,7 @@ struct ClashWriter : Stage, QuestionStage {
   std::string unit;
   std::string input_name = "input";
   bool between = false;
+  bool overlap = false;
   std::vector<std::string> ignore;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
@@ -23,6 +24,8 @@ struct ClashWriter : Stage, QuestionStage {
     Wanted wanted;
     wanted.flags = wanted.contacts = wanted.poses = wanted.unseen_places = true;
     wanted.closest = !obstacles.empty();
+    wanted.overlap = overlap;
+    if (overlap && !between) throw OptionError("overlap", "is of obstacles that are compared: give `between`: true");
     QuestionStage::plan(inputs[0], wanted, *this);
     requireWritable("filename", filename);
     if (also) requireWritable("also", *also);
@@ -111,6 +114,8 @@ StageType clashWriter()
               "new, persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
       .replaceable()
       .option(&ClashWriter::between, "between", "the `obstacles` are compared with each other, too, as they stand")
+      .option(&ClashWriter::overlap, "overlap",
+              "with `between`: the area of each surface inside another obstacle that is a solid, as an interval")
       .option(
           &ClashWriter::ignore, "ignore",
           "pairs of names that are not compared, of `obstacles` or `input`: \"FIRST:SECOND\", where * is any letters, "

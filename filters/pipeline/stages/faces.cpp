@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/faces.h>
+#include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/search/used_vertices.h>
-#include <pcl_bsh/search/cloud_view.h>
 
 #include <memory>
 

@@ -206,12 +206,24 @@ Json obstacleJson(const std::string& name, const ClashQuestion& question, const 
 
 Json betweenJson(const BetweenObstacles& two)
 {
-  return {{"first", two.first},
-          {"second", two.second},
-          {"clearance", two.pair.clearance},
-          {"state", nameOfState(two.pair.verdict)},
-          {"distance", closestJson(two.pair.closest)},
-          {"closest_pair", pairJson(two.pair.closest)}};
+  Json json = {{"first", two.first},
+               {"second", two.second},
+               {"clearance", two.pair.clearance},
+               {"state", nameOfState(two.pair.verdict)},
+               {"distance", closestJson(two.pair.closest)},
+               {"closest_pair", pairJson(two.pair.closest)}};
+  for (const auto& [name, area] :
+       {std::pair{"area_of_first_within", &two.pair.first_within}, {"area_of_second_within", &two.pair.second_within}})
+    if (*area) json[name] = {(*area)->lower, (*area)->upper};
+  return json;
+}
+
+std::string areaText(const std::optional<Interval>& area)
+{
+  if (!area) return {};
+  const auto digits = [](double end) { return numberText(end, std::chars_format::general, 4); };
+  const std::string lower = digits(area->lower), upper = digits(area->upper);
+  return lower == upper ? lower : lower + " to " + upper;
 }
 
 std::string clashJson(const ClashLists& lists)

@@ -141,6 +141,9 @@ Json obstacleJson(const std::string& name, const ClashQuestion& question, const 
                   const ObstacleAnswer& found);
 Json betweenJson(const BetweenObstacles& two);
 
+/// Both ends of an area in four digits; one number where they agree. Empty without an area.
+std::string areaText(const std::optional<Interval>& area);
+
 /// One object per clash, with its closest pair if it is there now. Several obstacles have one object each, too.
 std::string clashJson(const ClashLists& lists);
 

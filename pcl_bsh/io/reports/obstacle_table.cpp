@@ -22,6 +22,7 @@ Data obstacleTable(const ClashLists& lists)
 {
   if (!lists.haveNames()) return false;
   List rows, between;
+  bool has_areas = false;
   for (const ClashReport& report : lists.obstacles) {
     const ObstacleAnswer& found = *report.answer;
     rows.push_back(Object{{"name", plain(report.name)},
@@ -34,13 +35,17 @@ Data obstacleTable(const ClashLists& lists)
                           {"place", found.closest.pair ? placeOf(report, found.closest.pair->a) : std::string()},
                           {"pose", found.closest_pose < 0 ? std::string() : std::to_string(found.closest_pose)}});
   }
-  for (const BetweenObstacles& two : lists.between)
+  for (const BetweenObstacles& two : lists.between) {
+    has_areas = has_areas || two.pair.first_within || two.pair.second_within;
     between.push_back(Object{{"first", plain(two.first)},
                              {"second", plain(two.second)},
                              {"state", nameOfState(two.pair.verdict)},
                              {"clearance", number(two.pair.clearance)},
-                             {"distance", distanceOf(two.pair.closest)}});
-  const Data pairs = between.empty() ? Data(false) : Data(Object{{"rows", between}});
+                             {"distance", distanceOf(two.pair.closest)},
+                             {"first_within", areaText(two.pair.first_within)},
+                             {"second_within", areaText(two.pair.second_within)}});
+  }
+  const Data pairs = between.empty() ? Data(false) : Data(Object{{"rows", between}, {"areas", Data(has_areas)}});
   return Object{{"rows", rows}, {"between", pairs}};
 }
 

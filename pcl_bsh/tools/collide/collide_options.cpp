@@ -10,6 +10,7 @@
 #include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/point_masks.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -74,6 +75,11 @@ void requireConsistent(const CollideOptions& options)
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
   if (options.obstacles.empty() && (options.between || !options.ignored.empty()))
     refuse(options.between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
+  const auto isSolid = [&](const ObstacleChoice& one) { return one.solid.value_or(options.question.solid); };
+  if (options.overlap && !options.between)
+    refuse("--overlap", "is of obstacles that are compared with each other: give --between");
+  if (options.overlap && std::none_of(options.obstacles.begin(), options.obstacles.end(), isSolid))
+    refuse("--overlap", "no obstacle is a solid: give --solid, or solid=true of one");
   if (!options.obstacles.empty() && options.obstacle_out)
     refuse("--obstacle-out", "is of one obstacle: leave it out, or give OBSTACLE alone");
   if (!options.obstacles.empty() && !options.pairs.empty())
@@ -140,6 +146,9 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
   app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
+  app.add_flag("--overlap", options.overlap,
+               "with --between: the area of each surface inside another obstacle that\n"
+               "is a solid, as an interval that holds it");
   app.add_option("--ignore", options.ignored,
                  "two names that are not compared, of obstacles or 'input'; * is any\n"
                  "letters, \\: a colon within a name; may be given again and again")
@@ -213,6 +222,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
   question.wanted.poses = question.wanted.contacts && (!path.swept || options.report); // swept, it takes longer
   question.wanted.distances = options.distances;
+  question.wanted.overlap = options.overlap;
   question.wanted.both_ways = options.distances && options.obstacles.empty();
 
   CommandFiles& files = options.files;

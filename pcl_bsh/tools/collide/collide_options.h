@@ -28,6 +28,7 @@ struct CollideOptions {
   std::vector<ObstacleChoice> obstacles; ///< that have names, or none
   std::vector<std::string> ignored;      ///< pairs of them, as typed
   bool between = false;                  ///< whether they are compared with each other
+  bool overlap = false;                  ///< and tell how much of one lies within another
   std::filesystem::path output;
   std::optional<std::filesystem::path> obstacle_out;
   std::optional<std::filesystem::path> report;

@@ -5,9 +5,9 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/search/used_vertices.h>
-#include <pcl_bsh/search/cloud_view.h>
 
 #include <stdexcept>
 #include <string>

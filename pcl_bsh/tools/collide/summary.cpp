@@ -58,9 +58,14 @@ void tellObstacles(const CollisionReport& report, std::ostream& out)
     if (one.found.closest_pose >= 0) out << " at pose " << one.found.closest_pose;
     out << '\n';
   }
-  for (const io::BetweenObstacles& two : report.between)
-    out << two.first << " and " << two.second << ": " << io::nameOfState(two.pair.verdict) << distance(two.pair.closest)
-        << '\n';
+  for (const io::BetweenObstacles& two : report.between) {
+    out << two.first << " and " << two.second << ": " << io::nameOfState(two.pair.verdict)
+        << distance(two.pair.closest);
+    for (const auto& [name, area] :
+         {std::pair{&two.first, &two.pair.first_within}, {&two.second, &two.pair.second_within}})
+      if (*area && (*area)->upper > 0.0) out << ", area of " << *name << " inside " << io::areaText(*area);
+    out << '\n';
+  }
 }
 
 /// With the unit, where it is known.

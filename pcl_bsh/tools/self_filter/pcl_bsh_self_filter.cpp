@@ -10,7 +10,6 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/geometry/point3.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/files/output_folder.h>
@@ -18,6 +17,7 @@
 #include <pcl_bsh/question/text_numbers.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <nlohmann/json.hpp>
 

@@ -6,8 +6,8 @@
 #include <pcl_bsh/tools/cli/obstacle.h>
 
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <boost/crc.hpp>
 #include <nlohmann/json.hpp>

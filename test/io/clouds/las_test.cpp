@@ -4,9 +4,9 @@
 #include "support/verdicts.h"
 
 #include <pcl_bsh/filters/collision_field.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <algorithm>
 #include <fstream>

@@ -109,6 +109,28 @@ TEST_F(CollideObstacles, StandAgainstEachOther)
   EXPECT_THAT(collide(three + "--ignore \"mill:input\"").out, HasSubstr("mill: ignored\n"));
 }
 
+TEST_F(CollideObstacles, TellHowMuchOfEachOtherIsWithin)
+{
+  const std::string high =
+      "--obstacle press=crate.off --obstacle \"mill=copy.off;pose=0.25,0.25,0.5,0,0,0;solid=true\" ";
+  const Outcome done =
+      collide(high + "--between --overlap --clashes list.json --clashes list.html --report report.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out,
+              HasSubstr("press and mill: clash, smallest distance -0.5 (0.5 deep), area of press inside 1.31"));
+  const SeveralJson pair = json("list.json")["between"][0];
+  EXPECT_LE(pair["area_of_first_within"][0], 1.3125);
+  EXPECT_GE(pair["area_of_first_within"][1], 1.3125);
+  EXPECT_FALSE(pair.contains("area_of_second_within")) << "the press is no solid";
+  EXPECT_EQ(json("report.json")["between"][0], pair);
+  EXPECT_THAT(io::contentOf(folder / "list.html"), HasSubstr("<th>area of it inside the other</th>"));
+  EXPECT_EQ(collide(high + "--between --clashes list.html").exit_code, 0);
+  EXPECT_THAT(io::contentOf(folder / "list.html"), Not(HasSubstr("area of it")));
+  EXPECT_THAT(refused(high + "--overlap"), HasSubstr("--overlap: is of obstacles that are compared with each other"));
+  EXPECT_THAT(refused("--obstacle crate.off --obstacle copy.off --between --overlap"),
+              HasSubstr("--overlap: no obstacle is a solid: give --solid, or solid=true of one"));
+}
+
 TEST_F(CollideObstacles, AreClearWithTheirSmallestDistance)
 {
   const Outcome done = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --clashes list.json");

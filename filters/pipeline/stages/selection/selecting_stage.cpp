@@ -2,8 +2,8 @@
 #include <pcl_bsh/filters/pipeline/stages/faces.h>
 #include <pcl_bsh/filters/pipeline/stages/selection/selecting_stage.h>
 #include <pcl_bsh/filters/removed_points.h>
-#include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/search/cloud_view.h>
+#include <pcl_bsh/search/selected_records.h>
 
 #include <limits>
 
