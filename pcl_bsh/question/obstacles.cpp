@@ -3,13 +3,11 @@
 
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/question/options.h>
-#include <pcl_bsh/question/overlap.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 namespace pcl_bsh {
 namespace {
@@ -299,14 +297,6 @@ std::pair<DistanceResult, std::int32_t> closestAlong(const Question& question, S
   return best;
 }
 
-/// The area of a surface of an obstacle in another, which is asked about as the question says.
-std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
-{
-  if (!between.solid || !surface.isSurface()) return std::nullopt;
-  if (!(closest.distance <= 0.0)) return Interval{0.0, 0.0};
-  return areaWithin(between, surface, solid);
-}
-
 } // namespace
 
 Question questionOf(const Question& question, const PlacedShape& obstacle)
@@ -350,42 +340,6 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
   }
   joined.fill(question.poses().size());
   return joined.finish(question.path.has_value());
-}
-
-std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
-                                     const std::function<bool(std::uint32_t, std::uint32_t)>& wanted)
-{
-  std::vector<ObstaclePair> pairs;
-  for (std::uint32_t i = 0; i < obstacles.size(); ++i) {
-    for (std::uint32_t k = i + 1; k < obstacles.size(); ++k) {
-      if (!wanted(i, k)) continue;
-      const Question first = questionOf(question, obstacles[i]), second = questionOf(question, obstacles[k]);
-      Question between;
-      static_cast<Effort&>(between) = question;
-      between.progress = nullptr;
-      between.pose_of_input = obstacles[i].pose;
-      between.pose = obstacles[k].pose;
-      between.clearance = std::max(first.clearance.value_or(0.0), second.clearance.value_or(0.0));
-      between.uncertainty = first.obstacle_uncertainty;
-      between.obstacle_uncertainty = second.obstacle_uncertainty;
-      between.ignore_points = between.obstacle_ignore_points = question.obstacle_ignore_points;
-      between.input_solid = first.solid;
-      between.solid = second.solid;
-      between.wanted.any = between.wanted.closest = true;
-      const Answer answer = ask(between, obstacles[i].shape, obstacles[k].shape);
-      pairs.push_back({i, k, *between.clearance, answer.any.verdict, answer.closest});
-      if (question.wanted.overlap) {
-        Shape &one = obstacles[i].shape, &other = obstacles[k].shape;
-        pairs.back().first_within = overlapOf(between, answer.closest, one, other);
-        std::swap(between.pose, between.pose_of_input);
-        std::swap(between.uncertainty, between.obstacle_uncertainty);
-        between.solid = first.solid;
-        pairs.back().second_within = overlapOf(between, answer.closest, other, one);
-      }
-      if (question.progress && !question.progress(1.0)) throw Cancelled();
-    }
-  }
-  return pairs;
 }
 
 } // namespace pcl_bsh

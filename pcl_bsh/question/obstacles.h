@@ -85,8 +85,8 @@ struct ObstaclePair {
 };
 
 /// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not
-/// count.
-/// @param wanted whether a pair counts, by its numbers
+/// count. Pairs are shared out among the threads.
+/// @param wanted whether a pair counts, by its numbers; called by the thread that asks
 /// @throws as ask() does
 std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
                                      const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);

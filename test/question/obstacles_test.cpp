@@ -272,6 +272,35 @@ TEST(Obstacles, StandAgainstEachOther)
   EXPECT_THAT(askBetween(question, boxes, [](std::uint32_t, std::uint32_t) { return false; }), IsEmpty());
 }
 
+TEST(Obstacles, StandAgainstEachOtherOnAnyNumberOfThreads)
+{
+  const Crowd crowd(23);
+  std::vector<PlacedShape> obstacles = crowd.obstacles();
+  for (const PlacedShape& one : crowd.obstacles()) {
+    obstacles.push_back(one);
+    obstacles.back().pose.translation().z() += 0.4;
+  }
+  Question question;
+  question.clearance = 0.125;
+  const auto all = [](std::uint32_t i, std::uint32_t k) { return i + k != 4; };
+  const std::vector<ObstaclePair> one = askBetween(question, obstacles, all);
+  question.threads = 4;
+  std::size_t told = 0;
+  question.progress = [&](double done) { return ++told, done == 1.0; };
+  const std::vector<ObstaclePair> four = askBetween(question, obstacles, all);
+  ASSERT_EQ(one.size(), 13U);
+  ASSERT_EQ(four.size(), one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(four[i].first, one[i].first);
+    EXPECT_EQ(four[i].second, one[i].second);
+    EXPECT_EQ(four[i].verdict, one[i].verdict);
+    EXPECT_EQ(four[i].closest.distance, one[i].closest.distance);
+  }
+  EXPECT_GT(told, 0U);
+  question.progress = [](double) { return false; };
+  EXPECT_THROW(askBetween(question, obstacles, all), Cancelled);
+}
+
 TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
 {
   const test::TestMesh box = test::boxMesh(1, 1, 1);

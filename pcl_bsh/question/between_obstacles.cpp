@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/question/obstacles.h>
+#include <pcl_bsh/question/overlap.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+/// The area of a surface of an obstacle in another, which is asked about as the question says.
+std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
+{
+  if (!between.solid || !surface.isSurface()) return std::nullopt;
+  if (!(closest.distance <= 0.0)) return Interval{0.0, 0.0};
+  return areaWithin(between, surface, solid);
+}
+
+/// How two obstacles stand to each other. @param one, @param other the questions about each
+ObstaclePair pairOf(const Question& question, const Question& one, Shape& first, const Question& other, Shape& second)
+{
+  Question between;
+  between.accuracy = question.accuracy;
+  between.threads = question.threads;
+  between.pose_of_input = one.pose;
+  between.pose = other.pose;
+  between.clearance = std::max(one.clearance.value_or(0.0), other.clearance.value_or(0.0));
+  between.uncertainty = one.obstacle_uncertainty;
+  between.obstacle_uncertainty = other.obstacle_uncertainty;
+  between.sigmas = question.sigmas;
+  between.ignore_points = between.obstacle_ignore_points = question.obstacle_ignore_points;
+  between.input_solid = one.solid;
+  between.solid = other.solid;
+  between.wanted.any = between.wanted.closest = true;
+  const Answer answer = ask(between, first, second);
+  ObstaclePair pair{0, 0, *between.clearance, answer.any.verdict, answer.closest};
+  if (!question.wanted.overlap) return pair;
+  pair.first_within = overlapOf(between, answer.closest, first, second);
+  std::swap(between.pose, between.pose_of_input);
+  between.solid = one.solid;
+  pair.second_within = overlapOf(between, answer.closest, second, first);
+  return pair;
+}
+
+} // namespace
+
+std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
+                                     const std::function<bool(std::uint32_t, std::uint32_t)>& wanted)
+{
+  Question of_one = question;
+  of_one.path.reset();
+  of_one.pose.setIdentity();
+  of_one.pose_uncertainty = {};
+  std::vector<Question> questions;
+  std::vector<Shape> shapes; // copies, for what is built here is built for other uncertainties
+  for (const PlacedShape& obstacle : obstacles) {
+    questions.push_back(questionOf(of_one, obstacle));
+    shapes.push_back(obstacle.shape);
+    shapes.back().ignore(question.obstacle_ignore_points);
+    shapes.back().hierarchy(questions.back().uncertaintyOfObstacle(), question.threads);
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> asked;
+  for (std::uint32_t i = 0; i < obstacles.size(); ++i)
+    for (std::uint32_t k = i + 1; k < obstacles.size(); ++k)
+      if (wanted(i, k)) asked.emplace_back(i, k);
+
+  if (asked.size() > 1) of_one.threads = 1; // of each pair
+
+  std::function<bool(double)> report; // of what comes after all else
+  if (question.progress) report = [&](double) { return question.progress(1.0); };
+  Progress progress(report);
+  progress.begin(1.0, asked.size());
+  std::vector<ObstaclePair> pairs(asked.size());
+  parallelFor(asked.size(), threadCount(question.threads), [&](std::size_t p) {
+    if (progress.stopped()) return;
+    const std::uint32_t i = asked[p].first, k = asked[p].second;
+    Shape first = shapes[i], second = shapes[k]; // which share what is built
+    pairs[p] = pairOf(of_one, questions[i], first, questions[k], second);
+    pairs[p].first = i;
+    pairs[p].second = k;
+    progress.step();
+  });
+  progress.end();
+  return pairs;
+}
+
+} // namespace pcl_bsh
