@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/question/obstacles.h>
+
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/query/progress.h>
-#include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/question/overlap.h>
 
 #include <algorithm>
@@ -39,6 +40,7 @@ ObstaclePair pairOf(const Question& question, const Question& one, Shape& first,
   if (!question.wanted.overlap) return pair;
   pair.first_within = overlapOf(between, answer.closest, first, second);
   std::swap(between.pose, between.pose_of_input);
+  std::swap(between.uncertainty, between.obstacle_uncertainty);
   between.solid = one.solid;
   pair.second_within = overlapOf(between, answer.closest, second, first);
   return pair;
@@ -46,7 +48,7 @@ ObstaclePair pairOf(const Question& question, const Question& one, Shape& first,
 
 } // namespace
 
-std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
+std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,
                                      const std::function<bool(std::uint32_t, std::uint32_t)>& wanted)
 {
   Question of_one = question;

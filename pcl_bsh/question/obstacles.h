@@ -88,7 +88,7 @@ struct ObstaclePair {
 /// count. Pairs are shared out among the threads.
 /// @param wanted whether a pair counts, by its numbers; called by the thread that asks
 /// @throws as ask() does
-std::vector<ObstaclePair> askBetween(const Question& question, std::vector<PlacedShape>& obstacles,
+std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,
                                      const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);
 
 } // namespace pcl_bsh

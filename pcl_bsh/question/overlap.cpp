@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kOpenShare = 0x1p-10; ///< of the upper end
 constexpr std::size_t kMostOpenParts = std::size_t{1} << 18;
-/// Times the greatest coordinate: more than 2^8 halvings move a corner. Each rounds three coordinates by 2^-53 of it.
+constexpr int kMostHalvings = 40;
+/// Times the greatest coordinate: more than these halvings move a corner. Each rounds three coordinates by 2^-53 of it.
 constexpr double kCornerError = 0x1p-44;
 /// A pose is rigid within 1e-6, and doubles of lengths are off by far less.
 constexpr double kRigid = 1.0 + 0x1p-18;
@@ -102,7 +103,7 @@ Interval areaWithin(const Question& question, Shape& surface, Shape& solid)
     error += part.area_error;
     ++terms;
   };
-  while (!open.empty()) {
+  for (int halvings = 0; !open.empty(); ++halvings) {
     std::vector<Point3> places;
     for (const TrianglePart& part : open) places.push_back(middleOf(part));
     const std::vector<double> distances = distancesOf(question, places, solid);
@@ -116,7 +117,8 @@ Interval areaWithin(const Question& question, Shape& surface, Shape& solid)
       open_area += open[i].area;
     }
     open.clear();
-    if (open_area <= kOpenShare * (inside + open_area) || 2 * still.size() > kMostOpenParts)
+    if (open_area <= kOpenShare * (inside + open_area) || 2 * still.size() > kMostOpenParts ||
+        halvings == kMostHalvings)
       for (const TrianglePart& part : still) add(part, undecided);
     else
       for (const TrianglePart& part : still) halve(part, open);

@@ -122,6 +122,16 @@ TEST(Overlap, OfASurfaceInTheSurfaceStaysOpen)
   EXPECT_LE(area.upper, 1.1);
 }
 
+/// The corner of a crate stands on the other's face: halving ends.
+TEST(Overlap, OfACornerThatTouchesIsNothing)
+{
+  TestMesh crate = test::boxMesh(1, 1, 1);
+  for (Point3& p : crate.vertices) p[2] += p[0] + p[1]; // a parallelepiped on its corner
+  const Interval area = areaOf(crate, box(4, 4, 4, moved(0, 0, -4)));
+  EXPECT_EQ(area.lower, 0.0);
+  EXPECT_LE(area.upper, 1e-9);
+}
+
 /// Its parts on the inner side of six planes.
 double clippedArea(const Triangle3& triangle, const Eigen::Isometry3d& into_box, const Eigen::Vector3d& half)
 {
