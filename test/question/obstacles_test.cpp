@@ -305,8 +305,7 @@ TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
 {
   const test::TestMesh box = test::boxMesh(1, 1, 1);
   std::vector<PlacedShape> boxes(3, {Shape("box", viewOf(box.trianglesView()))});
-  boxes[1].pose.translation().z() = 0.75;
-  boxes[1].pose.translation().x() = 0.5;
+  boxes[1].pose.translation() << 0.5, 0.0625, 0.75;
   boxes[2].pose.translation().x() = 4.0;
   boxes[0].solid = true;
   boxes[2].solid = true;
@@ -318,7 +317,7 @@ TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
   const std::vector<ObstaclePair> pairs = askBetween(question, boxes, all);
   ASSERT_TRUE(pairs[0].second_within);
   EXPECT_FALSE(pairs[0].first_within) << "the second is no solid";
-  constexpr double expected = 0.5 + 0.25; // of its bottom and a side, beside what lies in the first's sides
+  constexpr double expected = 0.5 * 0.9375 + 0.25 * 0.9375 + 0.5 * 0.25;
   EXPECT_LE(pairs[0].second_within->lower, expected);
   EXPECT_GE(pairs[0].second_within->upper, expected);
   EXPECT_EQ(pairs[1].first_within->upper, 0.0) << "near is not within";
