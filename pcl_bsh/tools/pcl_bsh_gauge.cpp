@@ -4,7 +4,6 @@
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/gauge/gauge_options.h>
 #include <pcl_bsh/tools/gauge/scan.h>
-#include <pcl_bsh/tools/gauge/section_picture.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/gauge_fields.h>
@@ -12,6 +11,7 @@
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/gauge_drawings.h>
+#include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/track/bogies.h>
@@ -122,8 +122,11 @@ void writeSections(const Options& options, const io::GaugeReport& report)
     std::string name = section.name;
     for (char& c : name) c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const std::string drawing = io::sectionDrawing(report, section);
-    files::replaceFile(options.sections / (name + ".svg"), [&](std::ostream& out) { out << drawing; });
-    if (options.pictures) cli::writePicture(options.sections / (name + ".png"), drawing);
+    const auto write = [&](const char* extension, const std::string& content) {
+      files::replaceFile(options.sections / (name + extension), [&](std::ostream& out) { out << content; });
+    };
+    write(".svg", drawing);
+    if (options.pictures) write(".png", io::pngOf(drawing, 3.0));
   }
 }
 

@@ -58,6 +58,26 @@ inline std::map<std::string, std::string> filesOfZip(const std::string& zip)
   return files;
 }
 
+/// Width and height of a PNG whose chunks have the checksums that they say, by its specification.
+inline std::pair<std::size_t, std::size_t> sizeOfPng(const std::string& png)
+{
+  const auto number = [&](std::size_t at) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8U | static_cast<unsigned char>(png.at(at + i));
+    return value;
+  };
+  if (png.substr(0, 8) != "\x89PNG\r\n\x1a\n" || png.substr(12, 4) != "IHDR") throw std::runtime_error("no PNG");
+  for (std::size_t at = 8;;) {
+    const std::size_t bytes = number(at);
+    const std::string content = png.substr(at + 4, 4 + bytes);
+    if (crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size())) !=
+        number(at + 8 + bytes))
+      throw std::runtime_error("a chunk has another checksum");
+    at += 12 + bytes;
+    if (content == "IEND" && at == png.size()) return {number(16), number(20)};
+  }
+}
+
 /// Types as the schemas have them: attributes (@name:type, with ! where required), then the sequence of elements
 /// (name:type, with ? * + as in regular expressions).
 class BcfSchema {

@@ -80,8 +80,9 @@ private:
     const io::ClashLists lists =
         io::listOf(listing_, found.inputHierarchy(question), hierarchies, found.obstacles, found.answer, warnings);
     for (std::string& warning : warnings) warn(std::move(warning));
-    io::writeClashes(filename.path, lists);
-    if (also) io::writeClashes(also->path, lists);
+    for (std::string& remark : io::writeClashes(filename.path, lists)) warn(std::move(remark));
+    if (!also) return;
+    for (std::string& remark : io::writeClashes(also->path, lists)) warn(std::move(remark));
   }
 
   IgnoredPairs ignored_;

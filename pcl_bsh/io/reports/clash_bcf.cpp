@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clashes as BCF: a topic and a viewpoint for each.
 #include <pcl_bsh/base/counted.h>
-#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/clash_drawings.h>
+#include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/reports/zip_archive.h>
 #include <pcl_bsh/io/text/number_text.h>
@@ -18,7 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr auto bcf_author = "pcl_bsh", open_topic = "Open", closed_topic = "Closed";
+constexpr double snapshot_pixels = 1.5; ///< of a unit of the drawing: more take long
+constexpr auto bcf_author = "pcl_bsh", open_topic = "Open", closed_topic = "Closed", snapshot_file = "snapshot.png";
 
 /// As XML can hold it: UTF-8 without control characters.
 std::string xmlText(const std::string& text)
@@ -52,7 +54,7 @@ std::string textOf(const pugi::xml_document& document)
 double metresOf(const std::string& unit)
 {
   for (const auto& [name, metres] :
-       {std::pair{"mm", 0.001}, {"cm", 0.01}, {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}})
+       {std::pair{"mm", 0.001}, {"cm", 0.01}, {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}, {"us-ft", 1200.0 / 3937}})
     if (unit == name) return metres;
   return 1;
 }
@@ -61,6 +63,7 @@ class BcfArchive {
 public:
   BcfArchive(const ClashLists& lists, bool is_version_3)
   : lists_(lists),
+    drawings_(lists),
     report_(&lists.obstacles.front()),
     is_3_(is_version_3),
     date_(reportDate()),
@@ -156,11 +159,12 @@ private:
     users_.insert(comment.author);
   }
 
-  void addViewpoint(pugi::xml_node parent, const char* name, const std::string& guid)
+  void addViewpoint(pugi::xml_node parent, const char* name, const std::string& guid, bool has_picture)
   {
     pugi::xml_node node = parent.append_child(name);
     node.append_attribute("Guid") = guid.c_str();
     addText(node, "Viewpoint", "viewpoint.bcfv");
+    if (has_picture) addText(node, "Snapshot", snapshot_file);
   }
 
   void addClash(const Clash& clash)
@@ -209,7 +213,10 @@ private:
       const pugi::xml_node comments = parent("Comments");
       for (const BcfComment& comment : earlier->comments) addComment(comments, comment);
     }
-    addViewpoint(parent("Viewpoints"), is_3_ ? "ViewPoint" : "Viewpoints", viewpoint);
+    const bool has_picture = drawsPictures() && isPresent(clash.status) && pictures_++ < most_clash_pictures;
+    addViewpoint(parent("Viewpoints"), is_3_ ? "ViewPoint" : "Viewpoints", viewpoint, has_picture);
+    if (has_picture)
+      files_[guid + '/' + snapshot_file] = pngOf(drawings_.picture(*report_, clash, titleOf(clash)), snapshot_pixels);
     files_[guid + "/markup.bcf"] = textOf(document);
     files_[guid + "/viewpoint.bcfv"] = viewpointOf(clash, viewpoint);
   }
@@ -313,6 +320,8 @@ private:
   }
 
   const ClashLists& lists_;
+  const ClashDrawings drawings_;
+  std::size_t pictures_ = 0;
   const ClashReport* report_; ///< of the clash that is written
   bool is_3_;
   std::string date_;

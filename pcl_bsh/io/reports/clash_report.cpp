@@ -3,6 +3,7 @@
 #include <pcl_bsh/geometry/triangle/nearest_point.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/question/options.h>
@@ -330,7 +331,7 @@ std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::file
   return warnings;
 }
 
-void writeClashes(const std::filesystem::path& path, const ClashLists& lists)
+std::vector<std::string> writeClashes(const std::filesystem::path& path, const ClashLists& lists)
 {
   const std::string format = formatOf(path);
   const std::string text = format == ".json"        ? clashJson(lists)
@@ -338,6 +339,8 @@ void writeClashes(const std::filesystem::path& path, const ClashLists& lists)
                            : isBcfExtension(format) ? clashBcf(lists, format == ".bcf")
                                                     : clashPage(lists);
   files::replaceFile(path, [&](std::ostream& out) { out << text; });
+  if (!isBcfExtension(format) || drawsPictures() || lists.present() == 0) return {};
+  return {path.string() + ": has no pictures, for this was built without librsvg (librsvg2-dev)"};
 }
 
 void requireClashFormat(const std::filesystem::path& path)

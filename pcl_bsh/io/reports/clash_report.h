@@ -156,13 +156,15 @@ std::string clashPage(const ClashLists& lists);
 
 /// A topic for each clash, with a viewpoint, as an archive of BCF 3.0 or 2.1. The GUID of a topic follows from the id
 /// of its clash. Status, comments and assignees are those of `topics`. Resolved clashes are closed, new ones are open.
-/// With the list of clashJson() as a document. Coordinates of viewpoints are in metres where the unit is known.
+/// With the list of clashJson() as a document, and with a picture of each clash (the 200 most severe of those that are
+/// there) where this was built with librsvg. Coordinates of viewpoints are in metres where the unit is known.
 std::string clashBcf(const ClashLists& lists, bool is_version_3);
 
 /// Writes the format that the extension names: .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1). The file appears
 /// complete or not at all.
+/// @return what users should know of it; usually empty
 /// @throws files::FileError
-void writeClashes(const std::filesystem::path& path, const ClashLists& lists);
+std::vector<std::string> writeClashes(const std::filesystem::path& path, const ClashLists& lists);
 
 /// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
 void requireClashFormat(const std::filesystem::path& path);

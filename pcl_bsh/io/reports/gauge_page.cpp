@@ -91,7 +91,7 @@ void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report
                                  {"gaps", gapsOf(report, t, e)}});
   for (const GaugeSection& section : report.sections)
     sections.push_back(Object{{"drawing", sectionDrawing(report, section)}});
-  const Object page = {{"style", std::string(page_style_css)},
+  const Object page = {{"style", pageStyle()},
                        {"scan", plain(report.scan)},
                        {"along", alongOf(report)},
                        {"named", report.named()},

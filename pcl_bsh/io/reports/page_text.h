@@ -6,6 +6,7 @@
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
 
+#include "drawing_style.css.h"
 #include "page_style.css.h"
 
 #include <Eigen/Geometry>
@@ -72,12 +73,18 @@ inline Data numberOrNone(double value)
   return std::isfinite(value) ? Data(number(value)) : Data(false);
 }
 
+/// Returns the styles of pages and of the drawings on them.
+inline std::string pageStyle()
+{
+  return std::string(page_style_css) + std::string(drawing_style_css);
+}
+
 /// Returns the facts that each page states about two clouds and an answer about them.
 template <typename Question>
 Object pageAbout(const Question& question, const std::string& coordinate_system, const std::string& accuracy,
                  const std::string& promise)
 {
-  return {{"style", std::string(page_style_css)},
+  return {{"style", pageStyle()},
           {"input", plain(question.input)},
           {"obstacle", plain(question.obstacle)},
           {"program", reportProgram()},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gauge_options.h"
-#include "section_picture.h"
 
 #include <pcl_bsh/tools/cli/command_line.h>
 
@@ -144,7 +143,9 @@ void requireTogether(const GaugeOptions& options)
                      [&](const io::EnvelopeFiles& profile) { return io::countsOn(profile, axis.name); }))
       refuse("--track", "no profile counts on the track '" + axis.name + "': name it, too");
   if (options.pictures && options.sections.empty()) refuse("--png", "draws sections: give --sections FOLDER");
-  if (options.pictures) requirePictures();
+  if (options.pictures && !io::drawsPictures())
+    throw UsageError("--png: this program was built without librsvg: build it where librsvg2-dev is installed, or "
+                     "leave it out: browsers show the .svg files");
   if (!options.at.empty() && !options.draws())
     refuse("--at", "draws sections: give --sections FOLDER or --page FILE.html");
 }

@@ -101,7 +101,8 @@ void SiteClashList::write(site::SiteClashes clashes, const PointsView& model, co
   report["clashes_perhaps"] = list.perhaps();
   if (site::rankHere() != 0) return;
   if (options_.previous) compare(list, visit);
-  for (const std::filesystem::path& file : options_.clashes) io::writeClashes(file, list);
+  for (const std::filesystem::path& file : options_.clashes)
+    for (std::string& remark : io::writeClashes(file, list)) warnings_.push_back(std::move(remark));
   counts_ = io::clashCounts(list);
 }
 

@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/reports/zip_archive.h>
 #include <pcl_bsh/io/text/format_error.h>
 
@@ -87,13 +88,13 @@ TEST_F(ClashBcf, IsWhatTheSchemasSay)
     const auto files = filesOfZip(clashBcf(report, is_3));
     std::set<std::string> roots;
     for (const auto& [name, content] : files) {
-      if (content[0] == '{') continue;
+      if (content[0] == '{' || name.ends_with(".png")) continue;
       EXPECT_EQ(schema.faultsOf(content), "") << name << '\n' << content;
       pugi::xml_document document;
       document.load_buffer(content.data(), content.size());
       roots.insert(document.document_element().name());
     }
-    EXPECT_EQ(files.size(), is_3 ? 8U : 6U);
+    EXPECT_EQ(files.size(), (is_3 ? 8U : 6U) + (drawsPictures() ? 1U : 0U)) << "one of both clashes is there";
     EXPECT_EQ(roots.size(), is_3 ? 5U : 3U);
     const std::string list = is_3 ? files.at(bcfListDocument()) : files.at("clashes.json");
     EXPECT_EQ(parseClashes(list, "list").clashes.size(), 2U);
@@ -105,6 +106,42 @@ TEST_F(ClashBcf, IsWhatTheSchemasSay)
       EXPECT_THAT(xml, HasSubstr("coordinate system: UTM &amp; &lt;32N&gt;"));
     }
   }
+}
+
+TEST_F(ClashBcf, ClashesThatAreThereHavePictures)
+{
+  ClashReport report = reportAt({0, 2});
+  report.clashes[1].status = ClashStatus::resolved;
+  const auto snapshotOf = [](const std::string& markup) {
+    pugi::xml_document document;
+    document.load_buffer(markup.data(), markup.size());
+    const auto root = document.document_element();
+    return std::string(root.child("Viewpoints").child_value("Snapshot")) +
+           root.child("Topic").child("Viewpoints").child("ViewPoint").child_value("Snapshot");
+  };
+  for (const bool is_3 : {false, true}) {
+    const auto files = filesOfZip(clashBcf(report, is_3));
+    const std::string there = bcfGuid(report.clashes[0].id), gone = bcfGuid(report.clashes[1].id);
+    EXPECT_EQ(snapshotOf(files.at(there + "/markup.bcf")), drawsPictures() ? "snapshot.png" : "");
+    EXPECT_EQ(snapshotOf(files.at(gone + "/markup.bcf")), "");
+    EXPECT_FALSE(files.contains(gone + "/snapshot.png"));
+    if (drawsPictures()) EXPECT_EQ(sizeOfPng(files.at(there + "/snapshot.png")), (std::pair{780UL, 945UL}));
+  }
+  const std::vector<std::string> told = writeClashes(folder / "list.bcf", report);
+  EXPECT_EQ(told.size(), drawsPictures() ? 0U : 1U);
+  EXPECT_TRUE(writeClashes(folder / "list.json", report).empty());
+}
+
+TEST_F(ClashBcf, FeetOfTheSurveyAreMetres)
+{
+  ClashReport report = reportAt({2});
+  report.unit = "us-ft";
+  const auto files = filesOfZip(clashBcf(report, true));
+  pugi::xml_document document;
+  const std::string& xml = files.at(bcfGuid(report.clashes[0].id) + "/viewpoint.bcfv");
+  document.load_buffer(xml.data(), xml.size());
+  const auto start = document.document_element().child("Lines").child("Line").child("StartPoint");
+  EXPECT_NEAR(start.child("X").text().as_double(), 20 * 1200.0 / 3937, 1e-12);
 }
 
 TEST_F(ClashBcf, ViewpointsLookAtTheClash)

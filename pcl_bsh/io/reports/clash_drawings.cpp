@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/reports/clash_drawings.h>
+#include <pcl_bsh/io/reports/page_text.h>
+
+#include "clash_approach.svg.h"
+#include "clash_picture.svg.h"
+#include "clash_top_view.svg.h"
+
+#include <limits>
+
+namespace pcl_bsh::io {
+namespace {
+
+constexpr std::size_t most_dots = 500; ///< of a clash in a drawing
+constexpr Area top_view_area{6, 6, 508, 268}, approach_area{54, 10, 456, 236};
+
+double greatestClearance(const ClashLists& lists)
+{
+  double greatest = 0.0;
+  for (const ClashReport& report : lists.obstacles) greatest = std::max(greatest, *report.question.clearance);
+  return greatest;
+}
+
+/// The smallest distance of all that are there now, infinity without clashes.
+double closestOf(const ClashLists& lists)
+{
+  double closest = std::numeric_limits<double>::infinity();
+  for (const ClashReport& report : lists.obstacles)
+    for (const Clash& clash : report.clashes)
+      if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
+  return closest;
+}
+
+} // namespace
+
+ClashDrawings::ClashDrawings(const ClashLists& lists)
+: clearance_(greatestClearance(lists)),
+  closest_(closestOf(lists)),
+  lowest_(std::isfinite(closest_) ? std::min(0.0, closest_) : 0.0),
+  range_(clearance_ - lowest_)
+{
+}
+
+std::string ClashDrawings::colorOf(double distance) const
+{
+  const double share = clearance_ > 0 ? std::clamp(distance / clearance_, 0.0, 1.0) : 0.0;
+  const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
+  return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
+}
+
+double ClashDrawings::shareOf(double distance) const
+{
+  return range_ > 0 ? std::clamp((distance - lowest_) / range_, 0.0, 1.0) : 0.0;
+}
+
+/// Some of its points, evenly picked, as circles. These are too many to be data of the template.
+/// @param x, y where the clash's record of a number lies in the drawing
+template <typename X, typename Y>
+std::string ClashDrawings::dotsOf(const Clash& clash, const X& x, const Y& y) const
+{
+  std::string dots;
+  const std::size_t count = std::min(clash.records.size(), most_dots);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * clash.records.size() / count;
+    dots += "<circle cx=\"" + coordinate(x(i)) + "\" cy=\"" + coordinate(y(i)) + "\" r=\"2\" fill=\"" +
+            colorOf(static_cast<double>(clash.distances[i])) + "\"/>";
+  }
+  return dots;
+}
+
+std::string ClashDrawings::topView(const ClashReport& report, const Clash& clash) const
+{
+  const Eigen::Vector3d scan = report.scanPoint(clash), model = report.modelPoint(clash);
+  Eigen::AlignedBox2d box(Eigen::Vector2d(clash.low[0], clash.low[1]), Eigen::Vector2d(clash.high[0], clash.high[1]));
+  box.extend(model.head<2>());
+  const double least = std::max({box.sizes().maxCoeff() * 0.1, report.cluster_distance, 1e-9});
+  const Eigen::Vector2d size = box.sizes().array() + least;
+  const ViewFromAbove seen{top_view_area, box.center(), size};
+  return rendered(
+      "clash_top_view.svg", clash_top_view_svg,
+      Object{{"dots", dotsOf(
+                          clash, [&](std::size_t i) { return seen.x(report.scan.point(clash.records[i])[0]); },
+                          [&](std::size_t i) { return seen.y(report.scan.point(clash.records[i])[1]); })},
+             {"scan_x", coordinate(seen.x(scan.x()))},
+             {"scan_y", coordinate(seen.y(scan.y()))},
+             {"model_x", coordinate(seen.x(model.x()))},
+             {"model_y", coordinate(seen.y(model.y()))},
+             {"scale_width", coordinate(seen.bar * seen.scale)},
+             {"scale_end", number(top_view_area.left + 10 + seen.bar * seen.scale + 6, 6)},
+             {"scale_length", number(seen.bar)}});
+}
+
+std::string ClashDrawings::approach(const ClashReport& report, const Clash& clash) const
+{
+  constexpr const Area& area = approach_area;
+  std::int32_t first = clash.closest_pose, last = clash.closest_pose;
+  for (const std::int32_t pose : clash.closest_poses) {
+    first = std::min(first, pose);
+    last = std::max(last, pose);
+  }
+  const auto x = [&](std::int32_t pose) {
+    if (first == last) return area.left + area.width / 2;
+    return area.left + 6 + (area.width - 12) * static_cast<double>(pose - first) / (last - first);
+  };
+  const auto y = [&](double distance) { return area.top + area.height - 4 - (area.height - 12) * shareOf(distance); };
+  const double limit_y = y(*report.question.clearance);
+  return rendered("clash_approach.svg", clash_approach_svg,
+                  Object{{"dots", dotsOf(
+                                      clash, [&](std::size_t i) { return x(clash.closest_poses[i]); },
+                                      [&](std::size_t i) { return y(static_cast<double>(clash.distances[i])); })},
+                         {"limit", number(*report.question.clearance, 3)},
+                         {"limit_y", number(limit_y, 6)},
+                         {"limit_text_y", number(limit_y + 4, 6)},
+                         {"lowest", number(lowest_, 3)},
+                         {"lowest_text_y", number(y(lowest_) + 2, 6)},
+                         {"closest_x", coordinate(x(clash.closest_pose))},
+                         {"closest_y", coordinate(y(clash.distance))},
+                         {"only", first == last ? Data(std::to_string(first)) : Data(false)},
+                         {"first", std::to_string(first)},
+                         {"last", std::to_string(last)}});
+}
+
+std::string ClashDrawings::picture(const ClashReport& report, const Clash& clash, const std::string& title) const
+{
+  return rendered("clash_picture.svg", clash_picture_svg,
+                  Object{{"style", std::string(drawing_style_css)},
+                         {"title", plain(title)},
+                         {"top_view", topView(report, clash)},
+                         {"approach", approach(report, clash)}});
+}
+
+} // namespace pcl_bsh::io
