@@ -19,6 +19,7 @@ std::shared_ptr<StageCloud> emptyLike(const StageCloud& cloud)
   auto empty = std::make_shared<StageCloud>(
       StageCloud{withoutRecords(cloud.cloud), cloud.viewpoint, cloud.las_header, cloud.scanners});
   empty->coordinate_system = cloud.coordinate_system;
+  empty->system_definition = cloud.system_definition;
   return empty;
 }
 

@@ -42,6 +42,7 @@ struct StageCloud {
   /// Why a file's points say less than the file: it joins them by lines, edges ... and has no faces. Empty else.
   std::string corners_alone = {};
   std::string coordinate_system = {}; ///< as a LAS or E57 file names it; else empty
+  std::string system_definition = {}; ///< of that: codes or WKT; empty where it is not known, and once points are moved
 };
 
 /// Several stages may read one cloud, so it does not change.

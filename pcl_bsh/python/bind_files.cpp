@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
@@ -37,6 +38,10 @@ to_unit : str, optional
     Unit that lengths are converted to, as float64. Default: they stay as they are.
 length_fields : sequence of str, optional
     With `to_unit`: more fields that are lengths, such as sigmas.
+crs : str, optional
+    Coordinate system of the file, as "EPSG:25832" or WKT; "none": of no system. Default: as a LAS or E57 file names it.
+to_crs : str, optional
+    Projected system that PROJ transforms coordinates to, as float64. Default: they stay as they are.
 
 Returns
 -------
@@ -113,6 +118,10 @@ to_unit : str, optional
     Unit that lengths are converted to, as float64. Default: they stay as they are.
 length_fields : sequence of str, optional
     With `to_unit`: more fields that are lengths, such as sigmas.
+crs : str, optional
+    Coordinate system of the file, as "EPSG:25832" or WKT; "none": of no system. Default: as a LAS or E57 file names it.
+to_crs : str, optional
+    Projected system that PROJ transforms coordinates to, as float64. Default: they stay as they are.
 
 Returns
 -------
@@ -164,7 +173,8 @@ using FileHeader = io::CloudFacts;
 /// How a file is read, by the arguments that readers share.
 io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, bool allow_scale,
                               const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
-                              const std::optional<std::vector<std::string>>& length_fields)
+                              const std::optional<std::vector<std::string>>& length_fields,
+                              const std::optional<std::string>& crs, const std::optional<std::string>& to_crs)
 {
   io::ReadSettings settings(columns.value_or(io::ColumnNames()), allow_scale);
   const auto unitOf = [](const char* argument, const std::optional<std::string>& name) {
@@ -178,18 +188,29 @@ io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, boo
   settings.unit = unitOf("unit", unit);
   settings.to_unit = unitOf("to_unit", to_unit);
   settings.length_fields = length_fields.value_or(std::vector<std::string>());
+  const auto systemOf = [](const char* argument, const std::optional<std::string>& text) {
+    try {
+      io::requireSystem(text.value_or(""));
+    }
+    catch (const io::FormatError& error) {
+      throw py::value_error(std::string(argument) + ": " + error.what() + ": " + error.remedy());
+    }
+    return text.value_or("");
+  };
+  settings.crs = systemOf("crs", crs);
+  settings.to_crs = systemOf("to_crs", to_crs);
   return settings;
 }
 
-std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns,
-                                              unsigned threads, bool allow_scale,
-                                              const std::optional<std::string>& unit,
-                                              const std::optional<std::string>& to_unit,
-                                              const std::optional<std::vector<std::string>>& length_fields)
+std::pair<Records, FileHeader>
+readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale,
+               const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
+               const std::optional<std::vector<std::string>>& length_fields, const std::optional<std::string>& crs,
+               const std::optional<std::string>& to_crs)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  const io::ReadSettings settings = readSettings(columns, allow_scale, unit, to_unit, length_fields);
+  const io::ReadSettings settings = readSettings(columns, allow_scale, unit, to_unit, length_fields, crs, to_crs);
   pcl::PCLPointCloud2 cloud = unlocked([&] { return io::readCloud(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   return {recordsFrom(std::move(cloud)), std::move(header)};
@@ -213,14 +234,14 @@ std::pair<Records, py::array_t<std::uint32_t>> arraysOf(io::Mesh&& mesh)
   return {recordsFrom(std::move(mesh.vertices)), triangles};
 }
 
-std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale,
-                                                          const std::optional<std::string>& unit,
-                                                          const std::optional<std::string>& to_unit,
-                                                          const std::optional<std::vector<std::string>>& length_fields)
+std::pair<Records, py::array_t<std::uint32_t>>
+readMeshOf(const PathLike& path, unsigned threads, bool allow_scale, const std::optional<std::string>& unit,
+           const std::optional<std::string>& to_unit, const std::optional<std::vector<std::string>>& length_fields,
+           const std::optional<std::string>& crs, const std::optional<std::string>& to_crs)
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  const io::ReadSettings settings = readSettings({}, allow_scale, unit, to_unit, length_fields);
+  const io::ReadSettings settings = readSettings({}, allow_scale, unit, to_unit, length_fields, crs, to_crs);
   io::Mesh mesh = unlocked([&] { return io::readMesh(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
   return arraysOf(std::move(mesh));
@@ -231,7 +252,7 @@ readMeshPartsOf(const PathLike& path, const std::optional<std::string>& unit, co
 {
   const std::string file = pathOf(path);
   FileHeader header;
-  const io::ReadSettings settings = readSettings({}, false, unit, to_unit, std::nullopt);
+  const io::ReadSettings settings = readSettings({}, false, unit, to_unit, std::nullopt, std::nullopt, std::nullopt);
   io::MeshParts parts;
   std::vector<io::Mesh> meshes = unlocked([&] {
     parts = io::readMeshParts(file);
@@ -259,8 +280,8 @@ void bindFiles(py::module_& module)
           [](const FileHeader& header) { return As<"Tuple[float, ...]">(py::tuple(py::cast(header.viewpoint))); },
           "Where the sensor stood: tx, ty, tz, qw, qx, qy, qz.")
       .def_property_readonly(
-          "coordinate_system", [](const FileHeader& header) { return header.coordinate_system; },
-          "As a LAS file names it; empty where it does not.")
+          "coordinate_system", [](const FileHeader& header) { return header.coordinate_system.name; },
+          "As a LAS or E57 file names it, or as it was given; empty where nobody tells.")
       .def_property_readonly(
           "unit",
           [](const FileHeader& header) -> std::optional<std::string> {
@@ -273,16 +294,19 @@ void bindFiles(py::module_& module)
       "read",
       [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale,
          const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
-         const std::optional<std::vector<std::string>>& length_fields) {
-        return readWithHeader(path, columns, threads, allow_scale, unit, to_unit, length_fields).first;
+         const std::optional<std::vector<std::string>>& length_fields, const std::optional<std::string>& crs,
+         const std::optional<std::string>& to_crs) {
+        return readWithHeader(path, columns, threads, allow_scale, unit, to_unit, length_fields, crs, to_crs).first;
       },
       kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
-      "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none());
+      "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none(), "crs"_a = py::none(),
+      "to_crs"_a = py::none());
   module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(),
              "threads"_a = 0, "allow_scale"_a = false, "unit"_a = py::none(), "to_unit"_a = py::none(),
-             "length_fields"_a = py::none());
+             "length_fields"_a = py::none(), "crs"_a = py::none(), "to_crs"_a = py::none());
   module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
-             "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none());
+             "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none(), "crs"_a = py::none(),
+             "to_crs"_a = py::none());
   module.def("read_mesh_parts", &readMeshPartsOf, kReadMeshParts, "path"_a, py::kw_only(), "unit"_a = py::none(),
              "to_unit"_a = py::none());
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());

@@ -5,6 +5,7 @@
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/make_site.h>
 #include <pcl_bsh/site/making/density_tree.h>
@@ -91,6 +92,7 @@ private:
   void describe()
   {
     std::vector<Fields> fields;
+    std::pair<std::size_t, io::CoordinateSystem> first_named;
     for (std::size_t i = 0; i < clouds_.size(); ++i) {
       const auto stream = open(i);
       if (!options_.vertices_only && io::hasFaces(clouds_[i])) {
@@ -102,7 +104,10 @@ private:
       if (const auto remarks = stream->remarks(); options_.remark && !remarks.empty())
         options_.remark(clouds_[i], remarks);
       fields.push_back(packed(stream->header()));
-      site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back(), stream->coordinateSystem()});
+      const io::CoordinateSystem system = stream->coordinateSystem();
+      if (!system.name.empty() && first_named.second.name.empty()) first_named = {i, system};
+      requireOneSystem(first_named, i, system);
+      site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back(), system.name});
       site_.points += stream->size();
     }
     site_.fields = united(fields, clouds_);
@@ -112,6 +117,21 @@ private:
     if (tile > options_.memory) {
       throw std::invalid_argument("a tile of " + counted(options_.tile_points, "point") + " needs " + megabytes(tile) +
                                   ", more than the memory given: make tiles smaller, or give more");
+    }
+  }
+
+  /// The systems of all clouds are one, as far as is known.
+  void requireOneSystem(const std::pair<std::size_t, io::CoordinateSystem>& first, std::size_t cloud,
+                        const io::CoordinateSystem& system) const
+  {
+    try {
+      const auto warning =
+          io::requireOneSystem(clouds_[first.first].string(), first.second, system,
+                               "transform one (`to_crs` of a reader of pcl_bsh_pipeline), or make two sites");
+      if (warning && options_.remark) options_.remark(clouds_[cloud], {*warning});
+    }
+    catch (const io::FormatError& error) {
+      throw files::FileError(clouds_[cloud], error.what(), error.remedy());
     }
   }
 

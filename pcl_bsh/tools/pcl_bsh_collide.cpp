@@ -20,6 +20,7 @@
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/distance_report.h>
 #include <pcl_bsh/io/reports/report_origin.h>
+#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/search/selected_records.h>
@@ -256,6 +257,22 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
   return 0;
 }
 
+/// A warning where it is not known whether both are in one coordinate system. @throws FileError where they are not
+std::optional<std::string> warningOfSystems(const fs::path& input, const io::CloudFacts& of_input,
+                                            const fs::path& obstacle, const io::CloudFacts& of_obstacle)
+{
+  try {
+    const auto warning =
+        io::requireOneSystem(input.string(), of_input.coordinate_system, of_obstacle.coordinate_system,
+                             "transform both (--to-crs EPSG:25832, say), or give --obstacle-crs none where poses lead "
+                             "from the one to the other");
+    return warning ? std::optional(obstacle.string() + ": " + *warning) : std::nullopt;
+  }
+  catch (const io::FormatError& error) {
+    throw files::FileError(obstacle, error.what(), error.remedy());
+  }
+}
+
 int collide(Options options)
 {
   options.files.requireApart();
@@ -267,7 +284,7 @@ int collide(Options options)
   io::ClashListing listing = cli::listingOf(options, question, report.warnings);
 
   const Scan input = loadInput(options, report.seconds.load);
-  report.coordinate_system = input.facts.coordinate_system;
+  report.coordinate_system = input.facts.coordinate_system.name;
   report.unit = options.reading.unitOfReports(options.unit, input.facts.unit);
   if (question.seen && question.origin.empty()) question.origin = io::originsOf(input.cloud(), input.facts);
   Shape scan = input.shape.shape(options.input.string());
@@ -285,6 +302,8 @@ int collide(Options options)
     else
       loaded = {cli::loadObstacle(one.file, {question.vertices_only}, report.seconds.load, settings, &facts,
                                   question.threads)};
+    if (auto warning = warningOfSystems(options.input, input.facts, one.file, facts))
+      report.warnings.push_back(std::move(*warning));
     if (!reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
       const std::string unit = io::nameOf(*input.facts.unit);
       report.warnings.push_back(one.file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +

@@ -170,8 +170,8 @@ void compare(const Options& options, std::vector<Track> tracks)
   if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
 
   io::GaugeReport report{options.input.string(),
-                         options.unit,
-                         scan->coordinateSystem(),
+                         options.reading.unitOfReports(options.unit, scan->facts().unit),
+                         scan->facts().coordinate_system.name,
                          tracks,
                          {},
                          std::move(tables),

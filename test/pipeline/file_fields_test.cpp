@@ -117,6 +117,36 @@ TEST_F(FileFields, ReportsNameTheCoordinateSystem)
     EXPECT_EQ(nlohmann::json::parse(contentOf(folder / report))["coordinate_system"], "ETRS89 / UTM 32N") << report;
 }
 
+/// An obstacle, or a cloud to merge, is in the coordinate system of the input.
+TEST_F(FileFields, CloudsOfDifferentCoordinateSystemsAreRefused)
+{
+  if (!io::hasProj()) GTEST_SKIP() << "install libproj-dev";
+  const auto reader = [&](const std::string& tag, const std::string& more) {
+    return R"({"type": "readers.text", "tag": ")" + tag + R"(", "filename": ")" +
+           folder.write(tag + ".xyz", "500000 5400000 7\n").string() + '"' + more + "}, ";
+  };
+  const auto refusal = [&](const std::string& more, const std::string& stage) {
+    try {
+      Pipeline::parse("[" + reader("a", R"(, "crs": "EPSG:25832")") + reader("b", more) + stage +
+                      ", {\"filename\": \"" + (folder / "out.pcd").string() + "\"}]")
+          .run();
+    }
+    catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const char* stage : {R"({"type": "filters.bsh_flag", "inputs": ["a"], "obstacle": "b", "clearance": 1})",
+                            R"({"type": "filters.merge", "inputs": ["a", "b"]})"}) {
+    EXPECT_THAT(refusal(R"(, "crs": "EPSG:25833")", stage),
+                HasSubstr("is in 'ETRS89 / UTM zone 33N (EPSG:25833)', and the input in 'ETRS89 / UTM zone 32N "
+                          "(EPSG:25832)': give the readers of both `to_crs`"));
+    for (const char* fine : {R"(, "crs": "EPSG:25833", "to_crs": "EPSG:25832")", R"(, "crs": "none")", ""})
+      EXPECT_EQ(refusal(fine, stage), "") << stage << fine;
+    EXPECT_THAT(refusal(R"(, "crs": "EPSG:99999")", stage), HasSubstr("'EPSG:99999' is no coordinate system"));
+  }
+}
+
 /// Scale, offset, records and waveforms travel with the points through every kind of stage.
 TEST_F(FileFields, HeadersOfLasGoFromReaderToWriter)
 {

@@ -136,6 +136,21 @@ def test_units(tmp_path):
         pcl_bsh.read_mesh(tmp_path / "a.pcd", to_unit="m")
 
 
+def test_coordinate_systems(tmp_path):
+    (tmp_path / "a.xyz").write_text("500000 5400000 7\n")
+    with pytest.raises(ValueError, match="to_crs: 'EPSG:99999' is no"):
+        pcl_bsh.read(tmp_path / "a.xyz", to_crs="EPSG:99999")
+    try:
+        with pytest.warns(UserWarning, match="a.xyz: its coordinates are transformed from 'ETRS89 / UTM zone 33N"):
+            read, header = pcl_bsh.read_with_header(tmp_path / "a.xyz", crs="EPSG:25833", to_crs="EPSG:25832")
+    except ValueError as error:
+        pytest.skip(str(error))  # built without PROJ
+    assert header.coordinate_system == "ETRS89 / UTM zone 32N (EPSG:25832)" and header.unit == "m"
+    assert 940000 < read["x"][0] < 943000 and read["z"] == [7]
+    with pytest.raises(pcl_bsh.FileError, match="a.xyz: names no coordinate system, and is wanted in EPSG:25832"):
+        pcl_bsh.read(tmp_path / "a.xyz", to_crs="EPSG:25832")
+
+
 def test_meshes(tmp_path):
     (tmp_path / "square.off").write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
     vertices, triangles = pcl_bsh.read_mesh(tmp_path / "square.off")

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/clouds/coordinate_samples.h"
 #include "io/clouds/laz_encoder.h"
 #include "io/clouds/laz_sample.h"
 #include "io/clouds/samples.h"
@@ -177,6 +178,30 @@ TEST(MakeSite, KeepsTheCoordinateSystemsOfItsSources)
   EXPECT_EQ(site.sources[0].coordinate_system, "");
   EXPECT_EQ(site.sources[1].coordinate_system, "A + heights");
   EXPECT_EQ(coordinateSystemOf(site), "A + heights; B") << "each once";
+}
+
+TEST(MakeSite, CloudsOfDifferentCoordinateSystemsAreRefused)
+{
+  if (!io::hasProj()) GTEST_SKIP() << "install libproj-dev";
+  const files::TemporaryFolder folder;
+  const auto file = [&](const std::string& name, const std::string& wkt) {
+    io::LasSample sample(4, 6);
+    sample.records = {io::LasSample::record("LASF_Projection", 2112, wkt)};
+    sample.addPoints(5);
+    return folder.write(name, sample.text());
+  };
+  std::string zone_32 = io::utm_33_wkt;
+  zone_32.replace(zone_32.find("33N"), 3, "32N");
+  zone_32.replace(zone_32.find("central_meridian\",15"), 20, "central_meridian\",9");
+  const auto a = file("a.las", io::utm_33_wkt), b = file("b.las", zone_32);
+  EXPECT_THAT(
+      [&] {
+        makeSite({a, a, b}, folder / "site");
+      },
+      testing::ThrowsMessage<files::FileError>(
+          testing::HasSubstr("b.las: is in 'ETRS89 / UTM zone 32N', and " + a.string() + " in 'ETRS89 / UTM ")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "site"));
+  EXPECT_EQ(makeSite({a, a}, folder / "site").points, 10U);
 }
 
 TEST(MakeSite, DrawsAnOverviewEvenly)

@@ -2,12 +2,12 @@
 // Readers and writers of all formats that pcl_bsh/io/clouds reads and writes.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/naming_option.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/pcl_names.h>
 #include <pcl_bsh/io/text/column_names.h>
-#include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -28,7 +28,7 @@ void requireExtension(const std::string& file, const std::vector<std::string>& e
 
 struct FileReader : Stage {
   InputFile filename;
-  std::string unit, to_unit, length_fields;
+  std::string unit, to_unit, length_fields, crs, to_crs;
   std::vector<std::string> extensions;
 
   CloudHeader plan(const std::vector<CloudHeader>&) override
@@ -58,6 +58,8 @@ protected:
     io::ReadSettings settings = settingsOfFormat();
     settings.unit = unitOf("unit", unit);
     settings.to_unit = unitOf("to_unit", to_unit);
+    settings.crs = systemOf("crs", crs);
+    settings.to_crs = systemOf("to_crs", to_crs);
     for (std::size_t at = 0; at < length_fields.size();) {
       const std::size_t comma = std::min(length_fields.find(',', at), length_fields.size());
       settings.length_fields.push_back(length_fields.substr(at, comma - at));
@@ -74,18 +76,20 @@ protected:
     cloud.viewpoint = facts.viewpoint;
     cloud.scanners = facts.scanners;
     cloud.las_header = facts.las;
-    cloud.coordinate_system = facts.coordinate_system;
+    cloud.coordinate_system = facts.coordinate_system.name;
+    cloud.system_definition = facts.coordinate_system.definition;
   }
 
 private:
+  static std::string systemOf(const char* option, const std::string& text)
+  {
+    namingOption(option, [&] { io::requireSystem(text); });
+    return text;
+  }
+
   static std::optional<io::LengthUnit> unitOf(const char* option, const std::string& name)
   {
-    try {
-      return name.empty() ? std::nullopt : std::optional(io::lengthUnitOf(name));
-    }
-    catch (const io::FormatError& error) {
-      throw OptionError(option, std::string(error.what()) + ": " + error.remedy());
-    }
+    return namingOption(option, [&] { return name.empty() ? std::nullopt : std::optional(io::lengthUnitOf(name)); });
   }
 };
 
@@ -96,12 +100,7 @@ struct TextReader : FileReader {
 protected:
   io::ReadSettings settingsOfFormat() const override
   {
-    try {
-      return columns.empty() ? io::ColumnNames() : io::columnNamesOf(columns);
-    }
-    catch (const io::FormatError& error) {
-      throw OptionError("columns", std::string(error.what()) + ": " + error.remedy());
-    }
+    return namingOption("columns", [&] { return columns.empty() ? io::ColumnNames() : io::columnNamesOf(columns); });
   }
 };
 
@@ -226,8 +225,14 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
                 "the unit of the file's lengths: " + units + "; without it, that of a .las file's coordinate system")
         .option(&S::to_unit, "to_unit",
                 "the unit that lengths are read in, as float64; without it, they stay as they are")
-        .option(&S::length_fields, "length_fields",
-                "with `to_unit`: more fields that are lengths, as \"sigma,radius\"");
+        .option(&S::length_fields, "length_fields", "with `to_unit`: more fields that are lengths, as \"sigma,radius\"")
+        .option(&S::crs, "crs",
+                "the coordinate system of the file, as \"EPSG:25832\" or WKT; \"none\": of no system; without it, as a "
+                ".las or .e57 names it")
+        .option(
+            &S::to_crs, "to_crs",
+            "the projected coordinate system that PROJ transforms coordinates to, as float64; without it, they stay "
+            "as they are");
   }
   if constexpr (std::is_base_of_v<ScanReader, S>) {
     constexpr bool is_ptx = std::is_same_v<S, PtxReader>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>
+#include <pcl_bsh/filters/pipeline/stages/one_system.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/records.h>
@@ -49,6 +50,7 @@ struct Merge : Stage {
     if (number_scans && !hasScans(merged)) io::addField(merged, io::scan_field_name, pcl::PCLPointField::UINT32);
     io::allocate(merged, static_cast<std::uint32_t>(points));
     std::uint8_t* next = merged.data.data();
+    for (const StageCloudPtr& input : inputs) requireOneSystem(*inputs[0], *input, "inputs", *this);
     for (StageCloudPtr& input : inputs) {
       std::uint8_t* const begin = next;
       next = append(input->cloud, merged, next);

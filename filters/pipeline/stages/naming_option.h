@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stage.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,9 @@ auto namingOption(const std::string& option, const Ask& ask)
   }
   catch (const InvalidInput& error) {
     throw OptionError(option, error.advice());
+  }
+  catch (const io::FormatError& error) {
+    throw OptionError(option, std::string(error.what()) + ": " + error.remedy());
   }
   catch (const std::runtime_error& error) {
     throw OptionError(option, error.what());

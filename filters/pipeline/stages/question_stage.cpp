@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/filters/pipeline/stages/naming_option.h>
+#include <pcl_bsh/filters/pipeline/stages/one_system.h>
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/filters/pipeline/stages/row_options.h>
 #include <pcl_bsh/io/clouds/point_masks.h>
@@ -135,7 +136,9 @@ std::vector<RowOption<NamedObstacle>> optionsOfObstacles()
       rowOption(&NamedObstacle::in_parts, "parts",
                 "an obstacle of each object or group of an .obj, or solid of an .stl, named PART or NAME/PART")};
   for (const auto& [name, doc] : {std::pair{"unit", "the unit of the file's lengths"},
-                                  {"to_unit", "the unit that they are read in, as `to_unit` of readers"}}) {
+                                  {"to_unit", "the unit that they are read in, as `to_unit` of readers"},
+                                  {"crs", "the coordinate system of the file, as `crs` of readers"},
+                                  {"to_crs", "the system that it is read in, as `to_crs` of readers"}}) {
     RowOption<NamedObstacle> row;
     row.option.name = name;
     row.option.doc = doc;
@@ -283,7 +286,9 @@ QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, S
   for (auto& [row, one, shape] : this->asked(told)) {
     if (shapes.empty()) {
       const std::string option = obstacle ? "obstacle" : placeOf(row, "file");
-      const io::Obstacle whole = shapeOf(obstacle ? obstacle->cloud : obstacles[row].file.cloud, question, option);
+      const StageCloudPtr& cloud = obstacle ? obstacle->cloud : obstacles[row].file.cloud;
+      requireOneSystem(*input, *cloud, option, stage);
+      const io::Obstacle whole = shapeOf(cloud, question, option);
       if (whole.isSurface())
         stage.warn((obstacle ? "" : nameOf(obstacles[row]) + ": ") + io::promiseOf(whole, one.question.solid));
       shapes = {whole};

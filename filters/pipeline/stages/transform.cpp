@@ -81,6 +81,7 @@ struct Transform : Stage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     const auto output = ownCloud(std::move(inputs[0]));
+    output->system_definition.clear();
     Eigen::Affine3d map(transform.matrix);
     map.linear() = rigid().linear;
     movePoints(output->cloud, map);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/conversion.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
 #include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/formats.h>
@@ -44,7 +45,7 @@ Contents readAll(LasReader reader)
 {
   Contents contents = {readLas(reader)};
   const auto header = std::make_shared<const LasHeader>(reader.header());
-  contents.facts.coordinate_system = coordinateSystemOf(*header);
+  contents.facts.coordinate_system = systemOf(*header);
   contents.facts.unit = unitOf(*header);
   contents.facts.remarks = reader.remarks();
   contents.facts.las = header;
@@ -190,45 +191,25 @@ bool isFileReadByPlace(const std::filesystem::path& path)
   return isReadByPlace(extensionOf(path)) && !isPipe(path);
 }
 
-/// Lengths in the unit that is wanted.
-void convert(Contents& contents, const ReadSettings& settings)
-{
-  CloudFacts& facts = contents.facts;
-  const LengthScale scale = scaleOf(settings, facts.unit, &facts.remarks);
-  if (settings.unit) facts.unit = settings.unit;
-  if (scale.isOne()) return;
-  facts.scale = scale;
-  scaleLengths(contents.cloud, scale, settings.length_fields);
-  const auto move = [&](Viewpoint& viewpoint) {
-    for (std::size_t k = 0; k < 3; ++k) viewpoint[k] = scale(viewpoint[k]);
-  };
-  move(facts.viewpoint);
-  for (Viewpoint& scanner : facts.scanners) move(scanner);
-  facts.unit = settings.to_unit;
-  facts.las = nullptr;
-  facts.coordinate_system.clear();
-}
-
 /// The cloud, once it is known to be usable.
 pcl::PCLPointCloud2 checked(Contents contents, const ReadSettings& settings, CloudFacts* facts)
 {
   makeCoordinatesPlain(contents.cloud);
   requireCoordinates(contents.cloud);
-  convert(contents, settings);
+  convert(contents.cloud, contents.facts, settings);
   setDense(contents.cloud);
   if (facts != nullptr) *facts = std::move(contents.facts);
   return std::move(contents.cloud);
 }
 
-/// @param told unit that the file names
-pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header, const ReadSettings& settings,
-                                  std::optional<LengthUnit> told = {})
+/// @param told unit and coordinate system that the file names
+pcl::PCLPointCloud2 checkedHeader(pcl::PCLPointCloud2 header, const ReadSettings& settings, const CloudFacts& told = {})
 {
   makeCoordinatesPlain(header);
   pcl::PCLPointCloud2 fields = header;
   fields.width = fields.height = fields.row_step = 0; // the records are not there
   requireCoordinates(fields);
-  scaleLengths(header, scaleOf(settings, told), settings.length_fields);
+  convertHeader(header, told, settings);
   return header;
 }
 
@@ -295,10 +276,16 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
     return naming(path, [&] {
       const std::string extension = extensionOf(path);
       requireSettings(extension, settings);
-      if (isE57Extension(extension))
-        return checkedHeader(sizedHeader(E57Reader(openBytes(path), settings.scan)), settings);
+      CloudFacts facts;
+      if (isE57Extension(extension)) {
+        const E57Reader reader(openBytes(path), settings.scan);
+        return checkedHeader(sizedHeader(reader), settings, reader.facts());
+      }
       const LasReader reader(openBytes(path));
-      return checkedHeader(sizedHeader(reader), settings, unitOf(reader.header()));
+      const LasHeader header = reader.header();
+      facts.unit = unitOf(header);
+      facts.coordinate_system = systemOf(header);
+      return checkedHeader(sizedHeader(reader), settings, facts);
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;

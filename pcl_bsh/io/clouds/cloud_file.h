@@ -39,13 +39,13 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 
 /// Facts in a file beside its points.
 struct CloudFacts {
-  Viewpoint viewpoint = no_viewpoint;    ///< of .pcd, .ply, .ptx, .e57
-  std::vector<Viewpoint> scanners = {};  ///< of .ptx and .e57, of each scan that was read; empty: not known
-  LasHeaderPtr las = nullptr;            ///< of .las
-  std::string coordinate_system = {};    ///< as a .las or .e57 names it; empty where it does not
-  std::optional<LengthUnit> unit = {};   ///< that lengths were read in, where the file or its user tells it
-  LengthScale scale = {};                ///< from the file's lengths to those that were read
-  std::vector<std::string> remarks = {}; ///< what users should know of how it was read, without the file's name
+  Viewpoint viewpoint = no_viewpoint;      ///< of .pcd, .ply, .ptx, .e57
+  std::vector<Viewpoint> scanners = {};    ///< of .ptx and .e57, of each scan that was read; empty: not known
+  LasHeaderPtr las = nullptr;              ///< of .las
+  CoordinateSystem coordinate_system = {}; ///< of the points as they were read, where the file or its user tells it
+  std::optional<LengthUnit> unit = {};     ///< that lengths were read in, where the file or its user tells it
+  LengthScale scale = {};                  ///< from the file's lengths to those that were read
+  std::vector<std::string> remarks = {};   ///< what users should know of how it was read, without the file's name
 };
 
 /// Reads the points of a file; the format is told by its extension, in any case of letters.
@@ -78,8 +78,11 @@ struct CloudFacts {
 ///
 /// In another unit (ReadSettings::to_unit), x y z are float64. The cloud is then no longer what its LAS header says,
 /// and CloudFacts has none. A remark tells both units. It is refused where nobody tells the file's own.
+/// In another coordinate system (ReadSettings::to_crs) the same holds. PROJ transforms each point; remarks tell both
+/// systems, the accuracy and the grid scale. Directions (normals, the scanners' rotations) are not turned.
 /// @param facts if not null, set to what the file says beside its points
-/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans, units
+/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans, units,
+///   coordinate systems
 ///   (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
 /// @throws files::FileError for anything else: missing, unreadable, unknown extension, malformed, truncated, no x y z;

@@ -30,7 +30,7 @@ public:
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
   std::vector<std::string> remarks() const override { return reader_.remarks(); }
-  std::string coordinateSystem() const override { return coordinateSystemOf(reader_.header()); }
+  CoordinateSystem coordinateSystem() const override { return systemOf(reader_.header()); }
   std::optional<LengthUnit> unit() const override { return unitOf(reader_.header()); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
@@ -60,7 +60,8 @@ public:
   const pcl::PCLPointCloud2& header() const override { return reader_.cloudHeader(); }
   std::uint64_t size() const override { return reader_.size(); }
   std::vector<std::string> remarks() const override { return facts_.remarks; }
-  std::string coordinateSystem() const override { return facts_.coordinate_system; }
+  CoordinateSystem coordinateSystem() const override { return facts_.coordinate_system; }
+  std::optional<LengthUnit> unit() const override { return facts_.unit; }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
     try {
@@ -139,6 +140,7 @@ public:
     return points;
   }
   std::vector<std::string> remarks() const override { return facts_.remarks; }
+  CoordinateSystem coordinateSystem() const override { return facts_.coordinate_system; }
   std::optional<LengthUnit> unit() const override { return facts_.unit; }
   void skip(std::uint64_t points) override { next_ += std::min(points, size() - next_); }
 
@@ -148,54 +150,105 @@ private:
   std::uint64_t next_ = 0;
 };
 
-/// Another stream in the unit that is wanted.
-class ScaledStream : public CloudStream {
+/// Another stream in the unit or the coordinate system that is wanted.
+class ConvertedStream : public CloudStream {
 public:
-  ScaledStream(fs::path path, std::unique_ptr<CloudStream> given, const ReadSettings& settings)
+  /// @param box of the points as they are given, where another system is wanted
+  ConvertedStream(fs::path path, std::unique_ptr<CloudStream> given, const ReadSettings& settings,
+                  const Eigen::AlignedBox3d& box)
   : path_(std::move(path)),
     given_(std::move(given)),
     settings_(settings),
     remarks_(given_->remarks()),
-    scale_(scaleOf(settings, given_->unit(), &remarks_)),
     header_(given_->header())
   {
-    scaleLengths(header_, scale_, settings_.length_fields);
+    naming([&] {
+      system_ = systemOf(settings, given_->coordinateSystem(), &remarks_);
+      unit_ = settings.unit ? settings.unit : given_->unit();
+      if (settings.transforms()) {
+        transform_.emplace(system_, settings.to_crs, box, unit_);
+        for (const std::string& remark : transform_->remarks()) remarks_.push_back(remark);
+        if (!transform_->isIdentity()) system_ = transform_->target();
+        unit_ = transform_->unit();
+      }
+      else {
+        scale_ = scaleOf(settings, given_->unit(), &remarks_);
+        if (!scale_.isOne()) system_ = {};
+        if (settings.to_unit) unit_ = settings.to_unit;
+      }
+      convert(header_);
+    });
   }
 
   const pcl::PCLPointCloud2& header() const override { return header_; }
   std::uint64_t size() const override { return given_->size(); }
   std::vector<std::string> remarks() const override { return remarks_; }
-  std::string coordinateSystem() const override { return scale_.isOne() ? given_->coordinateSystem() : std::string(); }
-  std::optional<LengthUnit> unit() const override
+  CoordinateSystem coordinateSystem() const override { return system_; }
+  std::optional<LengthUnit> unit() const override { return unit_; }
+  void skip(std::uint64_t points) override
   {
-    return settings_.to_unit ? settings_.to_unit : settings_.unit ? settings_.unit : given_->unit();
+    given_->skip(points);
+    next_ += points;
   }
-  void skip(std::uint64_t points) override { given_->skip(points); }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
-    if (scale_.isOne()) return given_->read(records, most);
+    if (!transform_ && scale_.isOne()) return given_->read(records, most);
     pcl::PCLPointCloud2 batch = given_->header();
     batch.data.resize(most * batch.point_step);
     const std::size_t points = given_->read(batch.data.data(), most);
     batch.data.resize(points * batch.point_step);
-    try {
-      scaleLengths(batch, scale_, settings_.length_fields);
-    }
-    catch (const FormatError& error) {
-      throw files::FileError(path_, error.what(), error.remedy());
-    }
+    naming([&] { convert(batch); });
     std::copy(batch.data.begin(), batch.data.end(), records);
+    next_ += points;
     return points;
   }
 
 private:
+  void convert(pcl::PCLPointCloud2& batch) const
+  {
+    if (transform_)
+      transformPlaces(batch, *transform_, next_);
+    else
+      scaleLengths(batch, scale_, settings_.length_fields);
+  }
+
+  template <typename Do>
+  void naming(const Do& run) const
+  {
+    try {
+      run();
+    }
+    catch (const FormatError& error) {
+      throw files::FileError(path_, error.what(), error.remedy());
+    }
+  }
+
   fs::path path_;
   std::unique_ptr<CloudStream> given_;
   ReadSettings settings_;
   std::vector<std::string> remarks_;
   LengthScale scale_;
+  std::optional<SystemTransform> transform_;
+  CoordinateSystem system_;
+  std::optional<LengthUnit> unit_;
   pcl::PCLPointCloud2 header_;
+  std::uint64_t next_ = 0;
 };
+
+Eigen::AlignedBox3d boxOf(CloudStream& stream)
+{
+  constexpr std::size_t most = 65536;
+  Eigen::AlignedBox3d box;
+  pcl::PCLPointCloud2 batch = stream.header();
+  batch.height = 1;
+  batch.data.resize(most * batch.point_step);
+  while (const std::size_t points = stream.read(batch.data.data(), most)) {
+    batch.width = static_cast<std::uint32_t>(points);
+    batch.row_step = batch.width * batch.point_step;
+    extendBy(batch, box);
+  }
+  return box;
+}
 
 /// Where the points of a binary PCD file are; none for other files, and where x y z are to be converted.
 std::optional<PcdBody> binaryBody(const fs::path& path)
@@ -210,6 +263,15 @@ std::optional<PcdBody> binaryBody(const fs::path& path)
   catch (const FormatError&) { // a longer header, or a defect that readCloud() tells
   }
   return std::nullopt;
+}
+
+/// A stream that holds no more than a batch; null for a format that is read at once.
+std::unique_ptr<CloudStream> streamByPlace(const fs::path& path, const ReadSettings& settings, unsigned threads)
+{
+  if (isLasExtension(extensionOf(path))) return std::make_unique<LasStream>(path, threads);
+  if (isE57Extension(extensionOf(path))) return std::make_unique<E57Stream>(path, settings);
+  if (std::optional<PcdBody> body = binaryBody(path)) return std::make_unique<PcdStream>(path, std::move(*body));
+  return nullptr;
 }
 
 /// Memory for reading a file at once, at most: the file, and its cloud. A cloud of text may have a double for each two
@@ -238,14 +300,12 @@ std::unique_ptr<CloudStream> openCloud(const fs::path& path, std::uint64_t memor
                                        unsigned threads)
 {
   const pcl::PCLPointCloud2 header = readCloudHeader(path, settings); // which checks that it can be read
-  const auto inUnit = [&](std::unique_ptr<CloudStream> stream) -> std::unique_ptr<CloudStream> {
-    if (!settings.unit && !settings.to_unit) return stream;
-    return std::make_unique<ScaledStream>(path, std::move(stream), settings);
-  };
-  if (isLasExtension(extensionOf(path))) return inUnit(std::make_unique<LasStream>(path, threads));
-  if (isE57Extension(extensionOf(path))) return inUnit(std::make_unique<E57Stream>(path, settings));
-  if (std::optional<PcdBody> body = binaryBody(path))
-    return inUnit(std::make_unique<PcdStream>(path, std::move(*body)));
+  if (std::unique_ptr<CloudStream> stream = streamByPlace(path, settings, threads)) {
+    if (!settings.converts()) return stream;
+    Eigen::AlignedBox3d box;
+    if (settings.transforms()) box = boxOf(*streamByPlace(path, settings, threads));
+    return std::make_unique<ConvertedStream>(path, std::move(stream), settings, box);
+  }
   if (bytesWhenHeld(path, header) > memory) {
     throw files::FileError(path, "does not fit into the memory given, and its format is not read in pieces",
                            "give more memory, or convert it to .las, .e57 or binary .pcd");

@@ -37,8 +37,8 @@ public:
   /// Remarks for users about how the file is read, a line each, without its name.
   virtual std::vector<std::string> remarks() const { return {}; }
 
-  /// As a .las or .e57 names it; empty where it does not.
-  virtual std::string coordinateSystem() const { return {}; }
+  /// As CloudFacts::coordinate_system has it.
+  virtual CoordinateSystem coordinateSystem() const { return {}; }
 
   /// As CloudFacts::unit has it.
   virtual std::optional<LengthUnit> unit() const { return std::nullopt; }
@@ -49,6 +49,7 @@ public:
 
 /// Opens any file that readCloud() reads. LAS, LAZ, E57 and binary PCD are read batch by batch, the other formats at
 /// once, for which `memory`, in bytes, must hold the file and its cloud together.
+/// In another coordinate system all points are read once more, for their box.
 /// @param settings and @param threads as readCloud() has them
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,

@@ -138,6 +138,39 @@ void scaleLengths(pcl::PCLPointCloud2& cloud, const LengthScale& scale, const st
   });
 }
 
+void makeCoordinatesDouble(pcl::PCLPointCloud2& cloud)
+{
+  makeDoubles(cloud, areCoordinates(cloud), [](double value) { return value; });
+}
+
+void transformPlaces(pcl::PCLPointCloud2& cloud, const SystemTransform& transform, std::uint64_t first)
+{
+  makeCoordinatesDouble(cloud);
+  if (transform.isIdentity() || cloud.point_step == 0) return;
+  const auto at = coordinateFields(cloud).value();
+  const std::size_t records = cloud.data.size() / cloud.point_step;
+  constexpr std::size_t at_once = 4096; // which the caches hold
+  std::vector<Point3> places;
+  for (std::size_t done = 0; done < records; done += places.size()) {
+    places.resize(std::min(at_once, records - done));
+    const auto coordinate = [&](std::size_t i, std::size_t k) {
+      return cloud.data.data() + (done + i) * cloud.point_step + cloud.fields[at[k]].offset;
+    };
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) std::memcpy(&places[i][k], coordinate(i, k), sizeof(double));
+    transform(places, first + done);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) std::memcpy(coordinate(i, k), &places[i][k], sizeof(double));
+  }
+}
+
+void extendBy(const pcl::PCLPointCloud2& cloud, Eigen::AlignedBox3d& box)
+{
+  const PointsView points = viewOf(cloud);
+  for (std::uint32_t i = 0; i < points.count; ++i)
+    if (const Point3 p = points.point(i); isFinite(p)) box.extend(Eigen::Vector3d(p[0], p[1], p[2]));
+}
+
 void requireCoordinates(const pcl::PCLPointCloud2& cloud)
 {
   for (const char* axis : {"x", "y", "z"}) {

@@ -2,10 +2,12 @@
 // x y z of clouds as files have them, in the types that queries take.
 #pragma once
 
+#include <pcl_bsh/io/clouds/systems/system_transform.h>
 #include <pcl_bsh/io/text/length_unit.h>
 
 #include <pcl/PCLPointCloud2.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,16 @@ void makeCoordinatesPlain(pcl::PCLPointCloud2& cloud);
 /// fields does not stay where one was of another type. @pre usable x y z. A field that is not there is left out
 /// @throws FormatError for a field of several numbers, and for a length that float64 does not hold
 void scaleLengths(pcl::PCLPointCloud2& cloud, const LengthScale& scale, const std::vector<std::string>& more = {});
+
+/// Makes float64 of x y z, as scaleLengths() does.
+void makeCoordinatesDouble(pcl::PCLPointCloud2& cloud);
+
+/// Transforms x y z, which become float64. @param first the number of the first record, for errors
+/// @throws FormatError as the transform does
+void transformPlaces(pcl::PCLPointCloud2& cloud, const SystemTransform& transform, std::uint64_t first = 0);
+
+/// Enlarges a box by a cloud's finite points.
+void extendBy(const pcl::PCLPointCloud2& cloud, Eigen::AlignedBox3d& box);
 
 /// Requires that the points have usable x y z. @throws FormatError
 void requireCoordinates(const pcl::PCLPointCloud2& cloud);

@@ -24,4 +24,27 @@ LengthScale scaleOf(const ReadSettings& settings, std::optional<LengthUnit> told
   return scale;
 }
 
+CoordinateSystem systemOf(const ReadSettings& settings, const CoordinateSystem& told, std::vector<std::string>* remarks)
+{
+  if (settings.crs == no_system) return {};
+  if (settings.transforms() && (settings.unit || settings.to_unit))
+    throw FormatError("is wanted in the coordinate system " + settings.to_crs + " and in units, too",
+                      "give the system alone, which has a unit");
+  if (!settings.crs.empty()) {
+    CoordinateSystem given = coordinateSystemNamed(settings.crs);
+    if (remarks && !told.name.empty() && !areOneSystem(told, given).value_or(false))
+      remarks->push_back("its coordinate system is '" + told.name + "': it is read as '" + given.name +
+                         "', as was given");
+    return given;
+  }
+  if (settings.transforms() && told.definition.empty()) {
+    const std::string wanted = ", and is wanted in " + settings.to_crs;
+    throw FormatError((told.name.empty() ? "names no coordinate system"
+                                         : "names the coordinate system '" + told.name + "', but does not define it") +
+                          wanted,
+                      "name its system, too (`crs`, --input-crs, --obstacle-crs)");
+  }
+  return told;
+}
+
 } // namespace pcl_bsh::io

@@ -2,6 +2,7 @@
 // Settings of how a file of points is read, beside what the file says itself.
 #pragma once
 
+#include <pcl_bsh/io/clouds/systems/coordinate_system.h>
 #include <pcl_bsh/io/text/column_names.h>
 #include <pcl_bsh/io/text/length_unit.h>
 
@@ -35,6 +36,14 @@ struct ReadSettings {
   /// as they are.
   std::optional<LengthUnit> to_unit = {};
   std::vector<std::string> length_fields = {}; ///< more fields that are lengths, such as radii and sigmas
+
+  /// The coordinate system of the file, or no_system; empty: as a .las or .e57 names it.
+  std::string crs = {};
+  /// Coordinates are read in it, as float64, and places of scanners; empty: they stay as they are. Not with units.
+  std::string to_crs = {};
+
+  bool converts() const { return unit || to_unit || !crs.empty() || !to_crs.empty(); }
+  bool transforms() const { return !to_crs.empty() && crs != no_system; }
 };
 
 /// How lengths become those that are wanted. @param told unit that the file itself names
@@ -42,6 +51,12 @@ struct ReadSettings {
 /// @throws FormatError where a unit is wanted, and nobody tells the file's own
 LengthScale scaleOf(const ReadSettings& settings, std::optional<LengthUnit> told,
                     std::vector<std::string>* remarks = nullptr);
+
+/// The coordinate system of a file. @param told as the file names it
+/// @param remarks gets a line where the settings name another
+/// @throws FormatError where another is wanted, and nobody tells the file's own; for units beside that
+CoordinateSystem systemOf(const ReadSettings& settings, const CoordinateSystem& told,
+                          std::vector<std::string>* remarks = nullptr);
 
 /// Whether files with this extension, in small letters, may have several scans.
 inline bool mayHaveScans(std::string_view extension)

@@ -55,6 +55,34 @@ void ReadOptions::addUnitsTo(CLI::App& app)
           "a .las names it; with neither of\nboth options nothing is converted)");
 }
 
+void ReadOptions::addSystemsTo(CLI::App& app, bool has_obstacle)
+{
+  const auto add = [&](const std::string& option, std::string& crs, const std::string& doc) {
+    app.add_option_function<std::string>(
+           option,
+           [option, &crs](const std::string& text) {
+             try {
+               io::requireSystem(crs = text);
+             }
+             catch (const io::FormatError& error) {
+               throw UsageError(option + ": " + error.what() + ": " + error.remedy());
+             }
+             if (text.empty() || (option == "--to-crs" && text == io::no_system))
+               throw UsageError(option + ": '" + text + "' is no system: give a code, such as EPSG:25832, or WKT");
+           },
+           doc)
+        ->type_name("CRS");
+  };
+  add("--to-crs", to_crs_,
+      std::string(has_obstacle ? "transform INPUT and OBSTACLE" : "transform INPUT") +
+          " to this projected coordinate\nsystem, as EPSG:25832 or WKT, by PROJ");
+  const std::string as_named = " (default: as a\n.las or .e57 names it)";
+  add("--input-crs", input_crs_, "the coordinate system of INPUT" + as_named);
+  if (has_obstacle)
+    add("--obstacle-crs", obstacle_crs_,
+        "the coordinate system of OBSTACLE" + as_named + "; none: it has a\nframe of its own, from which poses lead");
+}
+
 ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) const
 {
   io::ColumnChoice choice;
@@ -69,13 +97,15 @@ ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) co
   const auto may = [](const std::filesystem::path& file) { return io::mayHaveScans(io::extensionOf(file)); };
   if (scan_ && std::none_of(files.begin(), files.end(), may))
     throw UsageError("--scan: none of the clouds is a .ptx or .e57 file, which may have several scans: leave it out");
-  return {choice, allow_scale_, scan_, input_unit_, obstacle_unit_};
+  return {choice, allow_scale_, scan_, input_unit_, obstacle_unit_, input_crs_, obstacle_crs_, to_crs_};
 }
 
 io::ReadSettings ReadChoice::ofInput(const std::filesystem::path& file) const
 {
   io::ReadSettings settings = of(file);
   settings.unit = input_unit;
+  settings.crs = input_crs;
+  settings.to_crs = to_crs;
   return settings;
 }
 
@@ -83,6 +113,8 @@ io::ReadSettings ReadChoice::ofObstacle(const std::filesystem::path& file, std::
                                         const std::string& sigmas) const
 {
   io::ReadSettings settings = of(file);
+  settings.crs = obstacle_crs;
+  settings.to_crs = to_crs;
   if (!namesUnits()) return settings;
   if (!unit_of_input)
     throw UsageError(std::string("--obstacle-unit: ") + io::nameOf(*obstacle_unit) +
@@ -95,7 +127,7 @@ io::ReadSettings ReadChoice::ofObstacle(const std::filesystem::path& file, std::
 
 std::string ReadChoice::unitOfReports(const std::string& name, std::optional<io::LengthUnit> unit_of_input) const
 {
-  if (!namesUnits() || !unit_of_input) return name;
+  if (!unit_of_input) return name;
   const std::string unit = io::nameOf(*unit_of_input);
   if (name.empty()) return unit;
   try {

@@ -20,12 +20,13 @@ struct ReadChoice {
   bool allow_scale = false;
   std::optional<std::size_t> scan = {};                              ///< of files that may have several
   std::optional<io::LengthUnit> input_unit = {}, obstacle_unit = {}; ///< as given
+  std::string input_crs = {}, obstacle_crs = {}, to_crs = {};        ///< as given
 
   bool namesUnits() const { return input_unit || obstacle_unit; }
 
   io::ReadSettings of(const std::filesystem::path& file) const;
 
-  /// The input is read as it is: its unit is that of all lengths.
+  /// The input is read as it is, or in the system that is wanted: its unit is that of all lengths.
   io::ReadSettings ofInput(const std::filesystem::path& file) const;
 
   /// The obstacle is read in that unit, where any is given. @param input_unit as the input was read
@@ -33,8 +34,8 @@ struct ReadChoice {
   io::ReadSettings ofObstacle(const std::filesystem::path& file, std::optional<io::LengthUnit> input_unit,
                               const std::string& sigmas) const;
 
-  /// The unit's name in reports: the given one or, where any unit is given, the input's. @throws UsageError where these
-  /// are different units
+  /// The unit's name in reports: the given one or, where it is known, the input's. @throws UsageError where these are
+  /// different units
   std::string unitOfReports(const std::string& name, std::optional<io::LengthUnit> input_unit) const;
 };
 
@@ -49,6 +50,9 @@ public:
   /// --input-unit and --obstacle-unit.
   void addUnitsTo(CLI::App& app);
 
+  /// --to-crs and --input-crs; --obstacle-crs where there is one.
+  void addSystemsTo(CLI::App& app, bool has_obstacle);
+
   /// @param files that the program reads clouds from
   /// @throws UsageError for what is no list of names, for names that none of the files can have, and for a scan where
   /// none may have several
@@ -57,6 +61,7 @@ public:
 private:
   std::vector<std::string> given_;
   std::optional<io::LengthUnit> input_unit_, obstacle_unit_;
+  std::string input_crs_, obstacle_crs_, to_crs_;
   bool allow_scale_ = false;
   std::optional<std::size_t> scan_;
 };

@@ -181,6 +181,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   ReadOptions reading;
   reading.addTo(app);
   reading.addUnitsTo(app);
+  reading.addSystemsTo(app, true);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
   app.add_option("--clashes", options.clashes,

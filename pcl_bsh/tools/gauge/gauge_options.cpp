@@ -279,6 +279,7 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
       ->transform(number<unsigned>(give_threads));
   ReadOptions reading;
   reading.addTo(app);
+  reading.addSystemsTo(app, false);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   if (!understood(app, gauge_program, argc, argv)) return std::nullopt;
 

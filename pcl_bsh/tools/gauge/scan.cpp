@@ -13,7 +13,7 @@ namespace {
 
 std::unique_ptr<io::CloudStream> streamOf(const GaugeOptions& options)
 {
-  return io::openCloud(options.input, std::numeric_limits<std::uint64_t>::max(), options.reading.of(options.input),
+  return io::openCloud(options.input, std::numeric_limits<std::uint64_t>::max(), options.reading.ofInput(options.input),
                        options.threads);
 }
 
@@ -24,7 +24,7 @@ GaugeScan::GaugeScan(const GaugeOptions& options)
   is_whole_(!options.output.empty() || io::isPipe(options.input))
 {
   if (is_whole_) {
-    whole_ = io::readCloud(options.input, &facts_, options.reading.of(options.input), options.threads);
+    whole_ = io::readCloud(options.input, &facts_, options.reading.ofInput(options.input), options.threads);
     points_ = viewOf(whole_).count;
     return;
   }
@@ -32,6 +32,7 @@ GaugeScan::GaugeScan(const GaugeOptions& options)
   points_ = stream->size();
   facts_.remarks = stream->remarks();
   facts_.coordinate_system = stream->coordinateSystem();
+  facts_.unit = stream->unit();
 }
 
 void GaugeScan::forEachBatch(const std::function<void(const PointsView&, std::uint64_t)>& use)

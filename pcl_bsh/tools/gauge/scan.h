@@ -21,7 +21,6 @@ public:
   /// @throws files::FileError where it cannot be read
   explicit GaugeScan(const GaugeOptions& options);
 
-  const std::string& coordinateSystem() const { return facts_.coordinate_system; }
   const std::vector<std::string>& remarks() const { return facts_.remarks; }
   const io::CloudFacts& facts() const { return facts_; }
   const pcl::PCLPointCloud2& whole() const { return whole_; } ///< empty unless OUTPUT is written

@@ -132,7 +132,7 @@ TEST(CloudStream, LeavesOutByReading)
     ASSERT_EQ(numbers.read(reinterpret_cast<std::uint8_t*>(&value), 1), 1U);
     EXPECT_EQ(value, static_cast<double>(skipped));
     EXPECT_TRUE(numbers.remarks().empty());
-    EXPECT_EQ(numbers.coordinateSystem(), "");
+    EXPECT_EQ(numbers.coordinateSystem().name, "");
   }
   Numbers few(5);
   few.skip(1000000);

@@ -270,7 +270,7 @@ TEST(E57, TheCoordinateSystemIsNamed)
   E57Sample sample = sampleOf(threePoints());
   sample.more_xml =
       "<coordinateMetadata type=\"String\"><![CDATA[PROJCS[\"UTM 32N\", GEOGCS[]]]]></coordinateMetadata>";
-  EXPECT_EQ(readE57(sample.text()).facts.coordinate_system, "UTM 32N");
+  EXPECT_EQ(readE57(sample.text()).facts.coordinate_system.name, "UTM 32N");
 }
 
 TEST(E57, ReadInBatchesItIsTheSame)
@@ -411,7 +411,7 @@ TEST(E57, RefusesXmlThatIsABomb)
     laughs += "\">";
   }
   const std::string told = "]><e57Root><coordinateMetadata>\"&z;\"</coordinateMetadata></e57Root>";
-  EXPECT_EQ(readE57(fileOf(laughs + told)).facts.coordinate_system, "&z;") << "which is not followed";
+  EXPECT_EQ(readE57(fileOf(laughs + told)).facts.coordinate_system.name, "&z;") << "which is not followed";
 }
 
 /// Up to four bytes of the content changed, and checksums made anew, which would refuse them all.

@@ -126,7 +126,7 @@ TEST(LasNotes, RealFiles)
   const auto systemIn = [&](const char* name) {
     CloudFacts facts;
     readCloud(samples / name, &facts);
-    return facts.coordinate_system;
+    return facts.coordinate_system.name;
   };
   EXPECT_EQ(systemIn("simple.las"), "");
   EXPECT_EQ(systemIn("utm15.las"), "UTM Zone 15, Northern Hemisphere (EPSG:26915)");

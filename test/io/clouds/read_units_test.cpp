@@ -212,7 +212,7 @@ TEST(ReadUnits, OfLas)
   const pcl::PCLPointCloud2 scaled = readCloud(file, &facts, unitsOf({}, LengthUnit::m));
   EXPECT_EQ(facts.unit, LengthUnit::m);
   EXPECT_EQ(facts.las, nullptr) << "it is no longer what its header says";
-  EXPECT_EQ(facts.coordinate_system, "");
+  EXPECT_EQ(facts.coordinate_system.name, "");
   EXPECT_EQ(viewOf(scaled).point(1)[0], viewOf(plain).point(1)[0] * 1200 / 3937);
   readCloud(file, &facts, unitsOf(LengthUnit::ft, LengthUnit::m));
   EXPECT_THAT(facts.remarks, testing::Contains("its coordinate system is in us-ft: it is read as ft, as was given"));

@@ -199,7 +199,8 @@ E57Contents parseE57Contents(const std::string& xml)
     throw FormatError(std::string("has XML that cannot be read: ") +
                       (parsed ? "there is no e57Root" : parsed.description()));
   E57Contents contents;
-  contents.coordinate_system = nameOfWkt(root.child("coordinateMetadata").child_value());
+  contents.coordinate_system.definition = root.child("coordinateMetadata").child_value();
+  contents.coordinate_system.name = nameOfWkt(contents.coordinate_system.definition);
   for (const auto& scan : root.child("data3D").children()) {
     if (scan.type() != pugi::node_element) continue;
     try {

@@ -2,6 +2,8 @@
 // The XML of an E57 file: which scans there are, how their points are stored, where their scanners stood.
 #pragma once
 
+#include <pcl_bsh/io/clouds/systems/coordinate_system.h>
+
 #include <Eigen/Geometry>
 
 #include <array>
@@ -54,7 +56,7 @@ struct E57Scan {
 
 struct E57Contents {
   std::vector<E57Scan> scans;
-  std::string coordinate_system; ///< the name in its WKT; or empty
+  CoordinateSystem coordinate_system; ///< its WKT, and the name in it
 };
 
 /// @throws FormatError naming the scan

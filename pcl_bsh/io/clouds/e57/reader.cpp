@@ -184,6 +184,7 @@ CloudFacts E57Reader::facts() const
   if (!facts.scanners.empty()) facts.viewpoint = facts.scanners.front();
   if (!are_known) facts.scanners.clear();
   facts.coordinate_system = contents_.coordinate_system;
+  facts.unit = LengthUnit::m; // of all E57 files
   if (!texts.empty()) facts.remarks.push_back("its points have texts, which are not read:" + texts);
   return facts;
 }

@@ -106,28 +106,55 @@ std::string withCode(const std::string& name, std::optional<unsigned> code)
   return name.empty() ? epsg : name + " (" + epsg + ")";
 }
 
+namespace geo_key {
+constexpr std::uint16_t model = 1024, citation = 1026, geographic = 2048, geographic_citation = 2049, projected = 3072,
+                        projected_citation = 3073, places = 3076, vertical = 4096, vertical_citation = 4097,
+                        heights = 4099;
+}
+constexpr unsigned metres_code = 9001;
+
+/// EPSG's code of the system of places.
+std::optional<unsigned> systemCode(const GeoKeys& keys)
+{
+  constexpr unsigned projected_model = 1;
+  const bool flat = keys.code(geo_key::projected) || keys.code(geo_key::model) == projected_model;
+  return keys.code(flat ? geo_key::projected : geo_key::geographic);
+}
+
 std::string nameOfKeys(const GeoKeys& keys)
 {
-  constexpr std::uint16_t model = 1024, citation = 1026, geographic = 2048, geographic_citation = 2049,
-                          projected = 3072, projected_citation = 3073, vertical = 4096, vertical_citation = 4097;
-  constexpr unsigned projected_model = 1;
-  const bool flat = keys.code(projected) || keys.code(model) == projected_model;
-  const std::string name = withCode(keys.citation({projected_citation, citation, geographic_citation}),
-                                    keys.code(flat ? projected : geographic));
-  const std::string height = withCode(keys.citation({vertical_citation}), keys.code(vertical));
+  const std::string name = withCode(
+      keys.citation({geo_key::projected_citation, geo_key::citation, geo_key::geographic_citation}), systemCode(keys));
+  const std::string height = withCode(keys.citation({geo_key::vertical_citation}), keys.code(geo_key::vertical));
   return name.empty() || height.empty() ? name + height : name + " + " + height;
+}
+
+/// GeoTIFF 1.0 has codes of datums for some systems of heights.
+unsigned heightSystem(unsigned code)
+{
+  constexpr unsigned first_datum = 5101, last_datum = 5106, yellow_sea_datum = 5104, yellow_sea = 5736, apart = 600;
+  if (code == yellow_sea_datum) return yellow_sea;
+  return code >= first_datum && code <= last_datum ? code + apart : code;
+}
+
+std::string definitionOfKeys(const GeoKeys& keys)
+{
+  const auto code = systemCode(keys), heights = keys.code(geo_key::vertical);
+  if (!code) return {};
+  const std::string places = "EPSG:" + std::to_string(*code);
+  const bool in_metres = keys.code(geo_key::heights).value_or(metres_code) == metres_code;
+  return heights && in_metres ? places + '+' + std::to_string(heightSystem(*heights)) : places;
 }
 
 std::optional<LengthUnit> unitOfKeys(const GeoKeys& keys)
 {
-  constexpr std::uint16_t places = 3076, heights = 4099;
   const auto unitOfCode = [&](std::uint16_t key) -> std::optional<LengthUnit> {
     switch (keys.code(key).value_or(0)) { // of EPSG's units
     case 1025:
       return LengthUnit::mm;
     case 1033:
       return LengthUnit::cm;
-    case 9001:
+    case metres_code:
       return LengthUnit::m;
     case 9002:
       return LengthUnit::ft;
@@ -137,8 +164,8 @@ std::optional<LengthUnit> unitOfKeys(const GeoKeys& keys)
       return std::nullopt;
     }
   };
-  const auto unit = unitOfCode(places);
-  return !keys.code(heights) || unitOfCode(heights) == unit ? unit : std::nullopt;
+  const auto unit = unitOfCode(geo_key::places);
+  return !keys.code(geo_key::heights) || unitOfCode(geo_key::heights) == unit ? unit : std::nullopt;
 }
 
 /// The record that counts: as text, or none where that of the keys does.
@@ -163,6 +190,12 @@ std::string coordinateSystemOf(const LasHeader& header)
 {
   const std::string wkt = wktOf(header);
   return wkt.empty() ? nameOfKeys(GeoKeys(header)) : nameOfWkt(wkt);
+}
+
+CoordinateSystem systemOf(const LasHeader& header)
+{
+  const std::string wkt = wktOf(header);
+  return {coordinateSystemOf(header), wkt.empty() ? definitionOfKeys(GeoKeys(header)) : wkt.substr(0, wkt.find('\0'))};
 }
 
 std::optional<LengthUnit> unitOf(const LasHeader& header)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/header.h>
+#include <pcl_bsh/io/clouds/systems/coordinate_system.h>
 
 #include <pcl_bsh/io/text/length_unit.h>
 
@@ -22,6 +23,10 @@ inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& he
 {
   return header ? coordinateSystemOf(*header) : std::string();
 }
+
+/// The system with its name and as PROJ reads it: the WKT, or EPSG's codes of the keys. It has no definition where the
+/// keys give a system without a code, and the file has no WKT. A code of heights counts in metres, which alone is sure.
+CoordinateSystem systemOf(const LasHeader& header);
 
 /// The name of the whole system in WKT, in ASCII, too; or empty.
 std::string nameOfWkt(std::string_view text);
