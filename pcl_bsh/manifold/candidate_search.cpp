@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Best first by bounds of scores. Pairs of nodes and of records wait in a list that is kept from goal to goal, so that
 // none is opened twice.
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/manifold/candidate_search.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/point_pairs.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
@@ -22,19 +26,72 @@ namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 namespace {
 
-class ChannelSearch final : public CandidateSearch {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Two lanes, and the sphere of the probe's.
+struct WaitingNodes {
+  LanePair lanes;
+  Eigen::Vector3d middle;
+  double radius, slack, least_gap;
+  bool is_opened = false;
+};
+struct WaitingRecords {
+  PointPair pair;
+  Eigen::Vector3d place;
+  double least_gap;
+  bool is_known; ///< that is the gap
+  bool is_beyond = false;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+};
+struct NearRecord {
+  PointPair pair;
+  double least_gap, most_gap;
+};
+struct Turn {
+  double bound;
+  std::pair<std::size_t, bool> of; ///< which of the nodes or of the records
+  bool operator<(const Turn& other) const { return bound < other.bound; }
+};
+
+/// Memory of one search after another.
+struct ChannelScratch {
+  std::vector<WaitingNodes> nodes;
+  std::vector<WaitingRecords> records;
+  std::vector<NearRecord> of_leaf; ///< that is compared
+  std::vector<Turn> order;
+};
+
+/// To be had by a ScratchLease.
+struct CandidateScratch {
+  std::array<ChannelScratch, kMostChannels> of_channels;
+  std::size_t bytes() const noexcept
+  {
+    std::size_t all = 0;
+    for (const ChannelScratch& one : of_channels)
+      all += one.nodes.capacity() * sizeof(WaitingNodes) + one.records.capacity() * sizeof(WaitingRecords) +
+             one.of_leaf.capacity() * sizeof(NearRecord) + one.order.capacity() * sizeof(Turn);
+    return all;
+  }
+};
+
+class ChannelSearch {
 public:
-  ChannelSearch(const Channel& channel, double most_gap, double thickness)
+  ChannelSearch(const Channel& channel, double most_gap, double thickness, ChannelScratch& scratch)
   : channel_(channel),
     walk_(channel.probe, channel.surface),
     most_gap_(most_gap),
     thickness_(thickness),
     // Rounded distances less the thickness are no greater than the gap only within this.
     reach_(std::nextafter(most_gap + thickness + 0x1p-50 * (most_gap + thickness), kInfinity)),
-    pairs_(channel.probe, channel.surface, reach_)
+    pairs_(channel.probe, channel.surface, reach_),
+    nodes_(scratch.nodes),
+    records_(scratch.records),
+    of_leaf_(scratch.of_leaf),
+    order_(scratch.order)
   {
+    nodes_.clear();
+    records_.clear();
+    of_leaf_.clear();
     walk_.makeWholes();
     walk_.seedWhole(reach_, [this](LanePair pair, const PairWalk::Step& step) {
       alignas(32) float keys[kLanes];
@@ -44,7 +101,7 @@ public:
     });
   }
 
-  void seek(const PatchGoal& goal, Candidate& best, Work& work) override
+  void seek(const PatchGoal& goal, Candidate& best, Work& work)
   {
     order_.clear();
     for (std::size_t i = 0; i < nodes_.size(); ++i) consider(boundOf(goal, nodes_[i]), {i, false}, best);
@@ -66,31 +123,6 @@ public:
   }
 
 private:
-  /// Two lanes, and the sphere of the probe's.
-  struct WaitingNodes {
-    LanePair lanes;
-    Eigen::Vector3d middle;
-    double radius, slack, least_gap;
-    bool is_opened = false;
-  };
-  struct WaitingRecords {
-    PointPair pair;
-    Eigen::Vector3d place;
-    double least_gap;
-    bool is_known; ///< that is the gap
-    bool is_beyond = false;
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  };
-  struct NearRecord {
-    PointPair pair;
-    double least_gap, most_gap;
-  };
-  struct Turn {
-    double bound;
-    std::pair<std::size_t, bool> of; ///< which of the nodes or of the records
-    bool operator<(const Turn& other) const { return bound < other.bound; }
-  };
-
   static double down(double x) { return std::nextafter(x, -kInfinity); }
 
   static double boundOf(const PatchGoal& goal, const WaitingNodes& nodes)
@@ -251,17 +283,38 @@ private:
   const double most_gap_, thickness_, reach_;
   const PointPairs pairs_;
   PairWalk::Step step_;
-  std::vector<WaitingNodes> nodes_;
-  std::vector<WaitingRecords> records_;
-  std::vector<NearRecord> of_leaf_; ///< that is compared
-  std::vector<Turn> order_;
+  std::vector<WaitingNodes>& nodes_;
+  std::vector<WaitingRecords>& records_;
+  std::vector<NearRecord>& of_leaf_;
+  std::vector<Turn>& order_;
+};
+
+class SearchOfAll final : public CandidateSearch {
+public:
+  SearchOfAll(const std::vector<Channel>& channels, double most_gap, double thickness)
+  {
+    for (std::size_t i = 0; i < channels.size(); ++i)
+      searches_[i].emplace(channels[i], most_gap, thickness, (*scratch_).of_channels[i]);
+  }
+
+  void seek(const PatchGoal& goal, Candidate& best, Work& work) override
+  {
+    for (std::optional<ChannelSearch>& search : searches_)
+      if (search) search->seek(goal, best, work);
+  }
+
+private:
+  const ScratchLease<CandidateScratch> scratch_;
+  std::array<std::optional<ChannelSearch>, kMostChannels> searches_;
 };
 
 } // namespace
 
-std::unique_ptr<CandidateSearch> makeOnTarget(const Channel& channel, double most_gap, double thickness)
+void searchOnTarget(const std::vector<Channel>& channels, double most_gap, double thickness,
+                    const std::function<void(CandidateSearch&)>& choose)
 {
-  return std::make_unique<ChannelSearch>(channel, most_gap, thickness);
+  SearchOfAll search(channels, most_gap, thickness);
+  choose(search);
 }
 
 } // namespace HWY_NAMESPACE
@@ -271,11 +324,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pcl_bsh {
 
-HWY_EXPORT(makeOnTarget);
+HWY_EXPORT(searchOnTarget);
 
-std::unique_ptr<CandidateSearch> makeCandidateSearch(const Channel& channel, double most_gap, double thickness)
+void searchCandidates(const std::vector<Channel>& channels, double most_gap, double thickness,
+                      const std::function<void(CandidateSearch&)>& choose)
 {
-  return HWY_DYNAMIC_DISPATCH(makeOnTarget)(channel, most_gap, thickness);
+  HWY_DYNAMIC_DISPATCH(searchOnTarget)(channels, most_gap, thickness, choose);
 }
 
 } // namespace pcl_bsh

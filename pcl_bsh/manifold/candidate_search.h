@@ -7,8 +7,9 @@
 #include <pcl_bsh/query/placed.h>
 #include <pcl_bsh/query/result.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -36,16 +37,21 @@ std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges);
 /// The place of a channel's probe, in the world.
 Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record);
 
-/// Searches one channel, which must outlive it. Expects the DefaultFloatEnvironment.
+/// Searches channels.
 class CandidateSearch {
 public:
-  virtual ~CandidateSearch() = default;
-
   /// Makes `best` the best candidate, where one is before it.
   virtual void seek(const PatchGoal& goal, Candidate& best, Work& work) = 0;
+
+protected:
+  ~CandidateSearch() = default;
 };
 
+inline constexpr std::size_t kMostChannels = 3; ///< of a manifold
+
+/// Calls `choose` with a search of these channels, which lasts as long as that. Expects the DefaultFloatEnvironment.
 /// @param most_gap that candidates have @param thickness taken from gaps
-std::unique_ptr<CandidateSearch> makeCandidateSearch(const Channel& channel, double most_gap, double thickness);
+void searchCandidates(const std::vector<Channel>& channels, double most_gap, double thickness,
+                      const std::function<void(CandidateSearch&)>& choose);
 
 } // namespace pcl_bsh

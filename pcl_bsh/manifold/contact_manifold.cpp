@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/float_environment.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/kept_scratch.h>
 #include <pcl_bsh/depths/depths.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/manifold/candidate_search.h>
@@ -68,6 +69,25 @@ void addEnclosed(const Solid* solid, double thickness, Channel& channel, Work& w
   channel.enclosed = std::move(labels.labels);
 }
 
+using MovedContact = std::tuple<double, std::uint32_t, std::size_t>; ///< how far, its id, its number now
+
+/// Memory of one manifold after another, to be had by a ScratchLease.
+struct ManifoldScratch {
+  std::vector<Channel> channels;
+  PatchGoal goal;
+  std::vector<Contact> contacts;
+  std::vector<MovedContact> near;
+  std::vector<std::uint32_t> used;
+  Neighbors neighbors;
+
+  std::size_t bytes() const noexcept
+  {
+    return channels.capacity() * sizeof(Channel) + contacts.capacity() * sizeof(Contact) +
+           near.capacity() * sizeof(MovedContact) + used.capacity() * sizeof(std::uint32_t) +
+           neighbors.indices.capacity() * sizeof(std::int32_t) + neighbors.squared_distances.capacity() * sizeof(float);
+  }
+};
+
 class Making {
 public:
   Making(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request)
@@ -82,6 +102,7 @@ public:
     made_.thickness = request.thickness.value_or(are_points ? 0.5 * spacing : 0.0);
     made_.pose_a = a.pose, made_.pose_b = b.pose;
     fit_ = request.fit.value_or(4.0 * spacing);
+    channels_.clear(), contacts_.clear();
     const auto add = [this](std::uint8_t number, const Placed& probe, const Placed& surface) -> Channel& {
       return channels_.emplace_back(Channel{number, probe, surface, nullptr, nullptr, {}, {}});
     };
@@ -99,31 +120,41 @@ public:
     }
   }
 
-  Manifold make()
+  ~Making() { channels_.clear(); }
+  Making(const Making&) = delete;
+  Making& operator=(const Making&) = delete;
+
+  void make(Manifold& result)
   {
-    for (const Channel& channel : channels_)
-      searches_.push_back(makeCandidateSearch(channel, request_.margin, made_.thickness));
-    PatchGoal goal(request_.margin);
+    searchCandidates(channels_, request_.margin, made_.thickness, [this](CandidateSearch& search) { choose(search); });
+    giveIds();
+    made_.contacts.swap(result.contacts);
+    made_.contacts.assign(contacts_.begin(), contacts_.end());
+    result = std::move(made_);
+  }
+
+private:
+  void choose(CandidateSearch& search)
+  {
+    PatchGoal& goal = (*scratch_).goal;
+    goal.reset(request_.margin);
     for (std::uint32_t patch = 0; patch < request_.most_patches && request_.most > 0; ++patch) {
-      const Candidate first = seek(goal);
+      const Candidate first = seek(search, goal);
       if (!first.isThere()) break;
       take(first, patch);
       const double usual = 2.0 * (request_.margin + made_.thickness + std::abs(first.gap));
-      goal.begin(first, made_.contacts.back().normal, request_.height.value_or(usual));
+      goal.begin(first, contacts_.back().normal, request_.height.value_or(usual));
       for (std::size_t i = 1; i < request_.most; ++i) {
-        const Candidate next = seek(goal);
+        const Candidate next = seek(search, goal);
         if (!next.isThere()) break;
         take(next, patch);
         goal.add(next.place);
       }
       goal.end();
     }
-    giveIds();
-    return std::move(made_);
   }
 
-private:
-  Candidate seek(const PatchGoal& goal)
+  Candidate seek(CandidateSearch& search, const PatchGoal& goal)
   {
     Candidate best;
     for (const Channel& channel : channels_)
@@ -131,7 +162,7 @@ private:
         inside.score = goal.score(inside.place, inside.gap);
         if (inside.isThere() && inside.isBefore(best)) best = inside;
       }
-    for (const auto& search : searches_) search->seek(goal, best, made_.work);
+    search.seek(goal, best, made_.work);
     return best;
   }
 
@@ -147,13 +178,14 @@ private:
       contact.pair = {a_.sharp[candidate.pair.a].triangles[0], b_.sharp[candidate.pair.b].triangles[0]};
       contact.normal = crossing.normal;
       contact.place_a = crossing.on_probe, contact.place_b = crossing.on_surface;
-      made_.contacts.push_back(contact);
+      contacts_.push_back(contact);
       return;
     }
     const PointsView &of_probe = channel.probe.hierarchy().view(), &of_surface = channel.surface.hierarchy().view();
     auto [on_probe, on_surface] = nearestPlaces(channel.probe, channel.surface, candidate.pair);
-    const SurfaceNormal found = of_surface.triangles ? normalOfTriangle(channel, candidate, on_surface)
-                                                     : normalOfPoints(a_, b_, channel, candidate, fit_);
+    const SurfaceNormal found = of_surface.triangles
+                                    ? normalOfTriangle(channel, candidate, on_surface)
+                                    : normalOfPoints(a_, b_, channel, candidate, fit_, (*scratch_).neighbors);
     on_probe -= of_probe.ownRadius(candidate.pair.a) * found.normal;
     on_surface += of_surface.ownRadius(candidate.pair.b) * found.normal;
     const bool probe_is_a = channel.number == 0;
@@ -164,35 +196,36 @@ private:
     contact.place_a = probe_is_a ? on_probe : on_surface;
     contact.place_b = probe_is_a ? on_surface : on_probe;
     contact.residual = found.residual;
-    made_.contacts.push_back(contact);
+    contacts_.push_back(contact);
   }
 
   /// The nearest two of the contacts before and now are one, then the nearest of those left.
   void giveIds()
   {
     const double within = request_.same_within.value_or(2.0 * (request_.margin + made_.thickness));
-    std::vector<std::tuple<double, std::uint32_t, std::size_t>> near;
+    std::vector<MovedContact>& near = (*scratch_).near;
+    std::vector<std::uint32_t>& used = (*scratch_).used;
+    near.clear(), used.clear();
     if (request_.previous) {
       const Manifold& before = *request_.previous;
       made_.next_id = before.next_id;
       const Eigen::Isometry3d carried_a = pose_a_ * before.pose_a.inverse(Eigen::Isometry),
                               carried_b = pose_b_ * before.pose_b.inverse(Eigen::Isometry);
       for (const Contact& old : before.contacts)
-        for (std::size_t i = 0; i < made_.contacts.size(); ++i) {
-          const Contact& now = made_.contacts[i];
+        for (std::size_t i = 0; i < contacts_.size(); ++i) {
+          const Contact& now = contacts_[i];
           const double moved =
               std::min((now.place_a - carried_a * old.place_a).norm(), (now.place_b - carried_b * old.place_b).norm());
           if (moved <= within) near.emplace_back(moved, old.id, i);
         }
     }
     std::sort(near.begin(), near.end());
-    std::vector<std::uint32_t> used;
     for (const auto& [moved, id, i] : near) {
-      if (made_.contacts[i].id != 0 || std::find(used.begin(), used.end(), id) != used.end()) continue;
-      made_.contacts[i].id = id;
+      if (contacts_[i].id != 0 || std::find(used.begin(), used.end(), id) != used.end()) continue;
+      contacts_[i].id = id;
       used.push_back(id);
     }
-    for (Contact& contact : made_.contacts)
+    for (Contact& contact : contacts_)
       if (contact.id == 0) contact.id = made_.next_id++;
   }
 
@@ -200,8 +233,9 @@ private:
   const Eigen::Isometry3d pose_a_, pose_b_;
   const ManifoldRequest& request_;
   double fit_ = 0.0;
-  std::vector<Channel> channels_;
-  std::vector<std::unique_ptr<CandidateSearch>> searches_;
+  const ScratchLease<ManifoldScratch> scratch_;
+  std::vector<Channel>& channels_ = (*scratch_).channels;
+  std::vector<Contact>& contacts_ = (*scratch_).contacts;
   Manifold made_;
 };
 
@@ -245,13 +279,19 @@ std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges)
   return std::nullopt;
 }
 
-Manifold contactManifold(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request)
+void contactManifold(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request, Manifold& result)
 {
   check(a, b, request);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
-  Manifold made = Making(a, b, request).make();
+  Making(a, b, request).make(result);
   progress.finish();
+}
+
+Manifold contactManifold(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request)
+{
+  Manifold made;
+  contactManifold(a, b, request, made);
   return made;
 }
 

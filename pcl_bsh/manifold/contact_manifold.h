@@ -58,5 +58,9 @@ struct ManifoldRequest : Effort {
 /// @throws InvalidInput when a number of the request or a pose is not what its declaration asks for. Cancelled.
 Manifold contactManifold(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request);
 
+/// Writes into a result whose memory is used again. It may be request.previous. After an exception it is as it was.
+void contactManifold(const PlacedCollider& a, const PlacedCollider& b, const ManifoldRequest& request,
+                     Manifold& result);
+
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/manifold/contact_normal.h>
 
-#include <pcl_bsh/neighbors/neighbors.h>
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -45,13 +43,13 @@ struct Neighborhood {
   std::size_t count = 0;
 };
 
-Neighborhood around(const Placed& placed, std::uint32_t record, double radius)
+Neighborhood around(const Placed& placed, std::uint32_t record, double radius, Neighbors& found)
 {
   const PointsView& view = placed.hierarchy().view();
   const Eigen::Vector3d center = vectorOf(view.point(record));
   RadiusOptions unsorted;
   unsorted.sorted = false;
-  const Neighbors found = radiusSearch(placed.hierarchy(), view.point(record), radius, unsorted);
+  radiusSearch(placed.hierarchy(), view.point(record), radius, found, unsorted);
   Neighborhood all;
   all.count = found.indices.size();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -68,14 +66,15 @@ Neighborhood around(const Placed& placed, std::uint32_t record, double radius)
 }
 
 /// The plane of b's points about the contact, or the way between both places where these have none.
-SurfaceNormal fittedNormal(const Channel& channel, const Candidate& of, const Eigen::Vector3d& way, double fit)
+SurfaceNormal fittedNormal(const Channel& channel, const Candidate& of, const Eigen::Vector3d& way, double fit,
+                           Neighbors& scratch)
 {
-  const Neighborhood own = around(channel.surface, of.pair.b, fit);
+  const Neighborhood own = around(channel.surface, of.pair.b, fit, scratch);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(own.spread);
   const Eigen::Vector3d spreads = axes.eigenvalues();
   if (own.count < 3 || !(spreads[1] > kBorder * spreads[2])) return {way.stableNormalized(), 0.0};
   Eigen::Vector3d normal = axes.eigenvectors().col(0);
-  const double to_probe = normal.dot(around(channel.probe, of.pair.a, fit).middle - own.middle);
+  const double to_probe = normal.dot(around(channel.probe, of.pair.a, fit, scratch).middle - own.middle);
   if (to_probe < 0.0 || (to_probe == 0.0 && normal.dot(way) < 0.0)) normal = -normal;
   return {normal, std::sqrt(std::max(spreads[0], 0.0))};
 }
@@ -97,14 +96,14 @@ SurfaceNormal normalOfTriangle(const Channel& channel, const Candidate& of, cons
 }
 
 SurfaceNormal normalOfPoints(const Collider::Parts& a, const Collider::Parts& b, const Channel& channel,
-                             const Candidate& of, double fit)
+                             const Candidate& of, double fit, Neighbors& scratch)
 {
   const Eigen::Vector3d way =
       of.place - channel.surface.pose * vectorOf(channel.surface.hierarchy().view().point(of.pair.b));
   if (a.thing.view().areBalls() || b.thing.view().areBalls()) return {way.stableNormalized(), 0.0};
   if (b.normals.normals) return {givenNormal(b.normals, channel.surface, of.pair.b), 0.0};
   if (a.normals.normals) return {-givenNormal(a.normals, channel.probe, of.pair.a), 0.0};
-  return fittedNormal(channel, of, way, fit);
+  return fittedNormal(channel, of, way, fit, scratch);
 }
 
 } // namespace pcl_bsh

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_bsh/manifold/candidate_search.h>
+#include <pcl_bsh/neighbors/neighbors.h>
 
 #include <Eigen/Geometry>
 
@@ -17,8 +18,8 @@ struct SurfaceNormal {
 /// @param nearest place of the triangle, in the world
 SurfaceNormal normalOfTriangle(const Channel& channel, const Candidate& of, const Eigen::Vector3d& nearest);
 
-/// The normal of points or balls of b, towards a's. @param fit radius of planes that are fitted
+/// The normal of points or balls of b, towards a's. @param fit radius of planes that are fitted @param scratch memory
 SurfaceNormal normalOfPoints(const Collider::Parts& a, const Collider::Parts& b, const Channel& channel,
-                             const Candidate& of, double fit);
+                             const Candidate& of, double fit, Neighbors& scratch);
 
 } // namespace pcl_bsh

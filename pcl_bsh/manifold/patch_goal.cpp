@@ -19,7 +19,8 @@ double turn(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen:
 
 void PlaneHull::add(const Point& point)
 {
-  std::vector<Point> all = corners_;
+  std::vector<Point>& all = sorted_;
+  all = corners_;
   all.push_back(point);
   for (const Point& corner : corners_) diameter_ = std::max(diameter_, (corner - point).norm());
   std::sort(all.begin(), all.end(),

@@ -60,14 +60,20 @@ public:
 
 private:
   std::vector<Point> corners_; ///< counterclockwise
+  std::vector<Point> sorted_;  ///< scratch of add()
   double diameter_ = 0.0;
 };
 
 /// Chooses the next contact by those that were taken.
 class PatchGoal {
 public:
-  /// @param most_gap contacts have no greater one
-  explicit PatchGoal(double most_gap) : most_gap_(most_gap) {}
+  /// Forgets what was taken. @param most_gap contacts have no greater one
+  void reset(double most_gap)
+  {
+    most_gap_ = most_gap;
+    ended_.clear();
+    patch_ = false;
+  }
 
   double mostGap() const { return most_gap_; }
   bool seeksDeepest() const { return !patch_; }
@@ -93,7 +99,7 @@ private:
   double weight(double gap) const;
   double extent(const Eigen::Vector2d& at) const { return hull_.size() < 2 ? at.norm() : hull_.gain(at); }
 
-  double most_gap_;
+  double most_gap_ = 0.0;
   std::vector<PatchSlab> ended_;
   bool patch_ = false;
   PatchSlab patch_slab_; ///< of the patch that is begun

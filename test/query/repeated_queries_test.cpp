@@ -4,6 +4,7 @@
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/distances/point_distances.h>
 #include <pcl_bsh/flags/colliding_indices.h>
+#include <pcl_bsh/manifold/contact_manifold.h>
 #include <pcl_bsh/pairs/contacts.h>
 
 #include "support/allocations.h"
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
 
 namespace pcl_bsh {
 namespace {
@@ -100,6 +102,26 @@ TEST_F(RepeatedQueries, OfContactsAllocateNothing)
             }),
             0u);
   EXPECT_GT(contacts, 0u);
+}
+
+TEST_F(RepeatedQueries, OfManifoldsAllocateNothing)
+{
+  std::optional<Collider> of_a, of_b;
+  Manifold result;
+  ManifoldRequest request;
+  request.margin = 0.02;
+  request.previous = &result;
+  std::size_t contacts = 0, kept = 0;
+  EXPECT_EQ(allocationsOf([&](const Placed& a, const Placed& b) {
+              if (!of_a) of_a.emplace(a.hierarchy()), of_b.emplace(b.hierarchy());
+              const std::uint32_t next_id = result.next_id;
+              contactManifold({*of_a, a.pose}, {*of_b, b.pose}, request, result);
+              for (const Contact& contact : result.contacts) kept += contact.id < next_id ? 1 : 0;
+              contacts += result.contacts.size();
+            }),
+            0u);
+  EXPECT_GT(contacts, kept);
+  EXPECT_GT(kept, 0u);
 }
 
 TEST_F(RepeatedQueries, OfPointDistancesAllocateNothing)
