@@ -33,7 +33,8 @@ struct WorldBody {
   Eigen::Isometry3d pose, own_axes; ///< T_world_collider, T_collider_axes: of the inertia, about the centre of mass
   double reach = 0.0;               ///< of the collider from there
   bool is_free = false;
-  Eigen::Isometry3d target; ///< of one that is not
+  bool is_led = false;      ///< to its target; of a free one
+  Eigen::Isometry3d target; ///< of one that is not free, or is led
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), spin = Eigen::Vector3d::Zero();
   std::unique_ptr<btRigidBody> solved;
 
@@ -51,6 +52,20 @@ struct WorldBody {
     there.pretranslate(from + seconds * velocity);
     there.linear() = Eigen::Quaterniond(there.linear()).normalized().toRotationMatrix();
     return there;
+  }
+
+  /// One that is not free, or is led, takes the velocity that brings it to its target.
+  void headForTarget(double dt)
+  {
+    if (is_free && !is_led) return;
+    velocity = spin = Eigen::Vector3d::Zero();
+    const bool moves_on = is_led || target.matrix() != pose.matrix();
+    if (is_free) solved->activate(true);
+    if (!is_free) solved->forceActivationState(moves_on ? DISABLE_DEACTIVATION : ISLAND_SLEEPING); // awake wakes others
+    if (!moves_on) return;
+    const Eigen::AngleAxisd turn(target.linear() * pose.linear().transpose());
+    velocity = (target * own_axes.translation() - center()) / dt;
+    spin = turn.angle() / dt * turn.axis();
   }
 
   /// Tells the solver where it is, from an origin, and how it moves.

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/solid/solid.h>
 
 #include <algorithm>
@@ -17,10 +18,19 @@ namespace {
 
 constexpr double kMostSteps = 1e6;  ///< of the world in one of a scene
 constexpr double kCatchingUp = 2.0; ///< times its own speed, of what was held up
+constexpr double kLedSpeed = 4.0;   ///< of what is led by hand, metres or radians in a second
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy)
 {
   throw InvalidInput(Input::scene, "bodies", what, remedy);
+}
+
+/// On from one pose to another, as far as a hand leads it in so many seconds.
+Eigen::Isometry3d onTheWay(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double seconds)
+{
+  const double angle = Eigen::AngleAxisd(to.linear() * from.linear().transpose()).angle();
+  const double way = std::max((to.translation() - from.translation()).norm(), angle);
+  return way <= kLedSpeed * seconds ? to : poseAt(WaypointMotion{{0.0, way}, {from, to}}, from, kLedSpeed * seconds);
 }
 
 bool moves(const SceneObject& object)
@@ -95,19 +105,37 @@ public:
     for (std::size_t i = 1; i <= report.steps; ++i) {
       const double passed = time_ + dt * (static_cast<double>(i) / count);
       for (Moved& each : moved_) {
-        if (each.falls) continue;
+        if (each.led) world_.moveTo(each.body, onTheWay(world_.pose(each.body), *each.led * each.part, dt / count));
+        if (each.falls || each.led) continue;
         each.next = std::min(passed, each.reached + kCatchingUp * dt / count);
         world_.moveTo(each.body, poseAt(each.motion, each.start, each.next) * each.part);
       }
       report.solved += world_.step(dt / count);
       for (Moved& each : moved_)
-        if (!each.falls && world_.isThere(each.body)) each.reached = each.next;
+        if (!each.falls && !each.led && world_.isThere(each.body)) each.reached = each.next;
     }
     time_ += dt;
     followWorld();
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.scene = scene_.step(dt);
     return report;
+  }
+
+  void lead(ObjectId object, const Eigen::Isometry3d& T_world_object) override
+  {
+    checkPose("pose of object '" + scene_[object].name + "'", T_world_object);
+    if (scene_[object].parts.size() > 1)
+      refuse("object '" + scene_[object].name + "' has several parts", "lead one that has one");
+    movedOf(object).led = T_world_object;
+  }
+
+  void release(ObjectId object) override
+  {
+    Moved& of = movedOf(object);
+    of.led.reset();
+    of.motion = NoMotion();
+    of.start = poseOf(of);
+    if (of.falls) world_.release(of.body);
   }
 
   std::vector<BodyState> states() const override
@@ -144,6 +172,7 @@ private:
     Motion motion; ///< of one that does not
     Eigen::Isometry3d start, part;
     double reached = 0.0, next = 0.0; ///< of the motion, seconds: where it is, and where this step takes it
+    std::optional<Eigen::Isometry3d> led = std::nullopt; ///< by hand, to this pose of the object
   };
   /// Shared by objects of one hierarchy.
   struct Shape {
@@ -164,6 +193,17 @@ private:
       objects_.push_back(object);
       if (how.falls() || moves(of)) moved_.push_back({object, body, how.falls(), of.motion, of.pose, part.pose});
     }
+  }
+
+  /// One that stood still moves from now on.
+  Moved& movedOf(ObjectId object)
+  {
+    const auto found =
+        std::find_if(moved_.begin(), moved_.end(), [&](const Moved& each) { return each.object == object; });
+    if (found != moved_.end()) return *found;
+    const auto body = static_cast<BodyId>(std::find(objects_.begin(), objects_.end(), object) - objects_.begin());
+    const SceneObject& of = scene_[object];
+    return moved_.emplace_back(Moved{object, body, false, NoMotion(), of.pose, of.parts[0].pose});
   }
 
   /// Puts the scene's objects where they are.

@@ -78,6 +78,15 @@ public:
   /// @param dt seconds, finite, >= 0, at most a million of BodiesOptions::step. @throws InvalidInput for another dt
   virtual BodiesStep step(double dt) = 0;
 
+  /// Leads an object by hand, in place of its motion: each step takes it on to this pose, by at most 4 m and 4 radians
+  /// in a second. An object without a mass pushes bodies. A body halts before what stops it, slides along that, and
+  /// pushes other bodies.
+  /// @throws InvalidInput for a pose that is not rigid, and for an object of several parts
+  virtual void lead(ObjectId object, const Eigen::Isometry3d& T_world_object) = 0;
+
+  /// Ends that: a body moves freely from here, another object stays here.
+  virtual void release(ObjectId object) = 0;
+
   virtual std::vector<BodyState> states() const = 0;      ///< of all bodies, by object
   virtual std::vector<BodyContacts> contacts() const = 0; ///< by (a, b); none before the first step
 

@@ -149,10 +149,10 @@ struct World::State {
           request.margin = options.margin;
           request.most = options.contacts;
           if (a.collider->spacing() == 0.0 || b.collider->spacing() == 0.0) request.thickness = options.thickness;
-          if (before != manifolds.end()) request.previous = &before->second;
-          Manifold now = contactManifold({*a.collider, a.pose}, {*b.collider, b.pose}, request);
+          Manifold& now = manifolds[key];
+          if (before != manifolds.end()) request.previous = &now;
+          contactManifold({*a.collider, a.pose}, {*b.collider, b.pose}, request, now);
           report.work += now.work;
-          manifolds[key] = std::move(now);
         }
         if (manifolds.count(key) != 0) give(a, b, key, dt, report);
       }
@@ -345,7 +345,14 @@ void World::setVelocity(BodyId body, const Eigen::Vector3d& velocity, const Eige
 void World::moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider)
 {
   checkPose("pose of a body", T_world_collider);
-  state_->bodies.at(body).target = T_world_collider;
+  WorldBody& of = state_->bodies.at(body);
+  of.target = T_world_collider;
+  of.is_led = of.is_free;
+}
+
+void World::release(BodyId body)
+{
+  state_->bodies.at(body).is_led = false;
 }
 
 bool World::isThere(BodyId body) const
@@ -364,16 +371,7 @@ WorldStep World::step(double dt)
   checkNumber("step", dt, 0.0, 1e30, true);
   State& state = *state_;
   WorldStep report;
-  for (WorldBody& body : state.bodies) {
-    if (body.is_free) continue;
-    body.velocity = body.spin = Eigen::Vector3d::Zero();
-    const bool moves = body.target.matrix() != body.pose.matrix();
-    body.solved->forceActivationState(moves ? DISABLE_DEACTIVATION : ISLAND_SLEEPING); // what is awake wakes others
-    if (!moves) continue;
-    const Eigen::AngleAxisd turn(body.target.linear() * body.pose.linear().transpose());
-    body.velocity = (body.target.translation() - body.pose.translation()) / dt;
-    body.spin = turn.angle() / dt * turn.axis();
-  }
+  for (WorldBody& body : state.bodies) body.headForTarget(dt);
   state.findOrigin();
   for (WorldBody& body : state.bodies) body.place(state.origin, dt);
   state.touch(dt, report);

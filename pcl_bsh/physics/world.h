@@ -89,9 +89,10 @@ public:
 
   void setVelocity(BodyId body, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
 
-  /// Where a fixed body is to be after the next step: it goes there straight, at constant speed. Where it
-  /// is cut, it goes on in the next step.
+  /// Where a body is to be after the next step: it goes there straight, at constant speed. Where it is cut, it goes on
+  /// in the next step. A fixed one gives way to nothing; one that moves freely to what it meets, until release().
   void moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider);
+  void release(BodyId body);       ///< moves freely again, at the velocity that it has
   bool isThere(BodyId body) const; ///< whether it is where moveTo() wanted it
 
   /// The last contacts of all pairs that have any, by their bodies, the smaller first; borrowed, until the next step.

@@ -251,6 +251,73 @@ TEST(SceneBodies, WhatHasAMotionPushes)
   EXPECT_EQ(bodies->states().size(), 1u);
 }
 
+/// A crate and a second one before a wall, on a floor; a hand without a mass above.
+struct CratesAtAWall {
+  CratesAtAWall()
+  {
+    scene.add(fixedObject("floor", floor.hierarchy));
+    scene.add(fixedObject("wall", wall.hierarchy, at(3, 0, 1)));
+    scene.add(object("crate", crate.hierarchy, at(0, 0, 0.501)));
+    scene.add(object("second", crate.hierarchy, at(1.3, 0, 0.501)));
+    scene.add(object("hand", hand.hierarchy, at(-1, 0, 3)));
+    bodies = makeSceneBodies(scene, {}, {ground(), ground(), ofMass(100, {0.3, 0}), ofMass(50, {0.3, 0}), ground()});
+  }
+
+  double x(ObjectId object) const { return scene[object].pose.translation().x(); }
+
+  Mesh floor = Mesh(test::planeMesh()), wall = Mesh(test::crateMesh(0.2, 4, 2)), crate = Mesh(test::crateMesh(1, 1, 1)),
+       hand = Mesh(test::crateMesh(0.2, 0.6, 0.6));
+  Scene scene{SceneOptions{}};
+  std::unique_ptr<SceneBodies> bodies;
+};
+
+TEST(SceneBodies, ABodyThatIsLedPushesAnotherAndStopsAtAWall)
+{
+  CratesAtAWall world;
+  for (int i = 0; i < 180; ++i) { // the wall's face is at 2.9
+    world.bodies->lead(2, at(0.02 * i, 0, 0.6));
+    world.bodies->step(1.0 / 60);
+    ASSERT_LT(world.x(2) + 0.5, world.x(3) - 0.5) << i;
+    ASSERT_LT(world.x(3) + 0.5, 2.9) << i;
+  }
+  EXPECT_NEAR(world.x(3), 2.4, 0.02);
+  EXPECT_NEAR(world.x(2), 1.4, 0.04);
+  EXPECT_GT(world.scene[2].pose.translation().z(), 0.52) << "it is held in the air";
+  world.bodies->release(2);
+  for (int i = 0; i < 120; ++i) world.bodies->step(1.0 / 60);
+  EXPECT_NEAR(world.scene[2].pose.translation().z(), 0.501, 2e-3) << "it falls";
+}
+
+/// However far away the hand is: no faster than 4 m in a second.
+TEST(SceneBodies, WhatIsLedWithoutAMassPushesAndStaysWhereItIsReleased)
+{
+  CratesAtAWall world;
+  world.bodies->lead(4, at(-1, 0, 0.5));
+  for (int i = 0; i < 30; ++i) world.bodies->step(1.0 / 60);
+  EXPECT_NEAR(world.scene[4].pose.translation().z(), 1.0, 1e-9);
+  for (int i = 0; i < 10; ++i) world.bodies->step(1.0 / 60);
+  EXPECT_EQ(world.scene[4].pose.matrix(), at(-1, 0, 0.5).matrix());
+  world.bodies->lead(4, at(-0.2, 0, 0.5));
+  for (int i = 0; i < 60; ++i) world.bodies->step(1.0 / 60);
+  EXPECT_EQ(world.x(4), -0.2);
+  EXPECT_GT(world.x(2), 0.4) << "the crate gave way";
+  world.bodies->release(4);
+  world.bodies->step(0.5);
+  EXPECT_EQ(world.x(4), -0.2);
+}
+
+TEST(SceneBodies, WhatStoodStillCanBeLed)
+{
+  CratesAtAWall world;
+  world.bodies->lead(1, at(2.5, 0, 1));
+  for (int i = 0; i < 60; ++i) world.bodies->step(1.0 / 60);
+  EXPECT_EQ(world.x(1), 2.5);
+  EXPECT_EQ(world.bodies->states().size(), 2u);
+  Eigen::Isometry3d scaled = at(0, 0, 0);
+  scaled.linear() *= 2.0;
+  EXPECT_THROW(world.bodies->lead(1, scaled), InvalidInput);
+}
+
 /// Where waypoints begin elsewhere, it is there at once, and sweeps nothing on the way.
 TEST(SceneBodies, WaypointsBeginWhereTheySay)
 {
