@@ -301,6 +301,11 @@ void Scene::pointsChanged(ObjectId object)
   state_->pointsChanged(object);
 }
 
+std::optional<double> Scene::clearanceOf(ObjectId a, ObjectId b) const
+{
+  return state_->rules.clearanceOf(state_->body(a).id, state_->body(b).id);
+}
+
 bool Scene::testsPairs() const
 {
   return state_->rules.testsAny();

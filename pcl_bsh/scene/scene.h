@@ -146,6 +146,9 @@ public:
   void setRule(ObjectId a, ObjectId b, const PairRule& rule);
   void setGroupRule(const std::string& group_a, const std::string& group_b, const PairRule& rule);
 
+  /// The clearance of two objects by the rules, or nothing where they are not tested.
+  std::optional<double> clearanceOf(ObjectId a, ObjectId b) const;
+
   /// Whether any two objects are tested against each other: false where there is one object, all are fixed, or rules
   /// leave out all pairs. Then queries and steps find no pair, whatever effects the scene lists.
   bool testsPairs() const;
