@@ -137,6 +137,8 @@ public:
     last().unit = std::move(unit);
     return *this;
   }
+  /// Makes the last option a length above 0, in metres.
+  StageDescription& positiveLength() { return unit("m").above(0); }
   /// Makes the last option required in a document.
   StageDescription& required()
   {

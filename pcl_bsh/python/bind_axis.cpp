@@ -113,8 +113,7 @@ using OptionalPivot = As<"Optional[Literal['low_rail', 'centre']]">;
 CantPivot pivotOf(const py::object& pivot)
 {
   const std::string text = py::str(pivot);
-  if (text == "low_rail") return CantPivot::low_rail;
-  if (text == "centre") return CantPivot::centre;
+  if (const auto known = io::cantPivotOf(text)) return *known;
   throw InvalidInput(Input::pivot, "pivot", "`" + text + "` is unknown", "give \"low_rail\" or \"centre\"");
 }
 

@@ -101,6 +101,8 @@ Axis Axis::fitted(const std::vector<AxisPoint>& points, double tolerance, AxisDe
     throw InvalidInput(Input::trajectory, "tolerance", plainText("is ", tolerance), "give a finite length > 0");
   Plan origin;
   const std::vector<Plan> plan = planOf(points, 4.0, origin); // the noise of near neighbours turns them anyhow
+  for (std::size_t i = 1; i + 1 < plan.size(); ++i)           // no parabola goes there, and back
+    if (plan[i - 1] == plan[i + 1]) refusePoint(i, "its two neighbours lie at one place", "leave one of the three out");
   std::vector<FittedPlace> places;
   for (std::size_t i = 0; i < plan.size(); ++i) places.push_back(fittedAt(plan, i, tolerance));
   for (std::size_t i = 1; i < plan.size(); ++i) {

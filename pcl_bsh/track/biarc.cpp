@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace pcl_bsh {
 
@@ -76,19 +75,15 @@ void append(const Biarc& biarc, const Plan& origin, std::vector<PlanElement>& pl
   plan.back().start.reset(); // a joint is no given place: rounded to the given ones' last digit, it would be off
 }
 
-namespace {
-
-[[noreturn]] void refuse(std::size_t point, const std::string& wrong, const std::string& remedy)
+void refusePoint(std::size_t point, const std::string& wrong, const std::string& remedy)
 {
   throw InvalidInput(Input::trajectory, plainText("axis point ", point), wrong, remedy).withIndex(point);
 }
 
-} // namespace
-
 void refuseTurn(std::size_t point, double turn, double chainage, double most_turn)
 {
-  refuse(point, plainText("the axis turns by ", turn, " radians at chainage ", chainage),
-         plainText("give more points there; up to ", most_turn, " is taken for a curve"));
+  refusePoint(point, plainText("the axis turns by ", turn, " radians at chainage ", chainage),
+              plainText("give more points there; up to ", most_turn, " is taken for a curve"));
 }
 
 std::vector<Plan> planOf(const std::vector<AxisPoint>& points, double most_turn, Plan& origin)
@@ -100,13 +95,14 @@ std::vector<Plan> planOf(const std::vector<AxisPoint>& points, double most_turn,
   for (std::size_t i = 0; i < points.size(); ++i) {
     const AxisPoint& point = points[i];
     if (!isFinite(point.at) || !std::isfinite(point.chainage) || !std::isfinite(point.cant))
-      refuse(i, "has a value that is not finite", "correct it, or leave the point out");
+      refusePoint(i, "has a value that is not finite", "correct it, or leave the point out");
     plan.emplace_back(point.at[0] - origin.x(), point.at[1] - origin.y());
     if (i == 0) continue;
     if (!(point.chainage > points[i - 1].chainage))
-      refuse(i, plainText("its chainage ", point.chainage, " does not exceed the one before, ", points[i - 1].chainage),
-             "list points in the order of rising chainages");
-    if (plan[i] == plan[i - 1]) refuse(i, "lies where the one before lies", "leave it out");
+      refusePoint(
+          i, plainText("its chainage ", point.chainage, " does not exceed the one before, ", points[i - 1].chainage),
+          "list points in the order of rising chainages");
+    if (plan[i] == plan[i - 1]) refusePoint(i, "lies where the one before lies", "leave it out");
     if (i == 1) continue;
     const Plan before = plan[i - 1] - plan[i - 2], after = plan[i] - plan[i - 1];
     const double turn = std::abs(std::atan2(crossOf(before, after), before.dot(after)));

@@ -6,6 +6,10 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 namespace pcl_bsh {
 
 using Plan = Eigen::Vector2d;
@@ -56,6 +60,8 @@ private:
 /// Adds both arcs to a plan. @param origin of their coordinates
 void append(const Biarc& biarc, const Plan& origin, std::vector<PlanElement>& plan);
 
+/// @throws InvalidInput, with the point's number as its index
+[[noreturn]] void refusePoint(std::size_t point, const std::string& wrong, const std::string& remedy);
 [[noreturn]] void refuseTurn(std::size_t point, double turn, double chainage, double most_turn);
 
 /// Points of an axis in plan, from a place near the first. @throws InvalidInput naming the point that is wrong

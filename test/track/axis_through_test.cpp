@@ -147,6 +147,14 @@ TEST(AxisFitted, RefusesWhatIsNoLine)
   const std::vector<AxisPoint> kink = {{5, {0, 0, 0}}, {6, {1, 0, 0}}, {7, {2, 0, 0}}, {8, {2, 1, 0}}, {9, {2, 2, 0}}};
   EXPECT_THROW(Axis::fitted(kink, 0.01), InvalidInput);
   EXPECT_THROW(Axis::fitted({{5, {0, 0, 0}}}, 0.01), InvalidInput);
+  try {
+    Axis::fitted({{5, {0, 0, 0}}, {6, {1, 0, 0}}, {7, {2, 0, 0}}, {8, {1, 0, 0}}, {9, {0, 0, 0}}}, 0.01);
+    FAIL() << "it goes there, and back";
+  }
+  catch (const InvalidInput& error) {
+    EXPECT_EQ(error.index(), 2u);
+    EXPECT_STREQ(error.what(), "axis point 2: its two neighbours lie at one place: leave one of the three out");
+  }
   for (const double tolerance : {0.0, -1.0, std::nan("")})
     EXPECT_THROW(Axis::fitted({{10, {0, 0, 0}}, {20, {10, 0, 0}}}, tolerance), InvalidInput) << tolerance;
 }

@@ -108,8 +108,7 @@ StageType clashWriter()
              QuestionKind::collisions)
       .option(&ClashWriter::cluster_distance, "cluster_distance",
               "colliding points farther apart are two clashes; null: computed from clearance and spacing")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&ClashWriter::previous, "previous",
               "the .json or BCF of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
               "new, persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")

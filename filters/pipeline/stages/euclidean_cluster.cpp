@@ -91,8 +91,7 @@ StageType euclideanCluster()
       .alias("pcl::EuclideanClusterExtraction")
       .option(&EuclideanCluster::cluster_tolerance, "cluster_tolerance",
               "greatest distance between neighbours in a cluster")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .required()
       .option(&EuclideanCluster::min_cluster_size, "min_cluster_size", "least number of points of a cluster")
       .option(&EuclideanCluster::max_cluster_size, "max_cluster_size", "greatest number of points of a cluster");

@@ -114,7 +114,7 @@ private:
       settings.fit = fit;
       settings.cant_unit = cant_unit;
       settings.gauge = rail_gauge;
-      if (pivot) settings.pivot = *pivot == "centre" ? CantPivot::centre : CantPivot::low_rail;
+      if (pivot) settings.pivot = io::cantPivotOf(*pivot);
       tracks_.push_back({from.name, io::readAxis(from.file.path, settings, &remarks), {}});
     });
     warnOf(from.file.path, remarks);
@@ -207,14 +207,12 @@ StageType gaugeStage()
       .option(&Gauge::alignment, "alignment", "name of the alignment, where a LandXML holds several")
       .option(&Gauge::fit, "fit",
               "of an axis of measured points: as few arcs as come so near to them; null: arcs through each point")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::cant_unit, "cant_unit", "cant is in so many of the clouds' units; null: 0.001 in LandXML, else 1")
       .above(0)
       .option(&Gauge::rail_gauge, "gauge",
               "between the rails' heads, whose heights cant tells; null: the file's, or 1.5")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::pivot, "pivot", "what cant turns about; null: as the file says, or low_rail")
       .choices({"low_rail", "centre"})
       .option(&Gauge::profile_unit, "profile_unit",
@@ -223,20 +221,15 @@ StageType gaugeStage()
       .option(&Gauge::limit, "limit", "clearances up to this infringe")
       .unit("m")
       .option(&Gauge::step, "step", "length of a part of the table")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::reach, "reach", "how far beside the axis points belong to it")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::below, "below", "how far below it")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::above, "above", "how far above it")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::cluster_distance, "cluster_distance", "infringing points no farther apart are one infringement")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&Gauge::table, "table", "the .csv file to write: smallest clearances of each part of the axis")
       .option(&Gauge::infringements, "infringements", "the .csv file to write: infringements, the worst first")
       .option(&Gauge::previous, "previous",

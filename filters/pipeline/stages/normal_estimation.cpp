@@ -102,8 +102,7 @@ StageType normalEstimation()
       .atMost(1e6)
       .option(&NormalEstimation::radius_search, "radius_search",
               "instead of `k_search`: all neighbours within this distance")
-      .unit("m")
-      .above(0)
+      .positiveLength()
       .option(&NormalEstimation::view_point, "view_point",
               "[x, y, z] that normals point to; null: the sensor's position in the file")
       .unit("m")

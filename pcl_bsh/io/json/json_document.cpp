@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/json/json_document.h>
+
+#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <set>
 #include <vector>
 
@@ -61,6 +64,11 @@ Json orNull(double number)
 std::string printed(const Json& json)
 {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void writeJson(const std::filesystem::path& file, const Json& json)
+{
+  files::replaceFile(file, [&](std::ostream& out) { out << printed(json); });
 }
 
 std::string validUtf8(std::string_view text)

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -27,5 +28,8 @@ Json orNull(double number);
 
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
 std::string printed(const Json& json);
+
+/// In a file, or on standard output as `-`. @throws files::FileError
+void writeJson(const std::filesystem::path& file, const Json& json);
 
 } // namespace pcl_bsh::io

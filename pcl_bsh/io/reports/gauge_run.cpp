@@ -3,8 +3,6 @@
 
 #include <pcl_bsh/io/files/replace_file.h>
 
-#include <ostream>
-
 namespace pcl_bsh::io {
 
 std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step)
@@ -44,7 +42,7 @@ void GaugeFiles::write(const GaugeReport& told) const
 {
   if (!table.empty()) writeGaugeTable(table, told);
   if (!infringements.empty()) writeInfringements(infringements, told);
-  if (!report.empty()) files::replaceFile(report, [&](std::ostream& out) { out << printed(gaugeJson(told)); });
+  if (!report.empty()) writeJson(report, gaugeJson(told));
   if (!page.empty()) writeGaugePage(page, told);
 }
 

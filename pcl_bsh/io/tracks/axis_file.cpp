@@ -31,13 +31,8 @@ void applySettings(AxisDescription& description, const AxisSettings& settings)
 
 Axis axisOfPoints(std::string_view text, const AxisSettings& settings, std::vector<std::string>& remarks)
 {
-  const NumberTable table = numberTable(text,
-                                        {{{"chainage", "station"}},
-                                         {{"x", "e", "east", "easting"}},
-                                         {{"y", "n", "north", "northing"}},
-                                         {{"z", "h", "height", "elevation"}},
-                                         {{"cant"}, false}},
-                                        false);
+  const NumberTable table =
+      numberTable(text, {{{"chainage", "station"}}, x_column, y_column, z_column, {{"cant"}, false}}, false);
   std::vector<AxisPoint> points;
   for (const std::vector<double>& row : table.rows)
     points.push_back(
@@ -74,8 +69,7 @@ double angleUnit(std::string_view word)
 
 CantPivot pivotOf(std::string_view word)
 {
-  if (word == "low_rail") return CantPivot::low_rail;
-  if (word == "centre") return CantPivot::centre;
+  if (const auto pivot = cantPivotOf(word)) return *pivot;
   throw FormatError("cant turns about no '" + std::string(word) + "'", "give low_rail or centre");
 }
 
@@ -175,6 +169,13 @@ private:
 };
 
 } // namespace
+
+std::optional<CantPivot> cantPivotOf(std::string_view word)
+{
+  for (const auto& [name, pivot] : cant_pivots)
+    if (word == name) return pivot;
+  return std::nullopt;
+}
 
 AxisDescription parseElements(std::string_view text)
 {

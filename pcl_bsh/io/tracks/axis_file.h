@@ -8,9 +8,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::io {
+
+/// The lines that cant turns about, by the words of files and options.
+inline const std::vector<std::pair<std::string, CantPivot>> cant_pivots = {{"low_rail", CantPivot::low_rail},
+                                                                           {"centre", CantPivot::centre}};
+
+/// None for any other word.
+std::optional<CantPivot> cantPivotOf(std::string_view word);
 
 struct AxisSettings {
   std::string alignment = {};                     ///< its name in LandXML; empty: the only one

@@ -202,9 +202,10 @@ private:
     const double gauge = attribute(cant, "gauge", axis_.gauge);
     axis_.gauge = gauge > 10.0 ? 0.001 * gauge : gauge;
     const std::string pivot = cant.attribute("rotationPoint").value();
-    if (pivot == "center")
-      axis_.pivot = CantPivot::centre;
-    else if (!pivot.empty() && pivot != "insideRail" && !settings_.pivot)
+    const auto known = cantPivotOf(pivot == "center" ? "centre" : pivot == "insideRail" ? "low_rail" : pivot);
+    if (known)
+      axis_.pivot = *known;
+    else if (!pivot.empty() && !settings_.pivot)
       fail(cant, "rotationPoint=\"" + pivot + "\" is not known", "say what cant turns about: low_rail or centre");
     for (const pugi::xml_node& station : cant.children("CantStation")) {
       const double applied = attribute(station, "appliedCant");

@@ -2,9 +2,12 @@
 // A text of numbers in named columns.
 #pragma once
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/text/text_cursor.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,8 +27,27 @@ struct TableColumn {
   bool required = true;
 };
 
+/// Coordinates, as files name them.
+inline const TableColumn x_column = {{"x", "e", "east", "easting"}}, y_column = {{"y", "n", "north", "northing"}},
+                         z_column = {{"z", "h", "height", "elevation"}};
+
 /// The first line names the columns. Where it is numbers, `unnamed` says what they are, or that is an error.
 /// @throws FormatError naming the line and the column
 NumberTable numberTable(std::string_view text, const std::vector<TableColumn>& columns, bool unnamed);
+
+/// The result of `read`; its errors name the file. @param form of such files, where an error has no better advice
+template <class Read>
+auto namingFile(const std::filesystem::path& path, const char* form, const Read& read)
+{
+  try {
+    return read();
+  }
+  catch (const FormatError& error) {
+    throw files::FileError(path, error.what(), error.remedy() == remedy_for_damage ? form : error.remedy());
+  }
+  catch (const InvalidInput& error) {
+    throw files::FileError(path, error.wrong(), error.remedy());
+  }
+}
 
 } // namespace pcl_bsh::io

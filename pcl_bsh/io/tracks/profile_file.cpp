@@ -16,21 +16,6 @@ namespace {
 
 constexpr auto form_of_a_profile = "give a corner in each line, in columns offset and height, or a drawing as .dxf";
 
-/// The result of `read`; its errors name the file.
-template <class Read>
-auto namingFile(const std::filesystem::path& path, const char* form, const Read& read)
-{
-  try {
-    return read();
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy() == remedy_for_damage ? form : error.remedy());
-  }
-  catch (const InvalidInput& error) {
-    throw files::FileError(path, error.wrong(), error.remedy());
-  }
-}
-
 } // namespace
 
 std::vector<SectionPoint> readProfile(const std::filesystem::path& path, std::optional<double> unit,

@@ -2,26 +2,19 @@
 // Reports for programs: in a file, or on standard output, where --json asks for it.
 #pragma once
 
-#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/query/work.h>
 
-#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
 namespace pcl_bsh::cli {
 
-/// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
+using io::writeJson; // in a file
+
 inline void writeJson(std::ostream& out, const nlohmann::ordered_json& report)
 {
   out << io::printed(report);
-}
-
-/// In a file, or on standard output as `-`. @throws files::FileError
-inline void writeJson(const std::filesystem::path& file, const nlohmann::ordered_json& report)
-{
-  files::replaceFile(file, [&](std::ostream& out) { writeJson(out, report); });
 }
 
 inline nlohmann::ordered_json workJson(const Work& work)

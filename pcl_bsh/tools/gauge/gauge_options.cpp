@@ -199,7 +199,7 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
          "--pivot", settings.pivot,
          "what cant turns about: low_rail, whose height is the axis', or centre\n(default: the file's, or low_rail)")
       ->type_name("WHICH")
-      ->transform(choice<CantPivot>({{"low_rail", CantPivot::low_rail}, {"centre", CantPivot::centre}}));
+      ->transform(choice(io::cant_pivots));
   app.add_option("--profile", profiles,
                  "outline that must be free, as .csv (offset, height) or .dxf; its name is\n"
                  "the file's, without extension; may be given more than once")
