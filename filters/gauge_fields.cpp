@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/filters/gauge_fields.h>
 
+#include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/search/find_field.h>
+
 #include <limits>
 
 namespace pcl_bsh {
@@ -28,6 +31,23 @@ std::vector<NewField> GaugeFields::fields() const
                                {"clearance", &clearance_}, {"envelope", &envelope_}, {"place", &place_}};
   if (has_names_) all.push_back({"track", &track_});
   return all;
+}
+
+TimeField timeFieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name)
+{
+  const pcl::PCLPointField* field = nullptr;
+  std::string names;
+  for (const char* usual : {"gps_time", "time", "timestamp", "timeStamp", "t"})
+    if (!field) field = findField(cloud, name.empty() ? usual : name);
+  for (const pcl::PCLPointField& given : cloud.fields) names += (names.empty() ? "" : ", ") + given.name;
+  if (!field)
+    throw InvalidInput(Input::seen, "time field",
+                       name.empty() ? "the scan has none" : "the scan has no field '" + name + "'",
+                       "give the one that has the points' times: its fields are " + names);
+  if (field->datatype != pcl::PCLPointField::FLOAT64 && field->datatype != pcl::PCLPointField::FLOAT32)
+    throw InvalidInput(Input::seen, "time field", "'" + field->name + "' holds no FLOAT32 or FLOAT64",
+                       "convert the times first");
+  return {field->offset, field->datatype == pcl::PCLPointField::FLOAT64 ? Scalar::float64 : Scalar::float32};
 }
 
 } // namespace pcl_bsh

@@ -4,9 +4,13 @@
 
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/filters/collision_field.h>
+#include <pcl_bsh/track/origin_path.h>
 #include <pcl_bsh/track/tracks.h>
 
+#include <pcl/PCLPointCloud2.h>
+
 #include <cstdint>
+#include <string>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -33,6 +37,11 @@ private:
   std::vector<std::int32_t> envelope_, track_;
   std::vector<std::uint8_t> place_;
 };
+
+/// Where a cloud's points have their times.
+/// @param name of the field; empty: the first of gps_time, time, timestamp, timeStamp and t
+/// @throws InvalidInput naming the field that is missing, or of another type than FLOAT32 and FLOAT64
+TimeField timeFieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

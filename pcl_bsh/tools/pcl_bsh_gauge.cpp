@@ -7,12 +7,14 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/gauge_fields.h>
+#include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/files/output_folder.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/reports/gauge_drawings.h>
 #include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/io/tracks/origin_file.h>
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/track/bogies.h>
 
@@ -146,7 +148,21 @@ void summarise(const Options& options, const io::GaugeReport& report)
   if (report.counts[5] > 0) out << ", " << report.counts[5] << " not finite";
   if (const std::size_t no_data = report.partsWithoutData(); no_data > 0)
     out << "; no data in " << no_data << " of " << counted(report.parts(), "part");
+  if (const std::size_t unseen = report.partsUnseen(); unseen > 0)
+    out << "; a side is unseen in " << unseen << " of " << counted(report.parts(), "part");
+  if (report.outside.points > 0) out << "; " << counted(report.outside.points, "point") << " without an origin";
   out << '\n';
+}
+
+/// @throws files::FileError naming the scan
+TimeField timesOf(const Options& options, const pcl::PCLPointCloud2& fields)
+{
+  try {
+    return timeFieldOf(fields, options.time_field);
+  }
+  catch (const InvalidInput& error) {
+    throw files::FileError(options.input, error.wrong(), "--time-field: " + error.remedy());
+  }
 }
 
 void compare(const Options& options, std::vector<Track> tracks)
@@ -156,6 +172,8 @@ void compare(const Options& options, std::vector<Track> tracks)
   std::optional<io::GaugeList> earlier;
   if (!options.previous.empty()) earlier = io::readGaugeList(options.previous, options.limit);
   std::vector<GaugeTable> tables = io::tablesOf(tracks, options.step);
+  std::optional<io::BeamOrigins> origins;
+  if (!options.origin_path.empty()) origins = io::BeamOrigins{io::readOriginPath(options.origin_path), {}};
   if (!options.output.empty()) io::requireWritableCloud(options.output);
   options.written.requireWritable();
 
@@ -168,6 +186,7 @@ void compare(const Options& options, std::vector<Track> tracks)
   cli::warnOfFile(program, options.input, scan->remarks());
   GaugeFields fields(tracks);
   if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
+  if (origins) origins->times = timesOf(options, scan->whole());
 
   io::GaugeReport report{options.input.string(),
                          options.reading.unitOfReports(options.unit, scan->facts().unit),
@@ -183,7 +202,12 @@ void compare(const Options& options, std::vector<Track> tracks)
                          0,
                          {}};
   for (const cli::GaugeAxis& axis : options.axes) report.axis_files.push_back(axis.file.string());
-  io::GaugeRun run(report, options.threads);
+  if (origins) {
+    report.origin_path = options.origin_path.string();
+    report.seen_spacing = options.seen_spacing;
+    report.seen = io::seenOf(tracks, {options.step, options.seen_spacing});
+  }
+  io::GaugeRun run(report, options.threads, origins ? &*origins : nullptr);
   cli::Step step("Gauging");
   scan->forEachBatch([&](const PointsView& points, std::uint64_t first) {
     const GaugedTracks found = run.add(points, first);
@@ -193,6 +217,8 @@ void compare(const Options& options, std::vector<Track> tracks)
   const std::vector<std::string> remarks = run.finish(options.previous, earlier);
   step.done(counted(report.infringing, "infringing point"));
   cli::warnOfFile(program, options.previous, remarks);
+  if (report.outside.points > 0)
+    cli::warnOfFile(program, options.input, {io::outsideRemark(report.outside, origins->path)});
   if (options.draws()) {
     report.sections = sectionsOf(options, report);
     fillSections(options, *scan, report);

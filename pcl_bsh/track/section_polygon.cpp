@@ -47,7 +47,7 @@ std::string textOf(const SectionPoint& p)
 /// distance cross / length then errs by 16 v w, and by 4 v of itself for square, sum, division and root. At an edge's
 /// ends both formulas differ by less than the foot's own error, 4 v w. Squares neither overflow nor underflow for sizes
 /// between 1e-140 and 1e140.
-double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point, SectionPoint* nearest)
+double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point, OutlinePlace* nearest)
 {
   constexpr double sure = 8 * kDoubleUnit;
   double least = std::numeric_limits<double>::infinity(), foot = 0.0;
@@ -77,14 +77,14 @@ double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoi
     if (!crosses && !doubtful) continue;
     const int side = doubtful ? sideOf(a, b, point) : cross > 0.0 ? 1 : -1;
     if (side == 0 && isBetween(a, b, point)) {
-      if (nearest) *nearest = point;
+      if (nearest) *nearest = {point, last, std::clamp(along / square, 0.0, 1.0)};
       return 0.0;
     }
     if (crosses && (side > 0) == (b.height > a.height)) inside = !inside;
   }
   if (nearest) {
     const SectionPoint &a = outline[at_edge], &b = outline[(at_edge + 1) % outline.size()];
-    *nearest = {a.offset + foot * (b.offset - a.offset), a.height + foot * (b.height - a.height)};
+    *nearest = {{a.offset + foot * (b.offset - a.offset), a.height + foot * (b.height - a.height)}, at_edge, foot};
   }
   const double distance = std::max(std::sqrt(least), std::numeric_limits<double>::min()); // not on the outline
   return inside ? -distance : distance;

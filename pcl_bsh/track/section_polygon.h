@@ -4,6 +4,7 @@
 
 #include <pcl_bsh/export.h>
 
+#include <cstddef>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -17,6 +18,13 @@ struct SectionPoint {
   bool operator==(const SectionPoint& other) const { return offset == other.offset && height == other.height; }
 };
 
+/// A place of an outline.
+struct OutlinePlace {
+  SectionPoint at;
+  std::size_t edge = 0; ///< from the corner with this number to the next
+  double share = 0.0;   ///< of the edge
+};
+
 /// How far a distance may be off: so often the unit of roundings, 2^-53, times the polygon's extent and the distance.
 inline constexpr double section_distance_error = 64 * 0x1p-53;
 
@@ -24,7 +32,7 @@ inline constexpr double section_distance_error = 64 * 0x1p-53;
 /// The sign is that of exact arithmetic on the given numbers. @pre a simple polygon, all numbers finite
 /// @param nearest if not null, gets the outline's nearest place
 double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point,
-                      SectionPoint* nearest = nullptr);
+                      OutlinePlace* nearest = nullptr);
 
 /// @return the corners, without those that repeat the one before
 /// @throws InvalidInput naming the corners: fewer than three, one that is not finite, an outline that crosses or

@@ -160,6 +160,21 @@ TEST_F(GaugeStage, GaugesSeveralTracksInOnePass)
               HasSubstr("profiles: no profile counts on the track 'right'"));
 }
 
+TEST_F(GaugeStage, TellsWhatBeamsSaw)
+{
+  auto made = std::make_shared<StageCloud>();
+  folder.write("beams.csv", "x,y,z,gps_time\n5,-3,1,0\n5,3,1,0\n5,0,6,1\n5,0,-1,1\n");
+  made->cloud = io::readCloud(folder / "beams.csv");
+  folder.write("line.axis", "start 0 0 90\nchainage 100\nstraight 10\n");
+  folder.write("path.csv", "time,x,y,z\n0,5,0,2\n2,5,0,2\n");
+  const std::string files = fileOption("origin_path", "path.csv") + R"(, "step": 10, "seen_spacing": 1)";
+  runStage(made, stage(files + fileOption("table", "table.csv")));
+  EXPECT_THAT(io::contentOf(folder / "table.csv"), HasSubstr("100,110,0,10,box,clear,4,"));
+  EXPECT_THAT(errorOf([&] { runStage(scan, stage(files)); }), HasSubstr("time_field: the scan has none"));
+  folder.write("path.csv", "time,x,y,z\n0,5,0,2\n");
+  EXPECT_THAT(errorOf([&] { runStage(made, stage(files)); }), HasSubstr("path.csv: has 1 of the two places"));
+}
+
 TEST_F(GaugeStage, NamesTheOptionThatIsWrong)
 {
   const auto error = [&](const std::string& more, const std::string& of_profile = "") {

@@ -71,11 +71,16 @@ TEST(SectionPolygon, OnTheOutlineIsZero)
 TEST(SectionPolygon, AThinSliceIsAsDeepAsItsNearestEdge)
 {
   const std::vector<SectionPoint> box = {{-1.5, 0}, {1.5, 0}, {1.5, 4}, {-1.5, 4}};
-  SectionPoint nearest;
+  OutlinePlace nearest;
   EXPECT_DOUBLE_EQ(signedDistance(box, {1.397, 2}, &nearest), -0.103);
-  EXPECT_EQ(nearest, (SectionPoint{1.5, 2}));
+  EXPECT_EQ(nearest.at, (SectionPoint{1.5, 2}));
+  EXPECT_EQ(nearest.edge, 1u);
+  EXPECT_EQ(nearest.share, 0.5);
   EXPECT_DOUBLE_EQ(signedDistance(box, {4.5, 8}, &nearest), 5);
-  EXPECT_EQ(nearest, (SectionPoint{1.5, 4}));
+  EXPECT_EQ(nearest.at, (SectionPoint{1.5, 4}));
+  EXPECT_EQ(signedDistance(box, {0.75, 4}, &nearest), 0);
+  EXPECT_EQ(nearest.edge, 2u);
+  EXPECT_EQ(nearest.share, 0.25);
 }
 
 TEST(SectionPolygon, CornersMayGoEitherWay)

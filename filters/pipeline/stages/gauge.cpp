@@ -8,6 +8,7 @@
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/reports/gauge_run.h>
 #include <pcl_bsh/io/tracks/axis_file.h>
+#include <pcl_bsh/io/tracks/origin_file.h>
 #include <pcl_bsh/io/tracks/profile_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
@@ -44,7 +45,9 @@ struct Gauge : Stage {
   std::optional<double> fit, cant_unit, rail_gauge, profile_unit;
   std::optional<std::string> pivot;
   std::vector<Profile> profiles;
-  std::optional<InputFile> previous;
+  std::optional<InputFile> previous, origin_path;
+  std::string time_field;
+  double seen_spacing = SeenCells().spacing;
   double limit = 0.0, step = 1.0, cluster_distance = 0.5;
   double reach = AxisReach().offset, below = AxisReach().below, above = AxisReach().above;
   std::optional<OutputFile> table, infringements, report, page;
@@ -70,6 +73,11 @@ struct Gauge : Stage {
         *path = (*file)->path;
         namingOption(option, [&, path = path] { files::requireWritable(*path); });
       }
+    if (origin_path) {
+      namingOption("origin_path", [&] { origins_ = io::BeamOrigins{io::readOriginPath(origin_path->path), {}}; });
+      namingOption("time_field", [&] { origins_->times = timeFieldOf(inputs[0], time_field); });
+      namingOption("seen_spacing", [&] { io::seenOf(tracks_, {step, seen_spacing}); });
+    }
     if (previous) namingOption("previous", [&] { earlier_ = io::readGaugeList(previous->path, limit); });
     return withFields(inputs[0], GaugeFields(tracks_).fields());
   }
@@ -85,7 +93,12 @@ struct Gauge : Stage {
                          {reach, below, above},
                          limit};
     told.cluster_distance = cluster_distance;
-    io::GaugeRun gauging(told, 1);
+    if (origins_) {
+      told.origin_path = origin_path->path;
+      told.seen_spacing = seen_spacing;
+      told.seen = io::seenOf(tracks_, {step, seen_spacing});
+    }
+    io::GaugeRun gauging(told, 1, origins_ ? &*origins_ : nullptr);
     GaugeFields fields(tracks_);
     io::forEachGaugeBatch(viewOf(inputs[0]->cloud), [&](const PointsView& batch, std::size_t first) {
       if (isCancelled()) throw Cancelled();
@@ -93,6 +106,7 @@ struct Gauge : Stage {
     });
     const std::string earlier = previous ? previous->path : "";
     warnOf(earlier, gauging.finish(earlier, earlier_));
+    if (told.outside.points > 0) warn(input_name + ": " + io::outsideRemark(told.outside, origins_->path));
     files_.write(told);
     const auto output = ownCloud(std::move(inputs[0]));
     output->cloud = withFields(output->cloud, fields.fields());
@@ -156,6 +170,7 @@ private:
   std::vector<Track> tracks_;
   std::vector<std::string> axis_files_;
   std::optional<io::GaugeList> earlier_;
+  std::optional<io::BeamOrigins> origins_;
   io::GaugeFiles files_;
 };
 
@@ -229,6 +244,13 @@ StageType gaugeStage()
       .option(&Gauge::above, "above", "how far above it")
       .positiveLength()
       .option(&Gauge::cluster_distance, "cluster_distance", "infringing points no farther apart are one infringement")
+      .positiveLength()
+      .option(&Gauge::origin_path, "origin_path",
+              "where the scanner was, as .csv of time, x, y, z: tells how much of the outlines its beams crossed, and "
+              "where none did")
+      .option(&Gauge::time_field, "time_field",
+              "the field of the points' times; empty: gps_time, time, timestamp, timeStamp or t")
+      .option(&Gauge::seen_spacing, "seen_spacing", "edge of the outlines' cells that a beam must cross to be seen")
       .positiveLength()
       .option(&Gauge::table, "table", "the .csv file to write: smallest clearances of each part of the axis")
       .option(&Gauge::infringements, "infringements", "the .csv file to write: infringements, the worst first")

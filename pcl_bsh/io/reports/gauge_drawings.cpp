@@ -118,6 +118,57 @@ struct AlongAxis {
   }
 };
 
+constexpr double map_top = 12;
+
+/// Rows of colours by chainage, which go up round an envelope, and the names of its four sectors.
+std::string mapOf(const AlongAxis& along, std::size_t rows, double row,
+                  const std::function<std::string(std::size_t, std::size_t)>& colorOf)
+{
+  const double bottom = map_top + row * static_cast<double>(rows);
+  std::string inside = "<g shape-rendering=\"crispEdges\">\n";
+  for (std::size_t cell = 0; cell < rows; ++cell) {
+    const double y = bottom - row * static_cast<double>(cell + 1);
+    for (std::size_t column = 0; column < along.columns;) {
+      const std::size_t first = column;
+      const std::string color = colorOf(first, cell);
+      while (++column < along.columns && colorOf(column, cell) == color) {
+      }
+      const double end = column == along.columns ? along.left + along.width : along.x(column);
+      inside += "<path fill=\"" + color + "\" d=\"M" + placeText(along.x(first)) + ' ' + placeText(y) + 'H' +
+                placeText(end) + 'V' + placeText(y + row) + 'H' + placeText(along.x(first)) +
+                "z\"/>\n"; // edges are those of neighbours
+    }
+  }
+  inside += "</g>\n";
+  constexpr std::array names = {"left", "above", "right", "below"};
+  const double of_sector = row * static_cast<double>(rows / names.size());
+  for (std::size_t sector = 0; sector < names.size(); ++sector) {
+    const double y = bottom - of_sector * static_cast<double>(sector);
+    inside += lineOf(along.left - 6, y, along.left + along.width, y, "#fff");
+    inside += textOfDrawing(along.left - 10, y - of_sector / 2 + 4, "end", names[sector]);
+  }
+  return inside;
+}
+
+/// Values and their names, below a map.
+std::string legendOf(double bottom, const std::vector<std::pair<double, std::string>>& values, double limit)
+{
+  std::string inside;
+  double x = 690;
+  for (const auto& [value, name] : values) {
+    inside += "<rect" +
+              attributesOf({{"x", placeText(x)},
+                            {"y", placeText(bottom + 26)},
+                            {"width", "12"},
+                            {"height", "12"},
+                            {"fill", clearanceColor(value, limit, 1.0)}}) +
+              "/>\n";
+    inside += textOfDrawing(x + 16, bottom + 36, "start", name);
+    x += 74;
+  }
+  return inside;
+}
+
 /// A section's own scale: offset to the right, height up.
 struct SectionView {
   double left, top, scale, middle_offset, high;
@@ -198,9 +249,9 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
     const SectionPoint worst{section.worst->place.offset, section.worst->place.height};
     for (const auto& [e, outline] : outlines) {
       if (static_cast<std::int32_t>(e) != section.worst->envelope) continue;
-      SectionPoint nearest;
+      OutlinePlace nearest;
       signedDistance(outline, worst, &nearest);
-      inside += lineOf(view.x(worst.offset), view.y(worst.height), view.x(nearest.offset), view.y(nearest.height),
+      inside += lineOf(view.x(worst.offset), view.y(worst.height), view.x(nearest.at.offset), view.y(nearest.at.height),
                        "#c62f3b", " stroke-width=\"1.4\"");
     }
     inside +=
@@ -227,52 +278,39 @@ std::string clearanceMap(const GaugeReport& report, std::size_t track, std::size
 {
   const GaugeTable& table = report.tables[track];
   const AlongAxis along{report.tracks[track].axis, table, report.unit};
-  constexpr double top = 12, row = 5;
-  constexpr double bottom = top + row * static_cast<double>(cells_around), range = 1.0;
-  std::string inside = "<g shape-rendering=\"crispEdges\">\n";
-  for (std::size_t cell = 0; cell < cells_around; ++cell) {
-    const double y = bottom - row * static_cast<double>(cell + 1);
-    for (std::size_t column = 0; column < along.columns;) {
-      const auto colorOf = [&](std::size_t c) {
-        return clearanceColor(along.smallest(c, [&](std::size_t part) { return table.cell(part, envelope, cell); }),
-                              report.limit, range);
-      };
-      const std::size_t first = column;
-      const std::string color = colorOf(first);
-      while (++column < along.columns && colorOf(column) == color) {
-      }
-      const double end = column == along.columns ? along.left + along.width : along.x(column);
-      inside += "<path fill=\"" + color + "\" d=\"M" + placeText(along.x(first)) + ' ' + placeText(y) + 'H' +
-                placeText(end) + 'V' + placeText(y + row) + 'H' + placeText(along.x(first)) +
-                "z\"/>\n"; // edges are those of neighbours
-    }
-  }
-  inside += "</g>\n";
-  constexpr std::array names = {"left", "above", "right", "below"};
-  for (std::size_t sector = 0; sector < names.size(); ++sector) {
-    const double y = bottom - row * static_cast<double>(sector * cells_of_sector);
-    inside += lineOf(along.left - 6, y, along.left + along.width, y, "#fff");
-    inside += textOfDrawing(along.left - 10, y - row * cells_of_sector / 2 + 4, "end", names[sector]);
-  }
+  constexpr double row = 5, bottom = map_top + row * static_cast<double>(cells_around), range = 1.0;
+  std::string inside = mapOf(along, cells_around, row, [&](std::size_t column, std::size_t cell) {
+    return clearanceColor(along.smallest(column, [&](std::size_t part) { return table.cell(part, envelope, cell); }),
+                          report.limit, range);
+  });
   inside += along.ticks(bottom, bottom);
-  double x = 690; // the legend
-  for (const double clearance :
-       {report.limit, report.limit + 0.01, report.limit + range / 2, report.limit + range, unbounded}) {
-    const bool first = clearance == report.limit;
-    inside += "<rect" +
-              attributesOf({{"x", placeText(x)},
-                            {"y", placeText(bottom + 26)},
-                            {"width", "12"},
-                            {"height", "12"},
-                            {"fill", clearanceColor(clearance, report.limit, range)}}) +
-              "/>\n";
-    const std::string name = first                   ? "to " + number(clearance)
-                             : std::isinf(clearance) ? "no data"
-                                                     : number(clearance, 3);
-    inside += textOfDrawing(x + 16, bottom + 36, "start", name);
-    x += 74;
-  }
+  inside += legendOf(bottom,
+                     {{report.limit, "to " + number(report.limit)},
+                      {report.limit + 0.01, number(report.limit + 0.01, 3)},
+                      {report.limit + range / 2, number(report.limit + range / 2, 3)},
+                      {report.limit + range, number(report.limit + range, 3)},
+                      {unbounded, "no data"}},
+                     report.limit);
   return drawing(1080, bottom + 46, "map of clearances", inside);
+}
+
+std::string seenMap(const GaugeReport& report, std::size_t track, std::size_t envelope)
+{
+  const GaugeTable& table = report.tables[track];
+  const Track& of = report.tracks[track];
+  const AlongAxis along{of.axis, table, report.unit};
+  constexpr double row = 15, bottom = map_top + 4 * row;
+  const auto shareOf = [&](std::size_t part, std::size_t sector) {
+    const double middle = of.axis.chainage(0.5 * (table.from(part) + table.to(part)));
+    if (!of.envelopes[envelope].countsAt(middle)) return unbounded;
+    return report.seen[track].share(part, envelope, static_cast<Sector>(sector));
+  };
+  std::string inside = mapOf(along, 4, row, [&](std::size_t column, std::size_t sector) {
+    return clearanceColor(along.smallest(column, [&](std::size_t part) { return shareOf(part, sector); }), 0.0, 1.0);
+  });
+  inside += along.ticks(bottom, bottom);
+  inside += legendOf(bottom, {{0.0, "unseen"}, {0.01, "1 %"}, {0.5, "50 %"}, {1.0, "100 %"}}, 0.0);
+  return drawing(1080, bottom + 46, "map of what was seen", inside);
 }
 
 std::string clearanceChart(const GaugeReport& report, std::size_t track, std::size_t envelope)

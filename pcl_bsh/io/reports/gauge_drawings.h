@@ -15,6 +15,9 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
 /// Smallest clearances, chainage across, and up what goes round the envelope: left, above, right, below.
 std::string clearanceMap(const GaugeReport& report, std::size_t track, std::size_t envelope);
 
+/// The share of each sector's outline that beams crossed, by chainage. @pre the report has `seen`
+std::string seenMap(const GaugeReport& report, std::size_t track, std::size_t envelope);
+
 /// Smallest clearances of the four sectors by chainage.
 std::string clearanceChart(const GaugeReport& report, std::size_t track, std::size_t envelope);
 

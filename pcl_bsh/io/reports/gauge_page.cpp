@@ -40,8 +40,8 @@ Data rowsOf(const GaugeReport& report)
   return Object{{"list", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};
 }
 
-/// Chainages of parts where an envelope counts and has no data, neighbours joined.
-Data gapsOf(const GaugeReport& report, std::size_t t, std::size_t envelope)
+/// Chainages of parts where an envelope counts and has that state, neighbours joined.
+Data chainagesOf(const GaugeReport& report, std::size_t t, std::size_t envelope, PartState state)
 {
   const Track& track = report.tracks[t];
   const GaugeTable& table = report.tables[t];
@@ -50,7 +50,7 @@ Data gapsOf(const GaugeReport& report, std::size_t t, std::size_t envelope)
   for (std::size_t part = 0; part < table.parts(); ++part) {
     const auto isGap = [&](std::size_t p) {
       const double middle = 0.5 * (table.from(p) + table.to(p));
-      return stateOf(report, t, p, envelope) == PartState::no_data &&
+      return stateOf(report, t, p, envelope) == state &&
              track.envelopes[envelope].countsAt(track.axis.chainage(middle));
     };
     if (!isGap(part)) continue;
@@ -62,6 +62,16 @@ Data gapsOf(const GaugeReport& report, std::size_t t, std::size_t envelope)
   }
   if (gaps > most_gaps) text += " and " + std::to_string(gaps - most_gaps) + " more";
   return textOrNone(text);
+}
+
+/// Where beams came from, if that is known.
+Data beamsOf(const GaugeReport& report)
+{
+  if (report.seen.empty()) return false;
+  return Object{{"path", plain(report.origin_path)},
+                {"unseen", std::to_string(report.partsUnseen())},
+                {"spacing", number(report.seen_spacing)},
+                {"outside", std::to_string(report.outside.points)}};
 }
 
 /// The axes and their chainages.
@@ -88,7 +98,9 @@ void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report
                                  {"name", plain(report.tracks[t].envelopes[e].name())},
                                  {"chart", clearanceChart(report, t, e)},
                                  {"map", clearanceMap(report, t, e)},
-                                 {"gaps", gapsOf(report, t, e)}});
+                                 {"seen", report.seen.empty() ? Data(false) : Data(seenMap(report, t, e))},
+                                 {"gaps", chainagesOf(report, t, e, PartState::no_data)},
+                                 {"unseen", chainagesOf(report, t, e, PartState::unseen)}});
   for (const GaugeSection& section : report.sections)
     sections.push_back(Object{{"drawing", sectionDrawing(report, section)}});
   const Object page = {{"style", pageStyle()},
@@ -108,6 +120,7 @@ void writeGaugePage(const std::filesystem::path& path, const GaugeReport& report
                        {"placed", std::to_string(report.placed())},
                        {"no_data", std::to_string(report.partsWithoutData())},
                        {"parts", std::to_string(report.parts())},
+                       {"beams", beamsOf(report)},
                        {"two", std::to_string(report.counts[1])},
                        {"before", std::to_string(report.counts[2])},
                        {"behind", std::to_string(report.counts[3])},

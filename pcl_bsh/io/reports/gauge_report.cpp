@@ -5,7 +5,9 @@
 #include <pcl_bsh/io/reports/report_origin.h>
 #include <pcl_bsh/io/text/number_text.h>
 
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace pcl_bsh::io {
@@ -28,8 +30,9 @@ Json jsonOf(double clearance)
 struct TablePart {
   const Track& track;
   const GaugeTable& table;
-  std::size_t part, envelope;
-  double chainage_from, chainage_to; ///< at a jump it ends with the chainage before
+  const SeenOutline* seen;            ///< null: beams are not known
+  std::size_t number, part, envelope; ///< of the track first
+  double chainage_from, chainage_to;  ///< at a jump it ends with the chainage before
   PartState state;
 
   const std::string& envelopeName() const { return track.envelopes[envelope].name(); }
@@ -47,7 +50,8 @@ void forEachPart(const GaugeReport& report, const Use& use)
       const double from = table.from(part), to = table.to(part), middle = track.axis.chainage(0.5 * (from + to));
       for (std::size_t e = 0; e < track.envelopes.size(); ++e)
         if (track.envelopes[e].countsAt(middle) || std::isfinite(table.smallest(part, e)))
-          use(TablePart{track, table, part, e, track.axis.chainage(from), track.axis.chainage(std::nextafter(to, from)),
+          use(TablePart{track, table, report.seen.empty() ? nullptr : &report.seen[t], t, part, e,
+                        track.axis.chainage(from), track.axis.chainage(std::nextafter(to, from)),
                         stateOf(report, t, part, e)});
     }
   }
@@ -102,20 +106,40 @@ std::size_t GaugeReport::parts() const
 std::size_t GaugeReport::partsWithoutData() const
 {
   std::size_t without = 0;
-  for (const GaugeTable& table : tables)
-    for (std::size_t part = 0; part < table.parts(); ++part) without += table.points(part) == 0;
+  for (std::size_t t = 0; t < tables.size(); ++t)
+    for (std::size_t part = 0; part < tables[t].parts(); ++part) {
+      bool has_data = tables[t].points(part) > 0;
+      for (std::size_t e = 0; !seen.empty() && !has_data && e < tracks[t].envelopes.size(); ++e)
+        has_data = seen[t].share(part, e) > 0.0;
+      without += !has_data;
+    }
   return without;
+}
+
+std::size_t GaugeReport::partsUnseen() const
+{
+  std::set<std::pair<std::size_t, std::size_t>> unseen;
+  if (seen.empty()) return 0;
+  forEachPart(*this, [&](const TablePart& part) {
+    if (part.state == PartState::unseen) unseen.emplace(part.number, part.part);
+  });
+  return unseen.size();
 }
 
 PartState stateOf(const GaugeReport& report, std::size_t track, std::size_t part, std::size_t envelope)
 {
   const double least = report.tables[track].smallest(part, envelope);
-  return !std::isfinite(least) ? PartState::no_data : least <= report.limit ? PartState::infringed : PartState::clear;
+  if (least <= report.limit) return PartState::infringed;
+  if (report.seen.empty()) return std::isfinite(least) ? PartState::clear : PartState::no_data;
+  const SeenOutline& seen = report.seen[track];
+  if (!std::isfinite(least) && !(seen.share(part, envelope) > 0.0)) return PartState::no_data;
+  return seen.isUnseen(part, envelope) ? PartState::unseen : PartState::clear;
 }
 
 const char* textOf(PartState state)
 {
-  return state == PartState::no_data ? "no data" : state == PartState::clear ? "clear" : "infringed";
+  constexpr std::array texts = {"no data", "clear", "infringed", "unseen"};
+  return texts[static_cast<std::size_t>(state)];
 }
 
 void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& report)
@@ -123,7 +147,8 @@ void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& repor
   files::replaceFile(path, [&](std::ostream& out) {
     if (report.named()) out << "track,";
     out << "chainage_from,chainage_to,distance_from,distance_to,envelope,state,points,smallest,left,above,right,"
-           "below\n";
+           "below"
+        << (report.seen.empty() ? "" : ",seen,seen_left,seen_above,seen_right,seen_below") << '\n';
     forEachPart(report, [&](const TablePart& row) {
       if (report.named()) out << csvText(row.track.name) << ',';
       out << numberText(row.chainage_from) << ',' << numberText(row.chainage_to) << ','
@@ -131,6 +156,11 @@ void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& repor
           << csvText(row.envelopeName()) << ',' << textOf(row.state) << ',' << row.table.points(row.part) << ','
           << cellOf(row.smallest());
       for (const auto& [sector, name] : table_sectors) out << ',' << cellOf(row.smallest(sector));
+      if (row.seen) {
+        out << ',' << cellOf(row.seen->share(row.part, row.envelope));
+        for (const auto& [sector, name] : table_sectors)
+          out << ',' << cellOf(row.seen->share(row.part, row.envelope, sector));
+      }
       out << '\n';
     });
   });
@@ -177,6 +207,11 @@ Json gaugeJson(const GaugeReport& report)
          {"too_far", report.counts[4]},
          {"not_finite", report.counts[5]},
          {"infringing", report.infringing}}}});
+  if (!report.seen.empty()) {
+    json["points"]["outside_origin_path"] = report.outside.points;
+    json["origin_path"] = report.origin_path;
+    json["seen_spacing"] = report.seen_spacing;
+  }
   if (report.named()) {
     Json& tracks = json["tracks"] = Json::array();
     for (std::size_t t = 0; t < report.tracks.size(); ++t)
@@ -200,6 +235,12 @@ Json gaugeJson(const GaugeReport& report)
                 {"points", part.table.points(part.part)},
                 {"smallest", jsonOf(part.smallest())}});
     for (const auto& [sector, name] : table_sectors) row[name] = jsonOf(part.smallest(sector));
+    if (part.seen) {
+      Json& seen = row["seen"] = Json::object();
+      seen["all"] = jsonOf(part.seen->share(part.part, part.envelope));
+      for (const auto& [sector, name] : table_sectors)
+        seen[name] = jsonOf(part.seen->share(part.part, part.envelope, sector));
+    }
     table.push_back(std::move(row));
   });
   return json;

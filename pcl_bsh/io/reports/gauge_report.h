@@ -5,6 +5,8 @@
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/io/reports/gauge_list.h>
 #include <pcl_bsh/track/gauge_table.h>
+#include <pcl_bsh/track/origin_path.h>
+#include <pcl_bsh/track/seen_outline.h>
 #include <pcl_bsh/track/tracks.h>
 
 #include <array>
@@ -42,15 +44,21 @@ struct GaugeReport {
   std::vector<GaugeSection> sections = {};
   std::vector<ListedInfringement> listed = {}; ///< of listedOf(); then those that are gone
   std::string previous = {};                   ///< file name of the list that it is compared with, or empty
+  std::string origin_path = {};                ///< file name of where the scanner was; empty: beams are not known
+  double seen_spacing = 0.0;                   ///< of beams, for `seen`
+  std::vector<SeenOutline> seen = {};          ///< of each track, where beams are known; else none
+  OutsidePath outside = {};                    ///< points whose time the path does not have
 
   std::size_t placed() const { return counts[0] + counts[1]; } ///< points that have a place at an axis
   bool named() const { return !tracks.front().name.empty(); }  ///< whether files tell the tracks' names
   std::size_t parts() const;                                   ///< of all tables
-  std::size_t partsWithoutData() const;                        ///< those without a point
+  std::size_t partsWithoutData() const;                        ///< those without a point, and without a beam
+  std::size_t partsUnseen() const;                             ///< those with a profile that is `unseen`
 };
 
-/// Whether a part of the axis has data of an envelope, and whether that is clear.
-enum class PartState : std::uint8_t { no_data, clear, infringed };
+/// Whether a part of the axis has data of an envelope, and whether that is clear. Where beams are known, it is unseen
+/// rather than clear if no beam crossed one of its sectors; and it needs no point to be clear.
+enum class PartState : std::uint8_t { no_data, clear, infringed, unseen };
 PartState stateOf(const GaugeReport& report, std::size_t track, std::size_t part, std::size_t envelope);
 const char* textOf(PartState state);
 

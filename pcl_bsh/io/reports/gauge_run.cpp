@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/reports/gauge_run.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/files/replace_file.h>
+#include <pcl_bsh/io/text/number_text.h>
 
 namespace pcl_bsh::io {
 
@@ -12,9 +14,29 @@ std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step)
   return tables;
 }
 
+std::vector<SeenOutline> seenOf(const std::vector<Track>& tracks, const SeenCells& cells)
+{
+  std::vector<SeenOutline> seen;
+  for (const Track& track : tracks) seen.emplace_back(track.axis, track.envelopes, cells);
+  return seen;
+}
+
+std::string outsideRemark(const OutsidePath& outside, const OriginPath& path)
+{
+  if (outside.points == 0) return {};
+  return counted(outside.points, "point") + " with a time that the origin path, from " + numberText(path.from()) +
+         " to " + numberText(path.to()) + ", does not have, the first record " + std::to_string(outside.first) +
+         " at " + numberText(outside.time) + ": no beam of theirs sees anything";
+}
+
 GaugedTracks GaugeRun::add(const PointsView& points, std::uint64_t first)
 {
-  GaugedTracks found = gauge(points, report_.tracks, {report_.reach, threads_});
+  const GaugeRequest request{report_.reach, threads_};
+  GaugedTracks found = gauge(points, report_.tracks, request);
+  if (origins_) {
+    const std::vector<Point3> origins = originsOf(points, origins_->times, origins_->path, first, report_.outside);
+    for (SeenOutline& seen : report_.seen) seen.add(points, origins, request);
+  }
   for (std::uint32_t track = 0; track < found.each.size(); ++track) {
     report_.tables[track].add(found.each[track], report_.tracks[track].envelopes);
     addInfringing(points, found.each[track], report_.limit, first, infringing_, track);

@@ -37,10 +37,28 @@ void forEachGaugeBatch(const PointsView& all, const Use& use)
 /// A table for each track. @param step length of a part @throws InvalidInput as GaugeTable does
 std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step);
 
+/// Where the beams of a cloud's points come from.
+struct BeamOrigins {
+  OriginPath path;
+  TimeField times;
+};
+
+/// The outlines of each track. @throws InvalidInput as SeenOutline does
+std::vector<SeenOutline> seenOf(const std::vector<Track>& tracks, const SeenCells& cells);
+
+/// A remark about points whose time a path does not have; empty where there are none.
+std::string outsideRemark(const OutsidePath& outside, const OriginPath& path);
+
 /// Gathers a report. The report is told the same, however its points are divided into batches.
 class GaugeRun {
 public:
-  GaugeRun(GaugeReport& report, unsigned threads) : report_(report), threads_(threads) {}
+  /// @param origins null: beams are not known; else the report has `seen`. Borrowed
+  GaugeRun(GaugeReport& report, unsigned threads, const BeamOrigins* origins = nullptr)
+  : report_(report),
+    threads_(threads),
+    origins_(origins)
+  {
+  }
 
   /// @param first number of the batch's first point among all
   GaugedTracks add(const PointsView& points, std::uint64_t first);
@@ -52,6 +70,7 @@ public:
 private:
   GaugeReport& report_;
   unsigned threads_;
+  const BeamOrigins* origins_;
   std::vector<Infringing> infringing_;
 };
 

@@ -126,6 +126,7 @@ void requireTogether(const GaugeOptions& options)
                                        {"--infringements", &options.written.infringements},
                                        {"--report", &options.written.report},
                                        {"--previous", &options.previous},
+                                       {"--origin-path", &options.origin_path},
                                        {"--page", &options.written.page},
                                        {"--sections", &options.sections}})
       if (!file->empty()) refuse(option, "is about a scan: give INPUT");
@@ -142,6 +143,8 @@ void requireTogether(const GaugeOptions& options)
     if (std::none_of(options.profiles.begin(), options.profiles.end(),
                      [&](const io::EnvelopeFiles& profile) { return io::countsOn(profile, axis.name); }))
       refuse("--track", "no profile counts on the track '" + axis.name + "': name it, too");
+  if (!options.time_field.empty() && options.origin_path.empty())
+    refuse("--time-field", "tells when beams were: give --origin-path FILE.csv");
   if (options.pictures && options.sections.empty()) refuse("--png", "draws sections: give --sections FOLDER");
   if (options.pictures && !io::drawsPictures())
     throw UsageError("--png: this program was built without librsvg: build it where librsvg2-dev is installed, or "
@@ -253,6 +256,17 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
                  "--report of an earlier run: infringements are new, persisting, resolved, or\n"
                  "not visited by the axis or not scanned any more; --report may replace it")
       ->type_name("FILE");
+  app.add_option("--origin-path", options.origin_path,
+                 "where the scanner was, in columns time, x, y, z: tells how much of the\n"
+                 "profiles' outlines its beams crossed, and where none did")
+      ->type_name("FILE.csv");
+  app.add_option("--time-field", options.time_field,
+                 "field of the points' times (default: gps_time, time, timestamp, timeStamp or t)")
+      ->type_name("NAME");
+  app.add_option("--seen-spacing", options.seen_spacing,
+                 "an outline is seen in cells with such edges, where a beam crosses them\n(default: 0.1)")
+      ->type_name("L")
+      ->transform(positive());
   app.add_option("--page", options.written.page, "page for browsers: infringements, charts, maps, sections")
       ->type_name("FILE.html");
   app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
@@ -315,7 +329,7 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
     files.reads("--profile", profile.profile).reads("--widening", profile.widening);
   files.writes("OUTPUT", options.output, in_place ? "INPUT" : "")
       .writes("--report", options.written.report, "--previous");
-  files.reads("--previous", options.previous);
+  files.reads("--previous", options.previous).reads("--origin-path", options.origin_path);
   files.writes("--table", options.written.table).writes("--infringements", options.written.infringements);
   files.writes("--page", options.written.page).writes("--poses-out", options.poses);
   return options;

@@ -33,7 +33,9 @@ struct GaugeOptions {
   double limit = 0.0, step = 1.0, cluster_distance = 0.5, thickness = 0.1;
   AxisReach reach;
   io::GaugeFiles written;
-  std::filesystem::path previous, sections, poses;
+  std::filesystem::path previous, sections, poses, origin_path;
+  std::string time_field; ///< empty: the usual ones
+  double seen_spacing = SeenCells().spacing;
   bool pictures = false;  ///< of sections, beside their drawings
   std::vector<double> at; ///< chainages of sections
   double pivots = 0.0;

@@ -30,6 +30,7 @@ GaugeScan::GaugeScan(const GaugeOptions& options)
   }
   const std::unique_ptr<io::CloudStream> stream = streamOf(options);
   points_ = stream->size();
+  whole_ = stream->header();
   facts_.remarks = stream->remarks();
   facts_.coordinate_system = stream->coordinateSystem();
   facts_.unit = stream->unit();

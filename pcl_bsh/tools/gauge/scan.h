@@ -23,7 +23,7 @@ public:
 
   const std::vector<std::string>& remarks() const { return facts_.remarks; }
   const io::CloudFacts& facts() const { return facts_; }
-  const pcl::PCLPointCloud2& whole() const { return whole_; } ///< empty unless OUTPUT is written
+  const pcl::PCLPointCloud2& whole() const { return whole_; } ///< its fields; its points only if OUTPUT is written
   std::uint64_t points() const { return points_; }
 
   /// Calls use(points, number of the first one) for each batch, from the first point to the last. @throws FileError

@@ -151,6 +151,97 @@ TEST_F(GaugeProgram, StreamsWhatItNeedNotHold)
   EXPECT_EQ(linesOf("streamed.csv").size(), linesOf("whole.csv").size());
 }
 
+TEST_F(GaugeProgram, BitsDoNotDependOnThreads)
+{
+  std::string points;
+  for (int i = 0; i < 5000; ++i)
+    points += std::to_string(500000 + i % 199 * 0.1) + ' ' + std::to_string(3999997 + i % 61 * 0.1) + ' ' +
+              std::to_string(29 + i % 83 * 0.1) + '\n';
+  folder.write("many.xyz", points);
+  for (const std::string threads : {"1", "2"})
+    ASSERT_EQ(gauge("{many.xyz} {out" + threads + ".pcd} --axis {line.axis} --profile {box.csv} --table {table" +
+                    threads + ".csv} --infringements {list" + threads + ".csv} --threads " + threads)
+                  .exit_code,
+              0);
+  for (const std::string name : {"out", "table", "list"}) {
+    const std::string extension = name == "out" ? ".pcd" : ".csv";
+    EXPECT_EQ(io::contentOf(folder / (name + "1" + extension)), io::contentOf(folder / (name + "2" + extension)));
+  }
+}
+
+/// A scanner that goes along the line, 2 above it, 1 each second.
+class GaugeProgramOfBeams : public GaugeProgram {
+protected:
+  GaugeProgramOfBeams()
+  {
+    folder.write("path.csv", "time,x,y,z\n0,500000,4000000,32\n20,500020,4000000,32\n");
+    // through each side at 2.5, the last one to beyond the reach; through the left side alone at 7.5; one behind its
+    // time
+    folder.write("beams.csv", "x,y,z,gps_time\n500002.5,4000002,32,2.5\n500002.5,3999998,32,2.5\n"
+                              "500002.5,4000000,29,2.5\n500002.5,4000000,90,2.5\n500007.5,4000002,32,7.5\n"
+                              "500012.5,4000002,32,21\n");
+  }
+
+  const std::string rest = " --axis {line.axis} --profile {box.csv} --step 5 --seen-spacing 0.5 ";
+};
+
+TEST_F(GaugeProgramOfBeams, TellsWhatTheySaw)
+{
+  const Outcome done = gauge("{beams.csv} --origin-path {path.csv}" + rest +
+                             "--table {table.csv} --report {report.json} --page {page.html}");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("beams.csv: 1 point with a time that the origin path, from 0 to 20, does not "
+                                  "have, the first record 5 at 21: no beam of theirs sees anything"));
+  EXPECT_THAT(done.out, HasSubstr("; no data in 1 of 4 parts; a side is unseen in 2 of 4 parts; 1 point without an "
+                                  "origin\n"));
+  const std::vector<std::string> table = linesOf("table.csv");
+  ASSERT_EQ(table.size(), 5u);
+  EXPECT_THAT(table[0], testing::EndsWith(",below,seen,seen_left,seen_above,seen_right,seen_below"));
+  EXPECT_THAT(table[1], HasSubstr(",box,clear,3,")) << table[1];
+  EXPECT_THAT(table[1],
+              testing::EndsWith(",0.014285714285714285,0.0125,0.016666666666666666,0.0125,0.016666666666666666"))
+      << table[1];
+  EXPECT_THAT(table[2], HasSubstr(",box,unseen,1,0.5,")) << table[2];
+  EXPECT_THAT(table[2], testing::EndsWith(",0,0,0")) << table[2];
+  EXPECT_THAT(table[3], HasSubstr(",box,unseen,1,0.5,")) << "it has no origin: " << table[3];
+  EXPECT_THAT(table[4], HasSubstr(",box,no data,0,")) << table[4];
+  const auto report = nlohmann::json::parse(io::contentOf(folder / "report.json"));
+  EXPECT_EQ(report["points"]["outside_origin_path"], 1);
+  EXPECT_EQ(report["table"][0]["state"], "clear");
+  EXPECT_EQ(report["table"][0]["seen"]["left"], 0.0125);
+  const std::string page = io::contentOf(folder / "page.html");
+  for (const char* text : {"of 4 parts have an unseen side", "map of what was seen", "No data at chainages 215 to 220",
+                           "Unseen on a side at chainages 105 to 215"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_THAT(page, testing::Not(HasSubstr("{{")));
+}
+
+TEST_F(GaugeProgramOfBeams, RefusesWhatIsNoPath)
+{
+  folder.write("back.csv", "time,x,y,z\n3,0,0,0\n2,1,0,0\n");
+  folder.write("one.csv", "time,x,y,z\n3,0,0,0\n");
+  folder.write("nan.csv", "time,x,y,z\n3,0,0,0\n4,nan,0,0\n");
+  folder.write("names.csv", "x,y,z\n3,0,0\n");
+  const auto expect = [&](const std::string& path, const std::string& message) {
+    expectRefused("{beams.csv}" + rest + "--table {table.csv} --origin-path {" + path + '}', 1, message);
+  };
+  expect(
+      "back.csv",
+      "back.csv: line 3 is no place of a path: its time 2 does not exceed the one before, 3: list places in the order");
+  expect("one.csv", "one.csv: has 1 of the two places it needs: give the scanner's place before the first point");
+  expect("nan.csv",
+         "nan.csv: line 3 is no place of a path: has a value that is not finite: correct it, or leave the place out");
+  expect("names.csv", "names.csv: line 1 names no column time");
+  expect("none.csv", "none.csv");
+  expectRefused("{scan.xyz}" + rest + "--origin-path {path.csv}", 1,
+                "scan.xyz: the scan has none: --time-field: give the one that has the points' times: its fields are x");
+  expectRefused("{beams.csv}" + rest + "--origin-path {path.csv} --time-field when", 1,
+                "beams.csv: the scan has no field 'when': --time-field: give the one");
+  expectRefused("{beams.csv} --axis {line.axis} --profile {box.csv} --origin-path {path.csv} --seen-spacing 1e-6", 1,
+                "1e-06 makes too many cells of an axis 20 long");
+  expectRefused("{beams.csv}" + rest + "--time-field t", 2, "--time-field: tells when beams were: give --origin-path");
+}
+
 TEST_F(GaugeProgram, DrawsPagesAndSections)
 {
   const Outcome done =

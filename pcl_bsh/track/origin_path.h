@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a scanner that moves was at which time.
+//
+//   const OriginPath path({{0.0, {0, 0, 2}}, {10.0, {150, 0, 2}}});
+//   if (const auto origin = path.at(time_of_point)) use(*origin);
+#pragma once
+
+#include <pcl_bsh/export.h>
+#include <pcl_bsh/geometry/point3.h>
+#include <pcl_bsh/hierarchy/points_view.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+PCL_BSH_EXPORT_BEGIN
+namespace pcl_bsh {
+
+/// A place of a scanner. Times are in any unit, as those of the points.
+struct TimedOrigin {
+  double time = 0.0;
+  Point3 at = {};
+};
+
+/// A scanner's places by time, straight and even between two of them. Never changes.
+class OriginPath {
+public:
+  /// @throws InvalidInput, with the number of the place as its index: fewer than two, a value that is not finite, times
+  ///   that do not rise
+  explicit OriginPath(std::vector<TimedOrigin> places);
+
+  double from() const { return places_.front().time; } ///< the first time
+  double to() const { return places_.back().time; }    ///< the last one
+
+  /// None before the first time, behind the last one, and for NaN.
+  std::optional<Point3> at(double time) const;
+
+private:
+  std::vector<TimedOrigin> places_;
+};
+
+/// Where records of points hold the time at which they were measured.
+struct TimeField {
+  std::size_t offset = 0; ///< bytes from a record's start
+  Scalar scalar = Scalar::float64;
+};
+
+/// Points at a time that a path does not have.
+struct OutsidePath {
+  std::size_t points = 0;
+  std::uint64_t first = 0; ///< the number of the first one
+  double time = 0.0;       ///< its time
+};
+
+/// Where the scanner stood for each point, NaN where the path does not tell.
+/// @param first_record of the points among all of the scan @param outside is added to
+std::vector<Point3> originsOf(const PointsView& points, const TimeField& field, const OriginPath& path,
+                              std::uint64_t first_record, OutsidePath& outside);
+
+} // namespace pcl_bsh
+PCL_BSH_EXPORT_END
