@@ -158,6 +158,23 @@ TEST_F(Samples, TheMadeLineIsGauged)
   EXPECT_EQ(files::contentOf(clone / "build/line/infringing.csv"), list);
 }
 
+/// Both tracks of the made hall: a sign in the right gauge, a beam in both, and what a cabinet hides.
+TEST_F(Samples, TheMadeTracksAreGauged)
+{
+  expectDone("bash examples/track/make_tracks.sh build/tracks; cd build/tracks\n"
+             "../release/bin/pcl_bsh_gauge scan.csv --axis left=left.axis --axis right=right.axis --profile gauge.csv "
+             "--unit m "
+             "--cluster-distance 1 --origin-path path.csv --seen-spacing 0.3 --infringements list.csv --table "
+             "table.csv --page page.html");
+  const std::string list = files::contentOf(clone / "build/tracks/list.csv");
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 4) << list;
+  EXPECT_NE(list.find(",new,left,gauge,"), std::string::npos) << list;
+  EXPECT_NE(list.find("\n1,right:"), std::string::npos) << list;
+  const std::string table = files::contentOf(clone / "build/tracks/table.csv");
+  EXPECT_NE(table.find("\nright,1029,1030,29,30,gauge,clear,"), std::string::npos);
+  EXPECT_NE(table.find("\nright,1035,1036,35,36,gauge,unseen,"), std::string::npos) << "behind the cabinet";
+}
+
 /// Two epochs: what came, what went, a page, and a picture.
 TEST_F(Samples, WhatChangedIsShown)
 {
