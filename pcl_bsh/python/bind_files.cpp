@@ -226,7 +226,7 @@ void writeRecords(const PathLike& path, const As<"npt.NDArray[Any]">& records, c
 }
 
 /// The vertices and triangles of a mesh.
-std::pair<Records, py::array_t<std::uint32_t>> arraysOf(io::Mesh&& mesh)
+std::pair<Records, py::array_t<std::uint32_t>> arraysOfMesh(io::Mesh&& mesh)
 {
   py::array_t<std::uint32_t> triangles({static_cast<py::ssize_t>(mesh.triangles.size()), py::ssize_t{3}});
   std::uint32_t* corner = triangles.mutable_data();
@@ -244,7 +244,7 @@ readMeshOf(const PathLike& path, unsigned threads, bool allow_scale, const std::
   const io::ReadSettings settings = readSettings({}, allow_scale, unit, to_unit, length_fields, crs, to_crs);
   io::Mesh mesh = unlocked([&] { return io::readMesh(file, &header, settings, threads); });
   for (const std::string& remark : header.remarks) warn(file + ": " + remark);
-  return arraysOf(std::move(mesh));
+  return arraysOfMesh(std::move(mesh));
 }
 
 As<"Dict[str, Tuple[npt.NDArray[Any], npt.NDArray[np.uint32]]]">
@@ -263,7 +263,7 @@ readMeshPartsOf(const PathLike& path, const std::optional<std::string>& unit, co
     for (const std::string& remark : *remarks) warn(file + ": " + remark);
   py::dict found;
   for (std::size_t i = 0; i < meshes.size(); ++i)
-    found[py::str(parts.names[i])] = py::cast(arraysOf(std::move(meshes[i])));
+    found[py::str(parts.names[i])] = py::cast(arraysOfMesh(std::move(meshes[i])));
   return {found};
 }
 

@@ -81,10 +81,8 @@ std::vector<QuestionOption> table()
        "triangles of each body that holds them",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"ignore_points", &Q::ignore_points, Kind::any, "WHICH", "", std::nullopt,
-       "points of the input that do not count: FIELD=N,N by values, box=X,Y,Z,X,Y,Z from least to greatest, "
-       "plane=NX,NY,NZ,D,TOL up to TOL from n p = D, mask=FILE by a line each, 1 where it does not count and 0 where "
-       "it "
-       "does, joined by ;, while their beams still do",
+       "points of the input that do not count: FIELD=N,N by values, box=X0,Y0,Z0,X1,Y1,Z1, plane=NX,NY,NZ,D,TOL up to "
+       "TOL from n p = D, mask=FILE of lines 0 or 1; joined by ; (their beams still count)",
        Range::from_zero, false, nullptr, nullptr, OptionEffect::clashes, OfSites::none},
       {"obstacle_ignore_points", &Q::obstacle_ignore_points, Kind::any, "WHICH", "", std::nullopt,
        "points of the obstacle that do not count, as `ignore_points` of the input", Range::from_zero, false, nullptr,
