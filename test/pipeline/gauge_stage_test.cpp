@@ -4,6 +4,7 @@
 #include "io/clouds/samples.h"
 #include "run_stage.h"
 
+#include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/text/file_bytes.h>
 #include <pcl_bsh/io/tracks/axis_file.h>
 #include <pcl_bsh/search/cloud_view.h>

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -121,20 +120,18 @@ TEST(SeenOutline, CellsAreThoseOfBeamsWalkedInSmallSteps)
     seen.add(beam.view(), beam.origins, {reach, 1});
     for (std::size_t e = 0; e < envelopes.size(); ++e) {
       std::set<Cell> crossed = crossedOf(seen, e);
-      std::optional<bool> was_inside;
-      bool is_whole = true;
+      bool is_whole = true, has_before = false, was_inside = false;
       for (int step = 0; step < 8000; ++step) {
         const AxisPlaces places = axis.nearest(pointOf(origin + step / 8000.0 * way), reach);
         if (!hasPlace(places.state)) {
-          was_inside.reset();
-          is_whole = false;
+          is_whole = has_before = false;
           continue;
         }
         std::vector<SectionPoint> room;
         const AxisPlace& at = places.best;
         const bool inside =
             signedDistance(envelopes[e].outlineAt(axis, at.distance, room), {at.offset, at.height}) <= 0.0;
-        if (was_inside && *was_inside != inside) {
+        if (has_before && was_inside != inside) {
           // a step is up to 1.2 mm: a neighbour may be the right one where a border is nearer
           const auto row = static_cast<std::size_t>(at.distance / 0.25);
           const std::size_t column = nearestColumn(seen, e, row, at);
@@ -152,6 +149,7 @@ TEST(SeenOutline, CellsAreThoseOfBeamsWalkedInSmallSteps)
             ++both;
           }
         }
+        has_before = true;
         was_inside = inside;
       }
       if (is_whole) overlooked += crossed.size();
