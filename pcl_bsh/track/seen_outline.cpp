@@ -98,10 +98,14 @@ private:
   std::optional<Trial> trialAt(const Envelope& envelope, double share)
   {
     const std::optional<AxisPlace> at = placeAt(share);
-    if (!at) return std::nullopt;
-    Trial trial{share, *at, 0.0, {}};
-    const std::vector<SectionPoint>& outline = envelope.outlineAt(axis_, at->distance, room_);
-    trial.outside = signedDistance(outline, {at->offset, at->height}, &trial.nearest);
+    return at ? std::optional(trialOf(envelope, share, *at)) : std::nullopt;
+  }
+
+  Trial trialOf(const Envelope& envelope, double share, const AxisPlace& at)
+  {
+    Trial trial{share, at, 0.0, {}};
+    const std::vector<SectionPoint>& outline = envelope.outlineAt(axis_, at.distance, room_);
+    trial.outside = signedDistance(outline, {at.offset, at.height}, &trial.nearest);
     return trial;
   }
 
@@ -125,10 +129,11 @@ private:
     crossingsOf({first.offset, first.height}, {last.offset, last.height},
                 envelope.outlineAt(axis_, 0.5 * (first.distance + last.distance), room_), shares_);
     if (shares_.empty()) return;
-    std::optional<Trial> before = trialAt(envelope, 0.0);
+    std::optional<Trial> before = trialOf(envelope, 0.0, first);
     for (std::size_t i = 0; i < shares_.size(); ++i) {
-      const double to = i + 1 < shares_.size() ? 0.5 * (shares_[i] + shares_[i + 1]) : 1.0;
-      std::optional<Trial> after = trialAt(envelope, to * until);
+      const std::optional<Trial> after = i + 1 < shares_.size()
+                                             ? trialAt(envelope, 0.5 * (shares_[i] + shares_[i + 1]) * until)
+                                             : trialOf(envelope, until, last);
       if (before && after && before->isInside() != after->isInside())
         if (const auto crossing = crossingBetween(envelope, *before, *after, shares_[i] * until))
           cells.push_back(cellAt(seen_.outlines_[e], *crossing));

@@ -64,18 +64,21 @@ ListedTrack trackFrom(const JsonReader& entry, const std::string& name)
 }
 
 /// Why an earlier infringement of a track is not found any more.
-ClashStatus statusOfGone(const Track& track, const GaugeTable& table, const AxisReach& reach,
-                         const ListedInfringement& gone)
+ClashStatus statusOfGone(const GaugeReport& report, std::size_t of_track, const ListedInfringement& gone)
 {
+  const Track& track = report.tracks[of_track];
+  const GaugeTable& table = report.tables[of_track];
   const auto envelope = std::find_if(track.envelopes.begin(), track.envelopes.end(),
                                      [&](const Envelope& candidate) { return candidate.name() == gone.envelope; });
-  const AxisPlaces places = track.axis.nearest(gone.clash.place, reach);
+  const AxisPlaces places = track.axis.nearest(gone.clash.place, report.reach);
   if (envelope == track.envelopes.end() || !hasPlace(places.state)) return ClashStatus::not_visited;
   const auto counts = [&](const AxisPlace& at) { return envelope->countsAt(track.axis.chainage(at.distance)); };
   const auto isSeen = [&](const AxisPlace& at) {
     const auto sector = static_cast<Sector>(envelope->aroundOf({at.offset, at.height}));
     const auto number = static_cast<std::size_t>(envelope - track.envelopes.begin());
-    return std::isfinite(table.smallest(table.partOf(at.distance), number, sector));
+    const std::size_t part = table.partOf(at.distance);
+    return report.seen.empty() ? std::isfinite(table.smallest(part, number, sector))
+                               : report.seen[of_track].share(part, number, sector) > 0.0;
   };
   const bool best_counts = counts(places.best);
   const bool second_counts = places.state == PlaceState::two_places && counts(places.second);
@@ -122,7 +125,7 @@ void compareTrack(GaugeReport& report, std::size_t number, const GaugeList& earl
       continue;
     }
     ListedInfringement gone = earlier.infringements[now[i].scan_point];
-    gone.clash.status = statusOfGone(track, report.tables[number], report.reach, gone);
+    gone.clash.status = statusOfGone(report, number, gone);
     report.listed.push_back(std::move(gone));
   }
 }

@@ -60,8 +60,8 @@ GaugeList parseGaugeList(std::string_view text, const std::string& name);
 
 /// Tells which infringements were in the earlier list of the same track, and appends those that are not found again.
 /// Such a place is not_visited where its track is not given any more, it has no place at the axis, or its envelope does
-/// not count there any more. It is not_scanned where the envelope's sector has no data in its part of the axis. Else it
-/// is resolved.
+/// not count there any more. It is not_scanned where the envelope's sector has no data in its part of the axis or,
+/// where beams are known, none crossed it. Else it is resolved.
 /// @return remarks about the file: another axis, a track or an envelope that is not compared any more
 std::vector<std::string> compareWithList(GaugeReport& report, const std::filesystem::path& file,
                                          const GaugeList& earlier);

@@ -216,6 +216,17 @@ TEST_F(GaugeProgramOfBeams, TellsWhatTheySaw)
   EXPECT_THAT(page, testing::Not(HasSubstr("{{")));
 }
 
+TEST_F(GaugeProgramOfBeams, WhatTheyDoNotSeeIsNotResolved)
+{
+  folder.write("before.xyz",
+               "500002.5 4000001.4 32\n500012.5 4000001.4 32\n"); // at the left side, which is seen at one
+  ASSERT_EQ(gauge("{before.xyz}" + rest + "--report {week.json}").exit_code, 0);
+  const std::string again = "{beams.csv}" + rest + "--previous {week.json} ";
+  EXPECT_THAT(gauge(again).out, HasSubstr("0 new, 0 persisting, 2 resolved;"));
+  EXPECT_THAT(gauge(again + "--origin-path {path.csv}").out,
+              HasSubstr("0 new, 0 persisting, 1 resolved, 1 not scanned;"));
+}
+
 TEST_F(GaugeProgramOfBeams, RefusesWhatIsNoPath)
 {
   folder.write("back.csv", "time,x,y,z\n3,0,0,0\n2,1,0,0\n");
