@@ -34,7 +34,7 @@ struct DragOptions {
   std::size_t most = 4; ///< contacts of a patch
 };
 
-/// What is nearest to a dragged object.
+/// The object that is nearest to a dragged one.
 struct NearestObject {
   ObjectId object = 0;
   double distance = 0.0; ///< as closestPair() measures it: of surfaces, also where one is in the other
@@ -67,7 +67,7 @@ public:
   /// the scene: its time passes by a second. @throws as Scene::step() does; then nothing has moved
   const DragStep& moveTo(const Eigen::Isometry3d& T_world_object);
 
-  /// What is about the object where it is, for one that something else has moved.
+  /// Looks about the object where it is: for one that something else has moved.
   const DragStep& look();
 
 private:
