@@ -34,6 +34,7 @@ PROGRAMS = {
                                                ("rooms near", ROOMS, NEAR_ROOM), ("rooms far", ROOMS, FAR_ROOM),
                                                ("lion", LION, NEAR_LION))],
     "cold.csv": ["bench_cold --size 300000 --distances 1,5,20 --racers pcl_bsh,fitted_grid,nanoflann --repeat 5"],
+    "contacts.csv": ["bench_contacts --clock cpu"],
     "distances.csv": ["bench_distances --scene terrain,lion --clock cpu --repeat 3"],
     "flags_terrain.csv": ["bench_flags --scene terrain --sizes 1000000 --distances 1,5,20 --orders scan,shuffled --clock cpu --repeat 5"],
     "flags_uneven.csv": ["bench_flags --scene hall,sweep,lidar,lion --sizes 300000 --distances 1,5,20 --orders scan --threads 1 "

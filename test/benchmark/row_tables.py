@@ -65,6 +65,14 @@ def rigid(rows):
         yield f"| {title} | {' | '.join(cells)} |".replace("|  |", "| |")
 
 
+def contacts(rows):
+    yield "| what | records | racer | median [ms] | at 99 % of the steps [ms] | longest [ms] | told |"
+    yield "|---|---|---|---:|---:|---:|---|"
+    for row in rows:
+        times = " | ".join(short(float(row[column])) for column in ("median [ms]", "p99 [ms]", "max [ms]"))
+        yield f"| {row['what']} | {row['size']} | {row['racer']} | {times} | {row['remark']} |"
+
+
 def distances(rows):
     yield ("| scene | greatest distance | pcl_bsh | query alone | both directions | nanoflann | PCL k-d tree | nanoflann / ours | "
            "PCL / ours | both / one |")
@@ -395,6 +403,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, motions, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation,
+TABLES = [flags, uneven, cold, rigid, motions, contacts, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, gauge, sites]
 TABLES = {table.__name__: table for table in TABLES}
