@@ -315,6 +315,15 @@ def gauge(rows):
         yield f"| {row['axis']} | {row['tracks']} | {row['profiles']} | {short(reading, ' us')} | {short(whole, ' us')} | {short(1 / whole)} |"
 
 
+def plans(rows):
+    yield "| problems of | problems | start or goal not free | runs | solved | certified | plan [ms] | cloud to certified path [ms] | 95 % [ms] | longest [ms] | validators |"
+    yield "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"
+    for row in rows:
+        times = " | ".join(short(float(row[column])) for column in ("plan [ms]", "cloud to certified path [ms]", "95 % [ms]", "longest [ms]"))
+        yield (f"| {row['problems of'].replace('_', ' ')} | {row['problems']} | {row['start or goal not free']} | {row['runs']} | {row['solved']} | "
+               f"{row['certified']} | {times} | {row['validators [%]']} % |")
+
+
 def scene(rows):
     yield "| what | size | time | that is | counted |"
     yield "|---|---|---|---|---|"
@@ -403,6 +412,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, motions, contacts, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation,
+TABLES = [flags, uneven, cold, rigid, motions, contacts, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation, plans,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, gauge, sites]
 TABLES = {table.__name__: table for table in TABLES}
