@@ -255,7 +255,9 @@ bool MotionSearch::isFreeUntilEnd(const Task& task)
 void MotionSearch::addSwept(double m, double h, std::vector<SweptBall>& swept)
 {
   place(roots(m, h));
-  for (const Ball& ball : gaps_.parts.balls) {
+  for (std::size_t i = 0; i < s_.balls.size(); ++i) {
+    const Ball& ball = gaps_.parts.balls[s_.balls[i]];
+    for (std::uint32_t k = 0; k < ball.count; ++k) s_.balls.push_back(ball.first + k);
     if (ball.piece == kNoPart) continue;
     const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
     swept.push_back({center, kOutward * (ball.radius + way(ball, center, 0, h) + gaps_.doubt(ball, 0) + error_)});

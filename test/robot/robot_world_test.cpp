@@ -406,16 +406,16 @@ TEST(RobotWorld, AnswersForAllUncertainPlacesAndValues)
   std::array<std::array<int, 3>, 2> seen = {};
   for (std::uint64_t seed = 51; seed < 67; ++seed) {
     MadeScene scene(seed, 60, seed % 4 < 2);
-    scene.setUncertain(seed % 3 == 0 ? 0.0 : 0.02, seed % 3 == 1 ? 0.0 : 0.05);
+    scene.setUncertain(seed % 3 == 0 ? 0.0 : 0.01, seed % 3 == 1 ? 0.0 : 0.03);
     WorldOptions options;
     options.clearance = 0.03;
     options.with_self = false;
     const bool of_joints = seed % 2 == 1;
     for (std::size_t i = 0; of_joints && i < variablesOf(scene.robot).size(); ++i)
-      options.joint_uncertainties.push_back(scene.random.uniform(0, 0.015));
+      options.joint_uncertainties.push_back(scene.random.uniform(0, 0.008));
     const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
     const GapTwin twin(scene.robot, scene.view);
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 40; ++i) {
       const RobotState state = test::madeState(scene.random, scene.robot);
       const StateCheck check = world.checkState(state);
       const ClearanceResult nearest = world.clearance(state);
@@ -447,10 +447,10 @@ TEST(RobotWorld, CertifiesMotionsOfUncertainPlacesAndValues)
   std::array<int, 3> seen = {};
   for (std::uint64_t seed = 71; seed < 77; ++seed) {
     MadeScene scene(seed, 60, seed % 2 == 0);
-    scene.setUncertain(0.01, seed % 3 == 0 ? 0.03 : 0.0);
+    scene.setUncertain(0.002, seed % 3 == 0 ? 0.01 : 0.0);
     WorldOptions options;
     options.with_self = false;
-    options.joint_uncertainties.assign(variablesOf(scene.robot).size(), seed % 4 == 0 ? 0.0 : 0.004);
+    options.joint_uncertainties.assign(variablesOf(scene.robot).size(), seed % 4 == 0 ? 0.0 : 0.001);
     const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
     const GapTwin twin(scene.robot, scene.view);
     for (int i = 0; i < 8; ++i) {
@@ -576,10 +576,12 @@ TEST(RobotWorld, MovesObstacles)
     PointsView view = viewOf(moved.data(), scene.view.size());
     view.radii = scene.view.radii;
     const SphereHierarchy cloud(view);
-    RobotWorld world(scene.robot, {&cloud, scene.cloud.get()});
+    WorldOptions options;
+    options.with_self = false;
+    RobotWorld world(scene.robot, {&cloud, scene.cloud.get()}, options);
     world.checkState(test::madeState(scene.random, scene.robot)); // what it keeps of gaps is of the old places
     world.setObstaclePoses({Eigen::Isometry3d::Identity(), pose});
-    RobotWorld alone(scene.robot, {scene.cloud.get()}), expected(scene.robot, {&cloud});
+    RobotWorld alone(scene.robot, {scene.cloud.get()}, options), expected(scene.robot, {&cloud}, options);
     alone.setObstaclePoses({pose});
     for (int i = 0; i < 20; ++i) {
       const RobotState from = test::madeState(scene.random, scene.robot);
