@@ -53,7 +53,7 @@ struct Clash {
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
 
-  void clearRecords() ///< and what is known of each
+  /** And what is known of each. */ void clearRecords()
   {
     records.clear();
     distances.clear();

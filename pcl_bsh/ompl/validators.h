@@ -25,6 +25,7 @@
 
 namespace pcl_bsh::ompl {
 
+/// That planners share.
 using World = std::shared_ptr<const robots::RobotWorld>;
 
 /// The values of a state of a RealVectorStateSpace.
@@ -34,8 +35,10 @@ inline robots::RobotState valuesOf(const ::ompl::base::State* state, std::size_t
   return {values, values + count};
 }
 
+/// Tells whether a state is within the limits of its joints and certainly free.
 class StateValidity : public ::ompl::base::StateValidityChecker {
 public:
+  /// @param information of a space whose dimensions are the world's joints
   StateValidity(const ::ompl::base::SpaceInformationPtr& information, World world)
   : StateValidityChecker(information),
     world_(std::move(world))
@@ -43,6 +46,7 @@ public:
     specs_.clearanceComputationType = ::ompl::base::StateValidityCheckerSpecs::EXACT;
   }
 
+  /// May be called by several threads at once.
   bool isValid(const ::ompl::base::State* state) const override
   {
     if (!si_->satisfiesBounds(state)) return false;
@@ -59,14 +63,17 @@ private:
   World world_;
 };
 
+/// Tells whether a motion is certainly free at each instant.
 class MotionValidity : public ::ompl::base::MotionValidator {
 public:
+  /// @param information of a space whose dimensions are the world's joints
   MotionValidity(const ::ompl::base::SpaceInformationPtr& information, World world)
   : MotionValidator(information),
     world_(std::move(world))
   {
   }
 
+  /// May be called by several threads at once.
   bool checkMotion(const ::ompl::base::State* from, const ::ompl::base::State* to) const override
   {
     return counted(check(from, to, false).verdict == Verdict::free);

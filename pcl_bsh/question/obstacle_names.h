@@ -25,8 +25,8 @@ class IgnoredPairs {
 public:
   IgnoredPairs() = default; ///< none
 
-  /// @param texts FIRST:SECOND each, where * stands for any letters, and \: and \* for these within a name; a
-  ///   backslash is itself, or doubled before one of the three. @param obstacles all their names
+  /// @param texts FIRST:SECOND each, where * stands for any letters. Before a colon or a star within a name a backslash
+  ///   is written; a backslash is itself, or doubled before one of the three. @param obstacles all their names
   /// @throws InvalidInput for another text, and for a pattern that no name matches
   IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& obstacles);
 

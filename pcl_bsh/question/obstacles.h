@@ -79,9 +79,9 @@ struct ObstaclePair {
   double clearance = 0.0; ///< the greater of theirs
   Verdict verdict = Verdict::free;
   DistanceResult closest; ///< records of the first and of the second
-  /// With Wanted::overlap, areaWithin() of the first's surface in the second, and the other way; none where the other
-  /// is no solid, or the one no surface.
-  std::optional<Interval> first_within = {}, second_within = {};
+  /// With Wanted::overlap, areaWithin() of its surface in the other; none where that is no solid, or it no surface.
+  std::optional<Interval> first_within = {};
+  std::optional<Interval> second_within = {}; ///< the same the other way
 };
 
 /// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not

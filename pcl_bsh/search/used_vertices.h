@@ -17,7 +17,7 @@ namespace pcl_bsh {
 /// the mesh has.
 class UsedVertices {
 public:
-  explicit UsedVertices(std::size_t vertices) : number_(vertices, unused) {}
+  /** Of a mesh of so many. */ explicit UsedVertices(std::size_t vertices) : number_(vertices, unused) {}
 
   /// Renumbers corners so that only vertices which a face has are left, in their order.
   /// @param faces of corners from 0, each below the number of vertices
