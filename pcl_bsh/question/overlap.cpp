@@ -13,7 +13,7 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr double kOpenShare = 0x1p-10; ///< of the upper end
+constexpr double kOpenShare = 0x1p-8; ///< of the upper end
 constexpr std::size_t kMostOpenParts = std::size_t{1} << 18;
 constexpr int kMostHalvings = 40;
 /// Times the greatest coordinate: more than these halvings move a corner. Each rounds three coordinates by 2^-53 of it.

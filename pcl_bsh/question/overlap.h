@@ -14,7 +14,7 @@ namespace pcl_bsh {
 
 /// The area of all places of triangles that a solid encloses: places that its surface winds round another number of
 /// times than 0. Each triangle counts by itself. Returns an interval that certainly holds the area, for the poses as
-/// they are given. Triangles are halved until the open part is at most 2^-10 of the upper end, 40 times at most, and
+/// they are given. Triangles are halved until the open part is at most 2^-8 of the upper end, 40 times at most, and
 /// into 2^18 open parts at most. A triangle that lies in the solid's surface stays open as a whole.
 /// @param question its poses and `threads` count. @param surface of triangles
 /// @throws InvalidInput as ask() does of such a solid
