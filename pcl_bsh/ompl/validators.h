@@ -25,7 +25,7 @@
 
 namespace pcl_bsh::ompl {
 
-/// That planners share.
+/// The world that planners share.
 using World = std::shared_ptr<const robots::RobotWorld>;
 
 /// The values of a state of a RealVectorStateSpace.
