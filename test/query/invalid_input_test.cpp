@@ -147,8 +147,8 @@ TEST_F(InvalidInputTest, NamesWhatOthersRefuse)
   EXPECT_EQ(thrownBy([&] { moved.refit(viewOf(xyz.data(), 1)); }).input(), Input::points);
   EXPECT_EQ(thrownBy([&] { moved.refit(viewOf(xyz.data(), 2), 0.5); }).input(), Input::growth);
   EXPECT_EQ(thrownBy([&] { euclideanClusters(two, nan); }).input(), Input::cluster_distance);
-  EXPECT_EQ(thrownBy([&] { findClashes(two.view(), {}, 0.0); }).input(), Input::cluster_distance);
-  EXPECT_EQ(thrownBy([&] { findClashes(two.view(), {}, 1.0); }).input(), Input::result);
+  EXPECT_EQ(thrownBy([&] { findClashes(two.view(), TrajectoryResult(), 0.0); }).input(), Input::cluster_distance);
+  EXPECT_EQ(thrownBy([&] { findClashes(two.view(), TrajectoryResult(), 1.0); }).input(), Input::result);
   std::vector<std::int32_t> indices;
   EXPECT_EQ(thrownBy([&] { boxSearch(two, {nan, 0, 0}, {1, 1, 1}, indices); }).input(), Input::box);
   SceneOptions scene;
