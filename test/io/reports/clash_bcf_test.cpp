@@ -125,7 +125,9 @@ TEST_F(ClashBcf, ClashesThatAreThereHavePictures)
     EXPECT_EQ(snapshotOf(files.at(there + "/markup.bcf")), drawsPictures() ? "snapshot.png" : "");
     EXPECT_EQ(snapshotOf(files.at(gone + "/markup.bcf")), "");
     EXPECT_FALSE(files.contains(gone + "/snapshot.png"));
-    if (drawsPictures()) EXPECT_EQ(sizeOfPng(files.at(there + "/snapshot.png")), (std::pair{780UL, 945UL}));
+    if (drawsPictures()) {
+      EXPECT_EQ(sizeOfPng(files.at(there + "/snapshot.png")), (std::pair{780UL, 945UL}));
+    }
   }
   const std::vector<std::string> told = writeClashes(folder / "list.bcf", report);
   EXPECT_EQ(told.size(), drawsPictures() ? 0U : 1U);
