@@ -6,6 +6,7 @@
 set -euo pipefail
 
 (($# == 1)) || { printf 'make_line.sh: FOLDER: is missing: say where the files shall go\n' >&2; exit 1; }
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 mkdir -p "$1"
 cd "$1"
 
@@ -28,19 +29,7 @@ cant 1320 0
 equation 1200 1500
 END
 
-cat >gauge.csv <<'END'
-offset,height
--1.60,0.10
-1.60,0.10
-1.80,1.20
-1.80,3.10
-1.30,3.90
-0.90,4.30
--0.90,4.30
--1.30,3.90
--1.80,3.10
--1.80,1.20
-END
+cp "$here/gauge.csv" .
 
 cat >wagon.csv <<'END'
 offset,height

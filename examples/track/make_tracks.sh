@@ -6,6 +6,7 @@
 set -euo pipefail
 
 (($# == 1)) || { printf 'make_tracks.sh: FOLDER: is missing: say where the files shall go\n' >&2; exit 1; }
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 mkdir -p "$1"
 cd "$1"
 
@@ -26,19 +27,7 @@ arc 79.2 396
 straight 60
 height 1000 30
 END
-cat >gauge.csv <<'END'
-offset,height
--1.60,0.10
-1.60,0.10
-1.80,1.20
-1.80,3.10
-1.30,3.90
-0.90,4.30
--0.90,4.30
--1.30,3.90
--1.80,3.10
--1.80,1.20
-END
+cp "$here/gauge.csv" .
 
 # The wagon goes 10 m each second. Its scanner is 2.5 m above the left track, and turns across it: 120 beams every 0.25 m.
 awk 'function side(at, way, low, high,   a, b, c) { # narrows the part of the beam that is in a box
