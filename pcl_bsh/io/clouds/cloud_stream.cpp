@@ -2,6 +2,7 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/conversion.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
 #include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
@@ -158,33 +159,22 @@ public:
                   const Eigen::AlignedBox3d& box)
   : path_(std::move(path)),
     given_(std::move(given)),
-    settings_(settings),
-    remarks_(given_->remarks()),
     header_(given_->header())
   {
+    facts_.coordinate_system = given_->coordinateSystem();
+    facts_.unit = given_->unit();
+    facts_.remarks = given_->remarks();
     naming([&] {
-      system_ = systemOf(settings, given_->coordinateSystem(), &remarks_);
-      unit_ = settings.unit ? settings.unit : given_->unit();
-      if (settings.transforms()) {
-        transform_.emplace(system_, settings.to_crs, box, unit_);
-        for (const std::string& remark : transform_->remarks()) remarks_.push_back(remark);
-        if (!transform_->isIdentity()) system_ = transform_->target();
-        unit_ = transform_->unit();
-      }
-      else {
-        scale_ = scaleOf(settings, given_->unit(), &remarks_);
-        if (!scale_.isOne()) system_ = {};
-        if (settings.to_unit) unit_ = settings.to_unit;
-      }
-      convert(header_);
+      conversion_.emplace(facts_, settings, box);
+      (*conversion_)(header_);
     });
   }
 
   const pcl::PCLPointCloud2& header() const override { return header_; }
   std::uint64_t size() const override { return given_->size(); }
-  std::vector<std::string> remarks() const override { return remarks_; }
-  CoordinateSystem coordinateSystem() const override { return system_; }
-  std::optional<LengthUnit> unit() const override { return unit_; }
+  std::vector<std::string> remarks() const override { return facts_.remarks; }
+  CoordinateSystem coordinateSystem() const override { return facts_.coordinate_system; }
+  std::optional<LengthUnit> unit() const override { return facts_.unit; }
   void skip(std::uint64_t points) override
   {
     given_->skip(points);
@@ -192,26 +182,18 @@ public:
   }
   std::size_t read(std::uint8_t* records, std::size_t most) override
   {
-    if (!transform_ && scale_.isOne()) return given_->read(records, most);
+    if (conversion_->isNothing()) return given_->read(records, most);
     pcl::PCLPointCloud2 batch = given_->header();
     batch.data.resize(most * batch.point_step);
     const std::size_t points = given_->read(batch.data.data(), most);
     batch.data.resize(points * batch.point_step);
-    naming([&] { convert(batch); });
+    naming([&] { (*conversion_)(batch, next_); });
     std::copy(batch.data.begin(), batch.data.end(), records);
     next_ += points;
     return points;
   }
 
 private:
-  void convert(pcl::PCLPointCloud2& batch) const
-  {
-    if (transform_)
-      transformPlaces(batch, *transform_, next_);
-    else
-      scaleLengths(batch, scale_, settings_.length_fields);
-  }
-
   template <typename Do>
   void naming(const Do& run) const
   {
@@ -225,12 +207,8 @@ private:
 
   fs::path path_;
   std::unique_ptr<CloudStream> given_;
-  ReadSettings settings_;
-  std::vector<std::string> remarks_;
-  LengthScale scale_;
-  std::optional<SystemTransform> transform_;
-  CoordinateSystem system_;
-  std::optional<LengthUnit> unit_;
+  CloudFacts facts_; ///< of what is converted
+  std::optional<Conversion> conversion_;
   pcl::PCLPointCloud2 header_;
   std::uint64_t next_ = 0;
 };
