@@ -4,6 +4,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/query/request_check.h>
+#include <pcl_bsh/scene/part_colliders.h>
 #include <pcl_bsh/solid/solid.h>
 
 #include <algorithm>
@@ -174,18 +175,13 @@ private:
     double reached = 0.0, next = 0.0; ///< of the motion, seconds: where it is, and where this step takes it
     std::optional<Eigen::Isometry3d> led = std::nullopt; ///< by hand, to this pose of the object
   };
-  /// Shared by objects of one hierarchy.
-  struct Shape {
-    std::unique_ptr<const Solid> solid;
-    std::unique_ptr<const Collider> collider;
-  };
 
   void add(ObjectId object, const SceneBody& how)
   {
     const SceneObject& of = scene_[object];
     const Eigen::Isometry3d begin = poseAt(of.motion, of.pose, 0.0); // waypoints may begin elsewhere
     for (const ScenePart& part : of.parts) {
-      const Shape& shape = shapeOf(part, how.falls());
+      const PartCollider& shape = shapeOf(part, how.falls());
       const Eigen::Isometry3d pose = begin * part.pose;
       const BodyId body = how.falls() ? world_.add(*shape.collider, pose,
                                                    massOfBody(*shape.collider, shape.solid.get(), how), how.material)
@@ -215,15 +211,9 @@ private:
     }
   }
 
-  const Shape& shapeOf(const ScenePart& part, bool falls)
+  const PartCollider& shapeOf(const ScenePart& part, bool falls)
   {
-    const PointsView& view = part.hierarchy->view();
-    const bool encloses = view.triangles && (falls || part.solid);
-    Shape& shape = shapes_[{part.hierarchy.get(), encloses}];
-    if (shape.collider) return shape;
-    if (encloses) shape.solid = std::make_unique<const Solid>(*view.triangles);
-    shape.collider = std::make_unique<const Collider>(*part.hierarchy, shape.solid.get());
-    return shape;
+    return shapes_.of(*part.hierarchy, part.hierarchy->view().triangles && (falls || part.solid));
   }
 
   Eigen::Isometry3d poseOf(const Moved& each) const
@@ -237,7 +227,7 @@ private:
   {
     SceneOptions asked;
     double thickest = options_.thickness;
-    for (const auto& [key, shape] : shapes_) thickest = std::max(thickest, 0.5 * shape.collider->spacing());
+    for (const auto& [key, shape] : shapes_.all()) thickest = std::max(thickest, 0.5 * shape.collider->spacing());
     asked.effects.distance = 0.5 * thickest;
     Scene still(asked);
     for (ObjectId object = 0; object < scene_.size(); ++object) {
@@ -259,7 +249,7 @@ private:
   double restOf(const DistantPair& pair) const
   {
     const auto spacing = [&](ObjectId object, std::uint32_t part) {
-      for (const auto& [key, shape] : shapes_)
+      for (const auto& [key, shape] : shapes_.all())
         if (key.first == scene_[object].parts[part].hierarchy.get()) return shape.collider->spacing();
       return 0.0;
     };
@@ -271,7 +261,7 @@ private:
   BodiesOptions options_;
   World world_;
   double time_ = 0.0; ///< since motions began
-  std::map<std::pair<const SphereHierarchy*, bool>, Shape> shapes_;
+  PartColliders shapes_;
   std::vector<ObjectId> objects_; ///< of each body of the world
   std::vector<Moved> moved_;
   std::vector<std::string> warnings_;

@@ -5,22 +5,16 @@
 #include <pcl_bsh/base/plain_text.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/pairs/nearest_places.h>
-#include <pcl_bsh/solid/solid.h>
+#include <pcl_bsh/scene/part_colliders.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 namespace pcl_bsh {
 
 struct DraggedObject::Parts {
-  /// A collider, of one hierarchy, that parts share.
-  struct Shape {
-    std::unique_ptr<const Solid> solid;
-    std::unique_ptr<const Collider> collider;
-  };
   struct Part {
     ObjectId object;
     std::uint32_t part;
@@ -38,22 +32,12 @@ struct DraggedObject::Parts {
     for (ObjectId i = 0; i < scene.size(); ++i) {
       for (std::uint32_t part = 0; part < scene[i].parts.size(); ++part) {
         const ScenePart& of_object = scene[i].parts[part];
-        const Collider& collider = colliderOf(of_object);
+        const Collider& collider = *colliders.of(*of_object.hierarchy, of_object.solid).collider;
         (i == object ? own : others).push_back({i, part, &collider, of_object.solid});
         spacing = std::max(spacing, collider.spacing());
       }
     }
     margin = options.margin.value_or(std::max(4.0 * scene.options().tolerance, 0.5 * spacing));
-  }
-
-  const Collider& colliderOf(const ScenePart& part)
-  {
-    Shape& shape = shapes[{part.hierarchy.get(), part.solid}];
-    if (!shape.collider) {
-      if (part.solid) shape.solid = std::make_unique<const Solid>(*part.hierarchy->view().triangles);
-      shape.collider = std::make_unique<const Collider>(*part.hierarchy, shape.solid.get());
-    }
-    return *shape.collider;
   }
 
   void look()
@@ -105,7 +89,7 @@ struct DraggedObject::Parts {
   const ObjectId object;
   const std::size_t most;
   double margin = 0.0;
-  std::map<std::pair<const SphereHierarchy*, bool>, Shape> shapes;
+  PartColliders colliders;
   std::vector<Part> own, others; ///< of the dragged object, and of all others
   Manifold between;              ///< of the last pair; its memory is used again
   DragStep now;
