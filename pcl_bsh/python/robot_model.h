@@ -39,10 +39,9 @@ struct States {
 /// A pose that is rigid within 1e-6, made so to the last digits. @throws InvalidInput naming it
 inline Eigen::Isometry3d rigidPoseOf(const std::string& name, const PoseLike& given)
 {
-  Eigen::Isometry3d pose = poseOf(name, given);
+  const Eigen::Isometry3d pose = poseOf(name, given);
   checkPose(name, pose);
-  pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
-  return pose;
+  return robots::rigidPose(pose);
 }
 
 inline States statesOf(const std::string& name, const ArrayLike& states, const RobotModel& model)

@@ -118,9 +118,8 @@ void Gaps::setObstacles(std::vector<Obstacle> given)
   surroundings_ = std::make_unique<const Surroundings>(std::move(given), base.translation, std::max(reach, 1e-30));
 }
 
-void Gaps::placeObstacles(const std::vector<Eigen::Isometry3d>& T_world_obstacle)
+void Gaps::setObstacles(std::vector<Obstacle> placed, const std::vector<Eigen::Isometry3d>& T_world_obstacle)
 {
-  std::vector<Obstacle> placed = obstacles();
   if (T_world_obstacle.size() != placed.size())
     throw InvalidInput(Input::pose, "obstacles", "get " + std::to_string(T_world_obstacle.size()) + " poses",
                        "give one for each of the " + std::to_string(placed.size()));

@@ -27,7 +27,7 @@ public:
 
   void setObstacles(std::vector<Obstacle> obstacles);
   /// @throws InvalidInput for another number of poses, and for one that is not rigid
-  void placeObstacles(const std::vector<Eigen::Isometry3d>& T_world_obstacle);
+  void setObstacles(std::vector<Obstacle> obstacles, const std::vector<Eigen::Isometry3d>& T_world_obstacle);
 
   /// Places of a body's parts are in the world.
   using Poses = std::vector<Kinematics::Pose>;

@@ -107,6 +107,13 @@ struct Robot {
   void requireValues(const JointValues& values) const;
 };
 
+/// The rigid pose that is nearest to one of few digits: robots and worlds take poses that are rigid within 1e-12.
+inline Eigen::Isometry3d rigidPose(Eigen::Isometry3d pose)
+{
+  pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+  return pose;
+}
+
 /// The links whose joints have values of their own, in the order of links: neither fixed joints nor those that mimic.
 std::vector<std::size_t> variablesOf(const Robot& robot);
 

@@ -178,9 +178,15 @@ void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacl
   inside_->gaps.setObstacles(obstaclesOf(obstacles));
 }
 
+void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacles,
+                              const std::vector<Eigen::Isometry3d>& T_world_obstacle)
+{
+  inside_->gaps.setObstacles(obstaclesOf(obstacles), T_world_obstacle);
+}
+
 void RobotWorld::setObstaclePoses(const std::vector<Eigen::Isometry3d>& T_world_obstacle)
 {
-  inside_->gaps.placeObstacles(T_world_obstacle);
+  inside_->gaps.setObstacles(inside_->gaps.obstacles(), T_world_obstacle);
 }
 
 void RobotWorld::setBase(const Eigen::Isometry3d& T_world_root)

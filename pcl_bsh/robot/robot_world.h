@@ -94,6 +94,9 @@ public:
   /// Other obstacles; or the same, after a HierarchyUpdate or a refit has changed them. They stand where they are
   /// given.
   void setObstacles(const std::vector<const SphereHierarchy*>& obstacles);
+  /// Other obstacles at these poses. @throws InvalidInput as setObstaclePoses() does; then nothing has changed
+  void setObstacles(const std::vector<const SphereHierarchy*>& obstacles,
+                    const std::vector<Eigen::Isometry3d>& T_world_obstacle);
   /// Moves obstacles; no hierarchy is built anew. @throws InvalidInput for a pose that is not rigid within 1e-12
   /// @param T_world_obstacle one for each
   void setObstaclePoses(const std::vector<Eigen::Isometry3d>& T_world_obstacle);

@@ -205,8 +205,7 @@ std::string rowOf(const char* what, std::size_t number, const Json& json)
 void takeBase(Options& options, std::vector<std::string>& warnings)
 {
   if (options.base.empty()) return;
-  options.world.base = cli::parsePose("--base", options.base, warnings);
-  options.world.base.linear() = Eigen::Quaterniond(options.world.base.linear()).normalized().toRotationMatrix();
+  options.world.base = robots::rigidPose(cli::parsePose("--base", options.base, warnings));
 }
 
 int run(Options& options)

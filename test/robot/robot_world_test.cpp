@@ -583,11 +583,14 @@ TEST(RobotWorld, MovesObstacles)
     world.setObstaclePoses({Eigen::Isometry3d::Identity(), pose});
     RobotWorld alone(scene.robot, {scene.cloud.get()}, options), expected(scene.robot, {&cloud}, options);
     alone.setObstaclePoses({pose});
+    RobotWorld at_once(scene.robot, {}, options);
+    at_once.setObstacles({scene.cloud.get()}, {pose});
     for (int i = 0; i < 20; ++i) {
       const RobotState from = test::madeState(scene.random, scene.robot);
       RobotState to = test::madeState(scene.random, scene.robot);
       for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + 0.2 * (to[k] - from[k]);
       EXPECT_EQ(alone.checkState(from).verdict, expected.checkState(from).verdict);
+      EXPECT_EQ(at_once.clearance(from).gap.lower, alone.clearance(from).gap.lower);
       EXPECT_EQ(alone.checkMotion(from, to).verdict, expected.checkMotion(from, to).verdict);
       const Interval a = alone.clearance(from).gap, b = expected.clearance(from).gap;
       EXPECT_NEAR(a.lower, b.lower, 1e-6);

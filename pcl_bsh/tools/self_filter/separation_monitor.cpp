@@ -49,8 +49,7 @@ SeparationCheck SeparationMonitor::check(const PointsView& frame, const Eigen::I
 {
   const double margin = marginOf(frame, filter_.greatestPadding(), world_.options().clearance);
   robots::SweptRegion(world_.sweptBalls(now, next), margin, T_world_camera).recordsInside(frame, records_);
-  Eigen::Isometry3d rigid = T_world_camera;
-  rigid.linear() = Eigen::Quaterniond(rigid.linear()).normalized().toRotationMatrix();
+  const Eigen::Isometry3d rigid = robots::rigidPose(T_world_camera);
 
   SeparationCheck check;
   check.near = records_.size();
@@ -64,10 +63,9 @@ SeparationCheck SeparationMonitor::check(const PointsView& frame, const Eigen::I
   check.self = records_.size() - others_.size();
 
   points.restrictTo(others_.data(), others_.size());
-  world_.setObstacles({});
-  obstacle_ = std::make_unique<const SphereHierarchy>(points);
-  world_.setObstacles({obstacle_.get()});
-  world_.setObstaclePoses({rigid});
+  auto obstacle = std::make_unique<const SphereHierarchy>(points);
+  world_.setObstacles({obstacle.get()}, {rigid});
+  obstacle_ = std::move(obstacle);
   check.motion = world_.checkMotion(now, next, true);
   return check;
 }
