@@ -4,6 +4,8 @@
 # the two commands of README.md, then what they leave out: packaging, the preset clang, the benchmarks. Says how long each
 # takes. Needs root, 25 GB and hours; run it before every release, not in CI.
 #   bash test/on_debian.sh VERSION [FOLDER]     VERSION: 12 or 13. FOLDER: is made anew; default /var/tmp/pcl_bsh_debian_VERSION
+#   CCACHE_DIR=FOLDER bash test/on_debian.sh VERSION  keeps there what the compiler makes after the first command, so that a
+#                                                   next call is quicker; its times are then no measure
 # Fails when a command fails, when a compiler warns, or when the demonstration's cloud differs from that of another version
 # in the folder beside.
 set -euo pipefail
@@ -56,6 +58,7 @@ chmod +x "$root/usr/sbin/policy-rc.d"
 
 [[ -z "$(git status --porcelain)" ]] || say "what is not committed is not tested"
 git clone --quiet --no-hardlinks . "$root/srv/pcl_bsh"
+if [[ -n "${CCACHE_DIR:-}" ]]; then mkdir -p "$CCACHE_DIR" "$root/root/.ccache"; fi
 
 # Runs a command in the clone, and says how long it took: its last line goes to $folder/times.
 inside() { # NAME COMMAND...
@@ -63,7 +66,9 @@ inside() { # NAME COMMAND...
   shift
   say "$name: $* (output in $log)"
   { time unshare --mount --propagation private bash -c '
-      mount -t proc proc "$1/proc" && mount -t sysfs sysfs "$1/sys" && mount --rbind /dev "$1/dev" && cd / && exec chroot "$@"' - "$root" \
+      mount -t proc proc "$1/proc" && mount -t sysfs sysfs "$1/sys" && mount --rbind /dev "$1/dev" || exit
+      if [[ -n "${CCACHE_DIR:-}" ]]; then mount --bind "$CCACHE_DIR" "$1/root/.ccache" || exit; fi
+      cd / && exec chroot "$@"' - "$root" \
       /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin \
       bash -c 'cd /srv/pcl_bsh && exec "$@"' - "$@" </dev/null >"$log" 2>&1 ||
       failed+=("$name"); } 2>>"$folder/times"
@@ -79,6 +84,7 @@ say "the demonstration's cloud has the SHA-256 $cloud"
 for other in "${folder%"_$1"}"_*/cloud.sha256; do
   if [[ -s "$other" && "$(cat "$other")" != "$cloud" ]]; then failed+=("the demonstration: another cloud than in $other"); fi
 done
+if [[ -n "${CCACHE_DIR:-}" ]]; then inside ccache apt-get install --yes --no-install-recommends ccache; fi
 inside second bash test/run.sh
 inside packaging ctest --preset packaging
 inside clang bash -c 'cmake --preset clang && cmake --build --preset clang'
