@@ -19,9 +19,9 @@ targets=("${@:2}")
 shown="core library documents pipelines sites viewer" # what the demonstration needs
 case "${targets[*]}" in
   demonstration) sections="$shown" ;;
-  programs) sections="$shown geodesy certify" ;;
-  python | self_filter | docs) sections="$shown geodesy ${targets[*]}" ;;
-  *) sections="$shown geodesy certify physics tests docs self_filter ompl python" ;;
+  programs) sections="$shown geodata certify" ;;
+  python | self_filter | docs) sections="$shown geodata ${targets[*]}" ;;
+  *) sections="$shown geodata certify physics tests docs self_filter ompl python" ;;
 esac
 case "$preset" in
   library) sections="core library" ;;

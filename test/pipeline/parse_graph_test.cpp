@@ -149,7 +149,7 @@ TEST(ParseGraph, RefusesUnknownTypes)
                                               ".pcd .ply .obj .off .stl .las .laz .e57 .pts .ptx .txt .xyz .csv, or a "
                                               "type");
   EXPECT_THAT(refusal(R"(["a.pcd", "b.off"])"),
-              HasSubstr("can be written: give .pcd .ply .las .pts .ptx .obj .txt .xyz .csv, or a type"));
+              HasSubstr("can be written: give .pcd .ply .las .laz .pts .ptx .obj .txt .xyz .csv, or a type"));
 }
 
 TEST(ParseGraph, RefusesUnknownKeysAndWrongValues)

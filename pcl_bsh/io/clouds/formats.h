@@ -3,6 +3,7 @@
 // which files may have faces.
 #pragma once
 
+#include <pcl_bsh/io/clouds/las/laz/compressor.h>
 #include <pcl_bsh/io/clouds/meshes/off_header.h>
 
 #include <string>
@@ -15,7 +16,7 @@ namespace pcl_bsh::io {
 struct CloudFormat {
   std::string_view extension; ///< with its dot, in small letters
   bool has_faces = false;
-  bool is_written = true;                           ///< as a cloud
+  bool is_written = true;                           ///< as a cloud; see isWritten()
   bool (*begins)(std::string_view bytes) = nullptr; ///< tells it from others, of a pipe; null: nothing does
 };
 
@@ -27,7 +28,7 @@ inline constexpr CloudFormat cloud_formats[] = {
      }},
     {".ply", true, true, [](std::string_view bytes) { return bytes.starts_with("ply"); }},
     {".las", false, true, [](std::string_view bytes) { return bytes.starts_with("LASF"); }},
-    {".laz", false, false},
+    {".laz"},
     {".e57", false, false, [](std::string_view bytes) { return bytes.starts_with("ASTM-E57"); }},
     {".obj", true, true},
     {".off", true, false, [](std::string_view bytes) { return beginsAsOff(bytes); }},
@@ -64,14 +65,15 @@ inline bool isRead(const CloudFormat&)
   return true;
 }
 
+/// A .laz is written where LASzip is.
 inline bool isWritten(const CloudFormat& format)
 {
-  return format.is_written;
+  return format.is_written && (format.extension != ".laz" || writesLaz());
 }
 
 inline bool isNotWritten(const CloudFormat& format)
 {
-  return !format.is_written;
+  return !isWritten(format);
 }
 
 /// A help text in which {read} and {unwritten} stand for the extensions.

@@ -3,6 +3,7 @@
 #include "samples.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/formats.h>
 
 #include <gmock/gmock.h>
 
@@ -282,11 +283,10 @@ TEST(CloudFile, EachNameThatCanBeWrittenIsReadAgain)
     }
     return "none";
   };
-  const std::string known = ": write a .pcd, .ply, .las, .obj, .pts, .ptx, .csv, .xyz or .txt file";
+  const std::string known = ": write a " + extensionsOf(isWritten, ", ", " or ") + " file";
   EXPECT_EQ(refusalOf("b.e57"), ": unknown extension '.e57'" + known);
   EXPECT_EQ(refusalOf("b"), ": has no extension" + known);
   EXPECT_EQ(refusalOf("b.off"), ": unknown extension '.off'" + known) << "read, but not written";
-  EXPECT_EQ(refusalOf("b.laz"), ": is the name of a compressed file, which is not written: write a .las file");
   EXPECT_EQ(refusalOf("b.las"), "none");
 }
 

@@ -33,7 +33,8 @@ pcl::PCLPointCloud2 readLas(LasReader& reader);
 /// stored as red green blue unless the cloud has these. Points without finite coordinates have no place in LAS: they
 /// are left out.
 /// @param header may be null
+/// @param is_compressed as LAZ, by LazCompressor; all compressed points are in memory at once
 /// @throws FormatError when a field cannot be extra bytes: a name longer than 32, more than 65535 bytes per point
-void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* header);
+void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* header, bool is_compressed = false);
 
 } // namespace pcl_bsh::io

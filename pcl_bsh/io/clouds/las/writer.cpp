@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/las.h>
+#include <pcl_bsh/io/clouds/las/laz/compressor.h>
 #include <pcl_bsh/io/clouds/las/plan.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/version.h>
@@ -8,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace pcl_bsh::io {
 
@@ -143,7 +145,7 @@ void moveBehind(std::string& block, std::size_t at, std::uint64_t old_end, std::
 
 } // namespace
 
-void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* header)
+void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* header, bool is_compressed)
 {
   const LasPoints points(cloud);
   const LasPlan plan = planLas(points, header);
@@ -158,6 +160,11 @@ void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHead
       setLasNumber(behind, static_cast<std::size_t>(*header->described_behind) + 18, las_superseded_id);
     }
   }
+  std::optional<LazCompressor> compressor;
+  if (is_compressed) {
+    compressor.emplace(plan.format, plan.record_length);
+    between.records.push_back({compressor->record()});
+  }
   std::uint64_t points_at = block.size() + between.padding.size();
   for (const LasRecord& record : between.records) points_at += record.bytes.size();
   if (points_at > std::numeric_limits<std::uint32_t>::max()) {
@@ -165,7 +172,8 @@ void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHead
   }
 
   block[las_at::minor] = static_cast<char>(plan.minor);
-  block[las_at::format] = static_cast<char>(plan.format);
+  constexpr unsigned compressed_bit = 0x80;
+  block[las_at::format] = static_cast<char>(plan.format | (is_compressed ? compressed_bit : 0U));
   setLasNumber(block, las_at::points_at, static_cast<std::uint32_t>(points_at));
   setLasNumber(block, las_at::variable_records, static_cast<std::uint32_t>(between.records.size()));
   setLasNumber(block, las_at::record_length, static_cast<std::uint16_t>(plan.record_length));
@@ -180,21 +188,28 @@ void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHead
     std::fill_n(block.begin() + las_at::bounds, 6 * sizeof(double), '\0');
   }
   setCounts(block, plan, points.size(), sums, header);
+  std::string records, compressed;
+  const auto forEachBatch = [&](auto&& use) {
+    points.forEachBatch([&](const std::uint8_t* in, std::size_t count) {
+      plan.encode(in, points.step(), count, records);
+      use(records);
+    });
+  };
+  if (compressor) { // their size tells what lies behind them
+    forEachBatch([&](const std::string& batch) { compressor->add(batch); });
+    compressed = compressor->finish(points_at);
+  }
   if (header != nullptr) {
     const std::uint64_t old_end = header->block.endOfPoints();
-    const std::uint64_t new_end = points_at + points.size() * plan.record_length;
+    const std::uint64_t new_end = points_at + (compressor ? compressed.size() : points.size() * plan.record_length);
     if (header->block.waveforms_at != 0) moveBehind(block, las_at::waveforms, old_end, new_end);
     if (header->block.extended_records != 0) moveBehind(block, las_at::extended, old_end, new_end);
   }
 
   out << block;
   for (const LasRecord& record : between.records) out << record.bytes;
-  out << between.padding;
-  std::string records;
-  points.forEachBatch([&](const std::uint8_t* in, std::size_t count) {
-    plan.encode(in, points.step(), count, records);
-    out << records;
-  });
+  out << between.padding << compressed;
+  if (!compressor) forEachBatch([&](const std::string& batch) { out << batch; });
   out << behind;
 }
 
