@@ -85,6 +85,8 @@ private:
                              may_have_scans ? options_.scan : std::nullopt);
     if (!options_.unit.empty()) reading.unit = io::lengthUnitOf(options_.unit);
     if (!options_.to_unit.empty()) reading.to_unit = io::lengthUnitOf(options_.to_unit);
+    reading.crs = options_.crs;
+    reading.to_crs = options_.to_crs;
     return io::openCloud(file, options_.memory / 2, reading, options_.threads);
   }
 
@@ -125,9 +127,8 @@ private:
                         const io::CoordinateSystem& system) const
   {
     try {
-      const auto warning =
-          io::requireOneSystem(clouds_[first.first].string(), first.second, system,
-                               "transform one (`to_crs` of a reader of pcl_bsh_pipeline), or make two sites");
+      const auto warning = io::requireOneSystem(clouds_[first.first].string(), first.second, system,
+                                                "transform them (--to-crs), or make two sites");
       if (warning && options_.remark) options_.remark(clouds_[cloud], {*warning});
     }
     catch (const io::FormatError& error) {

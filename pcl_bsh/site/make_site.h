@@ -43,6 +43,10 @@ struct MakeOptions {
   /// are.
   std::string unit;
   std::string to_unit; ///< see unit
+  /// The clouds' coordinate system, and the projected one to which PROJ transforms them, as EPSG:25832 or WKT; each
+  /// file is read once more for that. Empty: as files say, and as they are. Not with units.
+  std::string crs;
+  std::string to_crs; ///< see crs
   /// Called with a cloud and remarks for users about how it is read; null: not told.
   std::function<void(const std::filesystem::path&, const std::vector<std::string>& remarks)> remark;
   /// Called now and then with the points done and all points of this step. False: stop, makeSite() throws Cancelled.

@@ -82,6 +82,8 @@ int make(const Options& options)
   wanted.columns = [&](const std::filesystem::path& file) { return options.reading.columns.of(file); };
   wanted.allow_scale = options.reading.allow_scale;
   wanted.scan = options.reading.scan;
+  wanted.crs = options.reading.input_crs;
+  wanted.to_crs = options.reading.to_crs;
   if (options.clouds_unit) wanted.unit = io::nameOf(*options.clouds_unit);
   if (options.to_unit) wanted.to_unit = io::nameOf(*options.to_unit);
   wanted.remark = [](const std::filesystem::path& file, const std::vector<std::string>& remarks) {

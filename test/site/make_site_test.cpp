@@ -187,7 +187,11 @@ TEST(MakeSite, CloudsOfDifferentCoordinateSystemsAreRefused)
   const auto file = [&](const std::string& name, const std::string& wkt) {
     io::LasSample sample(4, 6);
     sample.records = {io::LasSample::record("LASF_Projection", 2112, wkt)};
-    sample.addPoints(5);
+    for (std::int32_t i = 0; i < 5; ++i) {
+      std::string point(sample.length(), '\0');
+      for (std::size_t k = 0; k < 3; ++k) io::put(point, k * sizeof i, 1000 * i);
+      sample.points.push_back(point);
+    }
     return folder.write(name, sample.text());
   };
   std::string zone_32 = io::utm_33_wkt;
@@ -202,6 +206,21 @@ TEST(MakeSite, CloudsOfDifferentCoordinateSystemsAreRefused)
           testing::HasSubstr("b.las: is in 'ETRS89 / UTM zone 32N', and " + a.string() + " in 'ETRS89 / UTM ")));
   EXPECT_FALSE(std::filesystem::exists(folder / "site"));
   EXPECT_EQ(makeSite({a, a}, folder / "site").points, 10U);
+
+  MakeOptions to_33;
+  to_33.to_crs = "EPSG:25833";
+  const Site site = makeSite({a, b}, folder / "one", to_33);
+  EXPECT_EQ(coordinateSystemOf(site), "ETRS89 / UTM zone 33N; ETRS89 / UTM zone 33N (EPSG:25833)") << "one system";
+  checkSite(site);
+  io::ReadSettings settings;
+  settings.to_crs = to_33.to_crs;
+  for (std::size_t i = 0; i < 2; ++i) {
+    exportSource(site, i, folder / "out.pcd");
+    io::expectSame(io::readCloud(folder / "out.pcd"), io::readCloud(i == 0 ? a : b, nullptr, settings));
+  }
+  to_33.to_unit = "ft";
+  EXPECT_THROW(makeSite({a, b}, folder / "feet", to_33), files::FileError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "feet"));
 }
 
 TEST(MakeSite, DrawsAnOverviewEvenly)

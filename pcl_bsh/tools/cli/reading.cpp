@@ -55,7 +55,7 @@ void ReadOptions::addUnitsTo(CLI::App& app)
           "a .las names it; with neither of\nboth options nothing is converted)");
 }
 
-void ReadOptions::addSystemsTo(CLI::App& app, bool has_obstacle)
+void ReadOptions::addSystemsTo(CLI::App& app, bool has_obstacle, const std::string& input)
 {
   const auto add = [&](const std::string& option, std::string& crs, const std::string& doc) {
     app.add_option_function<std::string>(
@@ -74,10 +74,10 @@ void ReadOptions::addSystemsTo(CLI::App& app, bool has_obstacle)
         ->type_name("CRS");
   };
   add("--to-crs", to_crs_,
-      std::string(has_obstacle ? "transform INPUT and OBSTACLE" : "transform INPUT") +
+      "transform " + input + (has_obstacle ? " and OBSTACLE" : "") +
           " to this projected coordinate\nsystem, as EPSG:25832 or WKT, by PROJ");
   const std::string as_named = " (default: as a\n.las or .e57 names it)";
-  add("--input-crs", input_crs_, "the coordinate system of INPUT" + as_named);
+  add("--input-crs", input_crs_, "the coordinate system of " + input + as_named);
   if (has_obstacle)
     add("--obstacle-crs", obstacle_crs_,
         "the coordinate system of OBSTACLE" + as_named + "; none: it has a\nframe of its own, from which poses lead");

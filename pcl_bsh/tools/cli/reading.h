@@ -50,8 +50,8 @@ public:
   /// --input-unit and --obstacle-unit.
   void addUnitsTo(CLI::App& app);
 
-  /// --to-crs and --input-crs; --obstacle-crs where there is one.
-  void addSystemsTo(CLI::App& app, bool has_obstacle);
+  /// --to-crs and --input-crs; --obstacle-crs where there is one. @param input as the help calls it
+  void addSystemsTo(CLI::App& app, bool has_obstacle, const std::string& input = "INPUT");
 
   /// @param files that the program reads clouds from
   /// @throws UsageError for what is no list of names, for names that none of the files can have, and for a scan where

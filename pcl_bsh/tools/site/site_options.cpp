@@ -238,6 +238,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
   addUnit(*make, "--input-unit", options.clouds_unit,
           "of all clouds' lengths: mm, cm, m, ft or us-ft (default: as a .las\nnames it)");
   addUnit(*make, "--to-unit", options.to_unit, "of the site's lengths (default: they stay as they are)");
+  reading.addSystemsTo(*make, false, "all clouds");
   addMemory(*make, options);
   make->add_option("--tile-points", options.tile_points, "points of a tile at most, as 500K or 4M (default: 4M)")
       ->type_name("N")
