@@ -8,6 +8,8 @@
 #include <boost/uuid/uuid_io.hpp>
 #include <pugixml.hpp>
 
+#include <regex>
+
 namespace pcl_bsh::io {
 
 namespace {
@@ -23,13 +25,22 @@ bool isMarkup(const std::string& name)
   return name.ends_with("/markup.bcf");
 }
 
+/// The element's xs:dateTime, or empty text: some programs write an empty element.
+std::string dateOf(const pugi::xml_node& node, const char* name)
+{
+  static const std::regex date_time(R"(-?\d{4,}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)?)");
+  const std::string text = node.child_value(name);
+  constexpr std::size_t longest = 64;
+  return text.size() <= longest && std::regex_match(text, date_time) ? text : std::string();
+}
+
 BcfComment commentFrom(const pugi::xml_node& node)
 {
   BcfComment comment{inSmallLetters(node.attribute("Guid").value()),
-                     node.child_value("Date"),
+                     dateOf(node, "Date"),
                      node.child_value("Author"),
                      node.child_value("Comment"),
-                     node.child_value("ModifiedDate"),
+                     dateOf(node, "ModifiedDate"),
                      node.child_value("ModifiedAuthor")};
   if (comment.guid.empty()) comment.guid = bcfGuid(comment.date + comment.author + comment.text);
   return comment;
@@ -41,9 +52,9 @@ BcfTopic topicFrom(const pugi::xml_node& markup)
   const auto node = markup.child("Topic");
   BcfTopic topic{node.attribute("TopicStatus").value(),
                  node.child_value("Priority"),
-                 node.child_value("CreationDate"),
+                 dateOf(node, "CreationDate"),
                  node.child_value("CreationAuthor"),
-                 node.child_value("DueDate"),
+                 dateOf(node, "DueDate"),
                  node.child_value("AssignedTo"),
                  node.child_value("Stage"),
                  {}};

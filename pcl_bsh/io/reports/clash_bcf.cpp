@@ -147,11 +147,13 @@ private:
 
   static std::string fileName(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
+  std::string now() const { return date_ + "T00:00:00Z"; }
+
   void addComment(pugi::xml_node parent, const BcfComment& comment)
   {
     pugi::xml_node node = parent.append_child("Comment");
     node.append_attribute("Guid") = comment.guid.c_str();
-    addText(node, "Date", comment.date);
+    addText(node, "Date", comment.date.empty() ? now() : comment.date);
     addText(node, "Author", comment.author);
     addText(node, "Comment", comment.text);
     addTextIfAny(node, "ModifiedDate", comment.modified_date);
@@ -169,8 +171,7 @@ private:
 
   void addClash(const Clash& clash)
   {
-    const std::string guid = bcfGuid(report_->idOf(clash)), viewpoint = bcfGuid(report_->idOf(clash) + "/viewpoint"),
-                      now = date_ + "T00:00:00Z";
+    const std::string guid = bcfGuid(report_->idOf(clash)), viewpoint = bcfGuid(report_->idOf(clash) + "/viewpoint");
     const BcfTopic* const earlier = earlierOf(guid);
     pugi::xml_document document;
     pugi::xml_node markup = document.append_child("Markup");
@@ -194,10 +195,10 @@ private:
     else
       addText(topic, "Labels", nameOf(clash.status));
     const bool has_origin = earlier && !earlier->creation_date.empty() && !earlier->creation_author.empty();
-    addText(topic, "CreationDate", has_origin ? earlier->creation_date : now);
+    addText(topic, "CreationDate", has_origin ? earlier->creation_date : now());
     addText(topic, "CreationAuthor", has_origin ? earlier->creation_author : bcf_author);
     if (earlier) {
-      addText(topic, "ModifiedDate", now);
+      addText(topic, "ModifiedDate", now());
       addText(topic, "ModifiedAuthor", bcf_author);
       addTextIfAny(topic, "DueDate", earlier->due_date);
       addTextIfAny(topic, "AssignedTo", earlier->assigned_to);

@@ -186,7 +186,9 @@ TEST_F(ClashBcf, AnEarlierFileBringsBackWhatPeopleSaid)
     const std::string comment =
         "<Comment Guid=\"AB3E5B5C-0000-4000-8000-000000000001\"><Date>2026-11-20T10:00:00Z</Date>"
         "<Author>ada@example.com</Author><Comment>move the \xc3\xbc duct &amp; ask</Comment>"
-        "</Comment>";
+        "</Comment><Comment Guid=\"AB3E5B5C-0000-4000-8000-000000000002\"><Date/><Author>eve@example.com</Author>"
+        "<Comment>some programs leave the date empty</Comment><ModifiedDate>yesterday</ModifiedDate>"
+        "<ModifiedAuthor>eve@example.com</ModifiedAuthor></Comment>";
     change(file, kept, "TopicStatus=\"Open\"", "TopicStatus=\"In Progress\"");
     change(file, kept, "<CreationAuthor>pcl_bsh</CreationAuthor>",
            "<CreationAuthor>pcl_bsh</CreationAuthor><AssignedTo>bob@example.com</AssignedTo>");
@@ -214,7 +216,7 @@ TEST_F(ClashBcf, AnEarlierFileBringsBackWhatPeopleSaid)
         if (clash.status != ClashStatus::fresh) continue;
         EXPECT_THAT(files.at(bcfGuid(clash.id) + "/markup.bcf"), HasSubstr("TopicStatus=\"Open\""));
       }
-      EXPECT_EQ(parseBcf(clashBcf(now, again_3)).topics.at(kept).comments.size(), 1U);
+      EXPECT_EQ(parseBcf(clashBcf(now, again_3)).topics.at(kept).comments.size(), 2U);
     }
   }
 }
