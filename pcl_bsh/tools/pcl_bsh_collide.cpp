@@ -217,7 +217,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
     report.obstacle = {all[i].file, b.view().count, b.size()};
     if (const auto& counted = shapes.back().shape.counted()) report.obstacle.ignored = counted->all;
     if (b.size() == 0 && several)
-      report.warnings.push_back(all[i].name + ": has nothing that is finite: it collides with nothing");
+      shapes.back().shape = shapes.back().shape.named(all[i].name); // not the file, which may have more
   }
   if (!several && all[0].loaded.isSurface()) {
     report.surface = all[0].loaded;

@@ -233,6 +233,11 @@ TEST_F(CollideObstacles, AreThePartsOfAFile)
   EXPECT_THAT(collide("--obstacle \"plant=plant.obj;parts=true\" --obstacle crate.off").out,
               HasSubstr("plant/box_2: clear"));
   EXPECT_EQ(collide("--vertices-only --obstacle \"plant.obj;parts=true\"").exit_code, 0);
+  folder.write("some.obj", "o there\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+                           "o nowhere\nv nan nan nan\nv nan nan nan\nv nan nan nan\nf 4 5 6\n");
+  EXPECT_THAT(collide("--obstacle \"some.obj;parts=true\"").err,
+              testing::AllOf(HasSubstr("nowhere: has no finite triangle: nothing collides with it"),
+                             testing::Not(HasSubstr("some.obj: has no finite"))));
   EXPECT_THAT(refused("--obstacle \"crate.off;parts=true\""), HasSubstr("crate.off: has no parts with names"));
   EXPECT_THAT(refused("--obstacle \"plant.obj;parts=1\""), HasSubstr("parts: '1': give true or false"));
   EXPECT_THAT(refused("--obstacle \"plant.obj;parts=true\" --obstacle box_1=crate.off"),
