@@ -26,7 +26,7 @@ bool isOfHierarchies(const QuestionOption& option, QuestionKind kind)
   return isOf(option.kind, kind) && !is(&Question::vertices_only) && !is(&Question::uncertainty) &&
          !is(&Question::obstacle_uncertainty) && !is(&Question::pose_uncertainty) &&
          !is(&Question::input_pose_uncertainty) && !is(&Question::sigmas) && !is(&Question::ignore_points) &&
-         !is(&Question::obstacle_ignore_points);
+         !is(&Question::obstacle_ignore_points) && !is(&Question::seen_beyond);
 }
 
 void setOptions(Question& question, const py::kwargs& options, QuestionKind kind)

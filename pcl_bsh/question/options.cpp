@@ -69,6 +69,10 @@ std::vector<QuestionOption> table()
        "with `seen`: a direction counts only between beams within this angle on all sides, never in a gap or beyond "
        "the outermost beam; from 0.0001 to 0.25; default: 1.5 times the measured angle between beams",
        Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::in_memory},
+      {"seen_beyond", &Q::seen_beyond, Kind::collisions, "R", "m", std::nullopt,
+       "with `seen`: a beam of an .e57 without a return saw nothing up to this range of the scanner, which no file "
+       "tells; without it, such a beam says nothing",
+       Range::above_zero, false, nullptr, "seen", OptionEffect::other_answers, OfSites::none},
       {"max_distance", &Q::max_distance, Kind::distances, "M", "m", Input::max_distance,
        "greater distances are not told, but are NaN; less is faster; without it, no limit",
        Range::from_zero_to_infinity, false, nullptr, nullptr, OptionEffect::other_answers},

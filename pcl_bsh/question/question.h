@@ -79,6 +79,7 @@ struct Question : Effort {
   bool seen = false;                       ///< what is free and nobody saw is unseen: of the obstacle (Answer::unseen)
   ScanOrigins origin = {};                 ///< where the input was scanned from
   std::optional<double> seen_angle = {};   ///< SeenOptions::angle
+  std::optional<double> seen_beyond = {};  ///< ScanBeams::misses_beyond; none: beams without a return say nothing
   std::optional<double> max_distance = {}; ///< greater distances are not told
   DistanceLimits limits = {};
   bool solid = false;       ///< the obstacle counts with what its faces enclose: they must close

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace pcl_bsh {
@@ -30,6 +31,70 @@ struct Subsets {
   std::shared_ptr<const void> points;
   std::vector<std::vector<std::int32_t>> records;
 };
+
+/// The scan of each record of a cloud.
+class ScanNumbers {
+public:
+  ScanNumbers(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
+              const ScanOrigins& origins)
+  : origins_(origins),
+    cloud_(cloud)
+  {
+    if (!origins.field.empty())
+      numbers_.emplace(view, fields, origins.field, cloud,
+                       RecordNumbers::Purpose{Input::points, "that numbers its scans", "give one of its fields"});
+  }
+
+  /// @throws InvalidInput where the scan has no origin
+  std::size_t operator[](std::uint32_t record) const
+  {
+    if (!numbers_) return 0;
+    const double scan = (*numbers_)[record];
+    const auto found = std::find_if(origins_.entries.begin(), origins_.entries.end(),
+                                    [&](const ScanOrigins::Entry& entry) { return entry.scan == scan; });
+    if (found == origins_.entries.end()) {
+      throw InvalidInput(
+          Input::points, cloud_,
+          plainText("point ", record, " is of scan ", scan, " in field '", origins_.field, "', which has no origin"),
+          "give one for each scan")
+          .withIndex(record);
+    }
+    return static_cast<std::size_t>(found - origins_.entries.begin());
+  }
+
+private:
+  const ScanOrigins& origins_;
+  const std::string& cloud_;
+  std::optional<RecordNumbers> numbers_; ///< none: there is one scan
+};
+
+/// Adds the beams of records without coordinates.
+void addMisses(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud, double beyond,
+               const ScanNumbers& scan_of, std::vector<ScanBeams>& scans)
+{
+  const auto numbersOf = [&](std::string_view name) {
+    return RecordNumbers(view, fields, std::string(name), cloud,
+                         {Input::seen, "of beams without a return",
+                          "leave out `seen_beyond`, or read an .e57 with its beams; the fields are"});
+  };
+  const RecordNumbers x = numbersOf(beam_field_names[0]), y = numbersOf(beam_field_names[1]),
+                      z = numbersOf(beam_field_names[2]);
+  auto places = std::make_shared<std::vector<std::vector<Point3>>>(scans.size());
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::uint32_t record = view.record(i);
+    const Point3 way = {x[record], y[record], z[record]};
+    if (isFinite(view.point(record)) || !isFinite(way) || way == Point3{}) continue;
+    const std::size_t scan = scan_of[record];
+    const Point3& origin = scans[scan].origin;
+    (*places)[scan].push_back({origin[0] + way[0], origin[1] + way[1], origin[2] + way[2]});
+  }
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    const std::vector<Point3>& of_scan = (*places)[s];
+    scans[s].misses = viewOf(of_scan.empty() ? nullptr : of_scan.front().data(), of_scan.size());
+    scans[s].misses.owner = places;
+    scans[s].misses_beyond = beyond;
+  }
+}
 
 } // namespace
 
@@ -68,7 +133,7 @@ std::string ScanOrigins::text() const
 }
 
 std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
-                               const ScanOrigins& origins)
+                               const ScanOrigins& origins, double misses_beyond)
 {
   if (origins.empty()) {
     throw InvalidInput(Input::points, cloud, "does not say where its scanner stood",
@@ -76,34 +141,21 @@ std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordF
                        ".ply with camera)");
   }
   std::vector<ScanBeams> scans(origins.entries.size());
-  for (std::size_t s = 0; s < scans.size(); ++s) scans[s].origin = origins.entries[s].origin;
-  if (origins.field.empty()) {
-    scans.front().returns = view;
-    return scans;
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    scans[s].origin = origins.entries[s].origin;
+    scans[s].returns = view;
   }
-  const RecordNumbers numbers(view, fields, origins.field, cloud,
-                              {Input::points, "that numbers its scans", "give one of its fields"});
+  const ScanNumbers scan_of(view, fields, cloud, origins);
+  if (misses_beyond > 0.0) addMisses(view, fields, cloud, misses_beyond, scan_of, scans);
+  if (origins.field.empty()) return scans;
   auto subsets = std::make_shared<Subsets>();
   subsets->points = view.owner;
   subsets->records.resize(scans.size());
   for (std::size_t i = 0; i < view.size(); ++i) {
     const std::uint32_t record = view.record(i);
-    if (!isFinite(view.point(record))) continue;
-    const double scan = numbers[record];
-    const auto found = std::find_if(origins.entries.begin(), origins.entries.end(),
-                                    [&](const ScanOrigins::Entry& entry) { return entry.scan == scan; });
-    if (found == origins.entries.end()) {
-      throw InvalidInput(
-          Input::points, cloud,
-          plainText("point ", record, " is of scan ", scan, " in field '", origins.field, "', which has no origin"),
-          "give one for each scan")
-          .withIndex(record);
-    }
-    subsets->records[static_cast<std::size_t>(found - origins.entries.begin())].push_back(
-        static_cast<std::int32_t>(record));
+    if (isFinite(view.point(record))) subsets->records[scan_of[record]].push_back(static_cast<std::int32_t>(record));
   }
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    scans[s].returns = view;
     scans[s].returns.restrictTo(subsets->records[s].data(), subsets->records[s].size());
     scans[s].returns.owner = subsets;
   }

@@ -5,7 +5,9 @@
 #include <pcl_bsh/export.h>
 #include <pcl_bsh/question/uncertainty.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -36,11 +38,16 @@ struct ScanOrigins {
   std::string text() const; ///< what parse() reads
 };
 
+/// The fields of a record without coordinates that tell the direction of a beam without a return, in the cloud's frame.
+/// Any length but 0 is a direction.
+inline constexpr std::array<std::string_view, 3> beam_field_names = {"beam_x", "beam_y", "beam_z"};
+
 /// The scans of a cloud. @param view with uncertainties, which shorten beams. @param cloud its name in errors
+/// @param misses_beyond ScanBeams::misses_beyond of all; 0: beams without a return say nothing
 /// @throws InvalidInput when there is no origin, a field that is missing or holds several numbers a point, and for the
-///   first point whose scan has no origin
+///   first point whose scan has no origin; where a range is given, and there are no fields of directions
 std::vector<ScanBeams> scansOf(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
-                               const ScanOrigins& origins);
+                               const ScanOrigins& origins, double misses_beyond = 0.0);
 
 } // namespace pcl_bsh
 PCL_BSH_EXPORT_END

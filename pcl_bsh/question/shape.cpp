@@ -148,9 +148,11 @@ const Shape::Patches& Shape::patches(const std::optional<double>& gap, const Eff
   return *patches_;
 }
 
-const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads)
+const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads,
+                             double misses_beyond)
 {
-  if (looked_ && looked_->origins == origins && looked_->angle == angle && looked_->uncertainty == uncertainty_)
+  if (looked_ && looked_->origins == origins && looked_->angle == angle && looked_->misses_beyond == misses_beyond &&
+      looked_->uncertainty == uncertainty_)
     return looked_->space;
   SeenOptions options;
   options.angle = angle;
@@ -162,8 +164,9 @@ const SeenSpace& Shape::seen(const ScanOrigins& origins, const std::optional<dou
     of_ends.pose = {}; // beams and their scanner move together: it makes none of them shorter
     view = wholeView(of_ends);
   }
-  looked_ = std::make_shared<const Looked>(
-      Looked{origins, angle, uncertainty_, SeenSpace(scansOf(view, fields, name_, origins), options)});
+  looked_ =
+      std::make_shared<const Looked>(Looked{origins, angle, misses_beyond, uncertainty_,
+                                            SeenSpace(scansOf(view, fields, name_, origins, misses_beyond), options)});
   return looked_->space;
 }
 

@@ -83,10 +83,11 @@ public:
   /// Patches that its owner has measured, for questions without a gap. @param spacings one per record
   void setPatches(std::vector<float> spacings);
 
-  /// Returns the space that its scanners saw to be empty. Made once for origins and an angle.
-  /// @pre hierarchy() was called
+  /// Returns the space that its scanners saw to be empty. Made once for origins, an angle and a range.
+  /// @pre hierarchy() was called. @param misses_beyond as scansOf() takes it
   /// @throws InvalidInput as scansOf() and SeenSpace do
-  const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads);
+  const SeenSpace& seen(const ScanOrigins& origins, const std::optional<double>& angle, unsigned threads,
+                        double misses_beyond = 0.0);
 
   /// Returns the bodies that its faces enclose. Made once for all copies. @pre isSurface(), and hierarchy() was called
   /// @throws InvalidInput naming it, as Solid does
@@ -149,6 +150,7 @@ private:
   struct Looked {
     ScanOrigins origins;
     std::optional<double> angle;
+    double misses_beyond;
     Uncertainty uncertainty;
     SeenSpace space;
   };

@@ -109,7 +109,8 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
 {
   const SphereHierarchy& model = obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
   const Placed scan(input.hierarchy(question.uncertaintyOfInput(), question.threads), question.pose_of_input);
-  const SeenSpace& seen = input.seen(question.origin, question.seen_angle, question.threads);
+  const SeenSpace& seen =
+      input.seen(question.origin, question.seen_angle, question.threads, question.seen_beyond.value_or(0.0));
   Answer::Unseen& unseen = answer.unseen;
   for (std::size_t i = 0; i < seen.size(); ++i) unseen.angles.push_back(seen.angle(i));
   FlagsRequest flags;

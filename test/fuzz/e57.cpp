@@ -16,12 +16,12 @@ void readE57File(std::string_view file)
   const auto writeNothing = [](std::ostream&, const pcl::PCLPointCloud2&) { throw io::FormatError("is read only"); };
   for (const std::optional<std::size_t> scan : {std::optional<std::size_t>(), std::optional<std::size_t>(1)}) {
     const auto parse = [&](std::string_view bytes) {
-      io::E57Reader reader(std::make_unique<io::HeldBytes>(bytes), scan);
+      io::E57Reader reader(std::make_unique<io::HeldBytes>(bytes), scan, scan.has_value());
       reader.facts();
       return reader.readAll();
     };
     const auto parse_header = [&](std::string_view bytes) {
-      return io::E57Reader(std::make_unique<io::HeldBytes>(bytes), scan).cloudHeader();
+      return io::E57Reader(std::make_unique<io::HeldBytes>(bytes), scan, scan.has_value()).cloudHeader();
     };
     fuzz::readAny(reinterpret_cast<const std::uint8_t*>(file.data()), file.size(), parse, parse_header, writeNothing,
                   growth);

@@ -114,7 +114,7 @@ TEST(QuestionOptions, EachRefusesWhatIsOutsideItsLimits)
     if (!setNumber(row, question, 1.0)) continue;
     ++numbers;
     question.density = std::string(row.name) == "widest_gap";
-    question.seen = std::string(row.name) == "seen_angle";
+    question.seen = std::string(row.name).starts_with("seen_");
     if (question.density) question.path.reset();
     EXPECT_EQ(refusalOf(question), "") << row.name;
     for (const double wrong : {-1.0, std::nan(""), -infinity}) {

@@ -15,9 +15,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,6 +101,50 @@ TEST_F(Unseen, IsFreeOfCollisionsAndNotSeen)
   EXPECT_EQ(found.unseen.first_pose, 0u);
   ASSERT_EQ(found.unseen.angles.size(), 1u);
   EXPECT_NEAR(found.unseen.angles[0], 0.03, 0.003); // reported as measured
+}
+
+/// The ceiling gives nothing back. A point above it is seen where the beams' range is told, and reaches behind its
+/// ball.
+TEST_F(Unseen, BeamsWithoutAReturnSeeUpToTheirRange)
+{
+  struct Beam {
+    Record record;
+    std::array<float, 3> beam;
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Beam> beams;
+  for (const Record& one : both_) {
+    if (one.z < 2.999) {
+      beams.push_back({one, {}});
+      continue;
+    }
+    const Eigen::Vector3f way = (Eigen::Vector3d(one.x, one.y, one.z) - Eigen::Vector3d(one.scan == 5 ? 1 : 7, 3, 1.5))
+                                    .cast<float>(); // of any length
+    beams.push_back({{nan, nan, nan, one.scan, 0.05f}, {way.x(), way.y(), way.z()}});
+  }
+  model_ = {2, 1, 5, 6, 1, 5};
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5;6=7,3,1.5");
+  std::vector<RecordField> fields = {{"scan", offsetof(Record, scan), 2, 1}};
+  const auto found = [&](std::optional<double> beyond) {
+    PointsView view = viewOf(&beams.front().record.x, beams.size(), sizeof(Beam));
+    Shape room("room.e57", view, fields), model = modelShape();
+    question.seen_beyond = beyond;
+    return ask(question, room, model).obstacle_flags;
+  };
+  EXPECT_EQ(found({}), test::verdictsOf({4, 4}));
+  EXPECT_THAT([&] { found(5.0); },
+              testing::ThrowsMessage<InvalidInput>(
+                  HasSubstr("room.e57: field 'beam_x' of beams without a return is missing: leave out `seen_beyond`")));
+  for (std::size_t k = 0; k < 3; ++k)
+    fields.push_back(
+        {std::string(beam_field_names[k]), static_cast<std::uint32_t>(offsetof(Beam, beam) + k * sizeof(float)), 7, 1});
+  EXPECT_EQ(found({}), test::verdictsOf({4, 4}));
+  EXPECT_EQ(found(4.1), test::verdictsOf({4, 4})) << "from (1, 3, 1.5), 4.153 away";
+  EXPECT_EQ(found(4.5), test::verdictsOf({0, 0})) << "behind the ball of the clearance and the angle between beams";
+  question.origin = ScanOrigins::parse("scan:5=1,3,1.5");
+  for (Beam& beam : beams) // returns have origins
+    if (std::isfinite(beam.record.x)) beam.record.scan = 5;
+  EXPECT_THAT([&] { found(5.0); }, testing::ThrowsMessage<InvalidInput>(HasSubstr("is of scan 6 in field 'scan'")));
 }
 
 TEST_F(Unseen, IsAskedForOnly)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes E57 files by the letter of ASTM E2807, whole or damaged on purpose.
+// Writes E57 files (ASTM E2807), whole or damaged on purpose. They leave out what readers of points do without, and
+// strict ones ask for: formatName, guid, versions, images2D, values of elements, namespaces of extensions.
 #pragma once
 
 #include <algorithm>

@@ -116,6 +116,18 @@ protected:
   }
 };
 
+struct E57Reader : ScanReader {
+  bool beams = false;
+
+protected:
+  io::ReadSettings settingsOfFormat() const override
+  {
+    io::ReadSettings settings = ScanReader::settingsOfFormat();
+    settings.beams = beams;
+    return settings;
+  }
+};
+
 struct PtxReader : ScanReader {
   bool allow_scale = false;
 
@@ -242,6 +254,11 @@ StageType ofFiles(const std::string& name, const std::vector<std::string>& exten
                        : "only that scan, from 0; all when it is not given")
         .atLeast(0);
   }
+  if constexpr (std::is_same_v<S, E57Reader>) {
+    description.option(
+        &S::beams, "beams",
+        "directions of beams without a return are read, as fields beam_x beam_y beam_z: for seen_beyond");
+  }
   if constexpr (std::is_same_v<S, PtxReader>) {
     description.option(
         &S::allow_scale, "allow_scale",
@@ -291,10 +308,10 @@ std::deque<StageType> fileReaders()
               "LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, .copc.laz too: x y z as float64, every field and the "
               "extra bytes by their descriptions. Scale, offset and all records, as of the coordinate system, go on to "
               "writers.las."),
-          ofFiles<ScanReader>("readers.e57", {".e57"},
-                              "E57 (ASTM E2807): x y z as float64, of all scans in their common frame, every value "
-                              "but texts, colours packed as rgb, the first scanner's pose as viewpoint; NaN where the "
-                              "file says that a point is invalid. Several scans have a field `scan`."),
+          ofFiles<E57Reader>("readers.e57", {".e57"},
+                             "E57 (ASTM E2807): x y z as float64, of all scans in their common frame, every value "
+                             "but texts, colours packed as rgb, the first scanner's pose as viewpoint; NaN where the "
+                             "file says that a point is invalid. Several scans have a field `scan`."),
           ofFiles<FileReader>("readers.pts", {".pts"},
                               "Leica's PTS: x y z as float64, intensity as float32, colours packed as rgb."),
           ofFiles<PtxReader>("readers.ptx", {".ptx"},
@@ -317,8 +334,9 @@ std::deque<StageType> fileWriters()
                          "Binary PLY, with every field but 64-bit integers; normals are nx ny nz, colours uchar red "
                          "green blue. A mesh is "
                          "written with its faces, as triangles, and what filters.bsh_flag found of them."),
-      ofFiles<NarrowWriter>("writers.las", {".las"},
-                            "LAS as its input file was: version, point format, scale, offset and all records; without "
+      ofFiles<NarrowWriter>("writers.las", {".las", ".laz"},
+                            "LAS, and LAZ where LASzip is, as its input file was: version, point format, scale, offset "
+                            "and all records; without "
                             "one LAS 1.4, the scale by "
                             "the cloud's extent. Other fields, as `collision`, are extra bytes with a description. "
                             "Points that are not finite "

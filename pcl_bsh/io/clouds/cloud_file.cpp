@@ -61,7 +61,7 @@ Contents readByPlace(const std::string& extension, std::unique_ptr<ByteSource> f
                      unsigned threads)
 {
   if (!isE57Extension(extension)) return readAll(LasReader(std::move(file), threads));
-  E57Reader reader(std::move(file), settings.scan);
+  E57Reader reader(std::move(file), settings.scan, settings.beams);
   return {reader.readAll(), reader.facts()};
 }
 
@@ -148,7 +148,7 @@ void print(const std::string& extension, std::ostream& out, const pcl::PCLPointC
 {
   if (extension == ".pcd") return writePcd(out, cloud, viewpoint);
   if (extension == ".ply") return writePly(out, cloud, viewpoint);
-  if (extension == ".las") return writeLas(out, cloud, las);
+  if (isLasExtension(extension)) return writeLas(out, cloud, las, extension == ".laz");
   if (extension == ".obj") return writeObj(out, cloud);
   if (extension == ".pts") return writePts(out, cloud);
   if (extension == ".ptx") return writePtx(out, cloud, viewpoint);
@@ -278,7 +278,7 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
       requireSettings(extension, settings);
       CloudFacts facts;
       if (isE57Extension(extension)) {
-        const E57Reader reader(openBytes(path), settings.scan);
+        const E57Reader reader(openBytes(path), settings.scan, settings.beams);
         return checkedHeader(sizedHeader(reader), settings, reader.facts());
       }
       const LasReader reader(openBytes(path));
@@ -302,11 +302,14 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
 void requireWritableCloud(const std::filesystem::path& path)
 {
   const std::string extension = writtenExtension(path);
-  if (extension == ".laz") {
-    throw files::FileError(path, "is the name of a compressed file, which is not written", "write a .las file");
+  if (extension == ".laz" && !writesLaz()) {
+    throw files::FileError(path, "is the name of a compressed file, which is not written without LASzip",
+                           "write a .las file, or build it where liblaszip-dev is installed");
   }
+  if (path.stem().extension() == ".copc" && extension == ".laz")
+    throw files::FileError(path, "is the name of a COPC file, whose tree of parts is not written", "write a .laz file");
   const CloudFormat* const format = cloudFormat(extension);
-  if (!format || !format->is_written)
+  if (!format || !isWritten(*format))
     throw files::FileError(path, unknown(extension), "write a " + extensionsOf(isWritten, ", ", " or ") + " file");
   files::requireWritable(path);
 }

@@ -53,7 +53,7 @@ class E57Stream : public CloudStream {
 public:
   E57Stream(const fs::path& path, const ReadSettings& settings)
   : path_(path),
-    reader_(openBytes(path), settings.scan),
+    reader_(openBytes(path), settings.scan, settings.beams),
     facts_(reader_.facts())
   {
   }

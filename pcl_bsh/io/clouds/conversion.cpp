@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/conversion.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace pcl_bsh::io {
 
@@ -30,8 +32,13 @@ Conversion::Conversion(CloudFacts& facts, const ReadSettings& settings, const Ei
 
 void Conversion::operator()(pcl::PCLPointCloud2& records, std::uint64_t first) const
 {
-  if (transform_)
+  if (transform_) {
     transformPlaces(records, *transform_, first);
+    for (const pcl::PCLPointField& field : records.fields) // they would point elsewhere
+      if (isBeamField(field))
+        for (std::size_t at = field.offset; at < records.data.size(); at += records.point_step)
+          std::memset(&records.data[at], 0, sizeof(float));
+  }
   else
     scaleLengths(records, scale_, length_fields_);
 }

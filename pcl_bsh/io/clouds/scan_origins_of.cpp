@@ -5,6 +5,11 @@
 
 namespace pcl_bsh::io {
 
+bool isBeamField(const pcl::PCLPointField& field)
+{
+  return std::find(beam_field_names.begin(), beam_field_names.end(), field.name) != beam_field_names.end();
+}
+
 ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)
 {
   const bool several = std::any_of(cloud.fields.begin(), cloud.fields.end(),

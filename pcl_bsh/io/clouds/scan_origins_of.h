@@ -9,6 +9,9 @@ namespace pcl_bsh::io {
 /// The field that numbers the scans of a merged cloud, from 0, where our readers make one.
 inline constexpr auto scan_field_name = "scan";
 
+/// Whether it is one of beam_field_names.
+bool isBeamField(const pcl::PCLPointField& field);
+
 /// Where the scanners of a cloud stood, as its file has it: of each scan of a .ptx or .e57; else the viewpoint. Not
 /// known where that is the origin, which is what files say without one, or where it would stand for several scans.
 ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts);

@@ -34,10 +34,10 @@ Scan loadInput(const CollideOptions& options, double& seconds)
   Scan scan;
   const Question& question = options.question;
   const io::SurfaceSettings settings{question.vertices_only};
-  scan.shape = io::obstacleOf(
-      options.input,
-      io::readMesh(options.input, settings, &scan.facts, options.reading.ofInput(options.input), question.threads),
-      settings);
+  io::ReadSettings reading = options.reading.ofInput(options.input);
+  reading.beams = question.seen_beyond.has_value();
+  scan.shape = io::obstacleOf(options.input,
+                              io::readMesh(options.input, settings, &scan.facts, reading, question.threads), settings);
   if (scan.shape.isSurface()) requireForSurface(options);
   const std::string triangles =
       scan.shape.isSurface() ? ", " + counted(scan.shape.triangles()->size(), "triangle") : "";

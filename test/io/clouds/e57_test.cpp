@@ -27,9 +27,9 @@ struct ReadE57 {
   CloudFacts facts;
 };
 
-ReadE57 readE57(std::string_view file, std::optional<std::size_t> scan = {})
+ReadE57 readE57(std::string_view file, std::optional<std::size_t> scan = {}, bool beams = false)
 {
-  E57Reader reader(std::make_unique<HeldBytes>(file), scan);
+  E57Reader reader(std::make_unique<HeldBytes>(file), scan, beams);
   return {reader.readAll(), reader.facts()};
 }
 
@@ -116,6 +116,42 @@ TEST(E57, FieldsHaveTheLeastTypeThatHoldsThem)
   EXPECT_EQ(typeOf(-1, 32768), Field::INT32);
   EXPECT_EQ(typeOf(-1, 4294967295), Field::INT64);
   EXPECT_EQ(typeOf(Limits::min(), Limits::max()), Field::INT64);
+}
+
+/// State 1: a direction in the common frame. Its range is of no meaning, and may be anything.
+TEST(E57, BeamsWithoutAReturnHaveADirection)
+{
+  constexpr double quarter = std::numbers::pi / 2, nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::int64_t> states = {0, 1, 2, 1, 1};
+  E57SampleScan spherical, cartesian;
+  spherical.values = {Value::doubles("sphericalRange", {2, 0, 3, nan, -7}),
+                      Value::doubles("sphericalAzimuth", {0, 0, 0, quarter, 0}),
+                      Value::doubles("sphericalElevation", {0, 0, 0, 0, quarter}),
+                      Value::integer("sphericalInvalidState", 0, 2, states)};
+  cartesian.values = {Value::doubles("cartesianX", {2, 5, 3, 0, 0}), Value::doubles("cartesianY", {0, 0, 0, 1e-300, 0}),
+                      Value::doubles("cartesianZ", {0, 0, 0, 0, 1e300}),
+                      Value::integer("cartesianInvalidState", 0, 2, states)};
+  const std::string turn = E57SampleScan::pose("0.7071067811865476 0 0 0.7071067811865476", "100 0 0");
+  for (E57SampleScan scan : {spherical, cartesian})
+    for (const bool is_turned : {false, true}) {
+      if (is_turned) scan.more_xml = turn;
+      const pcl::PCLPointCloud2 cloud = readE57(sampleOf(scan).text(), {}, true).cloud;
+      const std::array<std::array<double, 3>, 5> expected = {{{},
+                                                              {is_turned ? 0.0 : 1.0, is_turned ? 1.0 : 0.0, 0},
+                                                              {},
+                                                              {is_turned ? -1.0 : 0.0, is_turned ? 0.0 : 1.0, 0},
+                                                              {0, 0, 1}}};
+      for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(std::isnan(valueOf(cloud, i, "x")), i != 0);
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_NEAR(valueOf(cloud, i, std::string(beam_field_names[k])), expected[i][k], 1e-7) << i << ' ' << k;
+      }
+    }
+  cartesian.values[0] = Value::doubles("cartesianX", {2, 0, 3, nan, 1});
+  const pcl::PCLPointCloud2 none = readE57(sampleOf(cartesian).text(), {}, true).cloud;
+  for (const std::size_t i : {1u, 3u}) EXPECT_EQ(valueOf(none, i, "beam_x"), 0) << "no direction";
+  EXPECT_EQ(namesOf(none), "x y z beam_x beam_y beam_z cartesianInvalidState");
+  EXPECT_EQ(namesOf(readE57(sampleOf(cartesian).text()).cloud), "x y z cartesianInvalidState");
 }
 
 TEST(E57, SphericalPointsBecomeCartesian)

@@ -141,7 +141,8 @@ TEST(ClashLists, OfOtherOptionsThatTellWhatCollidesAreNotCompared)
             "old.json: lists clashes with uncertainty sigma, now it is 0.01: ask with the same uncertainty, or compare "
             "with another list");
   EXPECT_THAT(refused("solid", "true", "false"), HasSubstr("with solid true, now it is not given"));
-  const std::set<std::string> not_clashes = {"swept", "seen", "origin", "seen_angle", "max_distance", "threads"};
+  const std::set<std::string> not_clashes = {"swept",       "seen",         "origin", "seen_angle",
+                                             "seen_beyond", "max_distance", "threads"};
   for (const QuestionOption& option : questionOptions()) {
     const bool is_switch = std::holds_alternative<bool Question::*>(option.member);
     const bool ignores = std::holds_alternative<IgnoredPoints Question::*>(option.member);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/clouds/las_sample.h"
 #include "program_run.h"
+#include "support/e57_sample.h"
 #include "support/verdicts.h"
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
@@ -177,6 +178,38 @@ TEST_F(Collide, RefusesUncertaintiesThatAreNone)
   folder.write("negative.xyz", "0 0 0 0.5\n1 0 0 -0.5\n");
   expectFailure("{negative.xyz} {obstacle.xyz} {out.ply} --clearance 1 --uncertainty column_4", 1,
                 "negative.xyz: field 'column_4' of point 1 is -0.5: give finite lengths >= 0");
+}
+
+/// Beams of a scanner at (0, 0, 1) all around; those to the right meet nothing.
+TEST_F(Collide, BeamsWithoutAReturnSeeAsFarAsIsTold)
+{
+  E57SampleScan scan;
+  std::vector<double> ranges, azimuths, elevations;
+  std::vector<std::int64_t> states;
+  for (double elevation = -1.55; elevation <= 1.55; elevation += 0.05)
+    for (double azimuth = -3.14; azimuth < 3.14; azimuth += 0.05) {
+      ranges.push_back(5.0);
+      azimuths.push_back(azimuth);
+      elevations.push_back(elevation);
+      states.push_back(std::cos(elevation) * std::cos(azimuth) > 0.5 ? 1 : 0);
+    }
+  scan.values = {E57SampleValue::doubles("sphericalRange", ranges),
+                 E57SampleValue::doubles("sphericalAzimuth", azimuths),
+                 E57SampleValue::doubles("sphericalElevation", elevations),
+                 E57SampleValue::integer("sphericalInvalidState", 0, 2, states)};
+  scan.more_xml = E57SampleScan::pose("1 0 0 0", "0 0 1");
+  folder.write("scan.e57", E57Sample{{scan}}.text());
+  folder.write("machine.xyz", "1 0 1\n3 0 1\n-3 0 1\n8 0 1\n");
+  const std::string rest = "{scan.e57} {machine.xyz} {out.pcd} --clearance 0.15 --seen --obstacle-out {seen.pcd} ";
+  ASSERT_EQ(collide(rest).exit_code, 0);
+  EXPECT_EQ(flags("seen.pcd"), (std::vector<int>{4, 4, 0, 4}));
+  ASSERT_EQ(collide(rest + "--seen-beyond 6").exit_code, 0);
+  EXPECT_EQ(flags("seen.pcd"), (std::vector<int>{0, 0, 0, 4}));
+  folder.write("scan.xyz", "5 0 0\n");
+  expectFailure("{scan.xyz} {machine.xyz} {out.pcd} --clearance 0.1 --seen --origin 0,0,1 --seen-beyond 6", 1,
+                "field 'beam_x' of beams without a return is missing: leave out --seen-beyond, or read an .e57 with "
+                "its beams; the fields are: x");
+  expectFailure(rest + "--seen-beyond 0", 2, "--seen-beyond");
 }
 
 /// Beams from (0, 0, 1) all around, five metres long, but those to the right, which end after two.

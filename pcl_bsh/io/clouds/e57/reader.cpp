@@ -51,6 +51,9 @@ void decodeE57(E57Streams& streams, std::size_t stream, const E57Value& value, s
     throw FormatError("is damaged: a value of '" + value.name + "' is above its maximum");
 }
 
+/// The values of cartesianInvalidState and sphericalInvalidState that matter.
+constexpr int state_point = 0, state_direction = 1;
+
 /// The types that the values of one field have in all scans.
 struct FieldTypes {
   std::string field;
@@ -107,7 +110,7 @@ void turnColumns(const Eigen::Matrix3d& by, const Eigen::Vector3d& to, std::vect
 
 } // namespace
 
-E57Reader::E57Reader(std::unique_ptr<ByteSource> file, std::optional<std::size_t> scan)
+E57Reader::E57Reader(std::unique_ptr<ByteSource> file, std::optional<std::size_t> scan, bool beams)
 : pages_(std::move(file)),
   contents_(parseE57Contents(pages_.xml()))
 {
@@ -119,12 +122,12 @@ E57Reader::E57Reader(std::unique_ptr<ByteSource> file, std::optional<std::size_t
   if (scans.size() > std::numeric_limits<std::uint16_t>::max())
     throw FormatError("has " + counted(scans.size(), "scan") + ", more than can be numbered",
                       "export them to several files");
-  layOut();
+  layOut(beams);
   requireRoom();
   for (std::vector<double>& column : columns_) column.resize(points_at_once);
 }
 
-void E57Reader::layOut()
+void E57Reader::layOut(bool beams)
 {
   std::vector<FieldTypes> fields;
   bool has_colours = false;
@@ -140,6 +143,10 @@ void E57Reader::layOut()
   }
   for (const char* axis : {"x", "y", "z"}) addField(cloud_, axis, Field::FLOAT64);
   if (has_colours) addField(cloud_, "rgb", Field::FLOAT32);
+  if (beams) {
+    beams_at_ = cloud_.point_step;
+    for (const std::string_view name : beam_field_names) addField(cloud_, std::string(name), Field::FLOAT32);
+  }
   for (const FieldTypes& field : fields) addField(cloud_, field.field, field.datatype());
   if (contents_.scans.size() > 1) addField(cloud_, scan_field_name, Field::UINT16);
   cloud_.height = 1;
@@ -202,8 +209,23 @@ void E57Reader::beginScan()
     fields_.push_back(is_read ? &*found : nullptr);
   }
   for (std::size_t f = 3; f < cloud_.fields.size(); ++f)
-    if (std::find(fields_.begin(), fields_.end(), &cloud_.fields[f]) == fields_.end())
+    if (std::find(fields_.begin(), fields_.end(), &cloud_.fields[f]) == fields_.end() && !isBeamField(cloud_.fields[f]))
       absent_.push_back(&cloud_.fields[f]);
+}
+
+/// Directions as the columns have them, before the scan's pose moves these.
+void E57Reader::putBeams(std::uint8_t* records, std::size_t points)
+{
+  const Eigen::Matrix3d rotation = contents_.scans[scan_].turn.toRotationMatrix();
+  for (std::size_t i = 0; i < points; ++i) {
+    Eigen::Vector3f beam = Eigen::Vector3f::Zero();
+    if (column(E57Column::state)[i] == state_direction) {
+      const Eigen::Vector3d way(column(E57Column::x)[i], column(E57Column::y)[i], column(E57Column::z)[i]);
+      const double length = way.stableNorm();
+      if (length > 0 && std::isfinite(length)) beam = (rotation * (way / length)).cast<float>();
+    }
+    std::memcpy(records + i * cloud_.point_step + *beams_at_, beam.data(), 3 * sizeof(float));
+  }
 }
 
 void E57Reader::readBatch(std::uint8_t* records, std::size_t points)
@@ -224,7 +246,12 @@ void E57Reader::readBatch(std::uint8_t* records, std::size_t points)
     }
   }
   std::vector<double>&x = column(E57Column::x), &y = column(E57Column::y), &z = column(E57Column::z);
-  if (scan.is_spherical) straighten(x, y, z, points);
+  if (scan.is_spherical) {
+    for (std::size_t i = 0; i < points; ++i)
+      if (column(E57Column::state)[i] == state_direction) x[i] = 1; // which has no range
+    straighten(x, y, z, points);
+  }
+  if (beams_at_) putBeams(records, points);
   const Eigen::Matrix3d rotation = scan.turn.toRotationMatrix();
   if (scan.has_pose) turnColumns(rotation, scan.place, x, y, z, points);
   if (scan.has_normals)
@@ -232,7 +259,7 @@ void E57Reader::readBatch(std::uint8_t* records, std::size_t points)
                 column(E57Column::normal_z), points);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < points; ++i) {
-    const bool is_point = column(E57Column::state)[i] == 0;
+    const bool is_point = column(E57Column::state)[i] == state_point;
     const std::array place = {is_point ? x[i] : nan, is_point ? y[i] : nan, is_point ? z[i] : nan};
     putAt(records + i * step, place);
   }

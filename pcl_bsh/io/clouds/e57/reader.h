@@ -14,6 +14,8 @@ namespace pcl_bsh::io {
 ///
 /// x y z                         float64, of Cartesian or else of spherical coordinates, by the scan's pose. NaN where
 ///                               the file calls them invalid: no point, or a direction alone.
+/// beam_x beam_y beam_z          float32, that direction in the common frame, of length 1; 0 0 0 of all others. Where
+///                               they are asked for.
 /// rgb                           of colorRed colorGreen colorBlue, by the file's limits. Beside it are red green blue,
 ///                               where these are more than bytes.
 /// normal_x normal_y normal_z    of the extension nor:, turned as the points are.
@@ -24,9 +26,9 @@ namespace pcl_bsh::io {
 /// integer. Texts are left out.
 class E57Reader {
 public:
-  /// @param scan only that one, from 0
+  /// @param scan only that one, from 0. @param beams whether directions without a range are read
   /// @throws FormatError for what pages and XML can tell; what `file` throws
-  explicit E57Reader(std::unique_ptr<ByteSource> file, std::optional<std::size_t> scan = {});
+  explicit E57Reader(std::unique_ptr<ByteSource> file, std::optional<std::size_t> scan = {}, bool beams = false);
 
   E57Reader(const E57Reader&) = delete; // its streams read its pages
   E57Reader& operator=(const E57Reader&) = delete;
@@ -46,10 +48,11 @@ public:
   pcl::PCLPointCloud2 readAll();
 
 private:
-  void layOut();
+  void layOut(bool beams);
   void requireRoom();
   void beginScan();
   void readBatch(std::uint8_t* records, std::size_t points);
+  void putBeams(std::uint8_t* records, std::size_t points);
   std::vector<double>& column(E57Column name) { return columns_[static_cast<std::size_t>(name)]; }
 
   E57Pages pages_;
@@ -58,6 +61,7 @@ private:
   std::uint64_t size_ = 0, next_ = 0; ///< all points; the next of the scan
   std::size_t scan_ = 0;
   std::optional<E57Streams> streams_;                      ///< of the scan, once it is begun
+  std::optional<std::size_t> beams_at_;                    ///< in a record
   std::vector<const pcl::PCLPointField*> fields_, absent_; ///< of each stream, or null; those that no stream has
   std::array<std::vector<double>, static_cast<std::size_t>(E57Column::none)> columns_;
 };
