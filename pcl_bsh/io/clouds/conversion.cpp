@@ -35,7 +35,7 @@ void Conversion::operator()(pcl::PCLPointCloud2& records, std::uint64_t first) c
   if (transform_) {
     transformPlaces(records, *transform_, first);
     for (const pcl::PCLPointField& field : records.fields) // they would point elsewhere
-      if (isBeamField(field))
+      if (isBeamField(field.name) && !transform_->isIdentity())
         for (std::size_t at = field.offset; at < records.data.size(); at += records.point_step)
           std::memset(&records.data[at], 0, sizeof(float));
   }

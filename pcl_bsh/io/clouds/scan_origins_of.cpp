@@ -5,9 +5,9 @@
 
 namespace pcl_bsh::io {
 
-bool isBeamField(const pcl::PCLPointField& field)
+bool isBeamField(const std::string& name)
 {
-  return std::find(beam_field_names.begin(), beam_field_names.end(), field.name) != beam_field_names.end();
+  return std::find(beam_field_names.begin(), beam_field_names.end(), name) != beam_field_names.end();
 }
 
 ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)

@@ -10,7 +10,7 @@ namespace pcl_bsh::io {
 inline constexpr auto scan_field_name = "scan";
 
 /// Whether it is one of beam_field_names.
-bool isBeamField(const pcl::PCLPointField& field);
+bool isBeamField(const std::string& name);
 
 /// Where the scanners of a cloud stood, as its file has it: of each scan of a .ptx or .e57; else the viewpoint. Not
 /// known where that is the origin, which is what files say without one, or where it would stand for several scans.

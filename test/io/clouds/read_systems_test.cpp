@@ -71,6 +71,20 @@ protected:
   TemporaryFolder folder;
 };
 
+/// They are not turned, and would point elsewhere.
+TEST_F(ReadSystems, AnotherTakesDirectionsOfBeamsAway)
+{
+  const auto file = folder.write("a.pcd", "FIELDS x y z beam_x beam_y beam_z\nSIZE 8 8 8 4 4 4\nTYPE F F F F F F\n"
+                                          "COUNT 1 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n"
+                                          "500000 5400000 0 0 0 0\nnan nan nan 0.6 0 0.8\n");
+  const auto beamIn = [&](const char* to) {
+    const pcl::PCLPointCloud2 cloud = readCloud(file, nullptr, systemsOf("EPSG:25832", to));
+    return std::pair(valueOf(cloud, 1, "beam_x"), valueOf(cloud, 1, "beam_z"));
+  };
+  EXPECT_EQ(beamIn("EPSG:25833"), std::pair(0.0, 0.0));
+  EXPECT_EQ(beamIn("EPSG:25832"), std::pair(double{0.6f}, double{0.8f})) << "the file's own";
+}
+
 TEST_F(ReadSystems, AreOfAllFormatsAndStreams)
 {
   const auto las = folder.write("a.las", lasOfZone33(wktRecord(utm_33_wkt)).text());

@@ -74,8 +74,9 @@ E57Value e57ValueOf(const pugi::xml_node& node)
   if (type == "String") return value;
   value.field = value.name;
   std::replace(value.field.begin(), value.field.end(), ':', '_');
-  for (const char* taken : {"x", "y", "z", "rgb", "beam_x", "beam_y", "beam_z", scan_field_name})
+  for (const char* taken : {"x", "y", "z", "rgb", scan_field_name})
     if (value.field == taken) value.field += "_2";
+  if (isBeamField(value.field)) value.field += "_2";
   for (const KnownValue& one : known_values)
     if (value.name == one.name) value.column = one.column;
   if (type == "Float") {

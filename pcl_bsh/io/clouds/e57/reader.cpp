@@ -209,7 +209,8 @@ void E57Reader::beginScan()
     fields_.push_back(is_read ? &*found : nullptr);
   }
   for (std::size_t f = 3; f < cloud_.fields.size(); ++f)
-    if (std::find(fields_.begin(), fields_.end(), &cloud_.fields[f]) == fields_.end() && !isBeamField(cloud_.fields[f]))
+    if (std::find(fields_.begin(), fields_.end(), &cloud_.fields[f]) == fields_.end() &&
+        !isBeamField(cloud_.fields[f].name))
       absent_.push_back(&cloud_.fields[f]);
 }
 

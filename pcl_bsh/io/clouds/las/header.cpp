@@ -109,9 +109,8 @@ LasBlock readLasBlock(ByteSource& file)
   block.variable_records = lasNumber<std::uint32_t>(bytes, las_at::variable_records);
   block.format = lasNumber<std::uint8_t>(bytes, las_at::format);
   block.record_length = lasNumber<std::uint16_t>(bytes, las_at::record_length);
-  constexpr std::uint8_t compressed = 0x80;
-  block.compressed = (block.format & compressed) != 0;
-  block.format = static_cast<std::uint8_t>(block.format & ~compressed);
+  block.compressed = (block.format & las_compressed) != 0;
+  block.format = static_cast<std::uint8_t>(block.format & ~las_compressed);
   if (block.format > 10) {
     throw FormatError("its points have the format " + std::to_string(block.format) + ", LAS 1.4 knows 0 to 10");
   }

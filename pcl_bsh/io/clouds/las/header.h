@@ -46,6 +46,7 @@ inline constexpr std::size_t global_encoding = 6, major = 24, minor = 25, system
 
 inline constexpr std::size_t las_old_block_bytes = 227; ///< of versions 1.0 to 1.2
 inline constexpr std::size_t las_block_bytes = 375;     ///< of version 1.4
+inline constexpr std::uint8_t las_compressed = 0x80;    ///< in the point format's byte
 inline constexpr std::size_t las_record_head = 54, las_extended_head = 60;
 
 /// A number at a place of a text, in the byte order of LAS, which is this machine's.

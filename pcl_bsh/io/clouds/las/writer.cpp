@@ -172,8 +172,7 @@ void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHead
   }
 
   block[las_at::minor] = static_cast<char>(plan.minor);
-  constexpr unsigned compressed_bit = 0x80;
-  block[las_at::format] = static_cast<char>(plan.format | (is_compressed ? compressed_bit : 0U));
+  block[las_at::format] = static_cast<char>(plan.format | (is_compressed ? las_compressed : 0));
   setLasNumber(block, las_at::points_at, static_cast<std::uint32_t>(points_at));
   setLasNumber(block, las_at::variable_records, static_cast<std::uint32_t>(between.records.size()));
   setLasNumber(block, las_at::record_length, static_cast<std::uint16_t>(plan.record_length));

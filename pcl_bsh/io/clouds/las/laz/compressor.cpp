@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/laz/compressor.h>
 #include <pcl_bsh/io/clouds/las/stored_number.h>
 #include <pcl_bsh/io/text/format_error.h>
@@ -6,6 +7,7 @@
 #include <fstream> // laszip_api.h puts the namespace std into the global one
 #include <laszip/laszip_api.h>
 #include <sstream>
+#include <utility>
 
 namespace pcl_bsh::io {
 
@@ -85,13 +87,9 @@ struct LazCompressor::Laszip {
       at += size;
     };
     if (format != 0 && format != 2) next(&point->gps_time, sizeof point->gps_time);
-    if (format == 8 || format == 10) {
-      next(point->rgb, 4 * sizeof *point->rgb);
-    }
-    else if (format == 2 || format == 3 || format == 5 || format == 7) {
-      next(point->rgb, 3 * sizeof *point->rgb);
-    }
-    if (format == 4 || format == 5 || format >= 9) next(point->wave_packet, sizeof point->wave_packet);
+    const bool has_infrared = format == 8 || format == 10;
+    if (hasLasColours(format)) next(point->rgb, (has_infrared ? 4 : 3) * sizeof *point->rgb);
+    if (hasLasWaves(format)) next(point->wave_packet, sizeof point->wave_packet);
     if (at < record_length) next(point->extra_bytes, record_length - at);
   }
 };
@@ -125,7 +123,7 @@ std::string LazCompressor::finish(std::uint64_t points_at)
 {
   laszip_->is_open = false;
   laszip_->require(laszip_close_writer(laszip_->handle));
-  std::string bytes = laszip_->bytes.str();
+  std::string bytes = std::move(laszip_->bytes).str();
   const auto table_at = loaded<std::int64_t>(bytes.data()); // from the first of these bytes
   store(bytes.data(), table_at + static_cast<std::int64_t>(points_at));
   return bytes;
