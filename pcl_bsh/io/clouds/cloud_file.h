@@ -33,7 +33,7 @@ using Viewpoint = std::array<double, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
 /// The part of a LAS file beside its points: scale and offset, version, records of the coordinate system and others.
-/// For writeCloud(), which keeps it. Null for other formats.
+/// For writeCloud(), which keeps it. It has the system alone where the file is no LAS; null where that is not known.
 struct LasHeader;
 using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 
@@ -41,7 +41,7 @@ using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 struct CloudFacts {
   Viewpoint viewpoint = no_viewpoint;      ///< of .pcd, .ply, .ptx, .e57
   std::vector<Viewpoint> scanners = {};    ///< of .ptx and .e57, of each scan that was read; empty: not known
-  LasHeaderPtr las = nullptr;              ///< of .las
+  LasHeaderPtr las = nullptr;              ///< for .las files that are written of the points
   CoordinateSystem coordinate_system = {}; ///< of the points as they were read, where the file or its user tells it
   std::optional<LengthUnit> unit = {};     ///< that lengths were read in, where the file or its user tells it
   LengthScale scale = {};                  ///< from the file's lengths to those that were read
@@ -77,7 +77,7 @@ struct CloudFacts {
 /// it. A file that says it holds no points is an empty cloud.
 ///
 /// In another unit (ReadSettings::to_unit), x y z are float64. The cloud is then no longer what its LAS header says,
-/// and CloudFacts has none. A remark tells both units. It is refused where nobody tells the file's own.
+/// and CloudFacts has none of it. A remark tells both units. It is refused where nobody tells the file's own.
 /// In another coordinate system (ReadSettings::to_crs) the same holds. PROJ transforms each point; remarks tell both
 /// systems, the accuracy and the grid scale. Directions (normals, the scanners' rotations) are not turned.
 /// @param facts if not null, set to what the file says beside its points
@@ -127,7 +127,7 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
 /// standard output, as PCD. The file appears complete or not at all; what `path` held before is replaced only then.
 /// PCD, PLY and PTX hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed
 /// colour and normals. LAS and PTS have no place for points without finite coordinates, and leave them out.
-/// @param las what the file of these points said, if it was LAS: kept in a .las
+/// @param las as CloudFacts has it: kept in a .las
 /// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
                 const Viewpoint& viewpoint = no_viewpoint, const LasHeaderPtr& las = nullptr);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/conversion.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
+#include <pcl_bsh/io/clouds/las/header.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 
 #include <algorithm>
@@ -15,19 +16,27 @@ Conversion::Conversion(CloudFacts& facts, const ReadSettings& settings, const Ei
   if (settings.transforms()) {
     transform_.emplace(facts.coordinate_system, settings.to_crs, box, facts.unit);
     facts.unit = transform_->unit();
-    if (transform_->isIdentity()) return;
-    facts.remarks.insert(facts.remarks.end(), transform_->remarks().begin(), transform_->remarks().end());
-    facts.coordinate_system = transform_->target();
-    facts.las = nullptr;
-    return;
+    if (!transform_->isIdentity()) {
+      facts.remarks.insert(facts.remarks.end(), transform_->remarks().begin(), transform_->remarks().end());
+      if (settings.beams)
+        facts.remarks.push_back("its beams without a return see nothing: their directions are not turned to '" +
+                                transform_->target().name + "'");
+      facts.coordinate_system = transform_->target();
+      facts.las = nullptr;
+    }
   }
-  scale_ = scaleOf(settings, facts.unit, &facts.remarks);
-  if (settings.unit) facts.unit = settings.unit;
-  if (scale_.isOne()) return;
-  facts.scale = scale_;
-  facts.unit = settings.to_unit;
-  facts.coordinate_system = {};
-  facts.las = nullptr;
+  else {
+    scale_ = scaleOf(settings, facts.unit, &facts.remarks);
+    if (settings.unit) facts.unit = settings.unit;
+    if (!scale_.isOne()) {
+      facts.scale = scale_;
+      facts.unit = settings.to_unit;
+      facts.coordinate_system = {};
+      facts.las = nullptr;
+    }
+  }
+  if (!facts.las && !facts.coordinate_system.definition.empty())
+    facts.las = std::make_shared<const LasHeader>(LasHeader{.system = facts.coordinate_system});
 }
 
 void Conversion::operator()(pcl::PCLPointCloud2& records, std::uint64_t first) const

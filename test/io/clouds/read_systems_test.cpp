@@ -7,6 +7,7 @@
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/cloud_stream.h>
+#include <pcl_bsh/io/clouds/las/header.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/reader.h>
 #include <pcl_bsh/search/cloud_view.h>
@@ -109,7 +110,12 @@ TEST_F(ReadSystems, AreOfAllFormatsAndStreams)
     EXPECT_EQ(facts.coordinate_system.name, "ETRS89 / UTM zone 32N (EPSG:25832)");
     EXPECT_EQ(facts.coordinate_system.definition, "EPSG:25832");
     EXPECT_EQ(facts.unit, LengthUnit::m);
-    EXPECT_EQ(facts.las, nullptr) << "whose header says another system";
+    writeCloud(folder / "b.las", cloud, no_viewpoint, facts.las);
+    CloudFacts written;
+    EXPECT_EQ(readCloud(folder / "b.las", &written).width, cloud.width);
+    EXPECT_EQ(written.coordinate_system.name, "ETRS89 / UTM zone 32N") << "of a record that is new";
+    EXPECT_EQ(areOneSystem(written.coordinate_system, {"", "EPSG:25832"}), true);
+    EXPECT_EQ(written.unit, LengthUnit::m);
     EXPECT_THAT(facts.remarks, Contains(HasSubstr("'Inverse of UTM zone 33N + UTM zone 32N'")));
     EXPECT_THAT(facts.remarks, Contains(HasSubstr("the grid scale of its middle is ")));
     EXPECT_EQ(readCloudHeader(file, settings).point_step, cloud.point_step);
@@ -136,6 +142,54 @@ TEST_F(ReadSystems, ScannersMove)
   for (const Viewpoint& stood : {facts.viewpoint, facts.scanners[0]}) {
     EXPECT_NEAR(std::hypot(point[0] - stood[0], point[1] - stood[1]), std::sqrt(5.0), 0.01);
     EXPECT_EQ(point[2] - stood[2], 3);
+  }
+}
+
+/// LAS asks for WKT of version 1, which has places with heights, and no names of all codes.
+TEST_F(ReadSystems, AreHandedOverToLas)
+{
+  const pcl::PCLPointCloud2 cloud = readCloud(folder.write("a.xyz", "x y z\n500000 5400000 100\n"));
+  const auto handedOver = [&](const CoordinateSystem& system) {
+    LasHeader header;
+    header.system = system;
+    writeCloud(folder / "a.las", cloud, no_viewpoint, std::make_shared<const LasHeader>(header));
+    CloudFacts facts;
+    EXPECT_EQ(readCloud(folder / "a.las", &facts).width, 1U);
+    return facts;
+  };
+  for (const std::string text : {"EPSG:25832", "EPSG:25832+7837", "EPSG:4326", "EPSG:2263"}) {
+    SCOPED_TRACE(text);
+    const CloudFacts facts = handedOver(coordinateSystemNamed(text));
+    EXPECT_EQ(areOneSystem(facts.coordinate_system, {"", text}), true);
+    EXPECT_THAT(facts.coordinate_system.definition, testing::AnyOf(HasSubstr("PROJCS["), HasSubstr("GEOGCS[")));
+  }
+  EXPECT_EQ(handedOver(coordinateSystemNamed("EPSG:2263")).unit, LengthUnit::us_ft);
+  for (const std::string unknown : {"", "EPSG:0", "LOCAL", "PROJCS["})
+    EXPECT_EQ(handedOver({"known by its name", unknown}).coordinate_system.name, "") << unknown;
+}
+
+TEST_F(ReadSystems, OfE57ArriveInLas)
+{
+  E57Sample sample = {{E57Sample::points({500000}, {5400000}, {100})}};
+  sample.more_xml =
+      "<coordinateMetadata type=\"String\"><![CDATA[" + std::string(utm_33_wkt) + "]]></coordinateMetadata>";
+  const auto e57 = folder.write("a.e57", sample.text());
+  CloudFacts facts;
+  const pcl::PCLPointCloud2 cloud = readCloud(e57, &facts);
+  writeCloud(folder / "a.las", cloud, facts.viewpoint, facts.las);
+  readCloud(folder / "a.las", &facts);
+  EXPECT_EQ(areOneSystem(facts.coordinate_system, {"", "EPSG:25833"}), true) << facts.coordinate_system.definition;
+  ReadSettings settings = systemsOf("", "EPSG:25832");
+  for (const bool beams : {false, true}) {
+    settings.beams = beams;
+    readCloud(e57, &facts, settings);
+    const auto told = Contains(HasSubstr("beams without a return see nothing"));
+    if (beams) {
+      EXPECT_THAT(facts.remarks, told);
+    }
+    else {
+      EXPECT_THAT(facts.remarks, testing::Not(told));
+    }
   }
 }
 

@@ -42,6 +42,13 @@ constexpr std::array known_values = {
     KnownValue{"nor:normalZ", E57Column::normal_z, "normal_z"},
 };
 
+const KnownValue* knownValue(std::string_view name)
+{
+  const auto* const found = std::find_if(known_values.begin(), known_values.end(),
+                                         [&](const KnownValue& known) { return name == known.name; });
+  return found == known_values.end() ? nullptr : found;
+}
+
 /// A number of the XML; where nothing is said, the default.
 template <typename T>
 T numberOr(std::string_view text, T otherwise)
@@ -77,8 +84,7 @@ E57Value e57ValueOf(const pugi::xml_node& node)
   for (const char* taken : {"x", "y", "z", "rgb", scan_field_name})
     if (value.field == taken) value.field += "_2";
   if (isBeamField(value.field)) value.field += "_2";
-  for (const KnownValue& one : known_values)
-    if (value.name == one.name) value.column = one.column;
+  if (const KnownValue* const known = knownValue(value.name)) value.column = known->column;
   if (type == "Float") {
     const bool is_single = node.attribute("precision").value() == std::string_view("single");
     value.kind = is_single ? Kind::single_float : Kind::double_float;
@@ -142,9 +148,7 @@ void sortValues(E57Scan& scan, const pugi::xml_node& limits)
       value.column = E57Column::none;
       continue;
     }
-    const auto one = std::find_if(known_values.begin(), known_values.end(),
-                                  [&](const KnownValue& k) { return value.name == k.name; });
-    value.field = one->field;
+    value.field = knownValue(value.name)->field;
     if (of_place || !of_colour) continue;
     scan.colour_limits[static_cast<std::size_t>(value.column) - static_cast<std::size_t>(E57Column::red)] =
         colourLimits(value, limits);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/e57/pages.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 #include <pcl_bsh/io/text/format_error.h>
+
+#include <boost/endian/conversion.hpp>
 
 #include <algorithm>
 #include <array>
@@ -35,32 +38,13 @@ constexpr ChecksumTables makeChecksumTables()
 
 constexpr ChecksumTables checksum_tables = makeChecksumTables();
 
-template <typename T>
-T numberAt(const std::string& bytes, std::size_t at)
-{
-  T number;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
-
-/// Checksums are stored with the most significant byte first, as nothing else is.
-std::uint32_t storedChecksum(const char* bytes)
-{
-  std::uint32_t sum = 0;
-  for (int i = 0; i < 4; ++i) sum = sum << 8U | static_cast<std::uint8_t>(bytes[i]);
-  return sum;
-}
-
 } // namespace
 
 std::uint32_t crc32c(const std::uint8_t* bytes, std::size_t count) noexcept
 {
   std::uint32_t sum = ~std::uint32_t{0};
   for (; count >= 8; bytes += 8, count -= 8) {
-    std::uint32_t low, high;
-    std::memcpy(&low, bytes, 4);
-    std::memcpy(&high, bytes + 4, 4);
-    low ^= sum;
+    const std::uint32_t low = loaded<std::uint32_t>(bytes) ^ sum, high = loaded<std::uint32_t>(bytes + 4);
     sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       sum ^= checksum_tables[7 - i][low >> 8 * i & 0xffU];
@@ -77,12 +61,12 @@ E57Pages::E57Pages(std::unique_ptr<ByteSource> file) : file_(std::move(file))
   const std::string head = file_->text(0, static_cast<std::size_t>(std::min<std::uint64_t>(there, e57_head_bytes)));
   if (head.substr(0, 8) != "ASTM-E57") throw FormatError("is not an E57 file: it does not begin with ASTM-E57");
   if (head.size() < e57_head_bytes) throw FormatError("is truncated: it ends within its header");
-  if (const auto major = numberAt<std::uint32_t>(head, 8); major != 1)
+  if (const auto major = loaded<std::uint32_t>(&head[8]); major != 1)
     throw FormatError("is of version " + std::to_string(major) + " of E57", "export it as E57 1.0");
-  file_bytes_ = numberAt<std::uint64_t>(head, 16);
-  xml_at_ = numberAt<std::uint64_t>(head, 24);
-  xml_bytes_ = numberAt<std::uint64_t>(head, 32);
-  page_ = numberAt<std::uint64_t>(head, 40);
+  file_bytes_ = loaded<std::uint64_t>(&head[16]);
+  xml_at_ = loaded<std::uint64_t>(&head[24]);
+  xml_bytes_ = loaded<std::uint64_t>(&head[32]);
+  page_ = loaded<std::uint64_t>(&head[40]);
   if (page_ < least_page || page_ > most_page || page_ % 4 != 0)
     throw FormatError("has pages of " + std::to_string(page_) + " bytes, which E57 has not");
   if (file_bytes_ > there || file_bytes_ < page_)
@@ -106,7 +90,8 @@ void E57Pages::fillWindow(std::uint64_t page)
   std::string bytes = file_->text(page * page_, static_cast<std::size_t>(pages * page_));
   for (std::size_t i = 0; i < pages; ++i) {
     const char* const from = bytes.data() + i * page_;
-    if (crc32c(reinterpret_cast<const std::uint8_t*>(from), payload()) != storedChecksum(from + payload()))
+    if (crc32c(reinterpret_cast<const std::uint8_t*>(from), payload()) !=
+        boost::endian::big_to_native(loaded<std::uint32_t>(from + payload()))) // as nothing else is stored
       throw FormatError("is damaged: page " + std::to_string(page + i) + " has another checksum than it says");
     std::memmove(bytes.data() + i * payload(), from, payload());
   }

@@ -15,12 +15,6 @@ using Field = pcl::PCLPointField;
 using Kind = E57Value::Kind;
 constexpr std::size_t points_at_once = 4096; ///< whose columns the caches hold
 
-template <class T>
-void putAt(std::uint8_t* to, T value)
-{
-  std::memcpy(to, &value, sizeof value);
-}
-
 /// Reads the next values of a stream to places that lie `step` apart.
 template <class T>
 void decodeE57(E57Streams& streams, std::size_t stream, const E57Value& value, std::size_t count, std::uint8_t* to,
@@ -29,7 +23,7 @@ void decodeE57(E57Streams& streams, std::size_t stream, const E57Value& value, s
   std::uint64_t greatest = 0;
   const auto read = [&](auto&& meant) {
     streams.read(stream, value.bits(), count,
-                 [&](std::size_t i, std::uint64_t bits) { putAt(to + i * step, static_cast<T>(meant(bits))); });
+                 [&](std::size_t i, std::uint64_t bits) { store(to + i * step, static_cast<T>(meant(bits))); });
   };
   const auto integer = [&, least = static_cast<std::uint64_t>(value.minimum)](std::uint64_t bits) {
     greatest = std::max(greatest, bits);
@@ -225,7 +219,7 @@ void E57Reader::putBeams(std::uint8_t* records, std::size_t points)
       const double length = way.stableNorm();
       if (length > 0 && std::isfinite(length)) beam = (rotation * (way / length)).cast<float>();
     }
-    std::memcpy(records + i * cloud_.point_step + *beams_at_, beam.data(), 3 * sizeof(float));
+    store(records + i * cloud_.point_step + *beams_at_, std::array{beam.x(), beam.y(), beam.z()});
   }
 }
 
@@ -262,12 +256,12 @@ void E57Reader::readBatch(std::uint8_t* records, std::size_t points)
   for (std::size_t i = 0; i < points; ++i) {
     const bool is_point = column(E57Column::state)[i] == state_point;
     const std::array place = {is_point ? x[i] : nan, is_point ? y[i] : nan, is_point ? z[i] : nan};
-    putAt(records + i * step, place);
+    store(records + i * step, place);
   }
   const auto fill = [&](const Field& field, auto&& numberOf) {
     withFieldType(field.datatype, [&](auto zero) {
       for (std::size_t i = 0; i < points; ++i)
-        putAt(records + i * step + field.offset, static_cast<decltype(zero)>(numberOf(i)));
+        store(records + i * step + field.offset, static_cast<decltype(zero)>(numberOf(i)));
     });
   };
   for (std::size_t s = 0; s < fields_.size(); ++s)
@@ -289,7 +283,7 @@ void E57Reader::readBatch(std::uint8_t* records, std::size_t points)
         return static_cast<std::uint32_t>(byte > 0 ? std::min(byte, 255.0) : 0.0);
       };
       for (std::size_t i = 0; i < points; ++i)
-        putAt(records + i * step + field->offset,
+        store(records + i * step + field->offset,
               scan.has_colours ? byteOf(0, i) << 16U | byteOf(1, i) << 8U | byteOf(2, i) : 0U);
     }
   }
@@ -317,17 +311,7 @@ std::size_t E57Reader::read(std::uint8_t* records, std::size_t most)
 
 pcl::PCLPointCloud2 E57Reader::readAll()
 {
-  requirePoints(size_);
-  pcl::PCLPointCloud2 cloud = cloud_;
-  cloud.width = static_cast<std::uint32_t>(size_);
-  cloud.row_step = cloud.width * cloud.point_step;
-  cloud.data.reserve(static_cast<std::size_t>(size_) * cloud.point_step);
-  constexpr std::size_t most = std::size_t{1} << 16; // memory is touched for points that are there
-  for (std::size_t done = 0; done < cloud.width;) {
-    cloud.data.resize(std::min<std::size_t>(done + most, cloud.width) * cloud.point_step);
-    done += read(cloud.data.data() + done * cloud.point_step, most);
-  }
-  return cloud;
+  return allPoints(cloud_, size_, [&](std::uint8_t* records, std::size_t most) { return read(records, most); });
 }
 
 } // namespace pcl_bsh::io

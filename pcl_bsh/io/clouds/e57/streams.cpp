@@ -9,11 +9,6 @@ namespace {
 constexpr std::uint8_t index_packet = 0, data_packet = 1, empty_packet = 2, section_id = 1;
 constexpr std::size_t section_head = 32, packet_head = 4, data_head = 6, room_behind = 16;
 
-std::uint16_t shortAt(const std::uint8_t* bytes)
-{
-  return static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8U);
-}
-
 } // namespace
 
 E57Streams::E57Streams(E57Pages& pages, std::uint64_t section_at, std::size_t streams)
@@ -23,9 +18,7 @@ E57Streams::E57Streams(E57Pages& pages, std::uint64_t section_at, std::size_t st
   const std::uint64_t at = pages_.logical(section_at);
   std::array<std::uint8_t, section_head> head;
   pages_.read(at, head.data(), head.size());
-  std::uint64_t bytes, data_at;
-  std::memcpy(&bytes, &head[8], sizeof bytes);
-  std::memcpy(&data_at, &head[16], sizeof data_at);
+  const auto bytes = loaded<std::uint64_t>(&head[8]), data_at = loaded<std::uint64_t>(&head[16]);
   if (head[0] != section_id) throw FormatError("points to a section that holds no points");
   end_ = at + std::min(bytes, pages_.size() - at);
   const std::uint64_t first = pages_.logical(data_at);
@@ -52,7 +45,7 @@ void E57Streams::load(Packet& packet, std::uint64_t at)
       throw FormatError("is truncated: a scan's section ends before the last of its points");
     std::array<std::uint8_t, packet_head> head;
     pages_.read(at, head.data(), head.size());
-    const std::size_t size = shortAt(&head[2]) + std::size_t{1};
+    const std::size_t size = loaded<std::uint16_t>(&head[2]) + std::size_t{1};
     const bool known = head[0] == index_packet || head[0] == data_packet || head[0] == empty_packet;
     if (!known || size % 4 != 0 || size > end_ - at)
       throw FormatError("is damaged: a scan has a packet of no known kind or length");
@@ -61,12 +54,12 @@ void E57Streams::load(Packet& packet, std::uint64_t at)
       packet.bytes.resize(size + room_behind);
       pages_.read(at, packet.bytes.data(), size);
       std::size_t start = data_head + 2 * cursors_.size();
-      if (start > size || shortAt(&packet.bytes[4]) != cursors_.size())
+      if (start > size || loaded<std::uint16_t>(&packet.bytes[4]) != cursors_.size())
         throw FormatError("is damaged: a packet has another number of streams than a point has values");
       packet.starts.clear();
       for (std::size_t i = 0; i < cursors_.size(); ++i) {
         packet.starts.push_back(static_cast<std::uint32_t>(start));
-        start += shortAt(&packet.bytes[data_head + 2 * i]);
+        start += loaded<std::uint16_t>(&packet.bytes[data_head + 2 * i]);
       }
       packet.starts.push_back(static_cast<std::uint32_t>(start));
       if (start > size) throw FormatError("is damaged: streams of a packet reach behind its end");

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/e57/pages.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace pcl_bsh::io {
@@ -63,11 +63,9 @@ private:
 
   static std::uint64_t bitsAt(const std::uint8_t* bytes, std::uint64_t bit, unsigned width) noexcept
   {
-    std::uint64_t value;
     bytes += bit / 8;
-    std::memcpy(&value, bytes, sizeof value);
     const unsigned shift = bit % 8;
-    value >>= shift;
+    std::uint64_t value = loaded<std::uint64_t>(bytes) >> shift;
     if (shift + width > 64) value |= std::uint64_t{bytes[8]} << (64 - shift);
     return width == 64 ? value : value & ((std::uint64_t{1} << width) - 1);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/header.h>
-#include <pcl_bsh/io/clouds/las/stored_number.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 #include <pcl_bsh/io/clouds/records.h>
 
 #include <algorithm>

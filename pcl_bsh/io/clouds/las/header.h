@@ -2,7 +2,8 @@
 // The part of a LAS file beside its points: LAS specification 1.4 R15 (ASPRS), and 1.0 to 1.3 before it.
 #pragma once
 
-#include <pcl_bsh/io/clouds/las/stored_number.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
+#include <pcl_bsh/io/clouds/systems/coordinate_system.h>
 #include <pcl_bsh/io/text/byte_source.h>
 
 #include <array>
@@ -98,15 +99,17 @@ std::vector<LasExtendedRecord> lasExtendedRecords(ByteSource& file, const LasBlo
 /// All bytes of a LAS file but its points, and what they say. A writer changes in them only what its points ask for, so
 /// that what this project does not know is kept as well.
 struct LasHeader {
-  LasBlock block;
-  std::string before_points;                     ///< the public header block, variable length records, padding
-  std::string behind_points;                     ///< extended variable length records, waveforms
-  std::string descriptors;                       ///< of extra bytes
-  std::optional<std::uint64_t> described_behind; ///< where in behind_points the extended record of these is
+  LasBlock block = {};
+  std::string before_points = {}; ///< the public header block, variable length records, padding; or none
+  std::string behind_points = {}; ///< extended variable length records, waveforms
+  std::string descriptors = {};   ///< of extra bytes
+  std::optional<std::uint64_t> described_behind = {}; ///< where in behind_points the extended record of these is
+  CoordinateSystem system = {};                       ///< of points from another file: all that is known then
 };
 
 inline constexpr std::string_view las_specification = "LASF_Spec";
-inline constexpr std::uint16_t las_extra_bytes_id = 4, las_superseded_id = 7;
+inline constexpr std::string_view las_projection = "LASF_Projection";
+inline constexpr std::uint16_t las_extra_bytes_id = 4, las_superseded_id = 7, las_wkt_id = 2112;
 inline constexpr std::size_t las_descriptor_bytes = 192; ///< of one of the extra bytes' descriptions
 
 } // namespace pcl_bsh::io

@@ -11,15 +11,14 @@ namespace pcl_bsh::io {
 
 namespace {
 
-constexpr std::string_view projection = "LASF_Projection";
-constexpr std::uint16_t wkt_id = 2112, keys_id = 34735, texts_id = 34737;
+constexpr std::uint16_t keys_id = 34735, texts_id = 34737;
 constexpr std::uint16_t is_wkt = 16; ///< of the global encoding
 
 /// The content of the record of the coordinate system with that number; empty where the file has no such record.
 std::string projectionRecord(const LasHeader& header, std::uint16_t id)
 {
   for (const LasRecord& record : lasRecordsOf(header.before_points, header.block).records)
-    if (record.user() == projection && record.id() == id) return std::string(record.content());
+    if (record.user() == las_projection && record.id() == id) return std::string(record.content());
   const std::string_view behind = header.behind_points;
   const std::uint64_t end = header.block.endOfPoints();
   if (header.block.extended_records == 0 || header.block.extended_at < end) return {};
@@ -30,7 +29,7 @@ std::string projectionRecord(const LasHeader& header, std::uint16_t id)
     const auto bytes = lasNumber<std::uint64_t>(record, 20);
     if (bytes > record.size() - las_extended_head) return {};
     const std::string_view user(record.data() + 2, strnlen(record.data() + 2, 16));
-    if (user == projection && lasNumber<std::uint16_t>(record, 18) == id)
+    if (user == las_projection && lasNumber<std::uint16_t>(record, 18) == id)
       return std::string(record.substr(las_extended_head, static_cast<std::size_t>(bytes)));
     at += las_extended_head + bytes;
   }
@@ -171,7 +170,7 @@ std::optional<LengthUnit> unitOfKeys(const GeoKeys& keys)
 /// The record that counts: as text, or none where that of the keys does.
 std::string wktOf(const LasHeader& header)
 {
-  std::string wkt = projectionRecord(header, wkt_id);
+  std::string wkt = projectionRecord(header, las_wkt_id);
   const bool wkt_first = (header.block.global_encoding & is_wkt) != 0 || nameOfKeys(GeoKeys(header)).empty();
   return wkt_first && !wkt.empty() && !nameOfWkt(wkt).empty() ? wkt : std::string();
 }

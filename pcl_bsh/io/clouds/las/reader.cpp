@@ -130,18 +130,10 @@ std::size_t LasReader::read(pcl::PCLPointCloud2& batch, std::size_t most)
 
 pcl::PCLPointCloud2 LasReader::readAll()
 {
-  requirePoints(size());
-  pcl::PCLPointCloud2 cloud = cloud_;
-  cloud.width = static_cast<std::uint32_t>(size());
-  cloud.row_step = cloud.width * cloud.point_step;
-  const std::size_t step = cloud.point_step;
-  cloud.data.reserve(cloud.width * step);
   colour_shift_ = 0; // no look at all points before: colours are packed anew where that is wrong
-  constexpr std::size_t most = std::size_t{1} << 16; // memory is touched for points that were there to be unpacked
-  for (std::size_t done = 0; done < cloud.width;) {
-    cloud.data.resize(std::min<std::size_t>(done + most, cloud.width) * step);
-    done += read(cloud.data.data() + done * step, most);
-  }
+  pcl::PCLPointCloud2 cloud =
+      allPoints(cloud_, size(), [&](std::uint8_t* records, std::size_t most) { return read(records, most); });
+  const std::size_t step = cloud.point_step;
   const auto colour = std::find_if(fields_.begin(), fields_.end(),
                                    [](const LasField& field) { return field.kind == LasField::Kind::colour; });
   if (colour == fields_.end()) return cloud;

@@ -70,16 +70,24 @@ std::string newBlock()
   return bytes;
 }
 
-std::string extraBytesRecord(const std::string& descriptors, bool signed_records)
+LasRecord recordOf(std::string_view user, std::uint16_t id, std::string_view description, const std::string& content)
 {
   std::string record(las_record_head, '\0');
-  constexpr std::uint16_t signature = 0xaabb; // of LAS 1.0
-  if (signed_records) setLasNumber(record, 0, signature);
-  record.replace(2, las_specification.size(), las_specification);
-  setLasNumber(record, 18, las_extra_bytes_id);
-  setLasNumber(record, 20, static_cast<std::uint16_t>(descriptors.size()));
-  record.replace(22, 11, "Extra bytes");
-  return record + descriptors;
+  record.replace(2, user.size(), user);
+  setLasNumber(record, 18, id);
+  setLasNumber(record, 20, static_cast<std::uint16_t>(content.size()));
+  record.replace(22, description.size(), description);
+  return {record + content};
+}
+
+/// The record of the system of points that come from no LAS file, where it has WKT that such a record can hold.
+LasRecords recordsOfSystem(const LasHeader* header)
+{
+  LasRecords records;
+  const std::string wkt = header ? wkt1Of(header->system) : std::string();
+  if (!wkt.empty() && wkt.size() < std::numeric_limits<std::uint16_t>::max())
+    records.records.push_back(recordOf(las_projection, las_wkt_id, "Coordinate system", wkt + '\0'));
+  return records;
 }
 
 /// Replaces the description of extra bytes.
@@ -93,7 +101,9 @@ void describeExtraBytes(const LasPlan& plan, const LasHeader* header, std::vecto
     if (found != records.end()) records.erase(found);
     return;
   }
-  LasRecord record = {extraBytesRecord(*plan.descriptors, header != nullptr && header->block.minor == 0)};
+  LasRecord record = recordOf(las_specification, las_extra_bytes_id, "Extra bytes", *plan.descriptors);
+  constexpr std::uint16_t signature = 0xaabb; // of LAS 1.0
+  if (header != nullptr && header->block.minor == 0) setLasNumber(record.bytes, 0, signature);
   if (found != records.end()) {
     found->bytes = std::move(record.bytes);
   }
@@ -145,14 +155,15 @@ void moveBehind(std::string& block, std::size_t at, std::uint64_t old_end, std::
 
 } // namespace
 
-void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* header, bool is_compressed)
+void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHeader* given, bool is_compressed)
 {
+  const LasHeader* const header = given && given->before_points.empty() ? nullptr : given; // of a LAS file
   const LasPoints points(cloud);
   const LasPlan plan = planLas(points, header);
   const LasSums sums = sumsOf(points, plan);
 
   std::string block = header == nullptr ? newBlock() : header->before_points.substr(0, header->block.header_size);
-  LasRecords between = header == nullptr ? LasRecords() : lasRecordsOf(header->before_points, header->block);
+  LasRecords between = header == nullptr ? recordsOfSystem(given) : lasRecordsOf(header->before_points, header->block);
   std::string behind = header == nullptr ? std::string() : header->behind_points;
   if (plan.descriptors) {
     describeExtraBytes(plan, header, between.records);

@@ -3,6 +3,8 @@
 #include <pcl_bsh/io/clouds/systems/proj_objects.h>
 #include <pcl_bsh/io/text/format_error.h>
 
+#include <array>
+
 namespace pcl_bsh::io {
 namespace {
 
@@ -50,6 +52,15 @@ CoordinateSystem coordinateSystemNamed(const std::string& text)
   const char *const authority = proj_get_id_auth_name(system.get(), 0), *const code = proj_get_id_code(system.get(), 0);
   if (authority && code) name += std::string(" (") + authority + ':' + code + ')';
   return {name, text};
+}
+
+std::string wkt1Of(const CoordinateSystem& system)
+{
+  const ProjContext proj;
+  const ProjObject known = proj.system(system.definition);
+  const std::array<const char*, 2> options = {"MULTILINE=NO", nullptr};
+  const char* const wkt = known ? proj_as_wkt(proj.get(), known.get(), PJ_WKT1_GDAL, options.data()) : nullptr;
+  return wkt ? wkt : "";
 }
 
 std::optional<bool> areOneSystem(const CoordinateSystem& a, const CoordinateSystem& b)

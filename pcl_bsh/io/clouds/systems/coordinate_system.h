@@ -25,6 +25,10 @@ CoordinateSystem coordinateSystemNamed(const std::string& text);
 /// As coordinateSystemNamed() takes it, or `none`, or empty. @throws FormatError as it does
 void requireSystem(const std::string& text);
 
+/// Its WKT of version 1, which LAS asks for; empty where it has none, or PROJ does not know it. Without PROJ, the WKT
+/// of any version that it is defined by.
+std::string wkt1Of(const CoordinateSystem& system);
+
 /// Whether both are the same, heights too where both have a system of heights. Not known where PROJ does not know one
 /// of them, and without PROJ.
 std::optional<bool> areOneSystem(const CoordinateSystem& a, const CoordinateSystem& b);

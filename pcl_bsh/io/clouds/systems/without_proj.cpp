@@ -17,6 +17,12 @@ CoordinateSystem coordinateSystemNamed(const std::string& text)
                     "build it where libproj-dev is installed");
 }
 
+std::string wkt1Of(const CoordinateSystem& system)
+{
+  const bool is_wkt = system.definition.find('[') != std::string::npos;
+  return is_wkt ? system.definition : std::string();
+}
+
 std::optional<bool> areOneSystem(const CoordinateSystem& a, const CoordinateSystem& b)
 {
   return !a.definition.empty() && a.definition == b.definition ? std::optional(true) : std::nullopt;

@@ -3,7 +3,7 @@
 // comes (A. Said, "Introduction to arithmetic coding", HPL-2004-76; "Arithmetic coding" of the LAZ specification).
 #pragma once
 
-#include <pcl_bsh/io/clouds/las/stored_number.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/laz/compressor.h>
-#include <pcl_bsh/io/clouds/las/stored_number.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <fstream> // laszip_api.h puts the namespace std into the global one

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/laz/arithmetic_decoder.h>
-#include <pcl_bsh/io/clouds/las/stored_number.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 
 #include <array>
 #include <cstdint>

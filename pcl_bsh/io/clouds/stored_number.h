@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in records, at any place and in the byte order of LAS, which is this machine's.
+// Numbers in records, at any place and in the byte order of LAS and E57, which is this machine's.
 #pragma once
 
 #include <cstring>
