@@ -6,12 +6,15 @@
 #include "clash_picture.svg.h"
 #include "clash_top_view.svg.h"
 
+#include <array>
 #include <limits>
 
 namespace pcl_bsh::io {
 namespace {
 
-constexpr std::size_t most_dots = 500; ///< of a clash in a drawing
+constexpr std::size_t most_dots = 500;               ///< of a clash in a drawing
+constexpr std::size_t most_parts = 300;              ///< of the obstacle in a drawing
+constexpr std::size_t most_parts_looked_at = 500000; ///< for a drawing: of more, every second, or third ...
 constexpr Area top_view_area{6, 6, 508, 268}, approach_area{54, 10, 456, 236};
 
 double greatestClearance(const ClashLists& lists)
@@ -29,6 +32,44 @@ double closestOf(const ClashLists& lists)
     for (const Clash& clash : report.clashes)
       if (isPresent(clash.status)) closest = std::min(closest, clash.distance);
   return closest;
+}
+
+/// The obstacle's points or triangles about the clash as a path, some of many, at the pose of the closest pair.
+/// @param around how far above and below the clash they may be
+std::string obstacleAbout(const ClashReport& report, const Clash& clash, const ViewFromAbove& seen, double around)
+{
+  const PointsView& model = report.model;
+  const Eigen::Isometry3d& pose = report.poses[static_cast<std::size_t>(clash.closest_pose)];
+  const double half_x = seen.area.width / 2 / seen.scale, half_y = seen.area.height / 2 / seen.scale;
+  const Eigen::AlignedBox3d box(
+      Eigen::Vector3d(seen.middle.x() - half_x, seen.middle.y() - half_y, clash.low[2] - around),
+      Eigen::Vector3d(seen.middle.x() + half_x, seen.middle.y() + half_y, clash.high[2] + around));
+  const Eigen::AlignedBox3d box_of_obstacle = box.transformed(pose.inverse());
+  std::vector<std::uint32_t> parts;
+  for (std::size_t i = 0; i < model.size(); i += model.size() / most_parts_looked_at + 1) {
+    const std::uint32_t record = model.record(i);
+    const double away = box_of_obstacle.exteriorDistance(ClashReport::vectorOf(model.point(record)));
+    if (away <= model.radius(record)) parts.push_back(record); // not if it is NaN
+  }
+  const auto posed = [&](const Point3& p) { return Eigen::Vector3d(pose * ClashReport::vectorOf(p)); };
+  const auto drawn = [&](const Eigen::Vector3d& at) {
+    return coordinate(seen.x(at.x())) + ' ' + coordinate(seen.y(at.y()));
+  };
+  std::string path;
+  const std::size_t count = std::min(parts.size(), most_parts);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t record = parts[k * parts.size() / count];
+    if (model.triangles) {
+      const std::array<Point3, 3> corners = model.triangles->triangle(record);
+      const Eigen::Vector3d a = posed(corners[0]), b = posed(corners[1]), c = posed(corners[2]);
+      const bool turns_left = (b - a).cross(c - a).z() >= 0; // all turn alike, so that one fills what another does
+      path += 'M' + drawn(a) + 'L' + drawn(turns_left ? b : c) + 'L' + drawn(turns_left ? c : b) + 'z';
+    }
+    else {
+      path += 'M' + drawn(posed(model.point(record))) + "h1v1h-1z";
+    }
+  }
+  return path;
 }
 
 } // namespace
@@ -81,6 +122,7 @@ std::string ClashDrawings::topView(const ClashReport& report, const Clash& clash
       Object{{"dots", dotsOf(
                           clash, [&](std::size_t i) { return seen.x(report.scan.point(clash.records[i])[0]); },
                           [&](std::size_t i) { return seen.y(report.scan.point(clash.records[i])[1]); })},
+             {"obstacle", obstacleAbout(report, clash, seen, least)},
              {"scan_x", coordinate(seen.x(scan.x()))},
              {"scan_y", coordinate(seen.y(scan.y()))},
              {"model_x", coordinate(seen.x(model.x()))},

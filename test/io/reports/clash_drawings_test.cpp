@@ -2,11 +2,15 @@
 // The drawings of the page of clashes say what its numbers say.
 #include "drawing.h"
 
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/text/number_text.h>
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
+#include <optional>
 
 namespace pcl_bsh::io {
 namespace {
@@ -27,7 +31,7 @@ protected:
       for (const double coordinate : {0.25 * static_cast<double>(i), 0.0, 0.0}) row.push_back(coordinate);
     for (const auto& [x, y] : stops) poses.emplace_back(Eigen::Translation3d(x, y, 0));
     scan = viewOf(row.data(), count);
-    model = viewOf(probe.data(), 1);
+    model = shape.value_or(viewOf(probe.data(), 1));
     radii.assign(count, static_cast<float>(radius));
     if (radius > 0) scan.radii = radii.data();
     TrajectoryRequest request;
@@ -51,6 +55,7 @@ protected:
   std::vector<float> radii;
   std::array<double, 3> probe = {0, 0, 0};
   PointsView scan, model;
+  std::optional<PointsView> shape; ///< of the model, in place of a point
   std::vector<Eigen::Isometry3d> poses;
   TrajectoryResult found;
 };
@@ -158,6 +163,42 @@ TEST_F(ClashDrawings, FromAbovePointsLieAsInTheCloud)
   const Tag length = tagsOf(above, "text").at(0);
   EXPECT_EQ(length.text, "0.2");
   EXPECT_NEAR(length["x"], 16 + 81.28 + 6, 1e-2);
+}
+
+/// The model's path: where its parts are, at the closest pose, and none that are elsewhere.
+TEST_F(ClashDrawings, FromAboveTheObstacleIsThere)
+{
+  const auto outline = [&] {
+    const std::string above = drawingOf(page(41, {{2, 0.2}, {8, 0.1}, {8.25, 0.05}}), "the clash from above");
+    return with(tagsOf(above, "path"), "class", "obstacle").at(0).of("d");
+  };
+  const double scale = 508 / 1.25;
+  const auto at = [&](double x, double y) {
+    const auto text = [](double number) { return numberText(number, std::chars_format::fixed, 3); };
+    return text(260 + scale * (x - 8.125)) + ' ' + text(140 - scale * (y - 0.025));
+  };
+  EXPECT_EQ(outline(), 'M' + at(8.25, 0.05) + "h1v1h-1z");
+
+  row.clear();
+  const std::array<std::array<double, 3>, 6> corners = {
+      {{0, 0, 0}, {0.5, 1, 0.25}, {-0.5, 1, 0.25}, {0, 0, 3}, {0.5, 1, 3}, {-0.5, 1, 3}}}; // the second is too high
+  const std::array<std::uint32_t, 6> triangles = {0, 1, 2, 3, 4, 5};
+  TrianglesView surface;
+  surface.vertices = viewOf(corners[0].data(), 6);
+  surface.corners = triangles.data();
+  surface.count = 2;
+  shape = viewOf(surface);
+  EXPECT_EQ(outline(), 'M' + at(8.25, 0.05) + 'L' + at(8.75, 1.05) + 'L' + at(7.75, 1.05) + 'z');
+}
+
+TEST_F(ClashDrawings, AtMostSoMuchOfTheObstacle)
+{
+  std::vector<double> crowd;
+  for (int i = 0; i < 1000; ++i) crowd.insert(crowd.end(), {0.0002 * i, 0, 0});
+  shape = viewOf(crowd.data(), 1000);
+  const std::string above = drawingOf(page(1, {{0, 0.1}}), "the clash from above");
+  const std::string path = with(tagsOf(above, "path"), "class", "obstacle").at(0).of("d");
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 300);
 }
 
 TEST_F(ClashDrawings, ApproachesLieAtTheirPoses)

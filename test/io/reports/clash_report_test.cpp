@@ -228,7 +228,7 @@ TEST_F(ClashReports, TheTableListsEveryClashWithItsNumbers)
   EXPECT_TRUE(has(page, "<tr><td>C9_0_0</td><td>" + badge("resolved") +
                             "</td><td>0.25</td><td>7</td><td>0</td><td>2</td><td>0</td></tr>"));
   EXPECT_EQ(occurrences(page, "<section class=\"card\""), 2U) << "a resolved one has no pictures";
-  EXPECT_EQ(occurrences(page, "<svg"), 5U) << "of the path, and two of each clash";
+  EXPECT_EQ(occurrences(page, "<svg viewBox"), 5U) << "of the path, and two of each clash";
   EXPECT_TRUE(has(page, "between point 32 of the input at (8.000, 0.000, 1234567.250) and point 0 of the obstacle; "
                         "<b>3</b> points; first at pose <b>3</b>"));
   EXPECT_TRUE(has(page, "<b>1</b> point; first at pose <b>0</b>"));

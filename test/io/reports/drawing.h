@@ -37,7 +37,10 @@ inline std::string drawingOf(const std::string& page, const std::string& label, 
     if (at == std::string::npos) return {};
     ++at;
   }
-  return page.substr(at, page.find("</svg>", at) - at);
+  std::size_t end = page.find("</svg>", at);
+  for (std::size_t inner = page.find("<svg ", at); inner < end; inner = page.find("<svg ", inner + 1))
+    end = page.find("</svg>", end + 1);
+  return page.substr(at, end - at);
 }
 
 inline std::vector<Tag> tagsOf(const std::string& drawing, const std::string& name)
