@@ -18,7 +18,9 @@
 #include <pcl_bsh/search/selected_records.h>
 #include <pcl_bsh/track/bogies.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,13 +35,18 @@ using Options = cli::GaugeOptions;
 constexpr auto program = cli::gauge_program;
 constexpr std::size_t most_worst_sections = 12, most_section_points = 20'000;
 
+void warnOfFile(const Options& options, const fs::path& file, const std::vector<std::string>& remarks)
+{
+  if (cli::tellsAbout(options)) cli::warnOfFile(program, file, remarks);
+}
+
 std::vector<Track> readAxes(const Options& options)
 {
   std::vector<Track> tracks;
   for (const cli::GaugeAxis& axis : options.axes) {
     std::vector<std::string> remarks;
     tracks.push_back({axis.name, io::readAxis(axis.file, axis.settings, &remarks), {}});
-    cli::warnOfFile(program, axis.file, remarks);
+    warnOfFile(options, axis.file, remarks);
   }
   return tracks;
 }
@@ -49,7 +56,7 @@ void readEnvelopes(const Options& options, std::vector<Track>& tracks)
   for (const io::EnvelopeFiles& files : options.profiles) {
     std::vector<std::string> remarks;
     io::addEnvelope(files, tracks, options.profile_unit, remarks);
-    cli::warnOfFile(program, files.profile, remarks);
+    warnOfFile(options, files.profile, remarks);
   }
 }
 
@@ -93,9 +100,9 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
     origins.push_back(report.tracks[section.track].axis.frame(section.distance).origin);
   const double near = options.reach.offset + options.thickness + 1.0; // cant moves the middle between the rails
   std::vector<std::optional<AxisPlaces>> of_tracks;
-  scan.forEachBatch([&](const PointsView& points, std::uint64_t first) {
-    for (std::size_t i = 0; i < points.count; ++i) {
-      const Point3 p = points.point(static_cast<std::uint32_t>(i));
+  scan.forEachBatchNear(origins, near, [&](const cli::GaugeScan::Batch& batch) {
+    for (std::size_t i = 0; i < batch.points.count; ++i) {
+      const Point3 p = batch.points.point(static_cast<std::uint32_t>(i));
       of_tracks.assign(report.tracks.size(), std::nullopt);
       for (std::size_t s = 0; s < origins.size(); ++s) {
         if (!(std::abs(p[0] - origins[s][0]) <= near && std::abs(p[1] - origins[s][1]) <= near)) continue;
@@ -111,8 +118,12 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
         if (places->state == PlaceState::two_places) add(places->second);
       }
     }
-    step.share(static_cast<double>(first + points.count) / static_cast<double>(scan.points()));
+    step.share(batch.done);
   });
+  for (io::GaugeSection& section : report.sections) // in whatever order they came
+    std::sort(section.points.begin(), section.points.end(), [](const SectionPoint& a, const SectionPoint& b) {
+      return std::pair(a.offset, a.height) < std::pair(b.offset, b.height);
+    });
   step.done(counted(report.sections.size(), "section"));
 }
 
@@ -177,13 +188,13 @@ void compare(const Options& options, std::vector<Track> tracks)
   if (!options.output.empty()) io::requireWritableCloud(options.output);
   options.written.requireWritable();
 
-  std::optional<cli::GaugeScan> scan;
+  std::unique_ptr<cli::GaugeScan> scan;
   {
     cli::Step step("Opening " + options.input.string());
-    scan.emplace(options);
+    scan = cli::openScan(options);
     step.done(counted(scan->points(), "point"));
   }
-  cli::warnOfFile(program, options.input, scan->remarks());
+  warnOfFile(options, options.input, scan->facts().remarks);
   GaugeFields fields(tracks);
   if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
   if (origins) origins->times = timesOf(options, scan->whole());
@@ -208,17 +219,19 @@ void compare(const Options& options, std::vector<Track> tracks)
     report.seen = io::seenOf(tracks, {options.step, options.seen_spacing});
   }
   io::GaugeRun run(report, options.threads, origins ? &*origins : nullptr);
-  cli::Step step("Gauging");
-  scan->forEachBatch([&](const PointsView& points, std::uint64_t first) {
-    const GaugedTracks found = run.add(points, first);
+  std::optional<cli::Step> step;
+  if (cli::tellsAbout(options)) step.emplace("Gauging");
+  scan->forEachBatch([&](const cli::GaugeScan::Batch& batch) {
+    const GaugedTracks found = run.add(batch.points, batch.first, batch.numbers);
     if (!options.output.empty()) fields.add(tracks, found);
-    step.share(static_cast<double>(first + points.count) / static_cast<double>(scan->points()));
+    if (step) step->share(batch.done);
   });
+  scan->join(run);
+  if (!step) return;
   const std::vector<std::string> remarks = run.finish(options.previous, earlier);
-  step.done(counted(report.infringing, "infringing point"));
-  cli::warnOfFile(program, options.previous, remarks);
-  if (report.outside.points > 0)
-    cli::warnOfFile(program, options.input, {io::outsideRemark(report.outside, origins->path)});
+  step->done(counted(report.infringing, "infringing point"));
+  warnOfFile(options, options.previous, remarks);
+  if (report.outside.points > 0) warnOfFile(options, options.input, {io::outsideRemark(report.outside, origins->path)});
   if (options.draws()) {
     report.sections = sectionsOf(options, report);
     fillSections(options, *scan, report);
@@ -245,8 +258,15 @@ int runGauge(const Options& options)
 {
   options.files.requireApart();
   std::vector<Track> tracks = readAxes(options);
-  makePoses(options, tracks.front().axis);
-  if (!options.input.empty()) compare(options, std::move(tracks));
+  if (cli::tellsAbout(options)) makePoses(options, tracks.front().axis);
+  if (options.input.empty()) return 0;
+  try {
+    compare(options, std::move(tracks));
+  }
+  catch (const std::exception& error) {
+    cli::endOtherRanks(options, error.what());
+    throw;
+  }
   return 0;
 }
 

@@ -76,7 +76,7 @@ void GaugeTable::add(const GaugedPoints& found, const std::vector<Envelope>& env
       const double around = envelopes[e].aroundOf({place.offset, place.height});
       double& least =
           cells_[(part * envelopes_ + e) * cells_around + static_cast<std::size_t>(around * cells_of_sector)];
-      least = std::min(least, clearance);
+      least = std::min(least, clearance + 0.0); // of 0 and -0, the order of points does not tell
     }
   }
 }

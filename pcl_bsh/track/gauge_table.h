@@ -32,6 +32,19 @@ public:
   /// Takes the answer of gauge() for some points. @param envelopes the same each time
   void add(const GaugedPoints& found, const std::vector<Envelope>& envelopes);
 
+  /// Becomes the table of what several processes have gathered. Called by each of them.
+  /// @param all gives a vector's values of all processes, one process after the other
+  template <class All>
+  void join(const All& all)
+  {
+    const std::vector<std::size_t> points = all(points_);
+    const std::vector<double> cells = all(cells_);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points_[i % points_.size()] = points[i] + (i < points_.size() ? 0 : points_[i % points_.size()]);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      cells_[i % cells_.size()] = std::min(cells_[i % cells_.size()], cells[i]);
+  }
+
   /// How many parts the axis has.
   std::size_t parts() const { return points_.size(); }
   /// Distance along the axis where a part begins.

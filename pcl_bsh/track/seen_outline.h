@@ -18,6 +18,7 @@
 #include <pcl_bsh/track/gauge_table.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 PCL_BSH_EXPORT_BEGIN
@@ -39,6 +40,20 @@ public:
   /// not count where its origin has no place. The cells do not depend on the number of threads.
   /// @param origins one per point of the view, NaN where it has none
   void add(const PointsView& points, const std::vector<Point3>& origins, const GaugeRequest& request);
+
+  /// Becomes the outline that beams of several processes crossed. Called by each of them, with `all` as
+  /// GaugeTable::join() takes it.
+  template <class All>
+  void join(const All& all)
+  {
+    std::vector<std::uint8_t> bits((crossed_.size() + 7) / 8);
+    for (std::size_t cell = 0; cell < crossed_.size(); ++cell)
+      if (crossed_[cell]) bits[cell / 8] = static_cast<std::uint8_t>(bits[cell / 8] | 1U << cell % 8);
+    const std::vector<std::uint8_t> of_all = all(bits);
+    for (std::size_t i = 0; i < of_all.size(); ++i)
+      for (std::size_t bit = 0; bit < 8; ++bit)
+        if ((of_all[i] >> bit & 1U) != 0) crossed_[i % bits.size() * 8 + bit] = true;
+  }
 
   /// The share of a sector's cells that beams crossed, in a part of the axis; NaN where the outline has none there.
   double share(std::size_t part, std::size_t envelope, Sector sector) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// pcl_bsh_site as an MPI job of two ranks.
+// A program as an MPI job of two ranks.
 #pragma once
 
 #include "tools/programs/program_run.h"
@@ -15,15 +15,16 @@ inline bool hasMpirun()
 /// with hwloc's component that opens X displays, which other tests begin and end: tile_visitor.cpp. Open MPI 5 needs
 /// HOME.
 /// @param arguments as a shell reads them. @param place the folder to run in
-inline Outcome runOnTwoRanks(const std::string& arguments, const std::filesystem::path& place)
+inline Outcome runOnTwoRanks(const std::string& arguments, const std::filesystem::path& place,
+                             const std::string& program = "pcl_bsh_site")
 {
   const io::TemporaryFolder folder;
   const std::string out = (folder / "out").string(), err = (folder / "err").string();
   const std::string command = "cd " + place.string() + " && env -i PATH=\"$PATH\" HOME=" + (folder / "").string() +
                               " HWLOC_COMPONENTS=-gl "
                               "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/pcl_bsh_site " +
-                              arguments + " >" + out + " 2>" + err;
+                              "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/" +
+                              program + ' ' + arguments + " >" + out + " 2>" + err;
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, io::contentOf(out), io::contentOf(err)};
 }

@@ -5,6 +5,8 @@
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/io/text/number_text.h>
 
+#include <tuple>
+
 namespace pcl_bsh::io {
 
 std::vector<GaugeTable> tablesOf(const std::vector<Track>& tracks, double step)
@@ -29,18 +31,34 @@ std::string outsideRemark(const OutsidePath& outside, const OriginPath& path)
          " at " + numberText(outside.time) + ": no beam of theirs sees anything";
 }
 
-GaugedTracks GaugeRun::add(const PointsView& points, std::uint64_t first)
+void GaugeRun::addOutside(const OutsidePath& outside)
 {
+  OutsidePath& all = report_.outside;
+  if (all.points == 0 || (outside.points > 0 && outside.first < all.first)) {
+    all.first = outside.first;
+    all.time = outside.time;
+  }
+  all.points += outside.points;
+}
+
+GaugedTracks GaugeRun::add(const PointsView& points, std::uint64_t first, const std::uint64_t* numbers)
+{
+  const auto numberOf = [&](std::uint64_t record) { return numbers ? numbers[record - first] : record; };
   const GaugeRequest request{report_.reach, threads_};
   GaugedTracks found = gauge(points, report_.tracks, request);
   if (origins_) {
-    const std::vector<Point3> origins = originsOf(points, origins_->times, origins_->path, first, report_.outside);
+    OutsidePath outside;
+    const std::vector<Point3> origins = originsOf(points, origins_->times, origins_->path, first, outside);
+    if (outside.points > 0) outside.first = numberOf(outside.first);
+    addOutside(outside);
     for (SeenOutline& seen : report_.seen) seen.add(points, origins, request);
   }
+  const std::size_t known = infringing_.size();
   for (std::uint32_t track = 0; track < found.each.size(); ++track) {
     report_.tables[track].add(found.each[track], report_.tracks[track].envelopes);
     addInfringing(points, found.each[track], report_.limit, first, infringing_, track);
   }
+  for (std::size_t i = known; i < infringing_.size(); ++i) infringing_[i].record = numberOf(infringing_[i].record);
   for (const double clearance : found.told.clearance) report_.infringing += clearance <= report_.limit;
   for (std::size_t state = 0; state < report_.counts.size(); ++state) report_.counts[state] += found.told.counts[state];
   return found;
@@ -49,6 +67,9 @@ GaugedTracks GaugeRun::add(const PointsView& points, std::uint64_t first)
 std::vector<std::string> GaugeRun::finish(const std::filesystem::path& previous,
                                           const std::optional<GaugeList>& earlier)
 {
+  std::sort(infringing_.begin(), infringing_.end(), [](const Infringing& a, const Infringing& b) {
+    return std::tuple(a.record, a.track) < std::tuple(b.record, b.track);
+  });
   report_.infringements = infringementsOf(infringing_, report_.cluster_distance);
   report_.listed = listedOf(report_, infringing_);
   return earlier ? compareWithList(report_, previous, *earlier) : std::vector<std::string>();

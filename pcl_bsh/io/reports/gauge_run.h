@@ -10,6 +10,7 @@
 #include <pcl_bsh/track/tracks.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -49,7 +50,8 @@ std::vector<SeenOutline> seenOf(const std::vector<Track>& tracks, const SeenCell
 /// A remark about points whose time a path does not have; empty where there are none.
 std::string outsideRemark(const OutsidePath& outside, const OriginPath& path);
 
-/// Gathers a report. The report is told the same, however its points are divided into batches.
+/// Gathers a report. The report is told the same, however its points are divided into batches, and in whatever order
+/// these come.
 class GaugeRun {
 public:
   /// @param origins null: beams are not known; else the report has `seen`. Borrowed
@@ -60,14 +62,41 @@ public:
   {
   }
 
-  /// @param first number of the batch's first point among all
-  GaugedTracks add(const PointsView& points, std::uint64_t first);
+  /// @param first number of the batch's first point among all @param numbers of each, rising; null: they
+  /// follow `first`
+  GaugedTracks add(const PointsView& points, std::uint64_t first, const std::uint64_t* numbers = nullptr);
+
+  /// Becomes the run of what several processes have added. Called by each of them, with `all` as GaugeTable::join()
+  /// takes it.
+  template <class All>
+  void join(const All& all)
+  {
+    for (GaugeTable& table : report_.tables) table.join(all);
+    for (SeenOutline& seen : report_.seen) seen.join(all);
+    infringing_ = all(infringing_);
+    const std::vector<Sums> sums = all(std::vector<Sums>{{report_.counts, report_.infringing, report_.outside}});
+    report_.counts = {};
+    report_.infringing = 0;
+    report_.outside = {};
+    for (const Sums& of_one : sums) {
+      for (std::size_t state = 0; state < report_.counts.size(); ++state) report_.counts[state] += of_one.counts[state];
+      report_.infringing += of_one.infringing;
+      addOutside(of_one.outside);
+    }
+  }
 
   /// After the last batch: infringements, with their names and states.
   /// @param earlier the list in the file `previous`, where there is one @return remarks about that file
   std::vector<std::string> finish(const std::filesystem::path& previous, const std::optional<GaugeList>& earlier);
 
 private:
+  struct Sums {
+    std::array<std::size_t, 6> counts;
+    std::size_t infringing;
+    OutsidePath outside;
+  };
+  void addOutside(const OutsidePath& outside);
+
   GaugeReport& report_;
   unsigned threads_;
   const BeamOrigins* origins_;

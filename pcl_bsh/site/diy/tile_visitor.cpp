@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <limits>
 #include <utility>
 
 namespace pcl_bsh::site {
@@ -93,6 +94,8 @@ std::uint64_t sumOfAllRanks(std::uint64_t value)
 
 std::string gatheredFromAllRanks(const std::string& bytes)
 {
+  if (sumOfAllRanks(bytes.size()) > std::numeric_limits<int>::max()) // which MPI counts in
+    throw std::runtime_error("the ranks' answers are too long for one message: ask on one rank");
   std::vector<std::vector<char>> parts;
   diy::mpi::all_gather(world(), std::vector<char>(bytes.begin(), bytes.end()), parts);
   std::string all;

@@ -3,6 +3,7 @@
 // is a tile.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/site.h>
 
@@ -14,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+PCL_BSH_EXPORT_BEGIN // for programs that gather answers of their own
 namespace pcl_bsh::site {
 
 double leastOfAllRanks(double value);
@@ -82,3 +84,4 @@ private:
 };
 
 } // namespace pcl_bsh::site
+PCL_BSH_EXPORT_END

@@ -132,6 +132,12 @@ void requireTogether(const GaugeOptions& options)
       if (!file->empty()) refuse(option, "is about a scan: give INPUT");
     return;
   }
+  if (options.isSite()) {
+    if (!options.output.empty()) refuse("OUTPUT", "is written of a file, not of a site: leave it out");
+    for (const auto& [option, crs] :
+         {std::pair{"--to-crs", &options.reading.to_crs}, {"--input-crs", &options.reading.input_crs}})
+      if (!crs->empty()) refuse(option, "is for files: make the site with it");
+  }
   if (options.profiles.empty())
     refuse("command line", std::string("--profile is required: see ") + gauge_program + " --help");
   for (std::size_t i = 0; i < options.profiles.size(); ++i)
@@ -169,7 +175,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   CLI::App app("Tables by chainage how far a scan is from profiles along an axis, and where it infringes them.",
                gauge_program);
   app.footer(gauge_footer);
-  app.add_option("INPUT", options.input, "the scan")->type_name("");
+  app.add_option("INPUT", options.input, "the scan: a file, or a site of pcl_bsh_site, dealt to the ranks of mpirun")
+      ->type_name("");
   app.add_option("OUTPUT", options.output,
                  "INPUT's points with all their fields, and chainage, offset, height,\n"
                  "clearance, envelope (its number, -1: none) and place (0 at one place of\n"
@@ -319,8 +326,8 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
       const auto [pivots, overhang] = twoNumbers("--vehicle", value, ',', "P,O, such as 19,3.7");
       profile.vehicle = Vehicle{pivots, overhang};
     });
-  requireTogether(options);
   if (!options.input.empty()) options.reading = reading.read({options.input});
+  requireTogether(options);
 
   CommandFiles& files = options.files;
   files.reads("INPUT", options.input);

@@ -44,6 +44,8 @@ struct GaugeOptions {
   ReadChoice reading;
   CommandFiles files;
 
+  /// Whether INPUT is a folder, as sites are.
+  bool isSite() const { return std::filesystem::is_directory(input); }
   bool draws() const { return !sections.empty() || !written.page.empty(); }
 };
 

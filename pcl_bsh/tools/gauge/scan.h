@@ -6,35 +6,60 @@
 
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/reports/gauge_run.h>
 
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstdint>
 #include <functional>
-#include <string>
+#include <memory>
 #include <vector>
 
 namespace pcl_bsh::cli {
 
 class GaugeScan {
 public:
-  /// @throws files::FileError where it cannot be read
-  explicit GaugeScan(const GaugeOptions& options);
+  /// A batch of points. Its numbers are as GaugeRun::add() takes them.
+  struct Batch {
+    const PointsView& points;
+    std::uint64_t first;
+    const std::uint64_t* numbers;
+    double done; ///< the share of all that has come then
+  };
+  using Use = std::function<void(const Batch&)>;
 
-  const std::vector<std::string>& remarks() const { return facts_.remarks; }
+  virtual ~GaugeScan() = default;
+
   const io::CloudFacts& facts() const { return facts_; }
   const pcl::PCLPointCloud2& whole() const { return whole_; } ///< its fields; its points only if OUTPUT is written
   std::uint64_t points() const { return points_; }
 
-  /// Calls use(points, number of the first one) for each batch, from the first point to the last. @throws FileError
-  void forEachBatch(const std::function<void(const PointsView&, std::uint64_t)>& use);
+  /// Calls `use` for each batch. In an MPI job each batch comes to one process. @throws FileError
+  virtual void forEachBatch(const Use& use) = 0;
 
-private:
-  const GaugeOptions& options_;
-  bool is_whole_;
+  /// Lets the run of this process be that of all.
+  virtual void join(io::GaugeRun&) {}
+
+  /// As forEachBatch(), in this process alone. Points farther from all these places than `near`, along x or y, may be
+  /// left out.
+  virtual void forEachBatchNear(const std::vector<Point3>& places, double near, const Use& use) = 0;
+
+protected:
   pcl::PCLPointCloud2 whole_;
   io::CloudFacts facts_;
   std::uint64_t points_ = 0;
 };
+
+/// Opens a file, or a site where INPUT is a folder. @throws files::FileError where it cannot be read
+std::unique_ptr<GaugeScan> openScan(const GaugeOptions& options);
+
+/// A site; for openScan(). @throws files::FileError, too, in builds without queries of sites
+std::unique_ptr<GaugeScan> openSite(const GaugeOptions& options);
+
+/// Whether this process prints and writes: of those of an MPI job about a site, one does.
+bool tellsAbout(const GaugeOptions& options);
+
+/// Ends all processes of an MPI job where one fails; returns without one. @param options whose INPUT may be a site
+void endOtherRanks(const GaugeOptions& options, const char* error);
 
 } // namespace pcl_bsh::cli
