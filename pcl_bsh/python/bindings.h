@@ -22,11 +22,12 @@ void bindManifold(pybind11::module_& module); ///< colliders, the few contacts o
 void bindMass(pybind11::module_& module);
 void bindDistances(pybind11::module_& module);
 void bindNeighbors(pybind11::module_& module);
-void bindClusters(pybind11::module_& module);   ///< clusters and spacings of one cloud
-void bindTrajectory(pybind11::module_& module); ///< and the clashes of a path
-void bindAxis(pybind11::module_& module);       ///< the line that a vehicle follows
-void bindGauge(pybind11::module_& module);      ///< gauging runs along an axis
-void bindManyPoses(pybind11::module_& module);  ///< many poses, many motions
+void bindClusters(pybind11::module_& module);    ///< clusters and spacings of one cloud
+void bindTrajectory(pybind11::module_& module);  ///< and the clashes of a path
+void bindAxis(pybind11::module_& module);        ///< the line that a vehicle follows
+void bindGauge(pybind11::module_& module);       ///< gauging runs along an axis
+void bindSeenOutline(pybind11::module_& module); ///< what beams of such a run saw
+void bindManyPoses(pybind11::module_& module);   ///< many poses, many motions
 void bindScene(pybind11::module_& module);
 void bindSceneResult(pybind11::module_& module);
 void bindFiles(pybind11::module_& module);

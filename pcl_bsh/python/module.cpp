@@ -137,6 +137,7 @@ PYBIND11_MODULE(_core, module)
   bindTrajectory(module);
   bindAxis(module);
   bindGauge(module);
+  bindSeenOutline(module);
   bindManyPoses(module);
   bindScene(module);
   bindFiles(module);

@@ -108,9 +108,9 @@ TEST(SceneAllocationFailure, OfQueries)
 /// A step that fails has not been made: it can be made again.
 TEST(SceneAllocationFailure, OfSteps)
 {
-  for (const auto& [response, gravity] : {std::pair(Response::none, false), std::pair(Response::slide, true)}) {
-    const auto make = [&, response = response, gravity = gravity] {
-      auto scene = freshScene(response, gravity, 1);
+  for (const auto& kind : {std::pair(Response::none, false), std::pair(Response::slide, true)}) {
+    const auto make = [&] {
+      auto scene = freshScene(kind.first, kind.second, 1);
       scene->step(0.1);
       return scene;
     };

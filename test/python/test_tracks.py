@@ -125,7 +125,26 @@ def test_several_tracks_are_each_its_own_run():
     assert found.told.each.shape == (2000, 0) and len(found.told.table()) == 0
 
 
+def test_beams_cross_cells_of_an_outline():
+    axis, box = pcl_bsh.Axis([[0, 0, 0], [10, 0, 0]], [100, 110]), pcl_bsh.Envelope("box", BOX)
+    tall = pcl_bsh.Envelope("tall", BOX, ranges=[(106, 110)])
+    points = np.array([[2.1, -3, 2.1], [2.2, -3, 2.2], [2.7, -3, 2.1], [2.1, 3, 2.1], [7.1, 0, 9]])
+    origins = points.copy()
+    origins[:, 1:] = 0, 2.1
+    rows = pcl_bsh.seen_outline(points, origins, axis, [box, tall], step=5, spacing=0.5, threads=2)
+    assert rows["envelope"].tolist() == [0, 0, 1] and rows["chainage_from"].tolist() == [100, 105, 105], "where it counts"
+    high = BOX[2][1] - BOX[1][1]
+    side = (5 / 0.5) * np.ceil(high / 0.5)
+    assert rows["right"][0] == 2 / side and rows["left"][0] == 1 / side and rows["above"][0] == 0
+    assert rows["above"][1] > 0 and rows["right"][1] == 0 and rows["unseen"].tolist() == [True, True, True]
+    origins[4] = np.nan
+    assert pcl_bsh.seen_outline(points, origins, axis, [box], step=5, spacing=0.5)["above"][1] == 0, "without an origin"
+
+
 @pytest.mark.parametrize("call, message", [
+    (lambda axis, box: pcl_bsh.seen_outline(np.zeros((2, 3)), np.zeros((1, 3)), axis, [box]),
+     "origins: has 1 place for 2 points: give one for each point"),
+    (lambda axis, box: pcl_bsh.seen_outline(np.zeros((1, 3)), np.zeros((1, 3)), axis, [box], spacing=0), "spacing"),
     (lambda axis, box: pcl_bsh.gauge_tracks(np.zeros((1, 3)), []), "tracks: there are none: give one at least"),
     (lambda axis, box: pcl_bsh.gauge_tracks(np.zeros((1, 3)), [("a", axis, [])]), "envelopes: there are none"),
     (lambda axis, box: pcl_bsh.gauge(np.zeros((1, 3)), axis, []), "envelopes: there are none: give one at least"),

@@ -71,7 +71,7 @@ struct Gauge : Stage {
                                              {"page", &page, &files_.page}})
       if (*file) {
         *path = (*file)->path;
-        namingOption(option, [&, path = path] { files::requireWritable(*path); });
+        namingOption(option, [&written = *path] { files::requireWritable(written); });
       }
     if (origin_path) {
       namingOption("origin_path", [&] { origins_ = io::BeamOrigins{io::readOriginPath(origin_path->path), {}}; });

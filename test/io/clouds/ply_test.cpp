@@ -183,7 +183,7 @@ TEST(Ply, ACameraThatMakesNoSenseIsNoViewpoint)
                                  {"1 2 3 2 0 0 0 2 0 0 0 2", "scales by 2"},
                                  {"1 2 3 1 0 0.01 0 1 0 0 0 1", "shears or scales unevenly"}};
   for (const auto& [row, wrong] : rows) {
-    EXPECT_THAT(defectOf([&, row = row] { viewpointOf(axes, row); }),
+    EXPECT_THAT(defectOf([&, &given = row] { viewpointOf(axes, given); }),
                 testing::HasSubstr("has a camera whose rotation " + wrong));
   }
   for (const char* row : {"1 nan 3", "inf 2 3"})

@@ -145,7 +145,7 @@ TEST(Ptx, RefusesTransformsThatAreNoMotions)
       EXPECT_THAT(read(scanOf(rows)), testing::HasSubstr(std::string("scan 0 has a transform that ") + text));
       EXPECT_THAT(read(sound + scanOf(rows)), testing::HasSubstr(std::string("scan 1 has a transform that ") + text));
       EXPECT_NO_THROW(parsePtx(sound + scanOf(rows), viewpoint, 0)) << "that scan alone is read";
-      EXPECT_THAT(defectOf([&, rows = rows] { parsePtxHeader(scanOf(rows), {}, allow_scale); }),
+      EXPECT_THAT(defectOf([&, &given = rows] { parsePtxHeader(scanOf(given), {}, allow_scale); }),
                   testing::HasSubstr(text));
     }
   }
