@@ -11,6 +11,7 @@
 #include "support/off_mesh.h"
 #include "support/pcd_points.h"
 
+#define CGAL_NO_DEPRECATION_WARNINGS // of headers that CGAL 6 has by other names
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>

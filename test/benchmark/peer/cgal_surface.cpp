@@ -3,6 +3,7 @@
 // benchmark that links it is not to be distributed.
 #include "surface_peer.h"
 
+#define CGAL_NO_DEPRECATION_WARNINGS // of headers that CGAL 6 has by other names
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
