@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/header.h>
-#include <pcl_bsh/io/clouds/stored_number.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/clouds/stored_number.h>
 
 #include <algorithm>
 #include <cmath>

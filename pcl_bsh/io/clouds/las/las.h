@@ -24,9 +24,9 @@ pcl::PCLPointCloud2 readLas(LasReader& reader);
 /// offset moves, and where that is not enough, both are chosen anew. A format without time, colour or infrared becomes
 /// the one that has it when the cloud has it.
 ///
-/// Without one of a LAS file, it writes LAS 1.4, point format 6, 7 with a colour, 8 with nir. The scale is the same on all axes: the
-/// least power of ten for which the cloud's extent needs no more than 31 bits and whose multiples are different
-/// doubles. The system that the header names for such points is written as a record of WKT.
+/// Without one of a LAS file, it writes LAS 1.4, point format 6, 7 with a colour, 8 with nir. The scale is the same on
+/// all axes: the least power of ten for which the cloud's extent needs no more than 31 bits and whose multiples are
+/// different doubles. The system that the header names for such points is written as a record of WKT.
 ///
 /// A field of lasFields()'s name goes to its place when each of its values has one there. All other fields, our results
 /// among them, become extra bytes with a description; fields of several values become several. rgb or rgba are
