@@ -33,9 +33,9 @@ reach, below, above, threads
 Returns
 -------
 structured ndarray
-    A row for each part and each envelope that counts at its middle: distance_from, distance_to, chainage_from, chainage_to, envelope, the shares of
-    cells that are seen: seen, left, above, right and below, NaN where there are none, and unseen: whether no beam
-    crossed one of the sides.
+    A row for each part and each envelope that counts at its middle: distance_from, distance_to, chainage_from,
+    chainage_to, envelope, the shares of cells that are seen: seen, left, above, right and below, NaN where there are
+    none, and unseen: whether no beam crossed one of the sides.
 
 Raises
 ------

@@ -39,8 +39,8 @@ public:
   {
     const std::vector<std::size_t> points = all(points_);
     const std::vector<double> cells = all(cells_);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      points_[i % points_.size()] = points[i] + (i < points_.size() ? 0 : points_[i % points_.size()]);
+    std::fill(points_.begin(), points_.end(), 0);
+    for (std::size_t i = 0; i < points.size(); ++i) points_[i % points_.size()] += points[i];
     for (std::size_t i = 0; i < cells.size(); ++i)
       cells_[i % cells_.size()] = std::min(cells_[i % cells_.size()], cells[i]);
   }

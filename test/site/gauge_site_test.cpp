@@ -103,6 +103,18 @@ TEST_F(GaugeSite, SaysTheSameOnTwoRanks)
   EXPECT_THAT(failed.err, HasSubstr("nowhere/table.csv"));
 }
 
+/// Sums are right, and tiles have records that their source has not.
+TEST_F(GaugeSite, RefusesRecordsThatNoSourceHas)
+{
+  fs::copy(*folder / "valley", *folder / "swapped", fs::copy_options::recursive);
+  auto json = nlohmann::json::parse(files::contentOf(*folder / "swapped/site.json"));
+  std::swap(json["sources"][0]["points"], json["sources"][1]["points"]);
+  folder->write("swapped/site.json", json.dump());
+  const Outcome refused = runHere("swapped --axis line.axis --profile box.csv", folder->path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(refused.told(), "pcl_bsh_gauge: swapped: its tiles do not hold each record once: make the site again\n");
+}
+
 TEST_F(GaugeSite, RefusesWhatIsOfFiles)
 {
   const std::string rest = " --axis line.axis --profile box.csv ";

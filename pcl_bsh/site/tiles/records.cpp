@@ -172,9 +172,4 @@ PointsView viewOfRecords(const pcl::PCLPointCloud2& layout, const std::uint8_t* 
   return view;
 }
 
-std::size_t offsetOf(const pcl::PCLPointCloud2& layout, const std::string& name)
-{
-  return find(layout.fields, name)->offset;
-}
-
 } // namespace pcl_bsh::site

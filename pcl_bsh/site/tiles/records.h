@@ -5,6 +5,7 @@
 #include <pcl_bsh/hierarchy/points_view.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/json/json_reader.h>
+#include <pcl_bsh/search/find_field.h>
 #include <pcl_bsh/site/site.h>
 
 #include <pcl/PCLPointCloud2.h>
@@ -61,7 +62,10 @@ bool isAxis(const std::string& name);
 PointsView viewOfRecords(const pcl::PCLPointCloud2& layout, const std::uint8_t* records, std::size_t count);
 
 /// The place of a field in the records. @pre there is one
-std::size_t offsetOf(const pcl::PCLPointCloud2& layout, const std::string& name);
+inline std::size_t offsetOf(const pcl::PCLPointCloud2& layout, const std::string& name)
+{
+  return findField(layout, name)->offset;
+}
 
 /// The names of points in records of a site.
 class PointNames {

@@ -8,10 +8,10 @@
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/site.h>
+#include <pcl_bsh/site/tiles/records.h>
 #include <pcl_bsh/site/tiles/tile_visitor.h>
 
 #include <algorithm>
-#include <cstring>
 #include <iostream>
 #include <limits>
 #include <numeric>
@@ -68,19 +68,14 @@ public:
 private:
   void useTile(const pcl::PCLPointCloud2& cloud, double done, const Use& use)
   {
-    const auto columnOf = [&](const char* name) {
-      const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
-                                      [&](const pcl::PCLPointField& one) { return one.name == name; });
-      return cloud.data.data() + field->offset; // which each site has
-    };
-    const std::uint8_t *const sources = columnOf(site::source_field_name), *records = columnOf(site::record_field_name);
+    const site::PointNames names(cloud);
     const PointsView all = viewOf(cloud);
     numbers_.resize(all.count);
     for (std::size_t i = 0; i < all.count; ++i) {
-      std::uint32_t source = 0, record = 0;
-      std::memcpy(&source, sources + i * cloud.point_step, sizeof source);
-      std::memcpy(&record, records + i * cloud.point_step, sizeof record);
-      numbers_[i] = first_of_source_[source] + record;
+      const site::SitePoint name = names(cloud.data.data() + i * cloud.point_step);
+      if (name.source >= site_.sources.size() || name.record >= site_.sources[name.source].points)
+        throw files::FileError(site_.folder, "its tiles do not hold each record once", "make the site again");
+      numbers_[i] = first_of_source_[name.source] + name.record;
     }
     io::forEachGaugeBatch(all, [&](const PointsView& points, std::uint64_t first) {
       use({points, 0, numbers_.data() + first, done});
