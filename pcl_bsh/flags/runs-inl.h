@@ -11,9 +11,9 @@
 #endif
 
 #include <pcl_bsh/flags/leaf-inl.h>
-#include <pcl_bsh/flags/obstacle_boxes-inl.h>
 #include <pcl_bsh/hierarchy/build/local_points-inl.h>
 
+#include <cmath>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -40,8 +40,7 @@ public:
     query_(query),
     writer_(writer),
     work_(work),
-    slack_(roundUp(storedSlack(voxel.frame))),
-    boxes_(obstacles)
+    slack_(roundUp(storedSlack(voxel.frame)))
   {
   }
 
@@ -120,12 +119,8 @@ private:
     begun_ = true;
     const ObstacleVoxel* const before = hit_in_;
     if (before && flagIn(*before)) return;
-    work_.node_pairs += boxes_.count();
-    const std::uint64_t near = boxes_.near(around_);
-    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-      const ObstacleVoxel& obstacle = obstacles_[k];
-      if (ObstacleBoxes::isAmong(near, k) && &obstacle != before && flagIn(obstacle)) return;
-    }
+    for (const ObstacleVoxel& obstacle : obstacles_)
+      if (&obstacle != before && flagIn(obstacle)) return;
   }
 
   /// Flags open points that collide with one voxel of b. The leaf that a point is nearest to settles its neighbours,
@@ -190,7 +185,11 @@ private:
   /// Takes the box into an obstacle's frame.
   void approach(const ObstacleVoxel& obstacle)
   {
-    seen_ = carryBox(obstacle.frame, around_);
+    const float* m = obstacle.frame.m.data();
+    seen_.center = carryPoint(m, obstacle.frame.g.data(), around_.center);
+    const float(&half)[3] = around_.half;
+    for (std::size_t axis = 0; axis < 3; ++axis, m += 3)
+      seen_.half[axis] = (std::abs(m[0]) * half[0] + std::abs(m[1]) * half[1]) + std::abs(m[2]) * half[2];
     ++work_.volumes_carried;
   }
 
@@ -319,7 +318,6 @@ private:
   FlagWriter& writer_;
   Work& work_;
   const float slack_;
-  const ObstacleBoxes boxes_;
 
   std::uint64_t allowed_ = 0; ///< steps
   bool begun_ = false, given_up_ = false;
