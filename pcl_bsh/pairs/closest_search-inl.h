@@ -311,10 +311,11 @@ private:
   {
     none_nearer_ = false;
     const bool in_vain = planes_.policy.mayAsk() || steps_in_vain_ >= steps_to_look_round_;
-    return canImprove(pair) && (HWY_LIKELY(!in_vain) || mayImproveAmongTies(pair));
+    return canImprove(pair) && (HWY_LIKELY(!in_vain) || !best_.pair || mayImproveAmongTies(pair));
   }
 
   /// Whether a pair can improve where bounds tell little: among ties, and what doubles hardly tell from them.
+  /// @pre there is a best pair, which a limit may keep away for long
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();

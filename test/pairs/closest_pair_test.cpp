@@ -109,6 +109,37 @@ TEST(ClosestPair, BeyondTheGreatestDistanceTakesLittleWork)
   EXPECT_FALSE(closestPair({a}, {b}, request).pair);
 }
 
+/// Many pairs are decided one by one, and none becomes the best: the limit is just below what all of them have.
+TEST(ClosestPair, JustBelowTheDistanceOfManyTies)
+{
+  const auto expectNone = [](const SphereHierarchy& a, const SphereHierarchy& b, const Eigen::Isometry3d& pose) {
+    const Placed placed_a(a, pose), placed_b(b, pose);
+    const DistanceResult nearest = closestPair(placed_a, placed_b);
+    for (const unsigned threads : {1u, 3u})
+      for (const double share : {1e-15, 1e-12, 1e-6, 0.2}) {
+        DistanceRequest request;
+        request.max_distance = nearest.interval.lower * (1.0 - share);
+        request.threads = threads;
+        EXPECT_FALSE(closestPair(placed_a, placed_b, request).pair) << share;
+      }
+  };
+  const Eigen::Isometry3d turned(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()));
+  std::vector<Point3> low, high;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j) low.push_back({0.1 * i, 0.1 * j, 0.0}), high.push_back({0.1 * i, 0.1 * j, 0.25});
+  const Cloud floor(low), ceiling(high);
+  const test::TestMesh box = test::boxMesh(1, 1, 1);
+  test::TestMesh lid = test::boxMesh(0.9, 0.9, 1);
+  lid.move(Eigen::Isometry3d(Eigen::Translation3d(0.05, 0.05, 1.001)));
+  const test::TestMesh plate = test::gridMesh(12, 12, [](double u, double v) -> Point3 { return {u, v, 0}; });
+  const test::TestMesh cover = test::gridMesh(12, 12, [](double u, double v) -> Point3 { return {u, v, 0.25}; });
+  for (const Eigen::Isometry3d& pose : {Eigen::Isometry3d::Identity(), turned}) {
+    expectNone(SphereHierarchy(floor.view()), SphereHierarchy(ceiling.view()), pose);
+    expectNone(SphereHierarchy(viewOf(box.trianglesView())), SphereHierarchy(viewOf(lid.trianglesView())), pose);
+    expectNone(SphereHierarchy(viewOf(plate.trianglesView())), SphereHierarchy(viewOf(cover.trianglesView())), pose);
+  }
+}
+
 TEST(ClosestPair, OfTouchingPointsIsKnownToBeZero)
 {
   const Cloud cloud({{1, 2, 3}, {4, 5, 6}});
