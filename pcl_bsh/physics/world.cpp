@@ -75,7 +75,8 @@ struct World::State {
     world.setGravity(bullet(options.gravity));
     btContactSolverInfo& info = world.getSolverInfo();
     info.m_numIterations = kIterations;
-    info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+    // In one order, what is left of each contact would push a stack to the same side in every step.
+    info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_RANDMIZE_ORDER; // the solver's own seed
     info.m_splitImpulse = 0; // poses are computed here from velocities, in double
     info.m_erp2 = static_cast<btScalar>(kErrorReduction);
     info.m_restitutionVelocityThreshold = static_cast<btScalar>(kBouncing);

@@ -172,27 +172,48 @@ TEST(World, ABoxAtRestDoesNotDrift)
   EXPECT_LT((world.pose(body).translation() - Eigen::Vector3d(0.3, -0.2, 0.501)).norm(), 1e-4);
 }
 
-/// Each box is a little smaller than the one below, so that its corners are on a face.
+/// Ten boxes, each a little smaller than the one below, so that its corners are on a face.
+std::vector<BodyId> addStack(World& world, std::vector<std::unique_ptr<Shape>>& shapes)
+{
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < 10; ++i) {
+    const double size = 1.0 - 0.02 * i;
+    shapes.push_back(std::make_unique<Shape>(test::crateMesh(size, size, 1)));
+    boxes.push_back(world.add(shapes.back()->collider, at(0, 0, 0.501 + 1.001 * i), shapes.back()->mass(100)));
+  }
+  return boxes;
+}
+
 TEST(World, AStackOfBoxesStandsAndSleeps)
 {
   const Shape ground = plane();
   std::vector<std::unique_ptr<Shape>> shapes;
   World world;
   world.addFixed(ground.collider);
-  std::vector<BodyId> boxes;
-  for (int i = 0; i < 10; ++i) {
-    const double size = 1.0 - 0.02 * i;
-    TestMesh mesh = test::boxMesh(size, size, 1);
-    mesh.move(at(-0.5 * size, -0.5 * size, -0.5));
-    shapes.push_back(std::make_unique<Shape>(std::move(mesh)));
-    boxes.push_back(world.add(shapes.back()->collider, at(0, 0, 0.501 + 1.001 * i), shapes.back()->mass(100)));
-  }
+  const std::vector<BodyId> boxes = addStack(world, shapes);
   for (int i = 0; i < 1200; ++i) world.step(kStep);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const double height = 0.501 + 1.001 * static_cast<double>(i);
     EXPECT_LT((world.pose(boxes[i]).translation() - Eigen::Vector3d(0, 0, height)).norm(), 1e-3) << i;
     EXPECT_TRUE(world.isAsleep(boxes[i])) << i;
   }
+}
+
+TEST(World, AStackOfBoxesDoesNotDrift)
+{
+  const Shape ground = plane();
+  std::vector<std::unique_ptr<Shape>> shapes;
+  WorldOptions options;
+  options.sleeping = false;
+  World world(options);
+  world.addFixed(ground.collider);
+  const std::vector<BodyId> boxes = addStack(world, shapes);
+  for (int i = 0; i < 1000; ++i) world.step(kStep);
+  std::vector<Eigen::Isometry3d> before;
+  for (const BodyId box : boxes) before.push_back(world.pose(box));
+  for (int i = 0; i < 3000; ++i) world.step(kStep);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    EXPECT_LT((world.pose(boxes[i]).translation() - before[i].translation()).norm(), 1e-4) << i;
 }
 
 TEST(World, NothingPassesAPlateHoweverFast)
