@@ -5,6 +5,7 @@
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/vtk/cloud_data.h>
+#include <pcl_bsh/vtk/contact_data.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 #include <pcl_bsh/vtk/surface_data.h>
@@ -68,6 +69,10 @@ void RenderView::exportTo(const std::filesystem::path& path) const
     blocks.emplace_back(viewed.name + " sphere glyphs", posed(vtk::sphereGlyphs(*spheres), pose));
     blocks.emplace_back(viewed.name + " voxels", posed(vtk::voxelBoxes(*viewed.hierarchy), pose));
     blocks.emplace_back(viewed.name + " cells", posed(vtk::cellBoxes(*viewed.hierarchy, level), pose));
+  }
+  if (const std::vector<Contact> contacts = content_.contacts(step_); !contacts.empty()) {
+    blocks.emplace_back("contacts", vtk::contactData(contacts));
+    blocks.emplace_back("contact arrows", vtk::contactArrows(*blocks.back().second, arrow_length_));
   }
   for (const auto& motion : content_.paths(step_).poses) blocks.emplace_back("path", vtk::pathData(motion));
   vtk::writeVtm(blocks, path);

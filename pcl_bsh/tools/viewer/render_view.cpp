@@ -6,6 +6,7 @@
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/scene/dragged_object.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
@@ -27,6 +28,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   extra_props_(renderer),
   closest_props_(renderer),
   path_props_(renderer),
+  contact_props_(renderer),
   caption_(renderer, content.options().width, content.options().height),
   bar_(renderer, content.options().width),
   histogram_(renderer, content.options().width, content.options().height)
@@ -67,8 +69,46 @@ void RenderView::show(std::size_t step)
   addPaths(path_props_, content_.paths(step_));
   closest_props_.clear();
   if (collisions_.closest) addClosestPair(closest_props_, *collisions_.closest, content_.options().unit);
+  drawContacts(content_.contacts(step_));
   drawExtras();
   writeTexts();
+}
+
+void RenderView::follow(const DragStep& now, const std::string& note)
+{
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    clouds_[i]->place(content_.poseOf(i, step_));
+    if (collisions_.known) clouds_[i]->mark({});
+  }
+  collisions_.known = false;
+  extra_props_.clear();
+  closest_props_.clear();
+  if (now.nearest)
+    addClosestPair(closest_props_, {now.nearest->place, now.nearest->other, now.nearest->distance},
+                   content_.options().unit);
+  drawContacts(now.contacts);
+  writeTexts();
+  setNote(note);
+}
+
+void RenderView::refresh()
+{
+  collisions_ = content_.collisions(step_);
+  show(step_);
+}
+
+/// Arrows are a quarter as long as the smallest cloud that moves, without one as the smallest cloud.
+void RenderView::drawContacts(const std::vector<Contact>& contacts)
+{
+  contact_props_.clear();
+  if (contacts.empty()) return;
+  for (const bool of_moving : {true, false})
+    for (std::size_t i = 0; i < clouds_.size() && (arrow_length_ == 0.0 || of_moving); ++i) {
+      if (of_moving && !content_.moves(i)) continue;
+      const double length = 0.25 * boundsOf(i).GetDiagonalLength();
+      if (length > 0.0 && (arrow_length_ == 0.0 || length < arrow_length_)) arrow_length_ = length;
+    }
+  addContacts(contact_props_, contacts, arrow_length_);
 }
 
 void RenderView::setExtras(const Extras& extras)
@@ -151,6 +191,7 @@ std::vector<LegendEntry> RenderView::legend() const
   }
   if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
   if (collisions_.closest) add("closest pair", segment_color);
+  if (!content_.contacts(step_).empty()) add("contacts", contact_color);
   if (extras_.level) add("spheres", sphere_color);
   if (extras_.voxels) add("voxels", voxel_color);
   if (extras_.open_edges) add("open edges", open_edge_color);
@@ -241,7 +282,7 @@ void RenderView::setMoving(bool moving)
   if (tiles_) tiles_->setMoving(moving);
 }
 
-std::string RenderView::pick(int x, int y) const
+std::optional<RenderView::Picked> RenderView::pickAt(int x, int y) const
 {
   vtkNew<vtkPointPicker> points;
   vtkNew<vtkCellPicker> triangles;
@@ -257,8 +298,24 @@ std::string RenderView::pick(int x, int y) const
         vtkMath::Distance2BetweenPoints(picker.GetPickPosition(), renderer_.GetActiveCamera()->GetPosition()));
   };
   const double to_point = distance(*points), to_triangle = distance(*triangles);
-  if (to_triangle < to_point) return describe(triangles->GetViewProp(), triangles->GetCellId());
-  return std::isfinite(to_point) ? describe(points->GetViewProp(), points->GetPointId()) : std::string();
+  if (to_triangle < to_point)
+    return Picked{triangles->GetViewProp(), triangles->GetCellId(), Eigen::Vector3d(triangles->GetPickPosition())};
+  if (!std::isfinite(to_point)) return std::nullopt;
+  return Picked{points->GetViewProp(), points->GetPointId(), Eigen::Vector3d(points->GetPickPosition())};
+}
+
+std::string RenderView::pick(int x, int y) const
+{
+  const auto picked = pickAt(x, y);
+  return picked ? describe(picked->prop, picked->id) : std::string();
+}
+
+std::optional<std::pair<std::size_t, Eigen::Vector3d>> RenderView::cloudAt(int x, int y) const
+{
+  const auto picked = pickAt(x, y);
+  for (std::size_t i = 0; picked && i < clouds_.size(); ++i)
+    if (clouds_[i]->partOf(picked->prop, picked->id)) return std::pair(i, picked->place);
+  return std::nullopt;
 }
 
 std::string RenderView::describe(const vtkProp* prop, vtkIdType id) const

@@ -15,7 +15,9 @@
 #include <vtkBoundingBox.h>
 #include <vtkRenderer.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::viewer {
@@ -27,6 +29,11 @@ public:
   /// Places all clouds as at this step, and draws what collides there, the paths and the texts anew.
   void show(std::size_t step);
   std::size_t step() const { return step_; }
+
+  /// While an object is led by hand: all clouds where they are now, the contacts and the smallest distance, with what
+  /// collides unmarked until refresh().
+  void follow(const DragStep& now, const std::string& note);
+  void refresh(); ///< draws the step anew, with what collides there
 
   void setExtras(const Extras& extras);
   const Extras& extras() const { return extras_; }
@@ -43,6 +50,9 @@ public:
   /// Describes the point or triangle that is seen at a pixel; empty where it sees none.
   std::string pick(int x, int y) const;
 
+  /// The cloud that is seen at a pixel, and where; nothing where none is.
+  std::optional<std::pair<std::size_t, Eigen::Vector3d>> cloudAt(int x, int y) const;
+
   /// Describes a picked prop and the id of a point, or of a triangle's cell; empty when it belongs to no cloud.
   std::string describe(const vtkProp* prop, vtkIdType id) const;
 
@@ -52,9 +62,16 @@ public:
   const StepCollisions& collisions() const { return collisions_; }
 
 private:
+  struct Picked {
+    const vtkProp* prop;
+    vtkIdType id;
+    Eigen::Vector3d place;
+  };
+  std::optional<Picked> pickAt(int x, int y) const;
   std::string describePart(const ViewContent& content, std::size_t cloud, const StepCollisions& collisions,
                            std::uint32_t part) const;
   void drawClouds();
+  void drawContacts(const std::vector<Contact>& contacts);
   void drawExtras();
   void writeTexts();
   std::vector<LegendEntry> legend() const;
@@ -65,7 +82,7 @@ private:
   const ViewContent& content_;
   vtkRenderer& renderer_;
   std::vector<std::unique_ptr<CloudActor>> clouds_;
-  PropGroup extra_props_, closest_props_, path_props_;
+  PropGroup extra_props_, closest_props_, path_props_, contact_props_;
   Caption caption_;
   ValueBar bar_;
   ValueHistogram histogram_;
@@ -74,6 +91,7 @@ private:
   std::optional<TileActors> tiles_; ///< of a site
   Extras extras_;
   std::optional<std::size_t> open_edges_; ///< counted once they are drawn
+  double arrow_length_ = 0.0;             ///< of contacts; 0: not measured yet
   StepCollisions collisions_;
   std::size_t step_ = 0;
 };

@@ -29,7 +29,7 @@ coloured as clouds are.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
 Reads {read}, pipes, and standard input as -.
-Without --screenshot and --export a window opens: h shows its keys.
+Without --screenshot and --export a window opens: h shows its keys. With d, the mouse drags objects of a scene.
 Exit code: 0 done; 1 failed; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Examples:

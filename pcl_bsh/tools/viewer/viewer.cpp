@@ -21,12 +21,13 @@
 #include <cstdlib>
 #include <iostream>
 #include <stdexcept>
+#include <utility>
 
 namespace pcl_bsh::viewer {
 namespace {
 
-/// Between one tile of a site and the next: events are heard meanwhile.
-constexpr unsigned long tile_milliseconds = 50;
+/// Between one tile of a site and the next, and until a picture is drawn that was left out: events are heard meanwhile.
+constexpr unsigned long later_milliseconds = 50;
 
 /// The trackball, with our keys instead of VTK's, and a click that picks.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -52,12 +53,21 @@ public:
 
   void OnLeftButtonDown() override
   {
-    std::copy_n(Interactor->GetEventPosition(), 2, pressed_);
-    Superclass::OnLeftButtonDown();
+    const int* const at = Interactor->GetEventPosition();
+    std::copy_n(at, 2, pressed_);
+    has_object_ = viewer->grab(at[0], at[1], Interactor->GetShiftKey() != 0);
+    if (!has_object_) Superclass::OnLeftButtonDown();
+  }
+
+  void OnMouseMove() override
+  {
+    const int* const at = Interactor->GetEventPosition();
+    has_object_ ? viewer->drag(at[0], at[1]) : Superclass::OnMouseMove();
   }
 
   void OnLeftButtonUp() override
   {
+    if (std::exchange(has_object_, false)) return viewer->letGo();
     Superclass::OnLeftButtonUp();
     const int* const at = Interactor->GetEventPosition();
     if (std::abs(at[0] - pressed_[0]) + std::abs(at[1] - pressed_[1]) <= 3) viewer->pick(at[0], at[1]);
@@ -78,6 +88,7 @@ public:
 
 private:
   int pressed_[2] = {0, 0};
+  bool has_object_ = false; ///< that the mouse drags
 };
 
 void onSlider(vtkObject* slider, unsigned long, void* viewer, void*)
@@ -95,6 +106,7 @@ void onSliderMoving(vtkObject*, unsigned long event, void* viewer, void*)
 
 void onTimer(vtkObject*, unsigned long, void* viewer, void*)
 {
+  static_cast<Viewer*>(viewer)->drawDragged();
   static_cast<Viewer*>(viewer)->loadTile();
 }
 
@@ -137,6 +149,7 @@ Viewer::Viewer(const ViewContent& content) : content_(content)
   renderer_ = vtkSmartPointer<vtkRenderer>::New();
   window_->AddRenderer(renderer_);
   render_view_ = std::make_unique<RenderView>(content, *renderer_);
+  hand_ = std::make_unique<Hand>(content, *render_view_, *renderer_);
 
   interactor_ = vtkSmartPointer<vtkRenderWindowInteractor>::New();
   interactor_->SetRenderWindow(window_);
@@ -146,12 +159,11 @@ Viewer::Viewer(const ViewContent& content) : content_(content)
   interactor_->SetInteractorStyle(style);
   interactor_->Initialize();
   if (content.steps() > 1) addSlider();
-  if (!content.site()) return;
-  vtkNew<vtkCallbackCommand> load;
-  load->SetClientData(this);
-  load->SetCallback(onTimer);
-  interactor_->AddObserver(vtkCommand::TimerEvent, load);
-  interactor_->CreateRepeatingTimer(tile_milliseconds);
+  vtkNew<vtkCallbackCommand> later;
+  later->SetClientData(this);
+  later->SetCallback(onTimer);
+  interactor_->AddObserver(vtkCommand::TimerEvent, later);
+  if (content.site()) interactor_->CreateRepeatingTimer(later_milliseconds);
 }
 
 Viewer::~Viewer()
@@ -236,6 +248,10 @@ bool Viewer::press(const std::string& key)
     else
       extras.trace = !extras.trace;
   }
+  else if (key == "d") {
+    drags_ = !drags_;
+    render_view_->setNote(drags_ ? "the mouse drags objects; d: it turns the view" : "");
+  }
   else if (key == "h") {
     help_ = !help_;
     render_view_->setNote(help_ ? keys : "");
@@ -267,10 +283,37 @@ void Viewer::pick(int x, int y)
   interactor_->Render();
 }
 
+bool Viewer::grab(int x, int y, bool turning)
+{
+  if (!drags_ || !hand_->take(x, y, turning)) return false;
+  setMoving(true);
+  return true;
+}
+
+void Viewer::drag(int x, int y)
+{
+  hand_->lead(x, y);
+  drawDragged();
+}
+
+/// The last place of all is drawn, though no event comes after it.
+void Viewer::drawDragged()
+{
+  if (!hand_->draw([this] { interactor_->Render(); })) interactor_->CreateOneShotTimer(later_milliseconds);
+}
+
+void Viewer::letGo()
+{
+  hand_->letGo();
+  setMoving(false);
+  render_view_->refresh();
+  interactor_->Render();
+}
+
 void Viewer::showStep(std::size_t step)
 {
   step = std::min(step, content_.steps() - 1);
-  if (step == render_view_->step()) return;
+  if (step == render_view_->step() || hand_->isFull()) return;
   render_view_->show(step);
   interactor_->Render();
 }

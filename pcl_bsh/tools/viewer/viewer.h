@@ -2,6 +2,7 @@
 // The window: mouse, keys, a slider along the steps, picking; and pictures without one.
 #pragma once
 
+#include "hand.h"
 #include "render_view.h"
 
 #include <vtkRenderWindow.h>
@@ -19,6 +20,8 @@ inline constexpr auto keys = R"(+ -    spheres one level finer, coarser (none)
 v  o    voxels, octree cells
 t  b    what the query tested and pruned, beams of the scanner
 left right   step before, after
+d      drag objects of a scene with the mouse, or turn the view again;
+       shift: turn the object
 click   point or triangle: number, place, distance, first pose
 r  s    reset the camera, save a picture
 h  q    hide this, quit)";
@@ -45,6 +48,10 @@ public:
   // Called by events.
   bool press(const std::string& key); ///< @return false for a key that means nothing here
   void pick(int x, int y);
+  bool grab(int x, int y, bool turning); ///< @return false where nothing can be dragged
+  void drag(int x, int y);
+  void drawDragged(); ///< unless a picture was drawn just now; then in a moment
+  void letGo();
   void showStep(std::size_t step);
   void setMoving(bool moving);
   void loadTile(); ///< one more of a site, while nothing moves
@@ -61,9 +68,11 @@ private:
   vtkSmartPointer<vtkRenderWindowInteractor> interactor_;
   vtkSmartPointer<vtkSliderWidget> slider_;
   std::unique_ptr<RenderView> render_view_;
+  std::unique_ptr<Hand> hand_;
   std::string picked_;
   std::filesystem::path saved_;
   bool help_ = false;
+  bool drags_ = false; ///< the mouse drags objects
   bool is_moving_ = false;
 };
 

@@ -169,6 +169,34 @@ TEST_F(SceneRunTest, TheProgramDrawsAndExportsAStep)
       << "two balls; spheres, glyphs, voxels, cells of both; the path";
 }
 
+/// A ball that has fallen on a plate.
+TEST_F(SceneRunTest, ContactsOfBodiesAreArrows)
+{
+  Options made = options();
+  made.scene = folder.write("fall.json", R"({
+    "clouds": { "ball": { "sphere": { "radius": 0.5 }, "spacing": 0.05 },
+                "plate": { "box": { "size": [2, 2, 0.1] }, "spacing": 0.05 } },
+    "objects": [ { "name": "plate", "cloud": "plate", "fixed": true },
+                 { "name": "ball", "cloud": "ball", "pose": [0, 0, 0.7], "body": { "mass": 10 } } ],
+    "steps": 4, "dt": 0.1, "effects": { "bodies": {} } })");
+  OffscreenView set(made);
+  EXPECT_TRUE(set.content->contacts(0).empty());
+  EXPECT_EQ(set.draw().count(contact_color, 40), 0u);
+  set.view->show(4);
+  const std::vector<Contact> contacts = set.content->contacts(4);
+  ASSERT_FALSE(contacts.empty());
+  const auto [x, y] = set.seen(contacts[0].place_b.data());
+  EXPECT_GT(contacts[0].normal.z(), 0.9);
+  EXPECT_NEAR(contacts[0].place_b.z(), 0.05, 1e-3);
+  EXPECT_GT(set.draw().countNear(contact_color, x, y, 60, 40), 5u) << "beside the ball's own points";
+  set.view->exportTo(folder / "fall.vtm");
+  vtkNew<vtkXMLMultiBlockDataReader> blocks;
+  blocks->SetFileName((folder / "fall.vtm").c_str());
+  blocks->Update();
+  EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(blocks->GetOutput())->GetNumberOfBlocks(), 13u)
+      << "two clouds; spheres, glyphs, voxels, cells of both; contacts and arrows; the path";
+}
+
 TEST_F(SceneRunTest, RefusesWhatIsNoSceneOrNoStepOfIt)
 {
   const auto fails = [&](const std::string& arguments, int code, const std::string& message) {

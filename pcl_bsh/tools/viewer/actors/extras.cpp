@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/solid/open_edges.h>
+#include <pcl_bsh/vtk/contact_data.h>
 #include <pcl_bsh/vtk/hierarchy_data.h>
 #include <pcl_bsh/vtk/path_data.h>
 
@@ -15,6 +16,7 @@
 #include <vtkLineSource.h>
 #include <vtkMapper.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkProperty.h>
@@ -198,6 +200,20 @@ void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::str
   label->GetTextProperty()->SetFontSize(text_size);
   setBacking(*label->GetTextProperty());
   group.add(label.Get());
+}
+
+void addContacts(PropGroup& group, const std::vector<Contact>& contacts, double length)
+{
+  if (contacts.empty()) return;
+  const auto arrows = vtk::contactArrows(*vtk::contactData(contacts), length);
+  vtkDataArray& gaps = *arrows->GetPointData()->GetArray("gap");
+  setColors(*arrows->GetPointData(), arrows->GetNumberOfPoints(),
+            [&](vtkIdType i) { return gaps.GetTuple1(i) < 0.0 ? overlap_color : contact_color; });
+  const auto actor = actorOf(arrows);
+  vtkMapper& mapper = *actor->GetMapper();
+  mapper.SetResolveCoincidentTopologyToPolygonOffset();
+  mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -1e9); // before what they point into
+  group.add(actor);
 }
 
 void addPaths(PropGroup& group, const MotionPaths& paths)

@@ -28,6 +28,9 @@ std::size_t openEdgesOf(const ViewedCloud& viewed);
 /// Adds a closest pair as a segment, with its distance.
 void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit);
 
+/// Adds contacts as arrows along their normals, before all else, red where the gap is below 0.
+void addContacts(PropGroup& group, const std::vector<Contact>& contacts, double length);
+
 /// Adds the paths of a step as lines.
 void addPaths(PropGroup& group, const MotionPaths& paths);
 

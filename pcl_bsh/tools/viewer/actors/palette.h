@@ -28,6 +28,8 @@ inline constexpr Color sphere_color = {86, 180, 233};
 inline constexpr Color voxel_color = {0, 158, 115};
 inline constexpr Color cell_color = {204, 121, 167};
 inline constexpr Color segment_color = {240, 228, 66};
+inline constexpr Color contact_color = {64, 224, 208};
+inline constexpr Color overlap_color = {255, 64, 64}; ///< of contacts whose gap is below 0
 inline constexpr Color open_edge_color = {255, 64, 64};
 inline constexpr Color path_color = {204, 121, 167};
 

@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
+#include <pcl_bsh/scene/dragged_object.h>
 
 #include <algorithm>
 #include <limits>
@@ -40,6 +41,103 @@ io::SceneFile readScene(const Options& options)
   return file;
 }
 
+/// Normals point to what can move.
+std::vector<Contact> contactsOf(const SceneBodies& bodies, const Scene& scene)
+{
+  std::vector<Contact> all;
+  for (const BodyContacts& pair : bodies.contacts())
+    for (Contact contact : pair.contacts) {
+      if (scene[pair.a].fixed) {
+        std::swap(contact.place_a, contact.place_b);
+        contact.normal = -contact.normal;
+      }
+      all.push_back(contact);
+    }
+  return all;
+}
+
+/// The options of a scene, with its response alone: no other effect is computed while something is dragged.
+SceneOptions respondingOnly(SceneOptions options)
+{
+  Effects effects;
+  effects.response = options.effects.response;
+  effects.gravity = options.effects.gravity;
+  options.effects = effects;
+  return options;
+}
+
+struct StepState {
+  std::vector<Eigen::Isometry3d> poses; ///< of each object
+  std::vector<std::string> contacts;    ///< lines about objects that touched another
+  std::vector<Contact> touching;        ///< of bodies, or of the object that is led
+};
+
+std::vector<Eigen::Isometry3d> posesOf(const Scene& scene)
+{
+  std::vector<Eigen::Isometry3d> poses;
+  for (ObjectId object = 0; object < scene.size(); ++object) poses.push_back(scene[object].pose);
+  return poses;
+}
+
+/// A copy of a scene, of which an object follows the mouse. Others are at rest; bodies fall, and are pushed.
+class SceneDrag final : public DraggedCloud {
+public:
+  SceneDrag(const io::SceneFile& file, const Scene& of, const std::vector<Eigen::Isometry3d>& poses, ObjectId object)
+  : object_(object),
+    scene_(respondingOnly(file.options))
+  {
+    for (ObjectId i = 0; i < of.size(); ++i) {
+      SceneObject copy = of[i];
+      copy.motion = NoMotion();
+      copy.pose = poses[i];
+      copy.fixed = copy.fixed || (!file.bodies && i != object); // pairs of others are not asked for
+      scene_.add(std::move(copy));
+    }
+    io::setRules(scene_, file.rules);
+    bodies_ = cli::bodiesOf(file, scene_);
+    led_ = std::make_unique<DraggedObject>(scene_, object);
+    state_.poses = poses;
+  }
+
+  ObjectId object() const { return object_; }
+  const StepState& state() const { return state_; }
+
+  const std::string& name() const override { return scene_[object_].name; }
+  std::string nameOfNearest() const override { return now_.nearest ? scene_[now_.nearest->object].name : ""; }
+  const Eigen::Isometry3d& pose() const override { return scene_[object_].pose; }
+
+  const DragStep& moveTo(const Eigen::Isometry3d& T_world_object) override
+  {
+    if (bodies_) {
+      bodies_->lead(object_, T_world_object);
+      bodies_->step(seconds_of_event);
+      now_ = led_->look();
+      now_.held = !now_.pose.isApprox(T_world_object, 1e-9);
+      now_.contacts = contactsOf(*bodies_, scene_);
+    }
+    else
+      now_ = led_->moveTo(T_world_object);
+    state_.poses = posesOf(scene_);
+    state_.touching = now_.contacts;
+    return now_;
+  }
+
+  void release() override
+  {
+    if (bodies_) bodies_->release(object_);
+  }
+
+private:
+  static constexpr double seconds_of_event = 1.0 / 60; ///< that pass among bodies
+
+  ObjectId object_;
+  Scene scene_;
+  std::unique_ptr<SceneBodies> bodies_; ///< null where the scene has none
+  std::unique_ptr<DraggedObject> led_;
+  DragStep now_;
+  StepState state_;
+};
+
 /// Step 0 is the start, step n the scene after n of its steps, responses included. Steps are run when they are first
 /// shown, and their poses are kept; the query for collisions runs again each time a step is shown.
 class SceneContent final : public ViewContent {
@@ -59,6 +157,8 @@ public:
 
   /// Paths of moving objects until this step, where they are not too many.
   MotionPaths paths(std::size_t step) const override;
+  std::vector<Contact> contacts(std::size_t step) const override { return at(step).touching; }
+  DraggedCloud* drag(std::size_t cloud, std::size_t step) const override;
 
 private:
   /// Which part of the scene a viewed cloud is.
@@ -67,14 +167,10 @@ private:
     std::uint32_t part = 0;
   };
 
-  struct StepState {
-    std::vector<Eigen::Isometry3d> poses; ///< of each object
-    std::vector<std::string> contacts;    ///< lines about objects that touched another
-  };
-
   void addClouds();
   void makeQueryScene();
   const StepState& at(std::size_t step) const;
+  const StepState& runTo(std::size_t step) const;
   StepState stateAfter(const SceneResult& result) const;
   std::size_t cloudOf(ObjectId object, std::uint32_t part) const { return first_cloud_[object] + part; }
   double clearance() const { return options_.question.clearance.value_or(file_.options.clearance); }
@@ -84,10 +180,12 @@ private:
   std::unique_ptr<SceneBodies> bodies_;           ///< of the running scene; null where it has none
   std::unique_ptr<Scene>
       query_scene_; ///< the same objects without motions: placed as at the step shown, and asked what collides
-  std::vector<Place> places_;             ///< of each viewed cloud
-  std::vector<std::size_t> first_cloud_;  ///< of each object
-  std::size_t points_ = 0;                ///< finite, of all clouds
-  mutable std::vector<StepState> states_; ///< of the steps run so far
+  std::vector<Place> places_;               ///< of each viewed cloud
+  std::vector<std::size_t> first_cloud_;    ///< of each object
+  std::size_t points_ = 0;                  ///< finite, of all clouds
+  mutable std::vector<StepState> states_;   ///< of the steps run so far
+  mutable std::unique_ptr<SceneDrag> drag_; ///< of the step shown; null while nothing was led there
+  mutable std::size_t drag_step_ = 0;
 };
 
 SceneContent::SceneContent(const Options& options) : ViewContent(options), file_(readScene(options))
@@ -145,19 +243,25 @@ void SceneContent::makeQueryScene()
   io::setRules(*query_scene_, rules);
 }
 
-SceneContent::StepState SceneContent::stateAfter(const SceneResult& result) const
+StepState SceneContent::stateAfter(const SceneResult& result) const
 {
   const Scene& scene = running_scene_->scene();
   StepState state;
-  for (ObjectId object = 0; object < scene.size(); ++object) state.poses.push_back(scene[object].pose);
+  state.poses = posesOf(scene);
   for (const Outcome& outcome : result.outcomes)
     if (outcome.touched || outcome.stuck)
       state.contacts.push_back(scene[outcome.object].name + (outcome.stuck ? " is stuck in " : " meets ") +
                                scene[outcome.against].name);
+  if (bodies_) state.touching = contactsOf(*bodies_, scene);
   return state;
 }
 
-const SceneContent::StepState& SceneContent::at(std::size_t step) const
+const StepState& SceneContent::at(std::size_t step) const
+{
+  return drag_ && step == drag_step_ ? drag_->state() : runTo(step);
+}
+
+const StepState& SceneContent::runTo(std::size_t step) const
 {
   if (step < states_.size()) return states_[step];
   cli::Step running("Running the scene to step " + std::to_string(step));
@@ -177,8 +281,22 @@ Eigen::Isometry3d SceneContent::poseOf(std::size_t cloud, std::size_t step) cons
   return at(step).poses[place.object] * running_scene_->scene()[place.object].parts[place.part].pose;
 }
 
+DraggedCloud* SceneContent::drag(std::size_t cloud, std::size_t step) const
+{
+  const ObjectId object = places_[cloud].object;
+  if (running_scene_->scene()[object].fixed) return nullptr;
+  const std::vector<Eigen::Isometry3d> poses = at(step).poses;
+  if (drag_ && drag_step_ == step && drag_->object() == object) return drag_.get();
+  cli::Step preparing("Getting ready to drag " + running_scene_->scene()[object].name);
+  drag_ = std::make_unique<SceneDrag>(file_, running_scene_->scene(), poses, object);
+  drag_step_ = step;
+  preparing.done(counted(poses.size(), "object"));
+  return drag_.get();
+}
+
 StepCollisions SceneContent::collisions(std::size_t step) const
 {
+  if (step != drag_step_) drag_.reset();
   const StepState& state = at(step);
   running_scene_->deform(static_cast<double>(step) * file_.dt);
   for (ObjectId object = 0; object < query_scene_->size(); ++object) {
@@ -210,10 +328,10 @@ StepCollisions SceneContent::collisions(std::size_t step) const
 std::string SceneContent::heading(const StepCollisions& collisions, std::size_t step) const
 {
   std::ostringstream text;
-  text << name() << ": " << groupedCount(file_.objects.size(), "object") << ", " << groupedCount(points_, "point")
-       << ", " << groupedCount(collisions.colliding, "collides", "collide") << "  (clearance "
-       << lengthOf(clearance(), options_.unit) << ")\nstep " << step << " of 0.." << file_.steps << ", "
-       << shortest(static_cast<double>(step) * file_.dt) << " s";
+  text << name() << ": " << groupedCount(file_.objects.size(), "object") << ", " << groupedCount(points_, "point");
+  if (collisions.known) text << ", " << groupedCount(collisions.colliding, "collides", "collide");
+  text << "  (clearance " << lengthOf(clearance(), options_.unit) << ")\nstep " << step << " of 0.." << file_.steps
+       << ", " << shortest(static_cast<double>(step) * file_.dt) << " s";
   const std::vector<std::string>& contacts = at(step).contacts;
   for (std::size_t i = 0; i < std::min(contacts.size(), most_contacts); ++i) text << '\n' << contacts[i];
   if (contacts.size() > most_contacts)

@@ -7,6 +7,7 @@
 #include <pcl_bsh/tools/viewer/view_options.h>
 
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/pairs/trace.h>
 
 #include <Eigen/Geometry>
@@ -16,6 +17,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace pcl_bsh {
+struct DragStep; // scene/dragged_object.h
+}
 
 namespace pcl_bsh::viewer {
 
@@ -62,6 +67,19 @@ struct SharedColors {
 
 class SiteContent;
 
+/// An object that follows the mouse. It stays where it was led until another step is shown.
+class DraggedCloud {
+public:
+  virtual ~DraggedCloud() = default;
+
+  virtual const std::string& name() const = 0;       ///< of the object
+  virtual const Eigen::Isometry3d& pose() const = 0; ///< T_world_object
+  /// As far as the response lets it. @throws std::invalid_argument for a way that is no motion
+  virtual const DragStep& moveTo(const Eigen::Isometry3d& T_world_object) = 0;
+  virtual void release() = 0;
+  virtual std::string nameOfNearest() const = 0; ///< to it; empty where none is
+};
+
 /// Clouds and their poses at a number of steps; the first cloud is the one asked about: its points, or its triangles.
 class ViewContent {
 public:
@@ -86,6 +104,12 @@ public:
   /// Lines of text above the picture.
   virtual std::string heading(const StepCollisions& collisions, std::size_t step) const = 0;
   virtual MotionPaths paths(std::size_t step) const = 0;
+
+  /// Contacts that hold bodies.
+  virtual std::vector<Contact> contacts(std::size_t /*step*/) const { return {}; }
+
+  /// Leads a cloud, and what moves with it, by hand from where it is at a step. Null where nothing moves it.
+  virtual DraggedCloud* drag(std::size_t /*cloud*/, std::size_t /*step*/) const { return nullptr; }
 
   // Distances of the scan, per part; empty where they are not known.
   virtual std::vector<float> distances(std::size_t /*step*/) const { return {}; }     ///< NaN where free
