@@ -15,7 +15,18 @@ namespace {
 
 constexpr int kMostContacts = 256;         // of one translation
 constexpr int kMostBounces = 32;           // of these, before points are collected anew
-constexpr std::size_t kFewPairs = 1 << 11; // of points that can meet: a translation is followed at once
+constexpr std::size_t kFewPairs = 1 << 11; // of points that can meet on a turn: it is followed at once
+constexpr std::size_t kMostNear = 1 << 13; // of points about a straight way; few of them are beside it
+constexpr double kShortWay = 4.0;          // tolerances: on a shorter way, more points are followed, too
+constexpr double kSlack = 0.125;           // of a way: so far beside it, a slide may bend
+
+/// The least distance from the origin on a way from a place.
+double leastOn(const Eigen::Vector3d& from, const Eigen::Vector3d& way)
+{
+  const double square = way.squaredNorm();
+  const double s = square > 0.0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
+  return (from + s * way).norm();
+}
 
 } // namespace
 
@@ -41,13 +52,22 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
   return whole;
 }
 
+/// How many pairs may be near a way. @param few on a way that is not short
+std::size_t Mover::mostNear(double way, std::size_t few) const
+{
+  return way > kShortWay * tolerance_ ? few : kMostPairs;
+}
+
 /// Along one motion from s = begin to end, in halves where too many points can meet. @param done s of the last pose
 /// taken
 bool Mover::follow(const ObjectMotion& motion, double begin, double end, double& done)
 {
   const double length = end - begin;
-  const double reach = (motion.shift().norm() * length + motion.turningReach(length)) * (1.0 + kDoubleMargin);
-  const bool few = collect(motion.swept(), reach, kMostPairs);
+  const auto wayOf = [&motion](double part) { // no point goes farther in a part of the motion
+    return (motion.shift().norm() * part + motion.turningReach(part)) * (1.0 + kDoubleMargin);
+  };
+  const double reach = wayOf(length);
+  const bool few = collect(motion.swept(), {Eigen::Vector3d::Zero(), reach, mostNear(reach, kFewPairs)});
   if (outcome.stuck) return false;
   const bool wide = motion.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
   if (!few || wide) {
@@ -59,12 +79,20 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
   }
   double last = end;
   const Encounter* met = nullptr;
-  for (const Encounter& e : encounters_) {
-    const auto s = contactOn(motion, e, begin, last);
-    if (!s) continue;
-    last = *s;
-    met = &e;
-    if (last <= begin) break;
+  const auto look = [&](const Encounter& e) {
+    if (const auto s = contactOn(motion, e, begin, last)) last = *s, met = &e;
+  };
+  // The nearest points first: where these meet, most of the others are too far apart to meet before them.
+  const auto apart = [](const Encounter& e) { return e.of_points ? e.apart.norm() - e.reach : 0.0; };
+  const auto nearest = std::min_element(encounters_.begin(), encounters_.end(),
+                                        [&](const auto& l, const auto& r) { return apart(l) < apart(r); });
+  if (nearest != encounters_.end()) look(*nearest);
+  double way = wayOf(last - begin);
+  for (auto e = encounters_.begin(); e != encounters_.end() && last > begin; ++e) {
+    if (e == nearest || (e->of_points && apart(*e) > way + tolerance_)) continue;
+    const double before = last;
+    look(*e);
+    if (last < before) way = wayOf(last - begin);
   }
   if (met) touch(*met);
   if (last > begin) {
@@ -90,42 +118,57 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
     if (length <= (straight ? 0.0 : negligible)) return straight;
     const bool last = length <= portion;
     const double most_travel = last ? length : portion;
-    const Eigen::Vector3d part = left * (most_travel / length);
-    Box3 swept = body_.world_box; // what is beside a bent path is collected where it bends
-    swept.merge({swept.low + part, swept.high + part});
-    const std::size_t most = portion == unlimited ? kFewPairs : kMostPairs;
-    if (!collect(swept, most_travel, most)) {
+    const Passage passage{left * (most_travel / length), slide ? kSlack * most_travel : 0.0,
+                          mostNear(most_travel, kMostNear)};
+    Box3 swept = body_.world_box;
+    swept.merge({swept.low + passage.way, swept.high + passage.way});
+    swept.grow(passage.slack);
+    if (!collect(swept, passage)) {
       if (portion != unlimited && most_travel <= 0.25 * tolerance_) return halt();
-      portion = portion == unlimited ? first : 0.5 * most_travel;
+      portion = portion == unlimited ? std::min(first, 0.5 * most_travel) : 0.5 * most_travel;
       continue;
     }
     if (outcome.stuck) return false;
-    const Walked walked = walk(left, most_travel, straight && last ? &target : nullptr, slide, most, planes);
+    const Walked walked = walk(left, passage, straight && last ? &target : nullptr, slide, planes);
     if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
     if (walked == Walked::free) {
-      portion *= 2;
+      if (4 * near_ <= kMostNear) portion *= 2; // else there would be too many
       continue;
     }
-    if (walked == Walked::met && portion == unlimited) return false; // gone, or too many bounces
     straight = false;
     ++contacts;
-    portion = first;
   }
   return false;
 }
 
-/// On from where points were collected, by `most_travel` at most. @param left what is left of the motion, shortened and
-/// bent by what is met @param target the pose at its end
-Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen::Isometry3d* target, bool slide,
-                          std::size_t most, ContactPlanes& planes)
+/// How far a way leads before it leaves the passage. @param gone what the object went since it was collected
+double Mover::roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction)
+{
+  const double length = passage.way.norm();
+  const Eigen::Vector3d axis = passage.way / length;
+  const double along = gone.dot(axis), climb = direction.dot(axis);
+  const Eigen::Vector3d beside = gone - along * axis, drift = direction - climb * axis;
+  double room = climb > 0.0 ? (length - along) / climb : climb < 0.0 ? along / -climb : length;
+  // |beside + t drift| = slack
+  const double a = drift.squaredNorm(), b = beside.dot(drift);
+  const double c = std::max(passage.slack * passage.slack - beside.squaredNorm(), 0.0);
+  if (a > 0.0) room = std::min(room, (std::sqrt(b * b + a * c) - b) / a);
+  return std::max(room, 0.0) * (1.0 - kDoubleMargin);
+}
+
+/// On from where points were collected, within the passage. @param left what is left of the motion, shortened and bent
+/// by what is met @param target the pose at its end
+Mover::Walked Mover::walk(Eigen::Vector3d& left, const Passage& passage, const Eigen::Isometry3d* target, bool slide,
+                          ContactPlanes& planes)
 {
   const Eigen::Isometry3d start = pose();
+  double most_travel = passage.way.norm();
   const double negligible = 1e-6 * most_travel;
   Eigen::Vector3d gone = Eigen::Vector3d::Zero();
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
     const double length = left.norm();
     if (bounce > 0 && (length <= negligible || most_travel <= negligible)) return Walked::met;
-    const bool last = length <= most_travel;
+    const bool last = length <= most_travel * (1.0 + kDoubleMargin);
     const Eigen::Vector3d part = last ? left : Eigen::Vector3d(left * (most_travel / length));
     const Encounter* met = nullptr;
     double end = 1.0;
@@ -150,38 +193,25 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, double most_travel, const Eigen
       if (!go(arrives ? *target : next)) return Walked::blocked;
     }
     gone += moved;
-    most_travel -= distance;
     left = !met && last ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(left - moved);
     if (!met) return bounce == 0 ? Walked::free : Walked::met;
     touch(*met);
     if (distance > tolerance_) planes.forget();
     left = planes.add(normalOf(*met), left);
     if (!slide) return Walked::met;
-    if (bounce > 0) continue;
-    // Only what is beside the straight path has been collected. From here on it may lead anywhere within what is
-    // left of it. Pairs collected hold for that already; those of other objects are added. It collides with none of
-    // them: what is near it here is beside the straight path as well.
-    const std::size_t known = encounters_.size();
-    Box3 swept = body_.world_box;
-    swept.grow(std::max(most_travel, 0.0));
-    if (!collectMore(swept, std::max(most_travel, 0.0), most)) return Walked::crowded;
-    for (std::size_t i = known; i < encounters_.size(); ++i) encounters_[i].apart -= gone;
+    if (left == Eigen::Vector3d::Zero()) return Walked::met;
+    most_travel = roomIn(passage, gone, left.normalized());
   }
   return Walked::met;
 }
 
-/// Collects all pairs of points that can meet while the object is within `swept` and none of its points is farther than
-/// `length` from its present place. Returns false when there are more than `most` with one other part
-bool Mover::collect(Box3 swept, double length, std::size_t most)
+/// Collects all pairs of points that can meet while the object is within `swept` and goes by the passage. @return false
+/// where too many of one other part are near
+bool Mover::collect(Box3 swept, const Passage& passage)
 {
   encounters_.clear();
-  collected_.clear();
-  return collectMore(swept, length, most);
-}
-
-/// Collects the pairs with objects that have not been collected yet.
-bool Mover::collectMore(Box3 swept, double length, std::size_t most)
-{
+  near_ = 0;
+  collected_at_ = pose();
   if (body_.box.empty()) return true;
   swept.grow(state_.rules.largestClearance() * (1.0 + kDoubleMargin) + tolerance_);
   state_.grid.around(swept, around_);
@@ -189,15 +219,13 @@ bool Mover::collectMore(Box3 swept, double length, std::size_t most)
     if (other == object_) continue;
     const std::optional<double> clearance = state_.rules.clearanceOf(object_, other);
     if (!clearance || !swept.meets(state_.bodies[other].world_box)) continue;
-    if (std::find(collected_.begin(), collected_.end(), other) != collected_.end()) continue;
-    collected_.push_back(other);
-    if (!collectFrom(other, *clearance, length, most)) return false;
+    if (!collectFrom(other, *clearance, passage)) return false;
     if (outcome.stuck) return true;
   }
   return true;
 }
 
-bool Mover::collectFrom(ObjectId other, double clearance, double length, std::size_t most)
+bool Mover::collectFrom(ObjectId other, double clearance, const Passage& passage)
 {
   for (std::uint32_t i = 0; i < body_.world.size(); ++i)
     for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
@@ -205,9 +233,14 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
       const MeantPlaces places = possiblePlaces(mine, others);
       const Reach farthest(clearance, mine.hierarchy().storage().uncertainty, others.hierarchy().storage().uncertainty,
                            places);
+      const double beside = passage.slack + 0.75 * tolerance_; // halts are at half the tolerance
+      // Seen from the middle of the way, its ends are near.
+      Eigen::Isometry3d middle = mine.pose;
+      middle.translation() += 0.5 * passage.way;
       const double reach =
-          farthest.most + length * (1.0 + kDoubleMargin) + 0.75 * tolerance_; // halts are at half the tolerance
-      const PairsWithin found = pairsWithin(mine, others, {reach, most});
+          farthest.most + (0.5 * passage.way.norm() + passage.slack) * (1.0 + kDoubleMargin) + 0.75 * tolerance_;
+      const PairsWithin found = pairsWithin(Placed(mine.hierarchy(), middle), others, {reach, passage.most});
+      near_ = std::max(near_, found.pairs.size());
       ++cost_.pairs;
       cost_.work += found.work;
       if (!found.complete) {
@@ -218,10 +251,13 @@ bool Mover::collectFrom(ObjectId other, double clearance, double length, std::si
       const RecordDistance exact(a, mine.pose, b, others.pose);
       const PairReach reach_of_pairs(a, b, clearance, places);
       const bool of_points = !a.triangles && !b.triangles;
+      const bool is_one = reach_of_pairs.isOne() && !a.radii && !b.radii;
+      const double one_reach = is_one ? reachOf(reach_of_pairs.of({})) : 0.0;
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
-        Encounter e{pair, i, other, j, reachOf(reach_of_pairs.of(pair)), clearance, of_points, {}};
+        Encounter e{pair, i, other, j, is_one ? one_reach : reachOf(reach_of_pairs.of(pair)), clearance, of_points, {}};
         e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+        if (of_points && leastOn(e.apart, passage.way) > e.reach + beside) continue;
         if ((of_points ? e.apart.norm() : separationOf(e).high) <= e.reach + 0.125 * tolerance_) {
           ++cost_.work.exact_decisions;
           if (reach_of_pairs.holds(exact, pair)) {
@@ -260,6 +296,8 @@ bool Mover::isInside(ObjectId other)
 bool Mover::accept(const Eigen::Isometry3d& target)
 {
   const Eigen::Isometry3d before = pose();
+  const bool turned = target.linear() != collected_at_.linear();
+  const Eigen::Vector3d shift = target.translation() - collected_at_.translation();
   state_.setPose(object_, target);
   for (std::size_t i = 0; i < encounters_.size();) {
     const Encounter& first = encounters_[i];
@@ -269,7 +307,9 @@ bool Mover::accept(const Eigen::Isometry3d& target)
     for (; i < encounters_.size(); ++i) {
       const Encounter& e = encounters_[i];
       if (e.part != first.part || e.other != first.other || e.other_part != first.other_part) break;
-      if (separationOf(e).high > e.reach + 0.125 * tolerance_) continue; // far above what rounding takes
+      const double next = e.reach + 0.125 * tolerance_; // far above what rounding takes
+      if (e.of_points && !turned && (e.apart + shift).norm() > next + tolerance_ / 16) continue;
+      if (separationOf(e).high > next) continue;
       ++cost_.work.exact_decisions;
       if (!reach_of_pairs.holds(exact, e.pair)) continue;
       state_.setPose(object_, before);

@@ -13,7 +13,7 @@ namespace pcl_bsh {
 
 /// Moves an object leg by leg. Before each leg, it collects all pairs of points that can meet on it, of any objects. A
 /// leg ends where the first of them meets. Its end is taken only if none of them collides there, in exact arithmetic.
-/// Along a bent path, pairs are collected as far as the object may get in any direction.
+/// A slide may bend its path a little before they are collected anew.
 class Mover {
 public:
   Mover(Scene::State& state, ObjectId object, EffectCost& cost);
@@ -44,14 +44,22 @@ private:
     Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
   };
 
-  enum class Walked { free, met, crowded, blocked };
+  /// Where the object may go: never farther than the slack from a straight way.
+  struct Passage {
+    Eigen::Vector3d way;
+    double slack = 0.0;
+    std::size_t most = 0; ///< pairs of points that are near it, with one other part
+  };
+
+  enum class Walked { free, met, blocked };
 
   bool follow(const ObjectMotion& motion, double begin, double end, double& done);
-  Walked walk(Eigen::Vector3d& left, double most_travel, const Eigen::Isometry3d* target, bool slide, std::size_t most,
+  Walked walk(Eigen::Vector3d& left, const Passage& passage, const Eigen::Isometry3d* target, bool slide,
               ContactPlanes& planes);
-  bool collect(Box3 swept, double length, std::size_t most);
-  bool collectMore(Box3 swept, double length, std::size_t most);
-  bool collectFrom(ObjectId other, double clearance, double length, std::size_t most);
+  std::size_t mostNear(double way, std::size_t few) const;
+  static double roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction);
+  bool collect(Box3 swept, const Passage& passage);
+  bool collectFrom(ObjectId other, double clearance, const Passage& passage);
   bool isInside(ObjectId other);
   bool accept(const Eigen::Isometry3d& target);
   bool go(const Eigen::Isometry3d& target);
@@ -73,9 +81,10 @@ private:
   EffectCost& cost_;
   ObjectId crowded_ = 0; ///< whose points are too many to collect
   std::vector<ObjectId> around_;
-  std::vector<ObjectId> collected_; ///< whose points are among the encounters
   std::vector<Encounter> encounters_;
-  std::vector<ObjectId> outside_of_; ///< of whose solids it is outside
+  std::size_t near_ = 0; ///< pairs that were looked at for them, of the part with most
+  Eigen::Isometry3d collected_at_ = Eigen::Isometry3d::Identity(); ///< the pose that their places hold for
+  std::vector<ObjectId> outside_of_;                               ///< of whose solids it is outside
 };
 
 } // namespace pcl_bsh
