@@ -139,6 +139,9 @@ TEST_F(HandTest, AnObjectThatIsDraggedSlidesAsTheSceneSays)
 
 TEST_F(HandTest, ABodyThatIsDraggedPushesOthers)
 {
+#ifndef PCL_BSH_BODIES
+  GTEST_SKIP() << "pcl_bsh::physics is not built: install libbullet-dev";
+#endif
   const Xvfb display;
   const std::unique_ptr<ViewContent> content = makeSceneContent(options(R"("bodies": {})"));
   Viewer viewer(*content);

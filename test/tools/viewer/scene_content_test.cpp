@@ -172,6 +172,9 @@ TEST_F(SceneRunTest, TheProgramDrawsAndExportsAStep)
 /// A ball that has fallen on a plate.
 TEST_F(SceneRunTest, ContactsOfBodiesAreArrows)
 {
+#ifndef PCL_BSH_BODIES
+  GTEST_SKIP() << "pcl_bsh::physics is not built: install libbullet-dev";
+#endif
   Options made = options();
   made.scene = folder.write("fall.json", R"({
     "clouds": { "ball": { "sphere": { "radius": 0.5 }, "spacing": 0.05 },
