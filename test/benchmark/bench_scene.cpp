@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes of many objects: what a step costs, the grid against comparing all pairs of root spheres, a scene's one effect
-// against its bare query, and an update against building anew.
+// against its bare query, and an update against building anew. An object that is dragged by hand.
 #include "program.h"
 
 #include <pcl_bsh/collide.h>
 #include <pcl_bsh/hierarchy/update.h>
+#include <pcl_bsh/scene/dragged_object.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <algorithm>
@@ -23,6 +24,9 @@ struct Options : ProgramOptions {
   std::size_t steps = 100;
   std::size_t many = 5000;
   std::size_t cloud = 10000000;
+  std::size_t scan = 1000000;
+  std::size_t dragged = 100000;
+  std::size_t events = 600;
   unsigned threads = 2;
   std::string part = "all";
   std::string order = "scan";
@@ -223,23 +227,114 @@ void measureOneEffect(const Options& options, Table& table)
              same ? "same answers" : "other answers"});
 }
 
-void measureUpdate(const Options& options, Table& table)
+/// A point each 5 cm.
+double terrainSide(std::size_t count)
 {
-  progress("update, " + std::to_string(options.cloud) + " points");
-  const double side = std::sqrt(static_cast<double>(options.cloud)) * 0.05; // terrain, a point each 5 cm
-  std::uint64_t state = 3;
+  return std::sqrt(static_cast<double>(count)) * 0.05;
+}
+
+double heightAt(double x, double y, double height)
+{
+  return height * std::sin(0.11 * x) * std::cos(0.07 * y);
+}
+
+/// @param order scan: row by row, as scanners go
+std::vector<float> terrain(std::size_t count, double height, const std::string& order, std::uint64_t& state)
+{
+  const double side = terrainSide(count);
   std::vector<float> xyz;
-  xyz.reserve(3 * options.cloud);
-  const auto height = [](double x, double y) { return 2.0 * std::sin(0.11 * x) * std::cos(0.07 * y); };
-  for (std::size_t i = 0; i < options.cloud; ++i) {
+  xyz.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
     double x = side * uniform(state), y = side * uniform(state);
-    if (options.order == "scan") { // row by row, as scanners go
-      const double row = std::floor(std::sqrt(static_cast<double>(options.cloud)));
+    if (order == "scan") {
+      const double row = std::floor(std::sqrt(static_cast<double>(count)));
       y = 0.05 * std::floor(static_cast<double>(i) / row);
       x = 0.05 * (static_cast<double>(i) - row * std::floor(static_cast<double>(i) / row)) + 0.02 * uniform(state);
     }
-    for (const double c : {x, y, height(x, y)}) xyz.push_back(static_cast<float>(c));
+    for (const double c : {x, y, heightAt(x, y, height)}) xyz.push_back(static_cast<float>(c));
   }
+  return xyz;
+}
+
+/// x y z of points on the surface of a cube about the origin, row by row of each face.
+std::vector<float> crate(std::size_t count, double side)
+{
+  const auto row = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count) / 6.0)));
+  const double spacing = side / static_cast<double>(row);
+  std::vector<float> xyz;
+  std::uint64_t state = 7;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t face = i / (row * row), place = i % (row * row);
+    const auto at = [&](std::size_t k) { return spacing * (static_cast<double>(k) + uniform(state)) - 0.5 * side; };
+    double p[3] = {at(place % row), at(place / row), face % 2 ? 0.5 * side : -0.5 * side};
+    std::rotate(p, p + face / 2, p + 3);
+    for (const double c : p) xyz.push_back(static_cast<float>(c));
+  }
+  return xyz;
+}
+
+/// A hand leads a crate over a floor that is hardly bent, 3 cm with each event, down into it and up again.
+void measureDrag(const Options& options, Table& table)
+{
+  constexpr double clearance = 0.02, bend = 0.1;
+  std::uint64_t state = 3;
+  const std::vector<float> floor = terrain(options.scan, bend, "scan", state);
+  const auto scan = std::make_shared<SphereHierarchy>(viewOf(floor.data(), options.scan));
+  scan->buildAll();
+  const double reach = 0.3 * terrainSide(options.scan);
+  const auto poseAt = [&](std::size_t event, double size, bool turns) {
+    const auto t = static_cast<double>(event);
+    const double turn = 0.03 * t / reach, x = reach * (1.7 + std::cos(turn)), y = reach * (1.7 + std::sin(turn));
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() =
+        Eigen::Vector3d(x, y, heightAt(x, y, bend) + 0.5 * size + clearance + 0.06 * std::sin(0.4 * t));
+    if (turns)
+      pose.rotate(Eigen::AngleAxisd(0.02 * t, Eigen::Vector3d::UnitZ()) *
+                  Eigen::AngleAxisd(0.02 * std::sin(0.13 * t), Eigen::Vector3d::UnitX()));
+    return pose;
+  };
+  for (const double size : {0.6, 3.0}) {
+    const std::vector<float> cloud = crate(options.dragged, size);
+    const auto led = std::make_shared<SphereHierarchy>(viewOf(cloud.data(), options.dragged));
+    led->buildAll();
+    for (const Response response : {Response::stop, Response::slide})
+      for (const bool turns : {false, true}) {
+        const std::string name = "drag a crate of " + text(size, 2) + " m, " +
+                                 (response == Response::stop ? "stop" : "slide") + (turns ? ", turning" : "");
+        progress(name);
+        SceneOptions of_scene;
+        of_scene.effects.response = response;
+        of_scene.clearance = clearance;
+        of_scene.tolerance = 1e-3;
+        of_scene.threads = 1;
+        Scene scene(of_scene);
+        scene.add(fixedObject("floor", scan));
+        Eigen::Isometry3d above = poseAt(0, size, turns);
+        above.translation().z() += 0.5;
+        DraggedObject hand(scene, scene.add(object("crate", led, above)));
+        std::vector<double> seconds;
+        std::size_t touching = 0, held = 0;
+        for (std::size_t event = 0; event < options.events; ++event) {
+          const Stopwatch watch;
+          const DragStep& now = hand.moveTo(poseAt(event, size, turns));
+          seconds.push_back(watch.seconds());
+          touching += now.contacts.empty() ? 0 : 1;
+          held += now.held ? 1 : 0;
+        }
+        table.add({name, std::to_string(options.scan) + ", " + std::to_string(options.dragged), "1",
+                   text(1e3 * median(seconds)), text(1e3 * quantile(seconds, 0.99)) + " ms at 99 % of the steps",
+                   std::to_string(touching) + " of " + std::to_string(options.events) + " in contact, " +
+                       std::to_string(held) + " held"});
+      }
+  }
+}
+
+void measureUpdate(const Options& options, Table& table)
+{
+  progress("update, " + std::to_string(options.cloud) + " points");
+  const double side = terrainSide(options.cloud);
+  std::uint64_t state = 3;
+  std::vector<float> xyz = terrain(options.cloud, 2.0, options.order, state);
   const PointsView view = viewOf(xyz.data(), options.cloud);
   std::vector<double> sort_seconds, build_seconds, update_seconds, rebuild_seconds, scattered_seconds;
   UpdateReport report, scattered;
@@ -306,11 +401,11 @@ int main(int argc, char** argv)
   CLI::App app(
       "Scenes of many objects: steps with 10 % of the objects moving; the grid against comparing all pairs of\n"
       "root spheres; a scene of one effect against its bare queries; replacing points of a large cloud against\n"
-      "building anew.",
+      "building anew; a crate that is dragged over a scanned floor.",
       "bench_scene");
   app.footer("Example: bench_scene --part steps --objects 1000 --points 10000 --threads 2");
   app.add_option("--part", options.part, "what to measure")
-      ->check(CLI::IsMember({"all", "steps", "grid", "effect", "update"}))
+      ->check(CLI::IsMember({"all", "steps", "grid", "effect", "update", "drag"}))
       ->capture_default_str();
   app.add_option("--objects", options.objects, "objects that are queried")
       ->check(CLI::PositiveNumber)
@@ -320,6 +415,15 @@ int main(int argc, char** argv)
   app.add_option("--many", options.many, "objects in the grid")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--cloud", options.cloud, "points of the cloud that is updated")
       ->check(CLI::Range(std::size_t{100}, std::size_t{2000000000}))
+      ->capture_default_str();
+  app.add_option("--scan", options.scan, "points of the scan that an object is dragged in")
+      ->check(CLI::Range(std::size_t{100}, std::size_t{2000000000}))
+      ->capture_default_str();
+  app.add_option("--dragged", options.dragged, "points of that object")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--events", options.events, "times that the hand goes on")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--order", options.order, "of that cloud: scan or shuffled")
       ->check(CLI::IsMember({"scan", "shuffled"}))
@@ -332,6 +436,7 @@ int main(int argc, char** argv)
     if (asked("grid")) measureBroadPhase(options, rows);
     if (asked("effect")) measureOneEffect(options, rows);
     if (asked("update")) measureUpdate(options, rows);
+    if (asked("drag")) measureDrag(options, rows);
     return true;
   });
 }
