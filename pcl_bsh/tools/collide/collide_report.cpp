@@ -43,6 +43,7 @@ nlohmann::ordered_json pathJson(const Question& question, const Answer& answer)
                              {"undecided", pose.undecided_points},
                              {"distance", io::orNull(pose.distance)},
                              {"closest_pair", nullptr}});
+    if (answer.pose_pairs.empty()) continue; // of several obstacles
     if (const auto& pair = answer.pose_pairs.at(k)) json["table"].back()["closest_pair"] = {pair->a, pair->b};
   }
   return json;

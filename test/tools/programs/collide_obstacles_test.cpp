@@ -138,8 +138,10 @@ TEST_F(CollideObstacles, AreClearWithTheirSmallestDistance)
   EXPECT_EQ(json("list.json")["obstacles"][0]["state"], "clear");
   EXPECT_EQ(json("list.json")["clashes"].size(), 0U);
   const Outcome path = collide("--obstacle \"crane=copy.off;pose=0,0,3,0,0,0\" --from 0,0,0,0,0,0 --to 0,0,2,0,0,0 "
-                               "--steps 2");
+                               "--steps 2 --obstacle press=crate.off --report report.json");
   EXPECT_THAT(path.out, HasSubstr("at pose 0\n")) << path.err;
+  EXPECT_EQ(path.exit_code, 0) << path.err;
+  EXPECT_EQ(json("report.json")["path"]["table"].size(), 3U);
 }
 
 TEST_F(CollideObstacles, AreComparedWithAnEarlierListByName)
