@@ -2,6 +2,7 @@
 // A few records of many in memory of their own: questions about them cost what few cost.
 #pragma once
 
+#include <pcl_bsh/export.h>
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/solid/enclosure.h>
@@ -12,7 +13,7 @@
 
 namespace pcl_bsh {
 
-class QueriedPart {
+class PCL_BSH_EXPORT_INTERNAL QueriedPart {
 public:
   /// Coordinates, radii and uncertainties are copied. @param thing need not outlive this
   /// @param records of its view, ascending: those that are no points, or no triangles, are none here either

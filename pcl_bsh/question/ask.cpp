@@ -9,6 +9,7 @@
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/query/record_distance.h>
+#include <pcl_bsh/question/joined_answers.h>
 #include <pcl_bsh/question/options.h>
 #include <pcl_bsh/question/solids.h>
 #include <pcl_bsh/question/unseen.h>
@@ -58,25 +59,6 @@ private:
   const PointsView sunk_;
   const RecordDistance depth_;
 };
-
-/// Returns the smallest distance of the points that collide, with its pair.
-DistanceResult closestOf(const TrajectoryResult& found)
-{
-  DistanceResult closest;
-  for (std::size_t i = 0; i < found.distance.size(); ++i) {
-    const double distance = toldDistance(found, i);
-    if (!(distance < closest.distance)) continue;
-    closest.distance = distance;
-    closest.pair = PointPair{static_cast<std::uint32_t>(i), found.closest_point[i]};
-  }
-  for (const Interval& interval : found.interval) { // of what solids hold
-    if (std::isnan(interval.lower) || !(interval.lower < 0.0)) continue;
-    closest.interval.lower =
-        std::isinf(closest.interval.lower) ? interval.lower : std::min(closest.interval.lower, interval.lower);
-    closest.interval.upper = std::min(closest.interval.upper, interval.upper);
-  }
-  return closest;
-}
 
 /// One question, of two things that are built.
 class QuestionRun {

@@ -204,10 +204,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
   const IgnoredPairs ignored = options.ignoredPairs();
   for (std::size_t i = 0; i < all.size(); ++i) {
     shapes.push_back({all[i].loaded.shape(all[i].file)});
-    if (several) {
-      const cli::ObstacleChoice& choice = options.obstacles[i];
-      shapes.back() = {shapes.back().shape, choice.pose, choice.clearance, choice.solid, choice.uncertainty};
-    }
+    if (several) shapes.back() = options.obstacles[i].placed(shapes.back().shape);
     shapes.back().ignores_input = several && ignored.holds(kInputName, all[i].name);
     all[i].question = pcl_bsh::questionOf(question, shapes.back());
     shapes.back().shape.ignore(question.obstacle_ignore_points);
@@ -290,36 +287,23 @@ int collide(Options options)
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
     marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
-  const auto load = [&](const cli::ObstacleChoice& one, io::CloudFacts& facts) {
-    cli::ReadChoice reading = options.reading;
-    if (one.unit) reading.obstacle_unit = one.unit;
-    const std::string& sigmas = one.uncertainty.value_or(question.obstacle_uncertainty).field;
-    const io::ReadSettings settings = reading.ofObstacle(one.file, input.facts.unit, sigmas);
-    std::vector<io::Obstacle> loaded;
-    if (one.parts)
-      loaded =
-          cli::loadParts(*one.parts, {question.vertices_only}, report.seconds.load, settings, facts, question.threads);
-    else
-      loaded = {cli::loadObstacle(one.file, {question.vertices_only}, report.seconds.load, settings, &facts,
-                                  question.threads)};
+  const auto warn_of = [&](const cli::ObstacleChoice& one, const io::CloudFacts& facts) {
     if (auto warning = warningOfSystems(options.input, input.facts, one.file, facts))
       report.warnings.push_back(std::move(*warning));
-    if (!reading.namesUnits() && input.facts.unit && facts.unit && facts.unit != input.facts.unit) {
-      const std::string unit = io::nameOf(*input.facts.unit);
-      report.warnings.push_back(one.file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
-                                options.input.string() + " in " + unit +
-                                ", by their coordinate systems: give --input-unit " + unit + " to convert it");
-    }
-    return loaded;
+    if (options.reading.namesUnits() || one.unit || !input.facts.unit || !facts.unit || facts.unit == input.facts.unit)
+      return;
+    const std::string unit = io::nameOf(*input.facts.unit);
+    report.warnings.push_back(one.file.string() + ": is in " + io::nameOf(*facts.unit) + ", and " +
+                              options.input.string() + " in " + unit +
+                              ", by their coordinate systems: give --input-unit " + unit + " to convert it");
   };
   std::vector<cli::ObstacleChoice> choices = options.obstacles;
   if (choices.empty()) choices.push_back({"", options.obstacle});
-  std::vector<io::Obstacle> loaded; // of the last file
-  io::CloudFacts facts;
-  for (const cli::ObstacleChoice& one : choices) {
-    if (one.part == 0) loaded = load(one, facts = {});
-    report.obstacles.push_back({one.name, one.file.string(), loaded[one.part], facts});
-  }
+  std::vector<cli::LoadedObstacle> loaded =
+      cli::loadObstacles(choices, question, {options.reading, input.facts.unit}, report.seconds.load, warn_of);
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    report.obstacles.push_back(
+        {choices[i].name, choices[i].file.string(), std::move(loaded[i].obstacle), std::move(loaded[i].facts)});
   if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, report.obstacles[0].loaded);
   if (!options.pairs.empty()) {
     const io::PoseFit fit = io::readPoseFit(options.pairs, report.obstacles[0].facts.scale);

@@ -190,7 +190,7 @@ const char* nameOfState(Verdict verdict)
 }
 
 Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
-                  const ObstacleAnswer& found)
+                  const ObstacleAnswer& found, const std::optional<SourcePoint>& nearest)
 {
   Json json = {{"name", name}, {"file", question.obstacle}};
   json.update(askedJson(question, surface));
@@ -202,6 +202,7 @@ Json obstacleJson(const std::string& name, const ClashQuestion& question, const 
                {"distance", closestJson(found.closest)},
                {"closest_pose", found.closest_pose < 0 ? Json() : Json(found.closest_pose)},
                {"closest_pair", pairJson(found.closest)}});
+  if (nearest && found.closest.pair) json["closest_pair"][0] = sourceJson(*nearest);
   return json;
 }
 
@@ -245,7 +246,9 @@ std::string clashJson(const ClashLists& lists)
   if (lists.haveNames()) {
     json["obstacles"] = json["between"] = Json::array();
     for (const ClashReport& report : lists.obstacles) {
-      json["obstacles"].push_back(obstacleJson(report.name, report.question, report.surface, *report.answer));
+      std::optional<SourcePoint> nearest;
+      if (const auto& pair = report.answer->closest.pair; pair && report.source_of) nearest = report.source_of(pair->a);
+      json["obstacles"].push_back(obstacleJson(report.name, report.question, report.surface, *report.answer, nearest));
       json["obstacles"].back().update({{"clashes", report.present()}, {"path", pathJson(report.survey)}});
     }
     for (const BetweenObstacles& two : lists.between) json["between"].push_back(betweenJson(two));

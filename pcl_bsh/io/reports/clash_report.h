@@ -137,8 +137,9 @@ Json surfaceJson(const Obstacle* surface, bool solid);
 Json unseenJson(const Answer::Unseen& unseen);
 
 /// The question about an obstacle and its answer; the answer about two obstacles.
+/// @param nearest the input's point of the closest pair, where the input is several files
 Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
-                  const ObstacleAnswer& found);
+                  const ObstacleAnswer& found, const std::optional<SourcePoint>& nearest = std::nullopt);
 Json betweenJson(const BetweenObstacles& two);
 
 /// Both ends of an area in four digits; one number where they agree. Empty without an area.

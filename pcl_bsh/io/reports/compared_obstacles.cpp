@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/reports/compared_obstacles.h>
 
+#include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 namespace pcl_bsh::io {
@@ -14,14 +16,42 @@ void addEachOnce(std::vector<std::string>&& more, std::vector<std::string>& warn
   for (std::string& one : more) addOnce(std::move(one), warnings);
 }
 
+} // namespace
+
+std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std::vector<BetweenObstacles>& between,
+                      const char* part)
+{
+  std::ostringstream out;
+  const auto tell_distance = [&](const DistanceResult& closest) {
+    if (!closest.pair) return;
+    out << ", smallest distance " << closest.distance;
+    if (closest.distance < 0.0) out << " (" << -closest.distance << " deep)";
+  };
+  for (const ComparedObstacle& one : obstacles) {
+    out << one.name << ": " << nameOfState(one.found);
+    if (one.found.colliding > 0) out << " of " << counted(one.found.colliding, part);
+    if (one.found.unseen > 0) out << ", " << counted(one.found.unseen, one.loaded.partName()) << " unseen";
+    tell_distance(one.found.closest);
+    if (one.found.closest_pose >= 0) out << " at pose " << one.found.closest_pose;
+    out << '\n';
+  }
+  for (const BetweenObstacles& two : between) {
+    out << two.first << " and " << two.second << ": " << nameOfState(two.pair.verdict);
+    tell_distance(two.pair.closest);
+    for (const auto& [name, area] :
+         {std::pair{&two.first, &two.pair.first_within}, {&two.second, &two.pair.second_within}})
+      if (*area && (*area)->upper > 0.0) out << ", area of " << *name << " inside " << areaText(*area);
+    out << '\n';
+  }
+  return out.str();
+}
+
 double greatestClearance(const std::vector<ComparedObstacle>& obstacles)
 {
   double greatest = 0.0;
   for (const ComparedObstacle& one : obstacles) greatest = std::max(greatest, one.question.clearance.value_or(0.0));
   return greatest;
 }
-
-} // namespace
 
 ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,
                          std::vector<ComparedObstacle>& obstacles)
@@ -68,6 +98,21 @@ void ClashListing::readEarlier(const std::vector<ComparedObstacle>& obstacles, s
   }
 }
 
+void ClashListing::compare(ClashReport& list, const std::function<std::vector<std::string>(const ClashList&)>& compared,
+                           std::vector<std::string>& warnings) const
+{
+  if (const ClashList* const before = findList(earlier, list.name, list.question))
+    addEachOnce(compared(*before), warnings);
+  else if (previous)
+    list.previous = previous->string();
+}
+
+void ClashListing::complete(ClashLists& lists, std::vector<std::string>& warnings) const
+{
+  lists.between = between;
+  if (lists.haveNames() && previous) addEachOnce(warningsOfGone(lists, *previous, earlier), warnings);
+}
+
 ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
                   const std::vector<const SphereHierarchy*>& hierarchies, std::vector<ComparedObstacle>& obstacles,
                   const Answer& alone, std::vector<std::string>& warnings)
@@ -97,15 +142,13 @@ ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
                      .answer = has_name ? &one.found : nullptr};
     if (one.question.seen) list.unseen = has_name ? &one.answer.unseen : &alone.unseen;
     listUnseen(list);
-    if (const ClashList* const before = findList(listing.earlier, one.name, list.question))
-      addEachOnce(compareWithList(list, *listing.previous, *before, scan, *hierarchies[i]), warnings);
-    else if (listing.previous)
-      list.previous = listing.previous->string();
+    const auto compared = [&](const ClashList& before) {
+      return compareWithList(list, *listing.previous, before, scan, *hierarchies[i]);
+    };
+    listing.compare(list, compared, warnings);
     lists.obstacles.push_back(std::move(list));
   }
-  lists.between = listing.between;
-  if (lists.haveNames() && listing.previous)
-    addEachOnce(warningsOfGone(lists, *listing.previous, listing.earlier), warnings);
+  listing.complete(lists, warnings);
   return lists;
 }
 

@@ -11,6 +11,7 @@
 #include <pcl_bsh/question/obstacles.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,9 +38,16 @@ struct ComparedObstacle {
 ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,
                          std::vector<ComparedObstacle>& obstacles);
 
+/// The greatest clearance of the questions about obstacles.
+double greatestClearance(const std::vector<ComparedObstacle>& obstacles);
+
 /// askBetween() by names.
 std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<PlacedShape>& shapes,
                                          const std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored);
+
+/// One line for each of several obstacles, and for two of them. @param part a record of the input
+std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std::vector<BetweenObstacles>& between,
+                      const char* part);
 
 /// How the clashes of obstacles are listed.
 struct ClashListing {
@@ -54,6 +62,13 @@ struct ClashListing {
   /// @param warnings gets what requireComparable() tells
   /// @throws as readClashLists() and requireComparable() do
   void readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings);
+
+  /// Compares the list of an obstacle with its earlier one, where there is one. @param compared calls compareWithList()
+  void compare(ClashReport& list, const std::function<std::vector<std::string>(const ClashList&)>& compared,
+               std::vector<std::string>& warnings) const;
+
+  /// Adds what is no obstacle's alone: to be called when the lists of all obstacles are there.
+  void complete(ClashLists& lists, std::vector<std::string>& warnings) const;
 };
 
 /// The list of all clashes. Borrows `obstacles`, hierarchies and `alone`.

@@ -8,6 +8,8 @@
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/search/selected_records.h>
 
+#include <optional>
+
 namespace pcl_bsh::cli {
 
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
@@ -22,15 +24,46 @@ io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSe
   return obstacle;
 }
 
-std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::SurfaceSettings& settings, double& seconds,
-                                    const io::ReadSettings& reading, io::CloudFacts& facts, unsigned threads)
+namespace {
+
+/// One file, or its parts. The first of these has the remarks about the file.
+std::vector<io::Obstacle> load(const ObstacleChoice& choice, const Question& question, const Loading& loading,
+                               io::CloudFacts& facts, double& seconds)
 {
-  Step step("Loading " + parts.file.string());
-  const io::Mesh whole = io::readMesh(parts.file, &facts, reading, threads);
-  std::vector<io::Obstacle> obstacles = obstaclesOf(parts, whole.vertices, whole.triangles, settings);
-  obstacles.front().addRemarks(facts.remarks);
-  seconds += step.done(counted(obstacles.size(), "part") + ", " + counted(whole.triangles.size(), "triangle"));
-  return obstacles;
+  ReadChoice reading = loading.reading;
+  if (choice.unit) reading.obstacle_unit = choice.unit;
+  const io::ReadSettings settings = reading.ofObstacle(
+      choice.file, loading.input_unit, choice.uncertainty.value_or(question.obstacle_uncertainty).field);
+  const io::SurfaceSettings surface = {question.vertices_only};
+  if (!choice.parts && loading.shows)
+    return {loadObstacle(choice.file, surface, seconds, settings, &facts, question.threads)};
+  if (!choice.parts) return {io::readObstacle(choice.file, surface, settings, &facts, question.threads)};
+  std::optional<Step> step;
+  if (loading.shows) step.emplace("Loading " + choice.file.string());
+  const io::Mesh whole = io::readMesh(choice.file, &facts, settings, question.threads);
+  std::vector<io::Obstacle> loaded = obstaclesOf(*choice.parts, whole.vertices, whole.triangles, surface);
+  loaded.front().addRemarks(facts.remarks);
+  if (step) seconds += step->done(counted(loaded.size(), "part") + ", " + counted(whole.triangles.size(), "triangle"));
+  return loaded;
+}
+
+} // namespace
+
+std::vector<LoadedObstacle> loadObstacles(const std::vector<ObstacleChoice>& choices, const Question& question,
+                                          const Loading& loading, double& seconds,
+                                          const std::function<void(const ObstacleChoice&, const io::CloudFacts&)>& told)
+{
+  std::vector<LoadedObstacle> all;
+  std::vector<io::Obstacle> loaded; // of the last file
+  io::CloudFacts facts;
+  for (const ObstacleChoice& one : choices) {
+    if (one.part == 0) {
+      loaded = load(one, question, loading, facts = {}, seconds);
+      if (told) told(one, facts);
+    }
+    all.push_back({loaded[one.part], facts});
+  }
+  return all;
 }
 
 void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle& obstacle)

@@ -2,11 +2,16 @@
 // The obstacle of a command line: a cloud or, where its file has faces, a surface.
 #pragma once
 
+#include "obstacle_choice.h"
+#include "reading.h"
+
 #include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/query/result.h>
+#include <pcl_bsh/question/question.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,11 +23,25 @@ namespace pcl_bsh::cli {
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
                           const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads);
 
-/// Reads a file's parts, each an obstacle, as a step of the program. The first has the remarks about the file.
-/// @param seconds that it took are added
-/// @throws as io::readMesh(), whose last arguments these are, and io::obstaclesOf() do
-std::vector<io::Obstacle> loadParts(const io::MeshParts& parts, const io::SurfaceSettings& settings, double& seconds,
-                                    const io::ReadSettings& reading, io::CloudFacts& facts, unsigned threads);
+/// An obstacle, and the facts that its file states.
+struct LoadedObstacle {
+  io::Obstacle obstacle;
+  io::CloudFacts facts;
+};
+
+/// How obstacles are loaded.
+struct Loading {
+  const ReadChoice& reading;
+  std::optional<io::LengthUnit> input_unit; ///< as the input was read
+  bool shows = true;                        ///< each file is a step of the program
+};
+
+/// Loads obstacles of a question, each file with parts once.
+/// @param seconds that it took are added. @param told called for each file, once it is loaded; may be null
+/// @throws as io::readObstacle(), io::readMesh() and io::obstaclesOf() do; UsageError where a unit is not known
+std::vector<LoadedObstacle>
+loadObstacles(const std::vector<ObstacleChoice>& choices, const Question& question, const Loading& loading,
+              double& seconds, const std::function<void(const ObstacleChoice&, const io::CloudFacts&)>& told = nullptr);
 
 /// Fails unless a file can hold the obstacle and which of its points, or of its triangles, collide. Surfaces are .ply.
 /// @throws files::FileError; std::invalid_argument for a cloud whose field `collision` is of another type

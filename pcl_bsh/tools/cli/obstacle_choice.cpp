@@ -5,9 +5,9 @@
 #include "path.h"
 
 #include <pcl_bsh/io/text/format_error.h>
-#include <pcl_bsh/question/obstacle_names.h>
 #include <pcl_bsh/question/options.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -118,6 +118,61 @@ std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts
     throw UsageError("--obstacle: " + error.advice() + ", NAME=FILE");
   }
   return choices;
+}
+
+void SeveralObstacles::addTo(CLI::App& app)
+{
+  app.add_option("--obstacle", texts_,
+                 "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
+                 "again and again. Its own options follow after ';':\n"
+                 "\"NAME=FILE;pose=POSE;unit=mm\", and clearance=D, solid=true and\n"
+                 "uncertainty=U alike; parts=true makes an obstacle of each object or\n"
+                 "group of an .obj, or solid of an .stl, named PART or NAME/PART.\n"
+                 "Without NAME= its name is the file's. A path moves all of them")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+  app.add_flag("--between", between, "the obstacles are compared with each other, too, as they stand");
+  app.add_flag("--overlap", overlap,
+               "with --between: the area of each surface inside another obstacle that\n"
+               "is a solid, as an interval that holds it");
+  app.add_option("--ignore", ignored,
+                 "two names that are not compared, of obstacles or 'input'; * is any\n"
+                 "letters, \\: a colon within a name; may be given again and again")
+      ->type_name("FIRST:SECOND")
+      ->allow_extra_args(false);
+}
+
+void SeveralObstacles::readObstacles(const std::filesystem::path& first, std::vector<std::string>& warnings)
+{
+  std::vector<std::string> all = texts_;
+  if (!first.empty()) all.insert(all.begin(), first.string());
+  obstacles = parseObstacles(all, warnings);
+  ignoredPairs(); // fails now
+}
+
+void SeveralObstacles::requireConsistent(bool solid) const
+{
+  const auto refuse = [](const char* option, const char* wrong) {
+    throw UsageError(std::string(option) + ": " + wrong);
+  };
+  if (obstacles.empty() && (between || !ignored.empty()))
+    refuse(between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
+  const auto isSolid = [&](const ObstacleChoice& one) { return one.solid.value_or(solid); };
+  if (overlap && !between) refuse("--overlap", "is of obstacles that are compared with each other: give --between");
+  if (overlap && std::none_of(obstacles.begin(), obstacles.end(), isSolid))
+    refuse("--overlap", "no obstacle is a solid: give --solid, or solid=true of one");
+}
+
+IgnoredPairs SeveralObstacles::ignoredPairs() const
+{
+  std::vector<std::string> names;
+  for (const ObstacleChoice& one : obstacles) names.push_back(one.name);
+  try {
+    return {ignored, names};
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError("--ignore: " + error.advice());
+  }
 }
 
 } // namespace pcl_bsh::cli

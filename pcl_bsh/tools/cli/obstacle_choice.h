@@ -5,8 +5,11 @@
 
 #include <pcl_bsh/io/clouds/meshes/mesh_parts.h>
 #include <pcl_bsh/io/text/length_unit.h>
+#include <pcl_bsh/question/obstacle_names.h>
+#include <pcl_bsh/question/obstacles.h>
 #include <pcl_bsh/question/uncertainty.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
 #include <cstddef>
@@ -14,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::cli {
@@ -30,6 +34,9 @@ struct ObstacleChoice {
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {};
+
+  /// The obstacle where it stands.
+  PlacedShape placed(Shape shape) const { return {std::move(shape), pose, clearance, solid, uncertainty}; }
 };
 
 /// The values of --obstacle. A text that is the name of a file as a whole is that file. A file in parts gives one for
@@ -38,5 +45,32 @@ struct ObstacleChoice {
 /// @throws UsageError for a word that is no option of an obstacle, a value that its option refuses, two obstacles of
 ///   one name; files::FileError for a file of a pose, and as readMeshParts() does
 std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts, std::vector<std::string>& warnings);
+
+/// The options about several obstacles.
+struct SeveralObstacles {
+  std::vector<ObstacleChoice> obstacles; ///< that have names, or none
+  std::vector<std::string> ignored;      ///< pairs of them, as typed
+  bool between = false;                  ///< whether they are compared with each other
+  bool overlap = false;                  ///< and tell how much of one lies within another
+
+  void addTo(CLI::App& app);
+
+  /// Whether --obstacle is given.
+  bool areGiven() const { return !texts_.empty(); }
+
+  /// Reads the obstacles. @param first one more, which comes before them; empty: none
+  /// @throws as parseObstacles() and ignoredPairs() do
+  void readObstacles(const std::filesystem::path& first, std::vector<std::string>& warnings);
+
+  /// @param solid whether obstacles are solids that do not say themselves
+  /// @throws UsageError for options that exclude or need others
+  void requireConsistent(bool solid) const;
+
+  /// @throws UsageError where IgnoredPairs refuses them
+  IgnoredPairs ignoredPairs() const;
+
+private:
+  std::vector<std::string> texts_; ///< as typed
+};
 
 } // namespace pcl_bsh::cli

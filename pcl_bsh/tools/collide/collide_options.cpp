@@ -6,7 +6,6 @@
 #include <pcl_bsh/tools/cli/path.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 
-#include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/point_masks.h>
 
@@ -73,13 +72,7 @@ void requireConsistent(const CollideOptions& options)
     refuse("--obstacle-out", "are flags at one pose: leave out the path and --clashes, or give --seen");
   if (!options.unit.empty() && !options.distances && options.clashes.empty())
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
-  if (options.obstacles.empty() && (options.between || !options.ignored.empty()))
-    refuse(options.between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
-  const auto isSolid = [&](const ObstacleChoice& one) { return one.solid.value_or(options.question.solid); };
-  if (options.overlap && !options.between)
-    refuse("--overlap", "is of obstacles that are compared with each other: give --between");
-  if (options.overlap && std::none_of(options.obstacles.begin(), options.obstacles.end(), isSolid))
-    refuse("--overlap", "no obstacle is a solid: give --solid, or solid=true of one");
+  options.SeveralObstacles::requireConsistent(options.question.solid);
   if (!options.obstacles.empty() && options.obstacle_out)
     refuse("--obstacle-out", "is of one obstacle: leave it out, or give OBSTACLE alone");
   if (!options.obstacles.empty() && !options.pairs.empty())
@@ -91,43 +84,25 @@ void requireConsistent(const CollideOptions& options)
 }
 
 /// Positional names and those of --obstacle: INPUT OBSTACLE OUTPUT, or INPUT OUTPUT where obstacles have names.
-void setObstacles(CollideOptions& options, const std::vector<std::string>& given)
+void setObstacles(CollideOptions& options)
 {
-  if (given.empty()) {
+  if (!options.areGiven()) {
     if (options.output.empty())
       throw UsageError(std::string("command line: OUTPUT is required: see ") + collide_program + " --help");
     return;
   }
-  std::vector<std::string> all = given;
-  if (options.output.empty())
-    options.output = options.obstacle;
-  else
-    all.insert(all.begin(), options.obstacle.string());
+  if (options.output.empty()) std::swap(options.output, options.obstacle);
+  options.readObstacles(options.obstacle, options.warnings);
   options.obstacle.clear();
-  options.obstacles = parseObstacles(all, options.warnings);
-  options.ignoredPairs(); // fails now
 }
 
 } // namespace
-
-IgnoredPairs CollideOptions::ignoredPairs() const
-{
-  std::vector<std::string> names;
-  for (const ObstacleChoice& one : obstacles) names.push_back(one.name);
-  try {
-    return {ignored, names};
-  }
-  catch (const InvalidInput& error) {
-    throw UsageError("--ignore: " + error.advice());
-  }
-}
 
 std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
 {
   CollideOptions options;
   Question& question = options.question;
   question.threads = 0;
-  std::vector<std::string> obstacles;
   bool in_place = false;
   PoseOptions pose;
   PathOptions path;
@@ -136,24 +111,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("");
-  app.add_option("--obstacle", obstacles,
-                 "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
-                 "again and again. Its own options follow after ';':\n"
-                 "\"NAME=FILE;pose=POSE;unit=mm\", and clearance=D, solid=true and\n"
-                 "uncertainty=U alike; parts=true makes an obstacle of each object or\n"
-                 "group of an .obj, or solid of an .stl, named PART or NAME/PART.\n"
-                 "Without NAME= its name is the file's. A path moves all of them")
-      ->type_name("NAME=FILE")
-      ->allow_extra_args(false);
-  app.add_flag("--between", options.between, "the obstacles are compared with each other, too, as they stand");
-  app.add_flag("--overlap", options.overlap,
-               "with --between: the area of each surface inside another obstacle that\n"
-               "is a solid, as an interval that holds it");
-  app.add_option("--ignore", options.ignored,
-                 "two names that are not compared, of obstacles or 'input'; * is any\n"
-                 "letters, \\: a colon within a name; may be given again and again")
-      ->type_name("FIRST:SECOND")
-      ->allow_extra_args(false);
+  options.addTo(app);
   addQuestionOptions(app, question, {"clearance"});
   pose.addTo(app);
   path.addTo(app);
@@ -203,7 +161,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
       ->type_name("NAME");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
-  setObstacles(options, obstacles);
+  setObstacles(options);
   std::vector<std::filesystem::path> clouds = {options.input};
   if (options.obstacles.empty()) clouds.push_back(options.obstacle);
   for (const ObstacleChoice& one : options.obstacles)

@@ -7,7 +7,6 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
-#include <pcl_bsh/question/obstacle_names.h>
 #include <pcl_bsh/question/question.h>
 
 #include <cstdint>
@@ -22,13 +21,9 @@ inline constexpr auto collide_program = "pcl_bsh_collide";
 
 enum class Keep { flagged, colliding, free };
 
-struct CollideOptions {
+struct CollideOptions : SeveralObstacles {
   std::filesystem::path input;
-  std::filesystem::path obstacle;        ///< where there are no `obstacles`
-  std::vector<ObstacleChoice> obstacles; ///< that have names, or none
-  std::vector<std::string> ignored;      ///< pairs of them, as typed
-  bool between = false;                  ///< whether they are compared with each other
-  bool overlap = false;                  ///< and tell how much of one lies within another
+  std::filesystem::path obstacle; ///< where there are no `obstacles`
   std::filesystem::path output;
   std::optional<std::filesystem::path> obstacle_out;
   std::optional<std::filesystem::path> report;
@@ -47,9 +42,6 @@ struct CollideOptions {
   std::vector<std::string> warnings;       ///< of the options themselves
   std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
   CommandFiles files;                      ///< all that are read or written
-
-  /// @throws UsageError where IgnoredPairs refuses them
-  IgnoredPairs ignoredPairs() const;
 
   bool moves() const { return question.path.has_value() || !trajectory.empty(); }
 

@@ -19,7 +19,7 @@ io::ClashListing listingOf(const CollideOptions& options, const Question& questi
   };
   if (options.obstacles.empty()) add("", options.obstacle, question);
   for (const ObstacleChoice& one : options.obstacles)
-    add(one.name, one.file, questionOf(question, {Shape(), one.pose, one.clearance, one.solid, one.uncertainty}));
+    add(one.name, one.file, questionOf(question, one.placed(Shape())));
   listing.readEarlier(obstacles, warnings);
   return listing;
 }

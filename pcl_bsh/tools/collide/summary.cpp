@@ -38,36 +38,6 @@ std::string posesOfUnseen(const Answer::Unseen& unseen)
   return text.str();
 }
 
-/// One line for each of several obstacles, and for two of them.
-void tellObstacles(const CollisionReport& report, std::ostream& out)
-{
-  const auto distance = [](const DistanceResult& closest) {
-    std::ostringstream text;
-    if (!closest.pair) return std::string();
-    text << ", smallest distance " << closest.distance;
-    if (closest.distance < 0.0) text << " (" << -closest.distance << " deep)";
-    return text.str();
-  };
-  if (!report.haveNames()) return;
-  for (const io::ComparedObstacle& one : report.obstacles) {
-    out << one.name << ": " << io::nameOfState(one.found);
-    if (one.found.colliding > 0)
-      out << " of " << counted(one.found.colliding, report.input_is_surface ? "triangle" : "point");
-    if (one.found.unseen > 0) out << ", " << counted(one.found.unseen, one.loaded.partName()) << " unseen";
-    out << distance(one.found.closest);
-    if (one.found.closest_pose >= 0) out << " at pose " << one.found.closest_pose;
-    out << '\n';
-  }
-  for (const io::BetweenObstacles& two : report.between) {
-    out << two.first << " and " << two.second << ": " << io::nameOfState(two.pair.verdict)
-        << distance(two.pair.closest);
-    for (const auto& [name, area] :
-         {std::pair{&two.first, &two.pair.first_within}, {&two.second, &two.pair.second_within}})
-      if (*area && (*area)->upper > 0.0) out << ", area of " << *name << " inside " << io::areaText(*area);
-    out << '\n';
-  }
-}
-
 /// With the unit, where it is known.
 std::string distanceSummary(const io::DistanceReport& report)
 {
@@ -109,7 +79,8 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
   warn(collide_program, report.warnings);
   std::ostream& out = options.files.summary();
   const Answer& answer = report.answer;
-  tellObstacles(report, out);
+  if (report.haveNames())
+    out << io::summaryOf(report.obstacles, report.between, report.input_is_surface ? "triangle" : "point");
   out << answer.collisions.colliding << " of "
       << counted(report.input.points, report.input_is_surface ? "triangle" : "point")
       << (report.input.points == 1 ? " collides" : " collide");
@@ -127,7 +98,7 @@ void summarise(const CollideOptions& options, const CollisionReport& report, con
   if (const auto& pair = answer.closest.pair) {
     const std::vector<std::int32_t>& poses = answer.collisions.closest_pose;
     out << "; smallest distance " << distanceText(report);
-    if (report.question.path && pair->a < poses.size()) out << " at pose " << poses[pair->a];
+    if (report.question.path && pair->a < poses.size() && poses[pair->a] >= 0) out << " at pose " << poses[pair->a];
     out << ", between " << (report.input_is_surface ? "triangle " : "point ") << pair->a << " of the input and "
         << partOf(report) << ' ' << pair->b << " of " << nameOf(report);
   }
