@@ -26,6 +26,8 @@ constexpr NoAnswer no_answers[] = {{"indices", &Wanted::indices, "ask for flags,
                                    {"both_ways", &Wanted::both_ways, "ask once more, with the roles exchanged"},
                                    {"within", &Wanted::within, "ask for distances, which a receiver gets"}};
 
+} // namespace
+
 void requireAnswers(const Question& question, bool obstacle_is_site)
 {
   for (const QuestionOption& row : questionOptions()) {
@@ -53,7 +55,6 @@ void requireAnswers(const Question& question, bool obstacle_is_site)
                         "give exact or tolerance=LENGTH");
 }
 
-/// The facts that site.json states; no tile is read.
 NamedCloud namedSite(const Site& site)
 {
   NamedCloud cloud;
@@ -75,6 +76,17 @@ NamedCloud namedSite(const Site& site)
   return cloud;
 }
 
+void build(const Question& question, Shape& obstacle)
+{
+  obstacle.hierarchy(question.uncertaintyOfObstacle(), question.threads);
+  if (!question.solid) return;
+  if (!obstacle.isSurface())
+    throw InvalidOption("solid", obstacle.name() + " has no faces", "give a mesh that closes, or leave it out");
+  obstacle.solid(); // refused before a tile is read
+}
+
+namespace {
+
 /// One question, of two things that are there.
 class SiteAsking {
 public:
@@ -86,12 +98,7 @@ public:
     requireAnswers(part_.question, other != nullptr);
     if (visits() > 1 && means.answers && question.wanted.measures())
       throw InvalidInput(Input::result, "answers", "are kept of one visit to each tile", "ask for distances alone");
-    if (!shape) return;
-    shape->hierarchy(question.uncertaintyOfObstacle(), question.threads);
-    if (!question.solid) return;
-    if (!shape->isSurface())
-      throw InvalidOption("solid", shape->name() + " has no faces", "give a mesh that closes, or leave it out");
-    shape->solid(); // refused before a tile is read
+    if (shape) build(question, *shape);
   }
 
   SiteAnswer answer()

@@ -108,7 +108,7 @@ TilesRead visitTiles(const QuestionPart& part, TileQuery& tile_query, const std:
     std::vector<MetPoint> met;
     of_tile.collisions = find(tile, hierarchy, met);
     if (part.means.receiver) part.means.receiver(tile, cloud, of_tile);
-    return sum.numbersOf(tile, cloud, of_tile.collisions, part.other ? &met : nullptr);
+    return sum.numbersOf(tile, cloud, CollidingRecords(of_tile.collisions), part.other ? &met : nullptr);
   };
   return tile_query.visitAndAdd(
       tiles, ask, [&](const auto& numbers) { sum.add(numbers); }, part.other != nullptr);

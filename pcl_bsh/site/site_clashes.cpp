@@ -20,28 +20,27 @@ public:
     findClashes(PointsView{}, TrajectoryResult(), cluster_distance); // refuses a distance although no tile may collide
   }
 
-  Pieces piecesOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+  Pieces piecesOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& found,
                   const std::vector<MetPoint>* met) const
   {
     Pieces of_tile;
     of_tile.of_site = met != nullptr;
     const PointsView view = viewOf(cloud);
     const PointNames names(cloud);
-    const auto memberOf = [&](std::uint32_t i, const SitePoint& piece) {
-      const SitePoint name = names(cloud.data.data() + std::size_t{i} * cloud.point_step);
-      return Member{view.point(i), name, piece, found.distance[i], found.closest_pose[i]};
-    };
+    const auto nameOf = [&](std::uint32_t i) { return names(cloud.data.data() + std::size_t{i} * cloud.point_step); };
     const std::vector<Bounds> others = neighborsOf(tile);
     for (Clash& clash : findClashes(view, found, distance_)) {
-      const SitePoint piece = memberOf(clash.records.front(), {}).point;
+      const SitePoint piece = nameOf(clash.records.front());
       std::vector<Member> some;
-      for (const std::uint32_t i : clash.records) {
-        some.push_back(memberOf(i, piece));
+      Member nearest;
+      for (std::size_t k = 0; k < clash.records.size(); ++k) {
+        const std::uint32_t i = clash.records[k];
+        some.push_back({view.point(i), nameOf(i), piece, clash.distances[k], clash.closest_poses[k]});
+        if (i == clash.scan_point) nearest = some.back();
         if (isNear(some.back().place, others)) of_tile.border.push_back(some.back());
       }
       drawSome(some, most_points);
       of_tile.some.insert(of_tile.some.end(), some.begin(), some.end());
-      const Member nearest = memberOf(clash.scan_point, piece);
       const MetPoint of_model = met ? (*met)[clash.model_point] : MetPoint{{0, clash.model_point}, {0, 0, 0}};
       clash.clearRecords();
       of_tile.pieces.push_back({std::move(clash), nearest, of_model});
@@ -165,7 +164,7 @@ ClashFinder::ClashFinder(const Site& site, double cluster_distance)
 ClashFinder::~ClashFinder() = default;
 
 std::vector<double> ClashFinder::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
-                                           const TrajectoryResult& found, const std::vector<MetPoint>* met) const
+                                           const CollidingRecords& found, const std::vector<MetPoint>* met) const
 {
   return site::numbersOf(joining_->piecesOf(tile, cloud, found, met));
 }

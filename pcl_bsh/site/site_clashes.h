@@ -51,7 +51,7 @@ public:
 
   /// For ask(): returns the clashes in a tile as numbers, which may be kept for a finder of the same distance.
   /// @param met where the model is a site, the points that closest_point numbers; else null
-  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& found,
                                 const std::vector<MetPoint>* met) const;
 
   /// For ask(): adds the numbers from the given one on.

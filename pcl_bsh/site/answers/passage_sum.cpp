@@ -107,8 +107,9 @@ PassageSum::PassageSum(const QuestionPart& part, std::size_t poses)
 }
 
 std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud,
-                                          const TrajectoryResult& found, const std::vector<MetPoint>* met) const
+                                          const CollidingRecords& some, const std::vector<MetPoint>* met) const
 {
+  const TrajectoryResult& found = some.found;
   double nearest = infinity, earliest = infinity;
   for (std::size_t i = 0; i < found.distance.size(); ++i) {
     if (found.flags[i] == Verdict::free) continue;
@@ -122,7 +123,7 @@ std::vector<double> PassageSum::numbersOf(const Tile& tile, const pcl::PCLPointC
                    {static_cast<double>(contact.value_or(no_contact).pose), contact.value_or(no_contact).fraction});
   append(numbers, found.poses);
   if (clashes_ == nullptr) return numbers;
-  const std::vector<double> of_clashes = clashes_->numbersOf(tile, cloud, found, met);
+  const std::vector<double> of_clashes = clashes_->numbersOf(tile, cloud, some, met);
   numbers.insert(numbers.end(), of_clashes.begin(), of_clashes.end());
   return numbers;
 }

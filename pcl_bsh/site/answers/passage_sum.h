@@ -35,7 +35,7 @@ public:
 
   /// Returns the answer about a tile as numbers.
   /// @param met the points that closest_point numbers, where the model is a site
-  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const TrajectoryResult& found,
+  std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& some,
                                 const std::vector<MetPoint>* met = nullptr) const;
 
   void add(const std::vector<double>& numbers);

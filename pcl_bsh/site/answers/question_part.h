@@ -39,6 +39,16 @@ struct QuestionPart {
   }
 };
 
+/// Refuses answers that sites do not have. @throws InvalidInput
+void requireAnswers(const Question& question, bool obstacle_is_site);
+
+/// Builds an obstacle in memory, and what its faces enclose where that counts.
+/// @throws InvalidOption for a solid without faces, and as Shape does
+void build(const Question& question, Shape& obstacle);
+
+/// The facts that site.json states; no tile is read.
+NamedCloud namedSite(const Site& site);
+
 void findAny(const QuestionPart& part, SiteAnswer& answer);
 void flag(const QuestionPart& part, SiteAnswer& answer);         ///< the input's points, and the obstacle's in memory
 void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< of another site

@@ -70,8 +70,10 @@ public:
   /// run has kept are not asked about: add() gets these numbers on the first rank.
   /// @param find (tile, cloud, its hierarchy): its numbers, after the receiver. @param add (numbers)
   /// @param runs whether tiles that follow each other are better asked about on one rank
+  /// @param still as that of TileVisitor::visitAll()
   template <typename Find, typename Add>
-  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add, bool runs = false)
+  TilesRead visitAndAdd(const std::vector<std::uint32_t>& tiles, const Find& find, const Add& add, bool runs = false,
+                        const std::function<bool(std::uint32_t)>& still = nullptr)
   {
     TileAnswers* const answers = part_.means.answers;
     std::vector<std::uint32_t> left;
@@ -89,7 +91,7 @@ public:
     };
     constexpr std::size_t runs_of_rank = 4; // so many that the last ones make up for those that took long
     const std::size_t run = left.size() / (runs_of_rank * static_cast<std::size_t>(ranks()));
-    visitor_.visitAll(left, use(ask, left.size()), runs ? std::max<std::size_t>(run, 1) : 1);
+    visitor_.visitAll(left, use(ask, left.size()), runs ? std::max<std::size_t>(run, 1) : 1, still);
     return readOf(tiles.size());
   }
 

@@ -140,7 +140,8 @@ catch (...) {
   return std::current_exception();
 }
 
-void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run)
+void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run,
+                           const std::function<bool(std::uint32_t)>& still)
 {
   const diy::mpi::communicator comm = world();
   SharedCounter shared_counter;
@@ -152,6 +153,7 @@ void TileVisitor::visitAll(const std::vector<std::uint32_t>& tiles, const Use& u
   const std::size_t runs = (tiles.size() + run - 1) / run;
   for (std::size_t number = shared_counter.next(); number < runs; number = shared_counter.next()) {
     for (std::size_t place = number * run; place < std::min((number + 1) * run, tiles.size()) && !failure; ++place) {
+      if (still && !still(tiles[place])) continue;
       master.clear();
       master.add(0, new Block{tiles[place], static_cast<std::uint32_t>(place)}, new diy::Link);
       master.foreach (visit_block);

@@ -26,6 +26,9 @@ public:
   /// Whether anything within a box may be within reach. Never false where a point of it is.
   bool mayReach(const Bounds& box) const;
 
+  /// The box about all that is within reach. @pre the model has a point, and there is a pose
+  const Bounds& whole() const { return levels_.back().front(); }
+
 private:
   Bounds boxOf(const Bounds& part, std::size_t step) const;
   double shiftOf(std::size_t step) const;

@@ -2,13 +2,17 @@
 // pcl_bsh_site collide --clashes: the places of a site that collide, as pcl_bsh_collide lists them.
 #pragma once
 
+#include "output.h"
 #include "site_options.h"
 #include "site_report.h"
 
-#include <pcl_bsh/io/reports/clash_report.h>
+#include <pcl_bsh/io/reports/compared_obstacles.h>
 #include <pcl_bsh/site/site_clashes.h>
+#include <pcl_bsh/site/site_obstacles.h>
 
+#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,26 +23,29 @@ namespace pcl_bsh::cli {
 class SiteClashList {
 public:
   /// Reads the earlier list. To be called by all ranks.
+  /// @param obstacles in memory, with their questions; null: the obstacle is a site
   /// @throws files::FileError for a list that cannot be written or compared with
-  SiteClashList(const site::Site& site, const SiteOptions& options);
+  SiteClashList(const site::Site& site, const SiteOptions& options, const ObstacleFiles* obstacles);
 
-  bool isWanted() const noexcept { return finder_.has_value(); }
+  bool isWanted() const noexcept { return !finders_.empty(); }
 
   /// Warnings about the earlier list, a line each; see finish().
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Returns the finder that the question fills for the lists; null where no list is wanted.
-  site::ClashFinder* finder() { return finder_ ? &*finder_ : nullptr; }
+  /// Returns the finders that the question fills for the lists, one for each obstacle; none where no list is wanted.
+  std::vector<site::ClashFinder*> finders() const;
 
   /// The distance within which colliding points are one clash; 0 where no list is wanted.
   double clusterDistance() const noexcept { return distance_; }
 
   /// Writes the lists on the first rank. To be called by all ranks, after the question. Afterwards warnings() has those
   /// of the comparison with the earlier list.
-  /// @param surface the obstacle where it is a surface, else null
   /// @param report gets the numbers of clashes that are there now: certain ones, and those perhaps
-  void finish(const SphereHierarchy& obstacle, const io::Obstacle* surface, const site::SiteAnswer& found,
-              Json& report);
+  void finish(ObstacleFiles& obstacles, const site::SiteAnswer& found, Json& report);
+
+  /// Writes the lists of several obstacles.
+  void finish(ObstacleFiles& obstacles, const site::SiteObstaclesAnswer& found,
+              const std::vector<io::BetweenObstacles>& between, Json& report);
 
   /// Writes the lists where the obstacle is a site.
   void finish(const site::Site& obstacle, const site::SiteAnswer& found, Json& report);
@@ -49,18 +56,33 @@ public:
 private:
   using Visit = std::function<void(FormerPlaces&, const TrajectoryRequest& motion)>;
 
-  void write(site::SiteClashes clashes, const PointsView& model, const io::Obstacle* surface,
-             const site::SiteAnswer& found, std::function<io::SourcePoint(std::uint32_t)> model_source_of,
-             const Visit& visit, Json& report);
-  void compare(io::ClashReport& list, const Visit& visit);
+  /// The contents of one obstacle's list.
+  struct Listed {
+    io::ClashQuestion question;
+    site::SiteClashes clashes;
+    PointsView model;
+    const TrajectoryResult& found;
+    Visit visit; ///< shows its way to former places
+    const io::Obstacle* surface = nullptr;
+    const Answer::Unseen* unseen = nullptr;
+    std::string name = {};
+    std::optional<ObstacleAnswer> answer = {};
+    std::function<io::SourcePoint(std::uint32_t)> model_source_of = nullptr;
+    PointsView scan = {};
+    std::vector<Eigen::Isometry3d> poses = {};
+  };
+
+  Listed listed(ObstacleFiles& obstacles, std::size_t i, const TrajectoryResult& found) const;
+  void write(std::deque<Listed>& all, const std::vector<io::BetweenObstacles>& between, Json& report);
+  void compare(io::ClashLists& lists, const std::deque<Listed>& all);
 
   const site::Site& site_;
   const SiteOptions& options_;
   double distance_ = 0.0;
-  io::ClashList earlier_;
+  io::ClashListing listing_;
   std::string counts_;
   std::vector<std::string> warnings_;
-  std::optional<site::ClashFinder> finder_;
+  std::vector<std::unique_ptr<site::ClashFinder>> finders_; ///< of each obstacle
 };
 
 } // namespace pcl_bsh::cli

@@ -80,20 +80,24 @@ int answer(SiteOptions options, bool& keeps)
   const bool reports = !options.report.empty();
   if (tells && reports) files::requireWritable(options.report);
   const site::Site site = site::readSite(options.site);
-  SiteClashList clashes(site, options);
-  warn_of(clashes.warnings());
-  std::optional<ObstacleFile> file;
+  std::optional<ObstacleFiles> memory;
   if (!options.obstacleIsSite()) {
-    file.emplace(options);
-    warn_of(warningsOf(file->obstacle, options.obstacle));
+    memory.emplace(options);
+    std::vector<std::string> of_files;
+    for (const io::ComparedObstacle& one : memory->all)
+      for (std::string& remark : warningsOf(one.loaded, one.file)) addOnce(std::move(remark), of_files);
+    warn_of(of_files);
   }
   std::optional<site::Site> other;
-  if (!file) other = site::readSite(options.obstacle);
+  if (!memory) other = site::readSite(options.obstacle);
   std::vector<std::string> of_poses;
   Question& question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &of_poses);
   warn_of(of_poses);
-  SiteOutput output(site, file ? &*file : nullptr, clashes.clusterDistance(), options);
+  if (memory) memory->setQuestion(question);
+  SiteClashList clashes(site, options, memory ? &*memory : nullptr);
+  warn_of(clashes.warnings());
+  SiteOutput output(site, memory ? &*memory : nullptr, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
   std::optional<ObstacleOutput> obstacle_out;
@@ -110,25 +114,35 @@ int answer(SiteOptions options, bool& keeps)
     };
   }
   Json report = beginReport(site, options);
-  Shape shape;
-  if (file) {
-    shape = file->obstacle.shape(options.obstacle.string());
-    report["surface"] = io::surfaceJson(file->surface(), question.solid);
-  }
-  else {
+  const bool several = memory && memory->haveNames();
+  if (!memory)
     report["points_of_obstacle"] = other->points;
-  }
-  const site::SiteMeans means = {options.memory, output.answers(), clashes.finder(), output.receiver(),
-                                 obstacle_out ? obstacle_out->receiver() : nullptr};
-  site::SiteAnswer found = cli::named(
-      [&] { return file ? site::ask(question, site, shape, means) : site::ask(question, site, *other, means); },
-      question, {options.trajectory.empty() ? "--pose" : "--trajectory"});
+  else if (!several)
+    report["surface"] = io::surfaceJson(memory->surface(), question.solid);
+  const std::vector<site::ClashFinder*> finders = clashes.finders();
+  const site::SiteMeans means = {options.memory, output.answers(), finders.empty() ? nullptr : finders.front(),
+                                 output.receiver(), obstacle_out ? obstacle_out->receiver() : nullptr};
+  site::SiteObstaclesAnswer of_each;
+  const auto ask = [&] {
+    if (!memory) return site::ask(question, site, *other, means);
+    if (!several) return site::ask(question, site, memory->shapes.front().shape, means);
+    of_each = site::ask(question, site, memory->shapes, means, finders);
+    for (std::size_t i = 0; i < of_each.each.size(); ++i) memory->all[i].found = of_each.each[i];
+    return of_each.all;
+  };
+  site::SiteAnswer found = cli::named(ask, question, {options.trajectory.empty() ? "--pose" : "--trajectory"});
+  std::vector<io::BetweenObstacles> between;
+  if (options.between && tells) between = io::askBetween(question, memory->shapes, memory->all, options.ignoredPairs());
   if (obstacle_out) obstacle_out->finish();
-  if (file) file->write(found.obstacle_flags, options);
-  putAnswer(report, site, other ? &*other : nullptr, file ? file->obstacle.partName() : "point", options, found);
+  if (memory && !several) memory->write(found.obstacle_flags, options);
+  putAnswer(report, site, other ? &*other : nullptr, memory && !several ? memory->only().partName() : "point", options,
+            found);
+  if (several) putObstacles(report, site, *memory, of_each, between);
   if (clashes.isWanted()) {
-    if (file)
-      clashes.finish(shape.hierarchy(), file->surface(), found, report);
+    if (several)
+      clashes.finish(*memory, of_each, between, report);
+    else if (memory)
+      clashes.finish(*memory, found, report);
     else
       clashes.finish(*other, found, report);
   }
@@ -148,8 +162,10 @@ int answer(SiteOptions options, bool& keeps)
   report["warnings"] = warnings;
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
+  if (several) summary << io::summaryOf(memory->all, between, "point");
   if (clashes.isWanted()) summary << clashes.counts() << '\n';
-  if (file && file->surface() != nullptr) summary << report["surface"]["promise"].get<std::string>() << '\n';
+  if (memory && !several && memory->surface() != nullptr)
+    summary << report["surface"]["promise"].get<std::string>() << '\n';
   if (!options.obstacle_out.empty())
     summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';
   if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';

@@ -49,15 +49,21 @@ std::uint32_t checksumOf(const std::vector<Value>& values)
 
 /// Returns a text that tells one obstacle from another: checksums of the points of a cloud, and of its faces. A site is
 /// too large for that: its text says how it is made, and the sizes and times of its tiles.
-nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& options)
+nlohmann::json obstacleText(const ObstacleFiles* given, const SiteOptions& options)
 {
   nlohmann::json text = nlohmann::json::array();
   if (given != nullptr) {
-    const io::Obstacle& obstacle = given->obstacle;
-    text.push_back(checksumOf(obstacle.points().data));
-    for (const pcl::PCLPointField& field : obstacle.points().fields)
-      text.push_back({field.name, field.offset, field.datatype, field.count});
-    if (obstacle.isSurface()) text.push_back(checksumOf(*obstacle.triangles()));
+    for (std::size_t i = 0; i < given->all.size(); ++i) {
+      const io::ComparedObstacle& one = given->all[i];
+      text.push_back(checksumOf(one.loaded.points().data));
+      for (const pcl::PCLPointField& field : one.loaded.points().fields)
+        text.push_back({field.name, field.offset, field.datatype, field.count});
+      if (one.loaded.isSurface()) text.push_back(checksumOf(*one.loaded.triangles()));
+      if (!given->haveNames()) continue;
+      const Eigen::Isometry3d& pose = given->shapes[i].pose;
+      text.push_back({one.name, given->shapes[i].ignores_input, givenOptions(one.question),
+                      std::vector<double>(pose.data(), pose.data() + 16)});
+    }
     return text;
   }
   const site::Site other = site::readSite(options.obstacle);
@@ -71,7 +77,7 @@ nlohmann::json obstacleText(const ObstacleFile* given, const SiteOptions& option
 }
 
 /// All that the answer depends on, as a text.
-std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance,
+std::string questionOf(const site::Site& site, const ObstacleFiles* obstacles, double cluster_distance,
                        const SiteOptions& options)
 {
   const Question& asked = options.question;
@@ -79,7 +85,7 @@ std::string questionOf(const site::Site& site, const ObstacleFile* obstacle, dou
                              {"question", {asked.wanted.distances, options.alongPath(), asked.wanted.contacts}},
                              {"options", givenOptions(asked)},
                              {"clusters", cluster_distance},
-                             {"obstacle", obstacleText(obstacle, options)},
+                             {"obstacle", obstacleText(obstacles, options)},
                              {"poses", nlohmann::json::array()}};
   question["numbers"] = 4; // the version of the numbers that are kept of a tile
   for (const Eigen::Isometry3d& pose : asked.poses())
@@ -102,24 +108,35 @@ site::ResultField collisionField()
   return {collision_field_name, Type::UINT8, 0.0};
 }
 
-ObstacleFile::ObstacleFile(const SiteOptions& options)
+ObstacleFiles::ObstacleFiles(const SiteOptions& options)
 {
   double seconds = 0.0;
-  const io::ReadSettings reading = options.reading.ofObstacle(options.obstacle, options.reading.input_unit,
-                                                              options.question.obstacle_uncertainty.field);
-  const Question& question = options.question;
-  const io::SurfaceSettings surface = {question.vertices_only};
-  if (site::rankHere() == 0)
-    obstacle = loadObstacle(options.obstacle, surface, seconds, reading, &facts, question.threads);
-  else
-    obstacle = io::readObstacle(options.obstacle, surface, reading, &facts, question.threads);
-  if (!options.obstacle_out.empty()) requireWritableFlags(options.obstacle_out, obstacle);
+  const std::vector<ObstacleChoice> choices = options.choices();
+  std::vector<LoadedObstacle> loaded = loadObstacles(
+      choices, options.question, {options.reading, options.reading.input_unit, site::rankHere() == 0}, seconds);
+  const IgnoredPairs ignored = options.ignoredPairs();
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const std::string file = choices[i].file.string();
+    all.push_back({choices[i].name, file, std::move(loaded[i].obstacle), std::move(loaded[i].facts)});
+    shapes.push_back(choices[i].placed(all.back().loaded.shape(file)));
+    shapes.back().ignores_input = haveNames() && ignored.holds(kInputName, choices[i].name);
+  }
+  setQuestion(options.question);
+  if (!options.obstacle_out.empty()) requireWritableFlags(options.obstacle_out, only());
 }
 
-void ObstacleFile::write(const std::vector<Verdict>& flags, const SiteOptions& options) const
+void ObstacleFiles::setQuestion(const Question& question)
+{
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].question = pcl_bsh::questionOf(question, shapes[i]);
+    all[i].question.progress = nullptr;
+  }
+}
+
+void ObstacleFiles::write(const std::vector<Verdict>& flags, const SiteOptions& options) const
 {
   if (options.obstacle_out.empty() || site::rankHere() != 0) return;
-  writeFlags(options.obstacle_out, obstacle, flags, facts);
+  writeFlags(options.obstacle_out, only(), flags, all.front().facts);
 }
 
 std::vector<std::string> droppedBy(const site::ResultSite& out, const std::string& option,
@@ -142,7 +159,7 @@ std::vector<std::string> droppedBy(const site::ResultSite& out, const std::strin
   return lines;
 }
 
-SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance,
+SiteOutput::SiteOutput(const site::Site& site, const ObstacleFiles* obstacles, double cluster_distance,
                        const SiteOptions& options)
 : options_(options)
 {
@@ -150,7 +167,7 @@ SiteOutput::SiteOutput(const site::Site& site, const ObstacleFile* obstacle, dou
   setWhatStays(what_stays);
   const std::vector<site::ResultField> fields = resultFields(options);
   out_.emplace(site, options.out, fields,
-               site::Continuation{questionOf(site, obstacle, cluster_distance, options), options.resume});
+               site::Continuation{questionOf(site, obstacles, cluster_distance, options), options.resume});
   warnings_ = droppedBy(*out_, "--out", options.out, site, fields);
 }
 

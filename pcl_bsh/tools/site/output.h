@@ -4,7 +4,7 @@
 
 #include "site_options.h"
 
-#include <pcl_bsh/io/clouds/meshes/obstacle.h>
+#include <pcl_bsh/io/reports/compared_obstacles.h>
 #include <pcl_bsh/site/ask_site.h>
 #include <pcl_bsh/site/result_site.h>
 
@@ -16,20 +16,26 @@
 
 namespace pcl_bsh::cli {
 
-/// The obstacle of a site, and the facts that its file states besides points.
-struct ObstacleFile {
-  /// @throws files::FileError, also where its points shall be written and cannot; std::invalid_argument for an
-  ///   uncertainty that it cannot have
-  explicit ObstacleFile(const SiteOptions& options);
+/// The obstacles of a site that are in memory: the only one, which has no name, or several with names.
+struct ObstacleFiles {
+  /// @throws files::FileError, also where points of the only one shall be written and cannot; std::invalid_argument for
+  ///   an uncertainty that it cannot have
+  explicit ObstacleFiles(const SiteOptions& options);
 
-  /// Null where it is points.
-  const io::Obstacle* surface() const { return obstacle.isSurface() ? &obstacle : nullptr; }
+  bool haveNames() const { return !all.front().name.empty(); }
+  const io::Obstacle& only() const { return all.front().loaded; } ///< @pre they have no names
 
-  /// Writes its points or triangles with these flags, where they are asked for: on the first rank.
+  /// The surface of the only one; null where it is points.
+  const io::Obstacle* surface() const { return only().isSurface() ? &only() : nullptr; }
+
+  /// Tells each the question about it: the path has been read.
+  void setQuestion(const Question& question);
+
+  /// Writes points or triangles of the only one with these flags, where they are asked for: on the first rank.
   void write(const std::vector<Verdict>& flags, const SiteOptions& options) const;
 
-  io::Obstacle obstacle;
-  io::CloudFacts facts; ///< of its file
+  std::vector<io::ComparedObstacle> all;
+  std::vector<PlacedShape> shapes; ///< as they are asked about
 };
 
 /// The end of the message of a run with --out that ends before it has answered.
@@ -48,10 +54,11 @@ std::vector<std::string> droppedBy(const site::ResultSite& out, const std::strin
 /// The site of results, where it is asked for; else its receiver is null.
 class SiteOutput {
 public:
-  /// @param obstacle null where that is a site, too
+  /// @param obstacles null where the obstacle is a site, too
   /// @param cluster_distance of the lists of clashes; 0 where none is wanted
   /// @throws files::FileError for a folder that cannot be one
-  SiteOutput(const site::Site& site, const ObstacleFile* obstacle, double cluster_distance, const SiteOptions& options);
+  SiteOutput(const site::Site& site, const ObstacleFiles* obstacles, double cluster_distance,
+             const SiteOptions& options);
 
   /// Warnings for users before the question is answered, a line each.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }

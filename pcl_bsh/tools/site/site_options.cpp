@@ -9,7 +9,7 @@
 #include <pcl_bsh/io/text/small_letters.h>
 #include <pcl_bsh/site/site.h>
 #ifdef PCL_BSH_SITE_QUERIES
-#include <pcl_bsh/site/ask_site.h>
+#include <pcl_bsh/site/site_obstacles.h>
 #endif
 
 #include <algorithm>
@@ -38,6 +38,9 @@ Example: where does a machine come within 5 cm of it on its way? On one process,
   mpirun -n 4 pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
 Example: the same as a page, place by place
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --clashes clashes.html
+Example: which of two machines comes too near to the site or to the other
+  pcl_bsh_site collide valley --obstacle "press=press.stl;pose=2,1,0,0,0,0" --obstacle mill=mill.stl --between
+    --clearance 0.05 --clashes clashes.html
 Example: what of the machine lies where neither of two scanners saw that nothing is there
   pcl_bsh_site collide valley machine.pcd --clearance 0.05 --trajectory poses.txt --report way.json
     --seen --seen-angle 0.002 --origin "source:0=12,3,1.7;1=40,8,1.7"
@@ -83,8 +86,8 @@ struct CollideTexts {
   {
     app.add_option("OBSTACLE", options.obstacle,
                    "cloud or mesh to collide with, which must fit into memory; or another site of any size")
-        ->type_name("")
-        ->required();
+        ->type_name("");
+    options.addTo(app);
     app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
     app.add_option("--out", options.out, "new site with what was found of each point, as fields more of the same tiles")
         ->type_name("SITE");
@@ -130,6 +133,27 @@ struct CollideTexts {
         ->check(CLI::Range(1u, 1000000u));
   }
 
+  /// Reads several obstacles, and refuses what is not told of them. @throws UsageError
+  void readSeveral(SiteOptions& options) const
+  {
+    if (!options.areGiven() && options.obstacle.empty())
+      throw UsageError("OBSTACLE is required, or --obstacle NAME=FILE for each of several");
+    for (const auto& [given, option] : {std::pair{any, "--any"},
+                                        {closest, "--closest"},
+                                        {distances, "--distances"},
+                                        {options.question.seen, "--seen"},
+                                        {!options.obstacle_out.empty(), "--obstacle-out"}})
+      if (given && options.areGiven())
+        throw UsageError(std::string(option) +
+                         ": is not told of several obstacles of a site: leave it out, or give OBSTACLE alone");
+    if (options.areGiven()) options.readObstacles(options.obstacle, options.warnings);
+    options.requireConsistent(options.question.solid);
+    for (const ObstacleChoice& one : options.obstacles)
+      if (std::filesystem::is_directory(one.file))
+        throw UsageError("--obstacle: " + one.file.string() + ": is a folder: ask about a site alone, as OBSTACLE");
+    if (options.areGiven()) options.obstacle.clear();
+  }
+
   /// Requires the options that --seen needs, and refuses those that it excludes. @throws UsageError
   void requireSight(const SiteOptions& options) const
   {
@@ -146,7 +170,9 @@ struct CollideTexts {
   /// @throws UsageError for options that exclude each other
   void read(SiteOptions& options)
   {
+    readSeveral(options);
     const bool moves = !options.trajectory.empty();
+    const bool several = !options.obstacles.empty();
     if (any + closest + distances + moves > 1)
       throw UsageError("--any, --closest, --distances, --trajectory: more than one is given: give one");
     const bool lists = !options.clashes.empty();
@@ -157,15 +183,18 @@ struct CollideTexts {
     if (moves) question.path = {Eigen::Isometry3d::Identity()}; // whatever they are
     Wanted& wanted = question.wanted;
     wanted.any = any;
-    wanted.closest = closest;
+    wanted.closest = closest || several;
     wanted.distances = distances;
     wanted.flags = needs_clearance && !any;
-    wanted.obstacle_flags = wanted.flags && !moves && !lists && (!two_sites || !options.obstacle_out.empty());
+    wanted.overlap = options.overlap;
+    wanted.obstacle_flags =
+        wanted.flags && !several && !moves && !lists && (!two_sites || !options.obstacle_out.empty());
     wanted.contacts = lists || (moves && !question.accuracy.stopsEarly());
     wanted.poses = lists && question.swept == 0.0;
     wanted.unseen_places = lists;
     wanted.spacings = true;
-    requireAccepted(question, {"--pose"}, [&] { site::check(question, two_sites); });
+    requireAccepted(question, {"--pose"},
+                    [&] { several ? site::checkOfSeveral(question) : site::check(question, two_sites); });
     if (question.seen) requireSight(options);
     if (!options.obstacle_out.empty() && (any || closest || distances || ((moves || lists) && !question.seen)))
       throw UsageError("--obstacle-out: are flags at one pose: leave out what else is asked, or give --seen");
@@ -203,6 +232,8 @@ struct CollideTexts {
     CommandFiles& files = options.files;
     files.reads("SITE", options.site / site::site_file_name);
     files.reads("OBSTACLE", two_sites ? options.obstacle / site::site_file_name : options.obstacle);
+    for (const ObstacleChoice& one : options.obstacles)
+      if (one.part == 0) files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
     files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
     files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
     files.writesFile("--obstacle-out", options.obstacle_out);
@@ -277,7 +308,10 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
 #ifdef PCL_BSH_SITE_QUERIES
   if (options.command == SiteCommand::collide) {
     texts.read(options);
-    options.reading = reading.read({options.obstacle});
+    std::vector<std::filesystem::path> clouds;
+    for (const ObstacleChoice& one : options.choices())
+      if (one.part == 0) clouds.push_back(one.file);
+    options.reading = reading.read(clouds);
     if (options.reading.namesUnits() && options.obstacleIsSite())
       throw UsageError("--obstacle-unit: OBSTACLE is a site, too: make one of both with --to-unit");
     options.unit = options.reading.unitOfReports(options.unit, options.reading.input_unit);

@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_site.
 #pragma once
 
+#include <pcl_bsh/tools/cli/obstacle_choice.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
@@ -19,7 +20,7 @@ inline constexpr auto site_program = "pcl_bsh_site";
 
 enum class SiteCommand : std::uint8_t { make, info, validate, write, collide };
 
-struct SiteOptions {
+struct SiteOptions : SeveralObstacles {
   SiteCommand command = SiteCommand::info;
   std::vector<std::filesystem::path> clouds; ///< to make a site of
   std::filesystem::path site;
@@ -30,6 +31,11 @@ struct SiteOptions {
   bool json = false; ///< of `info` and `validate`: print JSON
 
   // of `collide`
+  /// The obstacles that are in memory: several, or the only one, which has no name.
+  std::vector<ObstacleChoice> choices() const
+  {
+    return obstacles.empty() ? std::vector<ObstacleChoice>{{"", obstacle}} : obstacles;
+  }
   /// Whether the obstacle is a site, too: a folder.
   bool obstacleIsSite() const { return std::filesystem::is_directory(obstacle); }
   /// The question. Its path is that of `trajectory`, once that is read. Its threads are those of each process. For

@@ -21,6 +21,11 @@ Json named(const site::Site& site, const site::SitePoint& point)
   return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
 }
 
+void putFlags(Json& report, const site::SiteAnswer& found)
+{
+  putCounts(report, "", found.collisions.colliding, found.collisions.undecided);
+}
+
 void putPath(Json& report, const site::SiteAnswer& found, const Question& question)
 {
   report["poses"] = question.poses().size();
@@ -39,7 +44,9 @@ void putPath(Json& report, const site::SiteAnswer& found, const Question& questi
 
 Json beginReport(const site::Site& site, const SiteOptions& options)
 {
-  Json report = {{"site", options.site.string()}, {"obstacle", options.obstacle.string()}, {"points", site.points}};
+  Json report = {{"site", options.site.string()}};
+  if (options.obstacles.empty()) report["obstacle"] = options.obstacle.string();
+  report["points"] = site.points;
   if (options.question.clearance) report["clearance"] = *options.question.clearance;
   report["accuracy"] = options.question.accuracy.text();
   report["options"] = io::optionsJson(options.question);
@@ -56,6 +63,8 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
 {
   const Question& question = options.question;
   const Wanted& wanted = question.wanted;
+  if (!options.obstacles.empty())
+    return options.alongPath() ? putPath(report, found, question) : putFlags(report, found);
   if (wanted.any) {
     report["collides"] = found.any.verdict == Verdict::colliding;
     report["undecided"] = found.any.verdict == Verdict::undecided;
@@ -77,7 +86,7 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
     putPath(report, found, question);
   }
   else {
-    putCounts(report, "", found.collisions.colliding, found.collisions.undecided);
+    putFlags(report, found);
   }
   if (question.seen) {
     report["unseen"] = io::unseenJson(found.unseen);
@@ -85,6 +94,24 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
     putTiles(report, "tiles_of_beams", found.beam_tiles);
   }
   if (wanted.obstacle_flags) putCounts(report, "_of_obstacle", found.obstacle_colliding, found.obstacle_undecided);
+}
+
+void putObstacles(Json& report, const site::Site& site, const ObstacleFiles& obstacles,
+                  const site::SiteObstaclesAnswer& found, const std::vector<io::BetweenObstacles>& between)
+{
+  report["distance"] = io::orNull(found.all.closest.distance);
+  if (found.closest != kNothing) report["closest_obstacle"] = obstacles.all[found.closest].name;
+  report["obstacles"] = report["between"] = Json::array();
+  for (std::size_t i = 0; i < found.each.size(); ++i) {
+    const io::ComparedObstacle& one = obstacles.all[i];
+    std::optional<io::SourcePoint> nearest;
+    if (const auto& pair = found.each[i].pair)
+      nearest = io::SourcePoint{site.sources.at(pair->a.source).file, pair->a.record};
+    report["obstacles"].push_back(io::obstacleJson(one.name, {one.question, site.folder.string(), one.file},
+                                                   one.loaded.isSurface() ? &one.loaded : nullptr, found.each[i],
+                                                   nearest));
+  }
+  for (const io::BetweenObstacles& two : between) report["between"].push_back(io::betweenJson(two));
 }
 
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run)

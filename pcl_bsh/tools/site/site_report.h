@@ -2,10 +2,11 @@
 // The report of pcl_bsh_site collide: its question, and the parts that do not depend on the question.
 #pragma once
 
+#include "output.h"
 #include "plan.h"
 #include "site_options.h"
 
-#include <pcl_bsh/site/ask_site.h>
+#include <pcl_bsh/site/site_obstacles.h>
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,10 @@ void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 /// @param part of an obstacle in memory: "point" or "triangle"
 void putAnswer(Json& report, const site::Site& site, const site::Site* other, const std::string& part,
                const SiteOptions& options, const site::SiteAnswer& found);
+
+/// Adds the answers about each of several obstacles, and about two of them.
+void putObstacles(Json& report, const site::Site& site, const ObstacleFiles& obstacles,
+                  const site::SiteObstaclesAnswer& found, const std::vector<io::BetweenObstacles>& between);
 
 /// Adds the cost of the tiles, and the time that the run would take on other numbers of ranks.
 void putPlan(Json& report, const std::vector<unsigned>& ranks, const MeasuredRun& run);
