@@ -16,9 +16,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
@@ -32,7 +34,7 @@ struct Options : ProgramOptions {
   fs::path folder;
   std::vector<double> scales = {0.53, 5.3};
   std::string clearance = "0.05", memory = "2G", tile_points = "4M";
-  unsigned ranks = 1;
+  unsigned ranks = 1, parts = 0, threads = 1;
   std::string chart;
 };
 
@@ -74,6 +76,51 @@ Cost costOf(const std::vector<std::string>& command)
           static_cast<double>(usage.ru_maxrss) / 1024.0};
 }
 
+/// Writes pipes of 400 triangles each, as parts along a path of poses of a tunnel's axis.
+void writeParts(const fs::path& file, const fs::path& poses, unsigned count)
+{
+  std::vector<std::array<double, 12>> frames; // upper rows of matrices
+  std::ifstream in(poses);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream numbers(line);
+    std::array<double, 12> frame;
+    if (std::all_of(frame.begin(), frame.end(), [&](double& x) { return bool(numbers >> x); })) frames.push_back(frame);
+  }
+  std::mt19937 random(5);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  std::ofstream out(file);
+  constexpr int rings = 25, corners = 8;
+  for (unsigned i = 0; i < count; ++i) {
+    const std::array<double, 12>& frame = frames[(2 * std::size_t{i} + 1) * frames.size() / (2 * std::size_t{count})];
+    const double y = between(-3.6, 3.6), z = between(-1.5, 4.0), radius = between(0.05, 0.3);
+    const double length = between(0.3, 1.5);
+    out << "o part" << i << '\n';
+    for (int ring = 0; ring < rings; ++ring) {
+      for (int corner = 0; corner < corners; ++corner) {
+        const double angle = 0.785398163397 * corner, x = length * ring / (rings - 1);
+        const double p[] = {x, y + radius * std::cos(angle), z + radius * std::sin(angle)};
+        out << 'v';
+        for (std::size_t k = 0; k < 12; k += 4)
+          out << ' ' << text(frame[k] * p[0] + frame[k + 1] * p[1] + frame[k + 2] * p[2] + frame[k + 3], 9);
+        out << '\n';
+      }
+    }
+    const int first = static_cast<int>(i) * rings * corners + 1;
+    const auto at = [&](int ring, int corner) { return first + ring * corners + corner % corners; };
+    for (int ring = 0; ring + 1 < rings; ++ring)
+      for (int c = 0; c < corners; ++c)
+        out << "f " << at(ring, c) << ' ' << at(ring, c + 1) << ' ' << at(ring + 1, c + 1) << ' ' << at(ring + 1, c)
+            << '\n';
+    for (const int ring : {0, rings - 1}) {
+      out << 'f';
+      for (int c = 0; c < corners; ++c) out << ' ' << at(ring, ring == 0 ? corners - 1 - c : c);
+      out << '\n';
+    }
+  }
+}
+
 class Sites {
 public:
   Sites(const Options& options, Table& table) : options_(options), table_(table)
@@ -106,6 +153,20 @@ public:
     growth.points = nlohmann::json::parse(std::ifstream(report)).at("points").get<double>();
     add(growth, "make", 1, growth.make);
     add(growth, "path", options_.ranks, growth.path);
+    if (options_.parts > 0) {
+      const fs::path parts = options_.folder / "parts.obj";
+      writeParts(parts, tunnel / "poses.txt", options_.parts);
+      const auto askAbout = [&](const std::string& obstacles) {
+        return costOf({site_program, "collide", site.string(), "--obstacle", obstacles, "--clearance",
+                       options_.clearance, "--memory", options_.memory, "--threads", std::to_string(options_.threads),
+                       "--clashes", (options_.folder / "clashes.json").string(), "--report", report.string()});
+      };
+      const Cost of_parts =
+          medianOf("parts", scale, [&] { return askAbout("plant=" + parts.string() + ";parts=true"); });
+      add(growth, "parts", 1, of_parts);
+      writeParts(parts, tunnel / "poses.txt", 1);
+      add(growth, "a part", 1, medianOf("a part", scale, [&] { return askAbout("plant=" + parts.string()); }));
+    }
     fs::remove_all(site);
     return growth;
   }
@@ -218,6 +279,9 @@ int main(int argc, char** argv)
       ->capture_default_str();
   app.add_option("--ranks", options.ranks, "of the path, by mpirun")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--clearance", options.clearance, "in metres")->capture_default_str();
+  app.add_option("--parts", options.parts, "parts of an .obj along the tunnel, which are asked about in one question")
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "of that question")->capture_default_str();
   app.add_option("--memory", options.memory, "of each process")->capture_default_str();
   app.add_option("--tile-points", options.tile_points, "of a tile, at most")->capture_default_str();
 #ifdef PCL_BSH_BENCH_CHARTS
