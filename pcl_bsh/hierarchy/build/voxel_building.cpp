@@ -153,6 +153,9 @@ private:
 
   void fitSpheres()
   {
+    // Balls of one radius are their middles, and so much more.
+    const bool of_one_size = !voxel_.radii || std::equal(voxel_.radii + 1, voxel_.radii + voxel_.count, voxel_.radii);
+    const double ball = voxel_.radii ? static_cast<double>(voxel_.radii[0]) / voxel_.frame.unit : 0.0;
     const double slack = storedSlack(voxel_.frame);
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       Node& node = nodes_[n];
@@ -161,13 +164,13 @@ private:
         const std::uint32_t begin = node.begin[i], end = node.begin[i + 1];
         const std::array<float, 3> c = center(begin, end, scratch_.bounds[n * kNodeChildren + i]);
         node.x[i] = c[0], node.y[i] = c[1], node.z[i] = c[2];
-        if (voxel_.radii)
+        if (!of_one_size)
           node.r[i] = radiusOverBalls(begin, end, c, slack);
         else
           squared[i] = farthestSquared(voxel_.x() + begin, voxel_.y() + begin, voxel_.z() + begin, end - begin, c[0],
                                        c[1], c[2]);
       }
-      if (!voxel_.radii) storeRadii(squared, roundUp(slack), node.r);
+      if (of_one_size) storeRadii(squared, roundUp((slack + ball) * (1.0 + kFewDoubleRoundings)), node.r);
       node.clearUnused();
     }
   }
