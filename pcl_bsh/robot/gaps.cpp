@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
+#include <pcl_bsh/hierarchy/storage.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/robot/convex_distance.h>
 #include <pcl_bsh/robot/gaps.h>
@@ -13,16 +16,6 @@
 namespace pcl_bsh::robots {
 
 namespace {
-
-constexpr std::size_t kCoarse = 8, kFine = 48; ///< cubes of a field along an edge
-
-Eigen::Isometry3d isometry(const Kinematics::Pose& pose)
-{
-  Eigen::Isometry3d all = Eigen::Isometry3d::Identity();
-  all.linear() = pose.rotation;
-  all.translation() = pose.translation;
-  return all;
-}
 
 void require(double length, const char* name, bool above_zero)
 {
@@ -79,15 +72,41 @@ const std::vector<double>& checkedUncertainties(const std::vector<double>& of_jo
   return of_joints;
 }
 
+/// How far an edge of the one and the other triangle may move, at least, until it pierces that no more: until it meets
+/// the triangle's rim, or the triangle one of its ends.
+double pierced(const TriangleDistance& distance, const Triangle3& a, const Triangle3& b)
+{
+  double best = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Triangle3 edge = {a[i], a[(i + 1) % 3], a[(i + 1) % 3]};
+    if (distance.compare(edge, b, 0.0) > 0) continue;
+    double least = kInfinity;
+    const auto take = [&](const TriangleDistance::Enclosure& of) {
+      least = std::min(least, std::isfinite(of.high) ? of.low : 0.0);
+    };
+    for (std::size_t k = 0; k < 3 && least > best; ++k)
+      take(distance.enclose(edge, Triangle3{b[k], b[(k + 1) % 3], b[(k + 1) % 3]}));
+    for (std::size_t k = 0; k < 2 && least > best; ++k) take(distance.enclose(edge[k], b));
+    best = std::max(best, least);
+  }
+  return best;
+}
+
 Interval ofMeshes(const SphereHierarchy& a, const Kinematics::Pose& pose_a, const SphereHierarchy& b,
-                  const Kinematics::Pose& pose_b, double limit, std::uint32_t* record = nullptr)
+                  const Kinematics::Pose& pose_b, double limit)
 {
   const double uncertain = a.storage().uncertainty.most + b.storage().uncertainty.most;
   DistanceRequest request; // of the measured places
   request.max_distance = std::max(limit + uncertain, 0.0);
-  const DistanceResult found = closestPair({a, isometry(pose_a)}, {b, isometry(pose_b)}, request);
+  DistanceResult found = closestPair({a, pose_a.isometry()}, {b, pose_b.isometry()}, request);
   if (!found.pair) return {limit, kInfinity};
-  if (record) *record = found.pair->b;
+  const PointsView &view_a = a.view(), &view_b = b.view();
+  if (found.interval.upper == 0.0 && view_a.triangles && view_b.triangles) {
+    const Triangle3 one = view_a.triangles->triangle(found.pair->a), other = view_b.triangles->triangle(found.pair->b);
+    const double depth = std::max(pierced(TriangleDistance(pose_a.isometry(), pose_b.isometry()), one, other),
+                                  pierced(TriangleDistance(pose_b.isometry(), pose_a.isometry()), other, one));
+    found.interval.upper = -depth;
+  }
   return {found.interval.lower - uncertain,
           found.interval.upper + uncertaintyOf(a, found.pair->a) + uncertaintyOf(b, found.pair->b)};
 }
@@ -99,23 +118,9 @@ Gaps::Gaps(Robot robot_given, std::vector<Obstacle> obstacles_given, const World
   options(checked(options_given)),
   kinematics(robot),
   base{options.base.linear(), options.base.translation()},
-  parts(robot, kinematics, checkedUncertainties(options.joint_uncertainties, kinematics, robot))
+  parts(robot, kinematics, checkedUncertainties(options.joint_uncertainties, kinematics, robot)),
+  obstacles_(std::move(obstacles_given))
 {
-  setObstacles(std::move(obstacles_given));
-}
-
-Gaps::Surroundings::Surroundings(std::vector<Obstacle> given, const Eigen::Vector3d& middle, double reach)
-: obstacles(std::move(given)),
-  coarse(obstacles, middle, reach, kCoarse, reach),
-  fine(obstacles, middle, reach, kFine, 0.25 * reach)
-{
-}
-
-void Gaps::setObstacles(std::vector<Obstacle> given)
-{
-  double reach = parts.extent;
-  for (const Kinematics::Body& body : kinematics.bodies()) reach = std::max(reach, body.reach + parts.extent);
-  surroundings_ = std::make_unique<const Surroundings>(std::move(given), base.translation, std::max(reach, 1e-30));
 }
 
 void Gaps::setObstacles(std::vector<Obstacle> placed, const std::vector<Eigen::Isometry3d>& T_world_obstacle)
@@ -128,14 +133,6 @@ void Gaps::setObstacles(std::vector<Obstacle> placed, const std::vector<Eigen::I
     placed[i].pose = {T_world_obstacle[i].linear(), T_world_obstacle[i].translation()};
   }
   setObstacles(std::move(placed));
-}
-
-Gap Gaps::meshToObstacle(const Piece& piece, const Kinematics::Pose& pose, const Obstacle& obstacle, double limit) const
-{
-  Gap gap;
-  static_cast<Interval&>(gap) = ofMeshes(*piece.surface, pose, obstacle.hierarchy(), obstacle.pose, limit, &gap.record);
-  gap.possible = gap.record;
-  return gap;
 }
 
 double Gaps::doubt(const Ball& ball, std::size_t rest) const
@@ -152,10 +149,14 @@ ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit
   const Kinematics::Pose pose = poses[ball.body] * piece.pose;
   const double off = doubt(ball, 0), padded = limit + ball.padding + off;
   ObstacleGap best{{{padded, kInfinity}}};
+  const auto patch = [&]() -> Patch {
+    const std::uint32_t* const records = parts.records.data() + ball.record;
+    return {*piece.surface, records, records + ball.records, centerOf(ball, poses), ball.spread};
+  };
   for (std::size_t i = 0; i < obstacles().size(); ++i) {
     const double within = std::min(padded, best.upper);
-    const Gap gap = piece.solid ? obstacles()[i].gap(*piece.solid, pose, within)
-                                : meshToObstacle(piece, pose, obstacles()[i], within);
+    const Gap gap =
+        piece.solid ? obstacles_[i].gap(*piece.solid, pose, within) : obstacles_[i].gap(patch(), pose, within);
     if (gap.record == kNothing) continue;
     if (gap.lower < best.lower || best.possible == kNothing) {
       best.lower = std::min(best.lower, gap.lower);
@@ -170,6 +171,24 @@ ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit
   }
   static_cast<Interval&>(best) = less(best, ball.padding, off);
   return best;
+}
+
+double Gaps::hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double enough) const
+{
+  const Piece &piece_a = parts.pieces[a.piece], &piece_b = parts.pieces[b.piece];
+  if (piece_a.corners.rows() == 0 || piece_b.corners.rows() == 0) return -kInfinity;
+  const auto reachOf = [](const Eigen::MatrixX3d& corners, const Kinematics::Pose& pose) {
+    return [&](const Eigen::Vector3d& direction) {
+      const Eigen::Vector3d along = pose.rotation.transpose() * direction;
+      Eigen::Index most = 0;
+      (corners.col(0) * along.x() + corners.col(1) * along.y() + corners.col(2) * along.z()).maxCoeff(&most);
+      return pose * corners.row(most).transpose();
+    };
+  };
+  const Kinematics::Pose pose_a = poses[a.body] * piece_a.pose, pose_b = poses[b.body] * piece_b.pose;
+  const double less = a.padding + b.padding + doubt(a, common) + doubt(b, common) +
+                      piece_a.surface->storage().uncertainty.most + piece_b.surface->storage().uncertainty.most;
+  return convexDistance(reachOf(piece_a.corners, pose_a), reachOf(piece_b.corners, pose_b), enough + less).lower - less;
 }
 
 Interval Gaps::between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const

@@ -2,11 +2,12 @@
 // Shared by a robot's questions: its parts, the obstacles, and gaps of these.
 #pragma once
 
-#include <pcl_bsh/robot/distance_field.h>
+#include <pcl_bsh/robot/obstacle_gap.h>
 #include <pcl_bsh/robot/parts.h>
 #include <pcl_bsh/robot/robot_world.h>
 
-#include <memory>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh::robots {
@@ -25,7 +26,7 @@ public:
   Gaps(const Gaps&) = delete;
   Gaps& operator=(const Gaps&) = delete;
 
-  void setObstacles(std::vector<Obstacle> obstacles);
+  void setObstacles(std::vector<Obstacle> obstacles) noexcept { obstacles_ = std::move(obstacles); }
   /// @throws InvalidInput for another number of poses, and for one that is not rigid
   void setObstacles(std::vector<Obstacle> obstacles, const std::vector<Eigen::Isometry3d>& T_world_obstacle);
 
@@ -34,22 +35,26 @@ public:
 
   Eigen::Vector3d centerOf(const Ball& ball, const Poses& poses) const { return poses[ball.body] * ball.center; }
 
-  /// Bounds of the gap between a place and all obstacles; the nearer one takes longer.
-  Interval roughly(const Eigen::Vector3d& place, double enough) const
+  /// Whether all obstacles are certainly farther than the limit from a place.
+  bool areBeyond(const Eigen::Vector3d& place, double limit) const
   {
-    const Interval gap = surroundings_->coarse.gap(place);
-    return gap.lower > enough ? gap : surroundings_->fine.gap(place);
+    return std::all_of(obstacles_.begin(), obstacles_.end(),
+                       [&](const Obstacle& obstacle) { return obstacle.isBeyond(place, limit); });
   }
 
   /// How far the places that the ball's motion is about may be off, seen from the body `rest`, by uncertain joints.
   double doubt(const Ball& ball, std::size_t rest) const;
 
-  /// The gap between a ball's piece, with its padding, and all obstacles, up to the limit.
+  /// The gap between what a ball without parts holds, with its padding, and all obstacles, up to the limit.
   ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit) const;
 
   /// The gap between the pieces of two balls, with their paddings. Beyond the limit the upper bound may be infinite.
   /// @param common the body that neither moves against (LinkPair)
   Interval between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const;
+
+  /// At least how far the pieces of two balls are apart by the hulls of meshes.
+  /// @param enough more need not be told
+  double hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double enough) const;
 
   /// @param for_certain what is nearest for certain; else what may be
   Meeting meetingOf(const Ball& ball, const ObstacleGap& gap, bool for_certain) const;
@@ -67,21 +72,10 @@ public:
   const Kinematics::Pose base;
   const Parts parts;
 
-  const std::vector<Obstacle>& obstacles() const noexcept { return surroundings_->obstacles; }
+  const std::vector<Obstacle>& obstacles() const noexcept { return obstacles_; }
 
 private:
-  /// Replaced as a whole: what fails leaves the one before.
-  struct Surroundings {
-    /// @param reach of the robot about the middle
-    Surroundings(std::vector<Obstacle> obstacles, const Eigen::Vector3d& middle, double reach);
-
-    const std::vector<Obstacle> obstacles;
-    const DistanceField coarse, fine;
-  };
-
-  Gap meshToObstacle(const Piece& piece, const Kinematics::Pose& pose, const Obstacle& obstacle, double limit) const;
-
-  std::unique_ptr<const Surroundings> surroundings_;
+  std::vector<Obstacle> obstacles_;
 };
 
 } // namespace pcl_bsh::robots

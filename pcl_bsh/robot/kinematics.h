@@ -55,10 +55,20 @@ public:
   struct Pose {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-    /** A point. */ Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return rotation * x + translation; }
+    /** A point. */ Eigen::Vector3d operator*(const Eigen::Vector3d& x) const
+    {
+      return rotation.col(0) * x.x() + rotation.col(1) * x.y() + rotation.col(2) * x.z() + translation;
+    }
     /** First the other. */ Pose operator*(const Pose& other) const
     {
       return {rotation * other.rotation, *this * other.translation};
+    }
+    /** The same. */ Eigen::Isometry3d isometry() const
+    {
+      Eigen::Isometry3d all = Eigen::Isometry3d::Identity();
+      all.linear() = rotation;
+      all.translation() = translation;
+      return all;
     }
     /** The way back. */ Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
   };

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kOfTwists = 1e-12; ///< their error, as a share of the greatest speed
 
+/// Radii that a ball goes in a time that is too long for its parts, too.
+constexpr double kLong = 0.5;
+
 double shortest(double way)
 {
   return std::remainder(way, 2.0 * std::numbers::pi);
@@ -33,6 +36,8 @@ MotionSearch::MotionSearch(const Gaps& gaps, const RobotState& from, const Robot
     s_.slopes[i] = joint.kind == Joint::Kind::continuous ? shortest(way) : way;
     s_.largest[i] = std::max(std::abs(from[i]), std::abs(to[i]));
   }
+  ++s_.motion;
+  s_.bends.resize(std::max(s_.bends.size(), gaps.parts.balls.size() * bodies.size()));
   s_.turning.assign(bodies.size(), 0.0);
   s_.bend.assign(bodies.size(), 0.0);
   double reach = 1.0;
@@ -68,8 +73,11 @@ void MotionSearch::place(const Task& task)
   if (task.h > 0.0) gaps_.kinematics.twists(s_.slopes, s_.poses, task.bodies, s_.twists);
 }
 
-double MotionSearch::bendOf(const Ball& ball, std::size_t rest) const
+double MotionSearch::bendOf(std::uint32_t index, std::size_t rest)
 {
+  MotionScratch::Bend& known = s_.bends[index * gaps_.kinematics.bodies().size() + rest];
+  if (known.motion == s_.motion) return known.bend;
+  const Ball& ball = gaps_.parts.balls[index];
   const std::vector<std::size_t>& chain = gaps_.parts.chains[ball.body];
   double bend = 0.0;
   for (std::size_t i = chain.size(); i-- > 0 && chain[i] != rest;) {
@@ -80,12 +88,14 @@ double MotionSearch::bendOf(const Ball& ball, std::size_t rest) const
     }
     bend += ball.axis_distances[i] * term;
   }
+  known = {s_.motion, bend};
   return bend;
 }
 
 /// How far any of the places that the ball's motion is about goes in the time h, seen from the body `rest`.
-double MotionSearch::way(const Ball& ball, const Eigen::Vector3d& center, std::size_t rest, double h) const
+double MotionSearch::way(std::uint32_t index, const Eigen::Vector3d& center, std::size_t rest, double h)
 {
+  const Ball& ball = gaps_.parts.balls[index];
   if (h == 0.0 || ball.body == rest) return 0.0;
   Kinematics::Twist twist = s_.twists[ball.body];
   if (rest != 0) {
@@ -94,7 +104,7 @@ double MotionSearch::way(const Ball& ball, const Eigen::Vector3d& center, std::s
   }
   double speed = twist.at(center).norm();
   if (ball.spread > 0.0) speed += ball.spread * twist.turn.norm();
-  return kOutward * h * (speed + 0.5 * h * bendOf(ball, rest));
+  return kOutward * h * (speed + 0.5 * h * bendOf(index, rest));
 }
 
 /// @param gap now. @param moved how much it can change in the time
@@ -112,12 +122,13 @@ MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
   const Ball& ball = gaps_.parts.balls[index];
   const double clearance = gaps_.options.clearance, doubt = gaps_.doubt(ball, 0);
   const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
-  const double moved = way(ball, center, 0, h), still = ball.radius + clearance + doubt, needed = moved + error_;
-  const Interval rough = gaps_.roughly(center, still + needed);
-  if (rough.lower > still + needed) return Outcome::free;
-  if (ball.piece == kNoPart) return Outcome::open;
+  const double moved = way(index, center, 0, h), still = ball.radius + clearance + doubt, needed = moved + error_;
+  if (gaps_.areBeyond(center, still + needed)) return Outcome::free;
   // Neither free for so long nor anything but free now: nothing nearer would tell more.
-  if (moved > gaps_.options.tolerance && rough.upper < still + moved && rough.lower > still) return Outcome::open;
+  const bool parts = ball.count > 0;
+  if (moved > (parts ? kLong * ball.radius : gaps_.options.tolerance) && gaps_.areBeyond(center, still + error_))
+    return Outcome::open;
+  if (parts) return Outcome::parted;
   const ObstacleGap gap = gaps_.toObstacles(ball, s_.poses, clearance + needed);
   if (gap.record == kNothing) return Outcome::free;
   const Outcome outcome = outcomeOf(gap, clearance, moved);
@@ -130,10 +141,16 @@ MotionSearch::Outcome MotionSearch::ofPair(const LinkPair& pair, double h)
   const Ball &a = gaps_.parts.balls[pair.a], &b = gaps_.parts.balls[pair.b];
   const double clearance = gaps_.options.self_clearance;
   const Eigen::Vector3d center_a = gaps_.centerOf(a, s_.poses), center_b = gaps_.centerOf(b, s_.poses);
-  const double moved = way(a, center_a, pair.common, h) + way(b, center_b, pair.common, h);
+  const double moved = way(pair.a, center_a, pair.common, h) + way(pair.b, center_b, pair.common, h);
   const double least = (center_a - center_b).norm() - a.radius - b.radius, needed = clearance + moved + error_;
-  if (least > needed + gaps_.doubt(a, pair.common) + gaps_.doubt(b, pair.common)) return Outcome::free;
-  if (a.piece == kNoPart || b.piece == kNoPart) return Outcome::open;
+  const double doubt = gaps_.doubt(a, pair.common) + gaps_.doubt(b, pair.common);
+  if (least > needed + doubt) return Outcome::free;
+  if (a.piece == kNoPart || b.piece == kNoPart)
+    return moved > kLong * (a.radius + b.radius) && least > clearance + doubt + error_ ? Outcome::open
+                                                                                       : Outcome::parted;
+  const double apart = gaps_.hullsApart(a, b, pair.common, s_.poses, needed);
+  if (apart > needed) return Outcome::free;
+  if (moved > gaps_.options.tolerance && apart > clearance + error_) return Outcome::open;
   const Interval gap = gaps_.between(a, b, pair.common, s_.poses, needed);
   if (gap.upper == kInfinity) return Outcome::free;
   const Outcome outcome = outcomeOf(gap, clearance, moved);
@@ -159,7 +176,7 @@ MotionSearch::Outcome MotionSearch::assess(const Task& task, Task& open)
     const std::uint32_t index = s_.open_balls[i];
     const Ball& ball = parts.balls[index];
     const Outcome outcome = ofBall(index, task.h);
-    if (outcome == Outcome::open && ball.piece == kNoPart) {
+    if (outcome == Outcome::parted) {
       for (std::uint32_t k = 0; k < ball.count; ++k) s_.open_balls.push_back(ball.first + k);
       continue;
     }
@@ -174,7 +191,7 @@ MotionSearch::Outcome MotionSearch::assess(const Task& task, Task& open)
     const LinkPair pair = s_.open_pairs[i];
     const Outcome outcome = ofPair(pair, task.h);
     const Ball &a = parts.balls[pair.a], &b = parts.balls[pair.b];
-    if (outcome == Outcome::open && (a.piece == kNoPart || b.piece == kNoPart)) {
+    if (outcome == Outcome::parted) {
       const bool first = b.piece != kNoPart || (a.piece == kNoPart && a.radius >= b.radius);
       const Ball& split = first ? a : b;
       for (std::uint32_t k = split.first; k < split.first + split.count; ++k)
@@ -258,9 +275,10 @@ void MotionSearch::addSwept(double m, double h, std::vector<SweptBall>& swept)
   for (std::size_t i = 0; i < s_.balls.size(); ++i) {
     const Ball& ball = gaps_.parts.balls[s_.balls[i]];
     for (std::uint32_t k = 0; k < ball.count; ++k) s_.balls.push_back(ball.first + k);
-    if (ball.piece == kNoPart) continue;
+    if (ball.count > 0) continue;
     const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
-    swept.push_back({center, kOutward * (ball.radius + way(ball, center, 0, h) + gaps_.doubt(ball, 0) + error_)});
+    swept.push_back(
+        {center, kOutward * (ball.radius + way(s_.balls[i], center, 0, h) + gaps_.doubt(ball, 0) + error_)});
   }
 }
 

@@ -24,6 +24,12 @@ struct MotionScratch {
     std::size_t ball_begin, ball_end, pair_begin, pair_end, bodies;
   };
 
+  /// How much a ball's way bends, seen from a body: computed once a motion.
+  struct Bend {
+    std::uint64_t motion = 0;
+    double bend = 0.0;
+  };
+
   RobotState from, slopes, largest, values;
   Gaps::Poses poses;
   std::vector<Kinematics::Twist> twists;
@@ -31,11 +37,13 @@ struct MotionScratch {
   std::vector<std::uint32_t> balls, open_balls;
   std::vector<LinkPair> pairs, open_pairs;
   std::vector<Task> tasks;
+  std::vector<Bend> bends;  ///< of each ball, from each body
+  std::uint64_t motion = 0; ///< they are counted
 
   std::size_t bytes() const noexcept
   {
     return sizeof(Kinematics::Pose) * (poses.capacity() + twists.capacity()) + 4 * balls.capacity() +
-           sizeof(LinkPair) * pairs.capacity() + sizeof(Task) * tasks.capacity();
+           sizeof(LinkPair) * pairs.capacity() + sizeof(Task) * tasks.capacity() + sizeof(Bend) * bends.capacity();
   }
 };
 
@@ -58,7 +66,8 @@ public:
 
 private:
   using Task = MotionScratch::Task;
-  enum class Outcome : std::uint8_t { free, open, colliding, undecided };
+  /// open: to be asked again of shorter times; parted: of what the ball holds.
+  enum class Outcome : std::uint8_t { free, parted, open, colliding, undecided };
 
   Task roots(double m, double h);
   Outcome assess(const Task& task, Task& open);
@@ -68,8 +77,8 @@ private:
   Outcome outcomeOf(const Interval& gap, double clearance, double moved) const;
   bool isFreeUntilEnd(const Task& task);
 
-  double bendOf(const Ball& ball, std::size_t rest) const;
-  double way(const Ball& ball, const Eigen::Vector3d& center, std::size_t rest, double h) const;
+  double bendOf(std::uint32_t index, std::size_t rest);
+  double way(std::uint32_t index, const Eigen::Vector3d& center, std::size_t rest, double h);
 
   const Gaps& gaps_;
   MotionScratch& s_;

@@ -18,10 +18,12 @@ namespace {
 template <class Probe>
 class GapWalk {
 public:
-  GapWalk(const SphereHierarchy& hierarchy, const Probe& probe, double limit)
+  /// @param any whether any record within the limit will do
+  GapWalk(const SphereHierarchy& hierarchy, const Probe& probe, double limit, bool any = false)
   : cloud_(hierarchy.storage()),
     probe_(probe),
-    limit_(limit)
+    limit_(limit),
+    any_(any)
   {
   }
 
@@ -38,7 +40,7 @@ public:
   }
 
 private:
-  double reach() const { return std::min(best_.upper, limit_); }
+  double reach() const { return any_ && best_.upper <= limit_ ? -kInfinity : std::min(best_.upper, limit_); }
 
   template <class Leaf>
   void visit(const LocalFrame& frame, const std::vector<Node>& nodes, std::uint32_t index, const Leaf& leaf)
@@ -53,8 +55,8 @@ private:
       const Eigen::Vector3d center(at(node.x, 0), at(node.y, 1), at(node.z, 2));
       const double radius = frame.unit * static_cast<double>(node.r[i]);
       constexpr double roundings = 0x1p-44;
-      const double gap =
-          probe_.toPoint(center) - radius - roundings * (center.lpNorm<1>() + radius) - cloud_.uncertainty.most;
+      const double gap = probe_.toPoint(center, reach() + radius + cloud_.uncertainty.most).lower - radius -
+                         roundings * (center.lpNorm<1>() + radius) - cloud_.uncertainty.most;
       if (gap <= reach()) children[count++] = {gap, i};
     }
     std::sort(children.begin(), children.begin() + count);
@@ -74,7 +76,7 @@ private:
       const double uncertain = cloud_.view.uncertainty + cloud_.view.ownUncertainty(record);
       Interval gap = cloud_.view.triangles
                          ? probe_.toTriangle(cloud_.view.triangles->triangle(record), reach() + uncertain)
-                         : ofPoint(voxel.point(cloud_.view, i), record);
+                         : ofPoint(voxel.point(cloud_.view, i), record, uncertain);
       gap.lower -= uncertain;
       gap.upper += uncertain;
       if (gap.lower > reach()) continue;
@@ -83,40 +85,118 @@ private:
     }
   }
 
-  Interval ofPoint(const Point3& p, std::uint32_t record) const
+  Interval ofPoint(const Point3& p, std::uint32_t record, double uncertain) const
   {
-    const double gap = probe_.toPoint({p[0], p[1], p[2]}) - cloud_.view.radius(record);
-    return {gap, gap};
+    const double radius = cloud_.view.radius(record);
+    const Interval found = probe_.toPoint({p[0], p[1], p[2]}, reach() + radius + uncertain);
+    return {found.lower - radius, found.upper - radius};
   }
 
   const SphereHierarchy::Storage& cloud_;
   const Probe& probe_;
   const double limit_;
+  const bool any_;
   Gap best_{{kInfinity, kInfinity}}, lowest_{{kInfinity, kInfinity}}; ///< by their upper and lower bounds
   BuildWork work_;
 };
+
+template <class Record>
+Interval enclosed(const TriangleDistance& distances, const Record& record, const Triangle3& triangle)
+{
+  const TriangleDistance::Enclosure found = distances.enclose(record, triangle);
+  if (std::isfinite(found.high)) return {found.low, found.high};
+  const double rounded = distances.distance(record, triangle);
+  return {rounded * (1.0 - 0x1p-52), rounded * (1.0 + 0x1p-52)};
+}
 
 struct PointProbe {
   const Eigen::Vector3d& at;
   TriangleDistance triangles{Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
 
-  double toPoint(const Eigen::Vector3d& p) const { return (p - at).norm(); }
-  Interval toTriangle(const std::array<Point3, 3>& corners, double) const
+  Interval toPoint(const Eigen::Vector3d& p, double) const
   {
-    const TriangleDistance::Enclosure found = triangles.enclose(Point3{at.x(), at.y(), at.z()}, corners);
-    if (std::isfinite(found.high)) return {found.low, found.high};
-    const double rounded = triangles.distance(Point3{at.x(), at.y(), at.z()}, corners);
-    return {rounded * (1.0 - 0x1p-52), rounded * (1.0 + 0x1p-52)};
+    const double distance = (p - at).norm();
+    return {distance, distance};
   }
+  Interval toTriangle(const Triangle3& corners, double) const
+  {
+    return enclosed(triangles, Point3{at.x(), at.y(), at.z()}, corners);
+  }
+};
+
+/// Triangles in the obstacle's frame.
+class PatchProbe {
+public:
+  PatchProbe(const Patch& patch, const Kinematics::Pose& pose, const Eigen::Vector3d& center)
+  : patch_(patch),
+    center_(center),
+    distances_(Eigen::Isometry3d::Identity(), pose.isometry())
+  {
+    for (const std::uint32_t* record = patch.begin; record != patch.end; ++record)
+      if (const auto i = static_cast<std::size_t>(record - patch.begin); i < kPlanes)
+        planes_[i] = planeOf(patch_.triangle(record), pose);
+  }
+
+  /// @param enough bounds beyond it need not be near to each other
+  Interval toPoint(const Eigen::Vector3d& p, double enough) const
+  {
+    const double far = (p - center_).norm() - patch_.radius;
+    if (far > enough) return {far, kInfinity};
+    Interval all{kInfinity, kInfinity};
+    for (const std::uint32_t* record = patch_.begin; record != patch_.end; ++record) {
+      const auto i = static_cast<std::size_t>(record - patch_.begin);
+      const double across = i < kPlanes ? std::abs(planes_[i].normal.dot(p) - planes_[i].offset) : 0.0;
+      add(all, across > enough ? Interval{across, kInfinity}
+                               : enclosed(distances_, Point3{p.x(), p.y(), p.z()}, patch_.triangle(record)));
+    }
+    return all;
+  }
+  Interval toTriangle(const Triangle3& corners, double) const
+  {
+    Interval all{kInfinity, kInfinity};
+    for (const std::uint32_t* record = patch_.begin; record != patch_.end; ++record)
+      add(all, enclosed(distances_, corners, patch_.triangle(record)));
+    return all;
+  }
+
+private:
+  struct Plane {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double offset = 0.0;
+  };
+
+  static Plane planeOf(const Triangle3& triangle, const Kinematics::Pose& pose)
+  {
+    constexpr double kNarrow = 1e-3; // rounding turns the normals of narrower ones too far
+    std::array<Eigen::Vector3d, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = pose * Eigen::Vector3d(triangle[k][0], triangle[k][1], triangle[k][2]);
+    const Eigen::Vector3d one = at[1] - at[0], other = at[2] - at[0], normal = one.cross(other);
+    const double length = normal.norm();
+    if (!(length > kNarrow * one.norm() * other.norm())) return {};
+    return {normal / length, normal.dot(at[0]) / length};
+  }
+
+  static void add(Interval& all, const Interval& one)
+  {
+    all = {std::min(all.lower, one.lower), std::min(all.upper, one.upper)};
+  }
+
+  static constexpr std::size_t kPlanes = 8;
+
+  const Patch& patch_;
+  const Eigen::Vector3d center_;
+  const TriangleDistance distances_;
+  std::array<Plane, kPlanes> planes_; ///< of the first triangles
 };
 
 struct SolidProbe {
   const Solid& solid;
   const Kinematics::Pose& pose;
 
-  double toPoint(const Eigen::Vector3d& p) const
+  Interval toPoint(const Eigen::Vector3d& p, double) const
   {
-    return signedDistance(solid, pose.rotation.transpose() * (p - pose.translation));
+    const double distance = signedDistance(solid, pose.rotation.transpose() * (p - pose.translation));
+    return {distance, distance};
   }
   Interval toTriangle(const std::array<Point3, 3>& corners, double limit) const
   {
@@ -150,6 +230,10 @@ Obstacle::Obstacle(const SphereHierarchy& hierarchy) : hierarchy_(&hierarchy)
     return;
   }
   if (view.size() == 0) return;
+  if (!view.indices && std::equal(view.radii + 1, view.radii + view.count, view.radii)) {
+    radius_ = view.radius(0);
+    return;
+  }
   const double first = view.radius(view.record(0));
   for (std::size_t i = 0; i < view.size(); ++i)
     if (view.radius(view.record(i)) != first) return;
@@ -159,6 +243,17 @@ Obstacle::Obstacle(const SphereHierarchy& hierarchy) : hierarchy_(&hierarchy)
 double Obstacle::mostUncertain() const noexcept
 {
   return hierarchy_->storage().uncertainty.most;
+}
+
+bool Obstacle::isBeyond(const Eigen::Vector3d& place, double limit) const
+{
+  if (limit == kInfinity) return hierarchy_->empty();
+  const Eigen::Vector3d point = pose.inverse() * place;
+  if (!radius_) return GapWalk<PointProbe>(*hierarchy_, {point}, limit, true).run().isBeyond(limit);
+  const double within = limit + *radius_ + hierarchy_->view().uncertainty;
+  if (within < 0.0) return true;
+  Work work;
+  return !findAny(hierarchy_->storage(), {point.x(), point.y(), point.z()}, within, work);
 }
 
 Gap Obstacle::gap(const Eigen::Vector3d& place, double limit) const
@@ -196,6 +291,17 @@ Gap Obstacle::gap(const Solid& solid, const Kinematics::Pose& place, double limi
   }
   const Kinematics::Pose seen = pose.inverse() * place;
   return GapWalk<SolidProbe>(*hierarchy_, {solid, seen}, limit).run();
+}
+
+Gap Obstacle::gap(const Patch& patch, const Kinematics::Pose& place, double limit) const
+{
+  const Kinematics::Pose back = pose.inverse();
+  const double uncertain = patch.surface.storage().uncertainty.most;
+  const PatchProbe probe(patch, back * place, back * patch.center);
+  Gap found = GapWalk<PatchProbe>(*hierarchy_, probe, limit + uncertain).run();
+  found.lower -= uncertain;
+  found.upper += uncertain;
+  return found;
 }
 
 } // namespace pcl_bsh::robots

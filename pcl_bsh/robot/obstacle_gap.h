@@ -6,10 +6,12 @@
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
+#include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/query/result.h>
 #include <pcl_bsh/robot/kinematics.h>
 #include <pcl_bsh/robot/shapes/shape.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -24,6 +26,19 @@ struct Gap : Interval {
   bool isBeyond(double limit) const noexcept { return record == kNothing || lower > limit; }
 };
 
+/// Some triangles of a mesh, by their records, and a ball in the world that holds them where they stand.
+struct Patch {
+  const SphereHierarchy& surface;
+  const std::uint32_t *begin, *end;
+  Eigen::Vector3d center;
+  double radius;
+
+  std::array<Point3, 3> triangle(const std::uint32_t* record) const
+  {
+    return surface.view().triangles->triangle(*record);
+  }
+};
+
 /// A cloud or a mesh that solids are held against, where it stands. The hierarchy is borrowed.
 class Obstacle {
 public:
@@ -34,11 +49,18 @@ public:
 
   Kinematics::Pose pose; ///< T_world_obstacle
 
+  /// Whether the gap of a point is certainly above the limit: quicker than the gap itself. Expects the
+  /// DefaultFloatEnvironment.
+  bool isBeyond(const Eigen::Vector3d& point, double limit) const;
+
   /// The gap of a point. Beyond the limit: from that to infinity. Expects the DefaultFloatEnvironment.
   Gap gap(const Eigen::Vector3d& point, double limit) const;
 
   /// The gap of a solid that stands there.
   Gap gap(const Solid& solid, const Kinematics::Pose& pose, double limit) const;
+
+  /// The gap of triangles whose mesh stands there.
+  Gap gap(const Patch& patch, const Kinematics::Pose& pose, double limit) const;
 
 private:
   const SphereHierarchy* hierarchy_;

@@ -14,19 +14,38 @@ namespace pcl_bsh::robots {
 namespace {
 
 constexpr std::size_t kChildren = 4;
+constexpr std::size_t kPatches = 128, kPatchTriangles = 2; ///< of a mesh, at most; of a patch, at least
+constexpr std::size_t kMostCorners = 1024;                 ///< of a hull: each step of a distance looks at all
 
-/// A ball that holds a mesh.
-std::pair<Eigen::Vector3d, double> around(const PointsView& view)
+struct Corners : std::array<Eigen::Vector3d, 3> {
+  std::uint32_t record = 0;
+};
+
+std::vector<Corners> trianglesOf(const PointsView& view)
 {
-  const PointsView& vertices = view.triangles->vertices;
-  Eigen::AlignedBox3d box;
-  for (std::uint32_t i = 0; i < vertices.count; ++i)
-    if (const Point3 p = vertices.point(i); isFinite(p)) box.extend(Eigen::Vector3d(p[0], p[1], p[2]));
-  double radius = 0.0;
-  for (std::uint32_t i = 0; i < vertices.count; ++i)
-    if (const Point3 p = vertices.point(i); isFinite(p))
-      radius = std::max(radius, (Eigen::Vector3d(p[0], p[1], p[2]) - box.center()).norm());
-  return {box.center(), kOutward * radius};
+  std::vector<Corners> triangles;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const std::array<Point3, 3> t = view.triangles->triangle(view.record(i));
+    if (!(isFinite(t[0]) && isFinite(t[1]) && isFinite(t[2]))) continue;
+    triangles.emplace_back();
+    triangles.back().record = view.record(i);
+    for (std::size_t k = 0; k < 3; ++k) triangles.back()[k] = Eigen::Vector3d(t[k][0], t[k][1], t[k][2]);
+  }
+  return triangles;
+}
+
+Eigen::MatrixX3d cornersOf(const std::vector<Corners>& triangles)
+{
+  std::vector<Eigen::Vector3d> all;
+  for (const Corners& triangle : triangles) all.insert(all.end(), triangle.begin(), triangle.end());
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  if (all.size() > kMostCorners) return {};
+  Eigen::MatrixX3d corners(static_cast<Eigen::Index>(all.size()), 3);
+  for (std::size_t i = 0; i < all.size(); ++i) corners.row(static_cast<Eigen::Index>(i)) = all[i];
+  return corners;
 }
 
 class Maker {
@@ -110,9 +129,18 @@ private:
                              "has the mesh " + mesh.path + ", which is not read", "read it first");
         if (mesh.surface->empty()) continue;
         piece.surface = mesh.surface.get();
-        const auto [center, radius] = around(mesh.surface->view());
-        ball.center = pose * center;
-        ball.radius = radius;
+        std::vector<Corners> triangles = trianglesOf(mesh.surface->view());
+        piece.corners = cornersOf(triangles);
+        for (Corners& triangle : triangles)
+          for (Eigen::Vector3d& corner : triangle) corner = pose * corner;
+        ball.piece = static_cast<std::uint32_t>(parts_.pieces.size());
+        ball.padding = of.padding;
+        Ball whole = root(patchesOf(std::move(triangles), ball));
+        whole.piece = ball.piece;
+        whole.padding = of.padding;
+        parts_.pieces.push_back(std::move(piece));
+        balls.push_back(std::move(whole));
+        continue;
       }
       ball.spread = ball.is_sphere ? 0.0 : ball.radius;
       ball.padding = of.padding;
@@ -123,6 +151,46 @@ private:
     }
     return balls;
   }
+
+  /// Balls about triangles that are near to each other. @param like what all have
+  std::vector<Ball> patchesOf(std::vector<Corners> triangles, const Ball& like)
+  {
+    const std::size_t most = std::max(kPatchTriangles, (triangles.size() + kPatches - 1) / kPatches);
+    std::vector<std::pair<std::size_t, std::size_t>> ranges = {{0, triangles.size()}};
+    std::vector<Ball> patches;
+    while (!ranges.empty()) {
+      const auto [begin, end] = ranges.back();
+      ranges.pop_back();
+      Eigen::AlignedBox3d box, middles;
+      for (std::size_t i = begin; i < end; ++i) {
+        for (const Eigen::Vector3d& corner : triangles[i]) box.extend(corner);
+        middles.extend(middleOf(triangles[i]));
+      }
+      if (end - begin > most) {
+        const std::size_t middle = (begin + end) / 2;
+        int axis = 0;
+        middles.sizes().maxCoeff(&axis);
+        const auto at = [&](std::size_t i) { return triangles.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end),
+                         [&](const Corners& a, const Corners& b) { return middleOf(a)[axis] < middleOf(b)[axis]; });
+        ranges.insert(ranges.end(), {{begin, middle}, {middle, end}});
+        continue;
+      }
+      patches.push_back(like);
+      Ball& patch = patches.back();
+      patch.center = box.center();
+      patch.record = static_cast<std::uint32_t>(parts_.records.size());
+      patch.records = static_cast<std::uint32_t>(end - begin);
+      for (std::size_t i = begin; i < end; ++i) parts_.records.push_back(triangles[i].record);
+      for (std::size_t i = begin; i < end; ++i)
+        for (const Eigen::Vector3d& corner : triangles[i])
+          patch.spread = std::max(patch.spread, kOutward * (corner - patch.center).norm());
+      patch.radius = patch.spread + patch.padding;
+    }
+    return patches;
+  }
+
+  static Eigen::Vector3d middleOf(const Corners& triangle) { return (triangle[0] + triangle[1] + triangle[2]) / 3.0; }
 
   static Ball holding(const Ball* begin, const Ball* end)
   {

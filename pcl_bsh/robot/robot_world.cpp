@@ -90,9 +90,9 @@ private:
   void ofBall(const Ball& ball)
   {
     const double reach = best_.gap.upper + ball.radius + gaps_.doubt(ball, 0);
-    if (gaps_.roughly(gaps_.centerOf(ball, poses_), reach).lower > reach) return;
+    if (gaps_.areBeyond(gaps_.centerOf(ball, poses_), reach)) return;
     for (std::uint32_t i = 0; i < ball.count; ++i) ofBall(gaps_.parts.balls[ball.first + i]);
-    if (ball.piece == kNoPart) return;
+    if (ball.count > 0) return;
     const ObstacleGap gap = gaps_.toObstacles(ball, poses_, best_.gap.upper);
     if (gap.record != kNothing) take(gap, gaps_.meetingOf(ball, gap, true));
   }
@@ -101,11 +101,12 @@ private:
   {
     const double least = (gaps_.centerOf(a, poses_) - gaps_.centerOf(b, poses_)).norm() - a.radius - b.radius;
     if (least > best_.gap.upper + gaps_.doubt(a, common) + gaps_.doubt(b, common)) return;
-    for (std::uint32_t i = 0; i < a.count; ++i) ofPair(gaps_.parts.balls[a.first + i], b, common);
-    if (a.piece == kNoPart) return;
-    for (std::uint32_t i = 0; i < b.count; ++i) ofPair(a, gaps_.parts.balls[b.first + i], common);
-    if (b.piece == kNoPart) return;
-    take(gaps_.between(a, b, common, poses_, best_.gap.upper), gaps_.meetingOf(a, b));
+    if (a.piece == kNoPart)
+      for (std::uint32_t i = 0; i < a.count; ++i) ofPair(gaps_.parts.balls[a.first + i], b, common);
+    else if (b.piece == kNoPart)
+      for (std::uint32_t i = 0; i < b.count; ++i) ofPair(a, gaps_.parts.balls[b.first + i], common);
+    else
+      take(gaps_.between(a, b, common, poses_, best_.gap.upper), gaps_.meetingOf(a, b));
   }
 
   const Gaps& gaps_;

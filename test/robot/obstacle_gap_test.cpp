@@ -2,6 +2,7 @@
 #include <pcl_bsh/robot/obstacle_gap.h>
 
 #include "made_arms.h"
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/robot/convex_distance.h>
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace pcl_bsh {
@@ -85,15 +87,18 @@ TEST(ObstacleGap, HoldsTheLeastGap)
       for (int i = 0; i < 60; ++i) {
         const Solid solid = madeSolid(random, i % 4);
         const Kinematics::Pose pose = madePlace(random);
-        double least = std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity(), of_place = least;
         for (std::uint32_t k = 0; k < count; ++k) {
           const Point3 p = view.point(k);
           const Eigen::Vector3d seen =
               pose.rotation.transpose() * (Eigen::Vector3d(p[0], p[1], p[2]) - pose.translation);
           least = std::min(least, signedDistance(solid, seen) - view.radius(k));
+          of_place = std::min(of_place, seen.norm() - view.radius(k));
         }
         const double limit = random.uniform(0, 0.4);
         const Gap gap = obstacle.gap(solid, pose, limit);
+        EXPECT_EQ(obstacle.isBeyond(pose.translation, limit), of_place > limit) << of_place << " " << limit;
+        EXPECT_FALSE(obstacle.isBeyond(pose.translation, std::numeric_limits<double>::infinity()));
         EXPECT_LE(gap.lower, least + 1e-12);
         if (least > limit) {
           EXPECT_TRUE(gap.isBeyond(limit - 1e-12)) << least << " " << limit;
@@ -120,6 +125,41 @@ TEST(ObstacleGap, OfTrianglesIsThatOfTheirInsides)
     EXPECT_NEAR(gap.upper, 0.5, 1e-6);
     EXPECT_EQ(gap.record, 0u);
     EXPECT_TRUE(obstacle.gap(solid, above, 0.4).isBeyond(0.4 - 1e-12));
+  }
+}
+
+/// Triangles of all widths, of which some are narrower than those whose planes are known.
+TEST(ObstacleGap, OfPatchesIsThatOfTheirTriangles)
+{
+  test::Random random(3);
+  const std::vector<float> points = madeFloats(random, 3 * 300, -1, 1);
+  const PointsView view = viewOf(points.data(), 300);
+  const SphereHierarchy cloud(view);
+  const Obstacle obstacle(cloud);
+  for (int i = 0; i < 60; ++i) {
+    constexpr std::size_t kTriangles = 12;
+    std::vector<float> xyz = madeFloats(random, 9 * kTriangles, -0.2, 0.2);
+    if (i % 2 == 0)
+      for (std::size_t k = 6; k < xyz.size(); k += 9)
+        for (std::size_t axis = 0; axis < 3; ++axis) xyz[k + axis] = xyz[k + axis - 3] * (1.0f + 1e-5f);
+    std::vector<std::uint32_t> corners(3 * kTriangles), records(kTriangles);
+    std::iota(corners.begin(), corners.end(), 0u);
+    std::iota(records.begin(), records.end(), 0u);
+    const SphereHierarchy mesh(viewOf(TrianglesView{viewOf(xyz.data(), 3 * kTriangles), corners.data(), kTriangles}));
+    const Kinematics::Pose pose = madePlace(random);
+    const Patch patch{mesh, records.data(), records.data() + records.size(), pose.translation, 0.4};
+    const TriangleDistance exact(Eigen::Isometry3d::Identity(), pose.isometry());
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t p = 0; p < view.count; ++p)
+      for (const std::uint32_t& record : records)
+        least = std::min(least, exact.distance(view.point(p), patch.triangle(&record)));
+    const double limit = random.uniform(0, 0.4);
+    const Gap gap = obstacle.gap(patch, pose, limit);
+    EXPECT_LE(gap.lower, least + 1e-14);
+    EXPECT_EQ(gap.record == kNothing, least > limit);
+    if (least > limit) continue;
+    EXPECT_NEAR(gap.lower, least, 1e-12);
+    EXPECT_NEAR(gap.upper, least, 1e-12);
   }
 }
 

@@ -323,6 +323,14 @@ TEST(RobotWorld, HoldsMeshesAgainstAll)
   const RobotWorld world(robot, {});
   EXPECT_EQ(world.checkMotion({0.0, 0.3}, {0.5, 0.3}).verdict, Verdict::free);
   EXPECT_EQ(world.checkMotion({0.0, 0.3}, {1.5, 0.3}).verdict, Verdict::colliding);
+  // against a mesh that it crosses
+  const std::vector<float> upright = {-0.1f, 1, -0.2f, 0.1f, 1, -0.2f, 0, 1, 0.3f};
+  const PointsView wall = viewOf(TrianglesView{viewOf(upright.data(), 3), triangle.data(), 1});
+  robot.links[0].shapes = {{Mesh{"wall.stl", {1, 1, 1}, std::make_shared<SphereHierarchy>(wall)}}};
+  const RobotWorld walled(robot, {});
+  EXPECT_EQ(walled.checkState({0.5, std::numbers::pi / 2 - 0.5}).verdict, Verdict::colliding);
+  EXPECT_EQ(walled.checkMotion({0.0, 0.3}, {0.5, 0.3}).verdict, Verdict::free);
+  EXPECT_EQ(walled.checkMotion({0.0, 0.3}, {1.5, 0.3}).verdict, Verdict::colliding);
   robot.links[1].shapes = {{Mesh{"unread.stl"}}};
   EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}); }), testing::HasSubstr("unread.stl, which is not read"));
 }
