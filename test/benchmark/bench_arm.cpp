@@ -129,9 +129,12 @@ bool run(const Options& options, Table& rows)
 {
   robots::Robot arm = io::readRobot(options.data / "panda_spherized.urdf");
   io::readGroups(options.data / "panda.srdf", arm);
+  robots::Robot meshes = io::readRobot(options.data / "panda.urdf", {{"meshes", options.data}});
+  io::readMeshes(meshes);
+  io::readGroups(options.data / "panda.srdf", meshes);
   const std::vector<test::ArmProblem> problems = test::armProblems(options.data / "problems.txt");
   test::Random random(1);
-  Racer first, again, with_self, sampled, states, ready;
+  Racer first, again, with_self, sampled, states, ready, mesh_motions, mesh_states;
   for (std::size_t i = 0; i < problems.size(); i += options.every) {
     progress(problems[i].name);
     const std::vector<float> xyz = problems[i].cloud(options.points, random);
@@ -153,6 +156,10 @@ bool run(const Options& options, Table& rows)
     race(again, motions, certified(world));
     race(with_self, motions, certified(all));
     race(states, motions, [&](const robots::RobotWorld::Motion& m) { return all.checkState(m.from).verdict; });
+    const robots::RobotWorld of_meshes(meshes, {&cloud});
+    race(mesh_motions, motions, certified(of_meshes));
+    race(mesh_states, motions,
+         [&](const robots::RobotWorld::Motion& m) { return of_meshes.checkState(m.from).verdict; });
     Sampled samples(arm, cloud);
     const std::vector<Verdict> believed = race(sampled, motions, [&](const robots::RobotWorld::Motion& m) {
       return samples.isFree(m, 32) ? Verdict::free : Verdict::colliding;
@@ -168,6 +175,8 @@ bool run(const Options& options, Table& rows)
   rows.add(with_self.row("certified, links against links, too"));
   rows.add(sampled.row("32 samples, our anyInRadius()"));
   rows.add(states.row("one state, links against links, too"));
+  rows.add(mesh_motions.row("certified, meshes, links against links, too"));
+  rows.add(mesh_states.row("one state, meshes, links against links, too"));
   rows.add(ready.row("a new cloud and its first state"));
   return first.wrong == 0;
 }
@@ -177,7 +186,9 @@ bool run(const Options& options, Table& rows)
 int main(int argc, char** argv)
 {
   Options options;
-  CLI::App app("Motions of an arm of 59 balls among sampled shelves, certified and sampled. One thread.", "bench_arm");
+  CLI::App app(
+      "Motions of an arm of 59 balls, or of 11 meshes, among sampled shelves, certified and sampled. One thread.",
+      "bench_arm");
   app.footer("Example: bench_arm --clock cpu --csv arm.csv");
   app.add_option("--data", options.data, "folder with the arm and its problems")->capture_default_str();
   app.add_option("--every", options.every, "of so many problems one")
