@@ -324,6 +324,14 @@ def plans(rows):
                f"{row['certified']} | {times} | {row['validators [%]']} % |")
 
 
+def arm(rows):
+    yield "| check | mean | median | 95 % | free | undecided | wrong |"
+    yield "|---|---:|---:|---:|---:|---:|---:|"
+    for row in rows:
+        times = " | ".join(short(float(row[column]), " us") for column in ("mean [us]", "median [us]", "95 % [us]"))
+        yield f"| {row['check']} | {times} | {row['free']} | {row['undecided']} | {row['wrong']} |"
+
+
 def scene(rows):
     yield "| what | size | time | that is | counted |"
     yield "|---|---|---|---|---|"
@@ -412,6 +420,6 @@ def dial(rows):
                f"{float(row['actual_error']):.3g} | {int(row['node_pairs']) // int(row['poses']):,} |")
 
 
-TABLES = [flags, uneven, cold, rigid, motions, contacts, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation, plans,
+TABLES = [flags, uneven, cold, rigid, motions, contacts, growth, plates, hard_cases, hard_surfaces, volumes, search, distances, uncertainty, uncertain_poses, seen, self_filter, separation, arm, plans,
           surfaces, bodies, wagon, paths, tight, scene, accuracy, accuracy_lost, dial, budgets, laz, gauge, sites]
 TABLES = {table.__name__: table for table in TABLES}
