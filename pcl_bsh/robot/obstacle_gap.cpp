@@ -145,7 +145,9 @@ public:
     Interval all{kInfinity, kInfinity};
     for (const std::uint32_t* record = patch_.begin; record != patch_.end; ++record) {
       const auto i = static_cast<std::size_t>(record - patch_.begin);
-      const double across = i < kPlanes ? std::abs(planes_[i].normal.dot(p) - planes_[i].offset) : 0.0;
+      const double across =
+          i < kPlanes ? std::abs(planes_[i].normal.dot(p) - planes_[i].offset) - kTurned * (far + 2.0 * patch_.radius)
+                      : 0.0;
       add(all, across > enough ? Interval{across, kInfinity}
                                : enclosed(distances_, Point3{p.x(), p.y(), p.z()}, patch_.triangle(record)));
     }
@@ -167,12 +169,20 @@ private:
 
   static Plane planeOf(const Triangle3& triangle, const Kinematics::Pose& pose)
   {
-    constexpr double kNarrow = 1e-3; // rounding turns the normals of narrower ones too far
+    // Coordinates are off by 2^-50 of their size, so an edge by less than 2^-35 of its length, and the normal turns by
+    // less than a few 2^-25.
+    constexpr double kNarrow = 0x1p-10, kShort = 0x1p-14;
     std::array<Eigen::Vector3d, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) at[k] = pose * Eigen::Vector3d(triangle[k][0], triangle[k][1], triangle[k][2]);
+    double size = pose.translation.lpNorm<1>();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d corner(triangle[k][0], triangle[k][1], triangle[k][2]);
+      at[k] = pose * corner;
+      size = std::max(size, corner.lpNorm<1>());
+    }
     const Eigen::Vector3d one = at[1] - at[0], other = at[2] - at[0], normal = one.cross(other);
     const double length = normal.norm();
-    if (!(length > kNarrow * one.norm() * other.norm())) return {};
+    const bool is_wide = length > kNarrow * one.norm() * other.norm();
+    if (!is_wide || !(std::min(one.norm(), other.norm()) > kShort * size)) return {};
     return {normal / length, normal.dot(at[0]) / length};
   }
 
@@ -182,6 +192,7 @@ private:
   }
 
   static constexpr std::size_t kPlanes = 8;
+  static constexpr double kTurned = 0x1p-20; ///< by which rounding turns normals, at most
 
   const Patch& patch_;
   const Eigen::Vector3d center_;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Workload C: what a step of a body costs. A statue rolls over a scan, balls over a mesh, beside Bullet's mesh where
-// Bullet was found, and a statue is dragged over a scan by hand.
+// Workload C: what the contacts of a body's step cost. A statue rolls over a scan, balls over a mesh, beside Bullet's
+// mesh where Bullet was found.
 #include "program.h"
 #include "workload/random.h"
 #include "workload/statue.h"
 
 #include <pcl_bsh/manifold/contact_manifold.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/scene/dragged_object.h>
 
 #if PCL_BSH_BENCH_BULLET
 #include <btBulletCollisionCommon.h>
@@ -15,8 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numbers>
 
 using namespace pcl_bsh;
 using namespace pcl_bsh::bench;
@@ -28,7 +25,6 @@ struct Options : ProgramOptions {
   std::size_t body = 100000;
   std::size_t triangles = 500000;
   std::size_t balls = 2000;
-  std::size_t dragged_over = 1000000;
   std::size_t steps = 1000;
   std::string part = "all";
 };
@@ -220,71 +216,28 @@ void rollBalls(const Options& options, Table& table)
 #endif
 }
 
-/// A hand leads the body in a circle up and down: half of the way into the ground, which it cannot enter.
-void drag(const Options& options, Table& table)
-{
-  progress("making a scan of " + std::to_string(options.dragged_over) + " points");
-  const std::vector<float> scan = ground(options.dragged_over), xyz = statueXyz(options.body);
-  const auto below = std::make_shared<SphereHierarchy>(viewOf(scan.data(), scan.size() / 3));
-  const auto body = std::make_shared<SphereHierarchy>(viewOf(xyz.data(), xyz.size() / 3));
-  below->buildAll();
-  body->buildAll();
-  for (const Response response : {Response::stop, Response::slide}) {
-    SceneOptions asked;
-    asked.clearance = 0.02;
-    asked.tolerance = 0.001;
-    asked.effects.response = response;
-    Scene scene(asked);
-    scene.add(fixedObject("ground", below));
-    const auto wanted = [](std::size_t event) {
-      const double angle = 0.01 * static_cast<double>(event);
-      const double x = 2.0 * std::cos(angle), y = 2.0 * std::sin(angle);
-      Eigen::Isometry3d pose(
-          Eigen::Translation3d(x, y, heightAt(x, y) + 1.3 - 0.5 * std::sin(0.05 * static_cast<double>(event))));
-      pose.rotate(Eigen::AngleAxisd(0.5 * angle, Eigen::Vector3d(0.2, 0.3, 1).normalized()));
-      return pose;
-    };
-    const ObjectId led = scene.add(object("statue", body, wanted(0)));
-    DraggedObject dragged(scene, led);
-    std::vector<double> seconds;
-    std::size_t contacts = 0, held = 0;
-    for (std::size_t i = 0; i < options.steps; ++i) {
-      const Stopwatch watch;
-      const DragStep& now = dragged.moveTo(wanted(i));
-      seconds.push_back(watch.seconds());
-      contacts += now.contacts.size();
-      held += now.held ? 1 : 0;
-    }
-    addRow(table, response == Response::stop ? "dragged, stop" : "dragged, slide",
-           std::to_string(options.body) + " over " + std::to_string(scan.size() / 3), "pcl_bsh", seconds,
-           std::to_string(contacts) + " contacts, held " + std::to_string(held) + " times");
-  }
-}
-
 } // namespace
 
 int main(int argc, char** argv)
 {
   Options options;
-  CLI::App app("What a step of a body costs: contacts while it rolls, and the response while it is dragged by hand.\n"
+  CLI::App app("What the contacts of a body's step cost while it rolls.\n"
                "Hierarchies warm, one thread; the first tenth of the steps is not counted.",
                "bench_contacts");
-  app.footer("Example: bench_contacts --part drag --csv drag.csv");
+  app.footer("Example: bench_contacts --part balls --csv balls.csv");
   app.add_option("--scan", options.scan, "points of the scan that the body rolls over")->capture_default_str();
   app.add_option("--body", options.body, "points of the body")->capture_default_str();
   app.add_option("--triangles", options.triangles, "of the mesh that balls roll over")->capture_default_str();
   app.add_option("--balls", options.balls, "of that body")->capture_default_str();
-  app.add_option("--dragged-over", options.dragged_over, "points of the scan")->capture_default_str();
   app.add_option("--steps", options.steps, "of each row")->check(CLI::Range(20, 1000000))->capture_default_str();
   app.add_option("--part", options.part, "which rows")
-      ->check(CLI::IsMember({"all", "scan", "balls", "drag"}))
+      ->check(CLI::IsMember({"all", "scan", "balls"}))
       ->capture_default_str();
   Table table({"what", "size", "racer", "steps", "median [ms]", "p99 [ms]", "max [ms]", "remark"});
   return runProgram(app, argc, argv, options, table, [&](Table& rows) {
     const auto isAsked = [&](const char* part) { return options.part == "all" || options.part == part; };
     if (isAsked("scan")) rollOverScan(options, rows);
     if (isAsked("balls")) rollBalls(options, rows);
-    if (isAsked("drag")) drag(options, rows);
     return true;
   });
 }
