@@ -177,6 +177,40 @@ struct CrossedSlabs {
   float thickness() const { return h > cross_h ? h : cross_h; }
 };
 
+/// slabGaps() by how far the points in two slabs each reach along d.
+HWY_INLINE void supportGaps(const SphereLanes& spheres, const SlabLanes& slabs, const SlabLanes& cross_slabs,
+                            const CrossedSlabs& other, float* gaps)
+{
+  const LaneTag d;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const LaneVector dx = hn::Sub(hn::LoadU(d, spheres.x + i), hn::Set(d, other.center.x));
+    const LaneVector dy = hn::Sub(hn::LoadU(d, spheres.y + i), hn::Set(d, other.center.y));
+    const LaneVector dz = hn::Sub(hn::LoadU(d, spheres.z + i), hn::Set(d, other.center.z));
+    const auto supportOf = [&](LaneVector nx, LaneVector ny, LaneVector nz, LaneVector h, LaneVector cx, LaneVector cy,
+                               LaneVector cz, LaneVector cross_h, LaneVector r) HWY_ATTR {
+      const LaneVector on_n = FacingSlabs::dot(nx, ny, nz, dx, dy, dz);
+      const LaneVector on_c = FacingSlabs::dot(cx, cy, cz, dx, dy, dz);
+      const auto less = [&](LaneVector all, LaneVector n, LaneVector c)
+                            HWY_ATTR { return hn::Sub(hn::Sub(all, hn::Mul(on_n, n)), hn::Mul(on_c, c)); };
+      const LaneVector rest = hn::Sqrt(squaredNorm(less(dx, nx, cx), less(dy, ny, cy), less(dz, nz, cz)));
+      return hn::Add(hn::Mul(hn::Abs(on_c), cross_h), FacingSlabs::supportTimesLength(d, on_n, h, rest, r));
+    };
+    const LaneVector r = hn::Mul(hn::LoadU(d, spheres.r + i), hn::Set(d, spheres.stretch));
+    const LaneVector own =
+        supportOf(hn::LoadU(d, slabs.x + i), hn::LoadU(d, slabs.y + i), hn::LoadU(d, slabs.z + i),
+                  hn::LoadU(d, slabs.h + i), hn::LoadU(d, cross_slabs.x + i), hn::LoadU(d, cross_slabs.y + i),
+                  hn::LoadU(d, cross_slabs.z + i), hn::LoadU(d, cross_slabs.h + i), r);
+    const LaneVector others =
+        supportOf(hn::Set(d, other.normal.x), hn::Set(d, other.normal.y), hn::Set(d, other.normal.z),
+                  hn::Set(d, other.h), hn::Set(d, other.cross.x), hn::Set(d, other.cross.y), hn::Set(d, other.cross.z),
+                  hn::Set(d, other.cross_h), hn::Set(d, other.radius));
+    const LaneVector length = hn::Sqrt(squaredNorm(dx, dy, dz));
+    const LaneVector margin = FacingSlabs::supportMargin(d, length, hn::Add(r, hn::Set(d, other.radius)));
+    const LaneVector gap = hn::Sub(hn::Sub(length, hn::Div(hn::Add(own, others), length)), margin);
+    hn::StoreU(hn::IfThenElseZero(hn::IsFinite(gap), gap), d, gaps + i);
+  }
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace pcl_bsh
 HWY_AFTER_NAMESPACE();

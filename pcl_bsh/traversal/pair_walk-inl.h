@@ -240,6 +240,41 @@ private:
     if (gap * (1.0f - kSphereMargin) > out.reach) out.near &= ~(1u << lane);
   }
 
+  /// Raises the bounds of nodes far from each other for their size, by their supports.
+  HWY_NOINLINE void boundBySupports(const LanePair& child, Step& out)
+  {
+    std::uint32_t far = out.near & spheresFar(out.gap, out.children.r, out.children.stretch, out.radius, kFarNodes);
+    if (far == 0) return;
+    const Spaces &own = out.of_a ? a : b, &others = out.of_a ? b : a;
+    const Lane& other = out.of_a ? child.b : child.a;
+    const Slabs &slabs = slabsOf(own, out.entered), &cross = crossSlabsOf(own, out.entered),
+                &other_slabs = slabsOf(others, other), &other_cross = crossSlabsOf(others, other);
+    const std::uint32_t k = other.lane;
+    CrossedSlabs held{{other_slabs.x[k], other_slabs.y[k], other_slabs.z[k]},
+                      {other_cross.x[k], other_cross.y[k], other_cross.z[k]},
+                      other_slabs.h[k],
+                      other_cross.h[k],
+                      out.center,
+                      out.radius};
+    alignas(32) float gaps[kLanes];
+    const float* m = out.frame->m.data();
+    if (out.of_a) {
+      alignas(32) float n[3][kLanes], c[3][kLanes];
+      carry(m, kNowhere, slabs.x, slabs.y, slabs.z, kLanes, n[0], n[1], n[2]);
+      carry(m, kNowhere, cross.x, cross.y, cross.z, kLanes, c[0], c[1], c[2]);
+      supportGaps(out.children, {n[0], n[1], n[2], slabs.h}, {c[0], c[1], c[2], cross.h}, held, gaps);
+    }
+    else {
+      held.normal = carryPoint(m, kNowhere, held.normal);
+      held.cross = carryPoint(m, kNowhere, held.cross);
+      supportGaps(out.children, {slabs.x, slabs.y, slabs.z, slabs.h}, {cross.x, cross.y, cross.z, cross.h}, held, gaps);
+    }
+    for (; far != 0; far &= far - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+      raise(out, lane, gaps[lane]);
+    }
+  }
+
   /// Tests the first `count` children against a sphere of the other side, its radius stretched. Sets `near`.
   void test(const RelativeFrame& frame, std::uint32_t count, const Point& center, float radius, double reach, Step& out)
   {
@@ -276,8 +311,11 @@ private:
       out.near &= ~separation_.asGiven(compared, out.near);
     if (out.near != 0 && out.radius > kLargeLeaf * compared.radiusOf(0) && isLeafApart(pair, opened, reach))
       out.near = 0;
-    if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b))
-      out.near &= ~separation_.byExtent(compared, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
+    if (out.near != 0 && mayBeFar(out.reach, out.radius) && std::isfinite(reach) && haveSlabs(child.a, child.b)) {
+      if (kBounds) boundBySupports(child, out);
+      if (out.near != 0)
+        out.near &= ~separation_.byExtent(compared, out.gap, out.near, work.leaf_pairs >= pairs_before_points);
+    }
     if (out.near != 0 && distance.ofTriangles() && std::isfinite(reach))
       out.near &= ~separation_.byTriangles(compared, out.near, [this]() -> FlatRecords& { return flat(); });
   }

@@ -69,20 +69,27 @@ bool slabsApartOnTarget(const test::TestSlab& slab, float stretch, const test::T
   return (apart >> kLane & 1) != 0;
 }
 
-test::Gaps gapsOnTarget(const test::TestSlab& slab, float stretch, const test::TestSlab& other)
+test::Gaps gapsOnTarget(const test::TestSlab& slab, const test::TestSlab& cross, float stretch,
+                        const test::TestSlab& other, const test::TestSlab& other_cross)
 {
-  alignas(64) float at[8][16];
-  const float values[8] = {slab.center[0], slab.center[1], slab.center[2], slab.radius,
-                           slab.normal[0], slab.normal[1], slab.normal[2], slab.h};
-  for (std::size_t k = 0; k < 8; ++k) setLane(at[k], values[k]);
+  alignas(64) float at[12][16];
+  const float values[12] = {slab.center[0],  slab.center[1],  slab.center[2],  slab.radius,
+                            slab.normal[0],  slab.normal[1],  slab.normal[2],  slab.h,
+                            cross.normal[0], cross.normal[1], cross.normal[2], cross.h};
+  for (std::size_t k = 0; k < 12; ++k) setLane(at[k], values[k]);
   const auto pointOf = [](const float(&v)[3]) { return Point{v[0], v[1], v[2]}; };
-  alignas(32) float by_slabs[8];
-  slabGaps({at[0], at[1], at[2], at[3], stretch}, {at[4], at[5], at[6], at[7]},
-           {pointOf(other.normal), other.h, pointOf(other.center), other.radius}, by_slabs);
+  const SphereLanes spheres{at[0], at[1], at[2], at[3], stretch};
+  const SlabLanes slabs{at[4], at[5], at[6], at[7]}, crossed{at[8], at[9], at[10], at[11]};
+  alignas(32) float by_slabs[8], by_supports[8];
+  slabGaps(spheres, slabs, {pointOf(other.normal), other.h, pointOf(other.center), other.radius}, by_slabs);
+  supportGaps(
+      spheres, slabs, crossed,
+      {pointOf(other.normal), pointOf(other_cross.normal), other.h, other_cross.h, pointOf(other.center), other.radius},
+      by_supports);
   for (std::size_t k = 0; k < 3; ++k) std::fill(at[k], at[k] + 16, other.center[k]);
   const float to_points =
       pointsGap(at[0], at[1], at[2], 11, {pointOf(slab.normal), slab.h, pointOf(slab.center), slab.radius * stretch});
-  return {by_slabs[kLane], to_points};
+  return {by_slabs[kLane], by_supports[kLane], to_points};
 }
 
 test::Stay segmentInBoxOnTarget(const float* start, const float* end, const float* bow, float smallest, float reach,
@@ -171,9 +178,10 @@ bool slabsApart(const TestSlab& slab, float stretch, const TestSlab& other, floa
   return HWY_DYNAMIC_DISPATCH(slabsApartOnTarget)(slab, stretch, other, reach);
 }
 
-Gaps gapsOf(const TestSlab& slab, float stretch, const TestSlab& other)
+Gaps gapsOf(const TestSlab& slab, const TestSlab& cross, float stretch, const TestSlab& other,
+            const TestSlab& other_cross)
 {
-  return HWY_DYNAMIC_DISPATCH(gapsOnTarget)(slab, stretch, other);
+  return HWY_DYNAMIC_DISPATCH(gapsOnTarget)(slab, cross, stretch, other, other_cross);
 }
 
 Stay segmentInBox(const float (&start)[3], const float (&end)[3], const float (&bow)[3], float smallest, float reach,

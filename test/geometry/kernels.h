@@ -33,11 +33,13 @@ struct TestSlab {
 };
 bool slabsApart(const TestSlab& slab, float stretch, const TestSlab& other, float reach);
 
-/// slabGaps() of the same, and pointsGap() from the other slab's centre to the slab, its radius stretched.
+/// slabGaps() of the same; supportGaps(), where `cross` and `other_cross` are second slabs of the same spheres; and
+/// pointsGap() from the other slab's centre to the slab, its radius stretched.
 struct Gaps {
-  float slabs, point;
+  float slabs, supports, point;
 };
-Gaps gapsOf(const TestSlab& slab, float stretch, const TestSlab& other);
+Gaps gapsOf(const TestSlab& slab, const TestSlab& cross, float stretch, const TestSlab& other,
+            const TestSlab& other_cross);
 
 /// segmentsInBox() of one segment, at all instants.
 struct Stay {
