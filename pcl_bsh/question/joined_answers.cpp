@@ -230,11 +230,15 @@ DistanceResult closestOf(const TrajectoryResult& found)
   }
   for (const Interval& interval : found.interval) { // of what solids hold
     if (std::isnan(interval.lower) || !(interval.lower < 0.0)) continue;
-    closest.interval.lower =
-        std::isinf(closest.interval.lower) ? interval.lower : std::min(closest.interval.lower, interval.lower);
-    closest.interval.upper = std::min(closest.interval.upper, interval.upper);
+    widen(closest.interval, interval);
   }
   return closest;
+}
+
+void widen(Interval& all, const Interval& one)
+{
+  all.lower = std::isinf(all.lower) ? one.lower : std::min(all.lower, one.lower);
+  all.upper = std::min(all.upper, one.upper);
 }
 
 std::pair<DistanceResult, std::int32_t> closestAlong(const Placed& input, const SphereHierarchy& obstacle,

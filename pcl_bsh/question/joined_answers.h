@@ -53,6 +53,9 @@ private:
 /// The smallest distance of what collides along a path, as it is told, with its pair: of several, the first record's.
 DistanceResult closestOf(const TrajectoryResult& found);
 
+/// The interval of a smallest distance holds those of all that may have it. @param all as it begins, nothing is known
+void widen(Interval& all, const Interval& one);
+
 /// The smallest distance at any of the poses, and the first pose that has it. Motion between poses does not count.
 /// @param most no greater one is found, inclusive
 std::pair<DistanceResult, std::int32_t> closestAlong(const Placed& input, const SphereHierarchy& obstacle,

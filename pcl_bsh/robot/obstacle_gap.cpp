@@ -241,14 +241,13 @@ Obstacle::Obstacle(const SphereHierarchy& hierarchy) : hierarchy_(&hierarchy)
     return;
   }
   if (view.size() == 0) return;
-  if (!view.indices && std::equal(view.radii + 1, view.radii + view.count, view.radii)) {
-    radius_ = view.radius(0);
-    return;
-  }
   const double first = view.radius(view.record(0));
-  for (std::size_t i = 0; i < view.size(); ++i)
-    if (view.radius(view.record(i)) != first) return;
-  radius_ = first;
+  const auto areAlike = [&] {
+    if (!view.indices) return std::equal(view.radii + 1, view.radii + view.count, view.radii);
+    return std::all_of(view.indices, view.indices + view.size(),
+                       [&](auto record) { return view.radius(static_cast<std::uint32_t>(record)) == first; });
+  };
+  if (areAlike()) radius_ = first;
 }
 
 double Obstacle::mostUncertain() const noexcept

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/question/joined_answers.h>
 #include <pcl_bsh/search/cloud_view.h>
 #include <pcl_bsh/site/answers/enclosed_in_tile.h>
 #include <pcl_bsh/site/answers/nearest_records.h>
@@ -21,9 +22,7 @@ const NearRecord& nearestColliding(const std::vector<NearRecord>& some, Interval
   for (const NearRecord& near : some) {
     if (near.kind != Kind::colliding) continue;
     if (!best || std::tie(near.distance, near.point) < std::tie(best->distance, best->point)) best = &near;
-    if (std::isinf(near.interval.lower)) continue;
-    interval.lower = std::isinf(interval.lower) ? near.interval.lower : std::min(interval.lower, near.interval.lower);
-    interval.upper = std::min(interval.upper, near.interval.upper);
+    if (!std::isinf(near.interval.lower)) widen(interval, near.interval);
   }
   return *best;
 }
