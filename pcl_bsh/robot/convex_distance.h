@@ -109,28 +109,29 @@ private:
 /// Bounds of their distance. Where they meet, minus how far they may move and still do, at least, is above; nothing is
 /// known below. Rounding of double moves the bounds by a few units of what coordinates
 /// are. @param a, b give the place that is farthest in a direction
-/// @param limit bounds need not be near to each other beyond it
-template <class SupportA, class SupportB>
-Interval convexDistance(const SupportA& a, const SupportB& b, double limit)
+/// @param isEnough of bounds that need not be nearer to each other. The upper one may be infinite
+/// @param from_b about the way from b to a
+template <class SupportA, class SupportB, class IsEnough>
+Interval convexDistance(const SupportA& a, const SupportB& b, const IsEnough& isEnough, const Eigen::Vector3d& from_b)
 {
   constexpr double kEnough = 1e-10;
   constexpr int kMostSteps = 100;
   Simplex simplex;
-  Eigen::Vector3d nearest = a(Eigen::Vector3d::UnitX()) - b(-Eigen::Vector3d::UnitX());
-  simplex.add(nearest);
-  Interval bounds{0.0, nearest.norm()};
+  Eigen::Vector3d nearest = from_b;
+  Interval bounds{0.0, std::numeric_limits<double>::infinity()};
   for (int step = 0; step < kMostSteps && bounds.upper - bounds.lower > kEnough; ++step) {
-    const Eigen::Vector3d direction = nearest / nearest.norm();
+    const double length = nearest.norm();
+    const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(nearest / length) : Eigen::Vector3d::UnitX();
     const Eigen::Vector3d place = a(-direction) - b(direction);
     bounds.lower = std::max(bounds.lower, direction.dot(place));
-    if (bounds.lower > limit || simplex.has(place)) break;
+    if (isEnough(bounds) || simplex.has(place)) break;
     simplex.add(place);
     nearest = simplex.reduce();
     const double norm = nearest.norm();
     if (simplex.depth() > 0.0) return {-std::numeric_limits<double>::infinity(), -simplex.depth()};
     if (!(norm < bounds.upper)) break;
     bounds.upper = norm;
-    if (norm == 0.0) break;
+    if (norm == 0.0 || isEnough(bounds)) break;
   }
   bounds.lower = std::min(bounds.lower, bounds.upper);
   return bounds;

@@ -3,7 +3,9 @@
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/pairs/closest_pair.h>
+#include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/robot/convex_distance.h>
 #include <pcl_bsh/robot/gaps.h>
 #include <pcl_bsh/robot/outward.h>
@@ -92,13 +94,38 @@ double pierced(const TriangleDistance& distance, const Triangle3& a, const Trian
   return best;
 }
 
+/// The row of the corner that is farthest along a direction.
+Eigen::Index farthest(const Eigen::MatrixX3d& corners, const Eigen::Vector3d& along)
+{
+  // The maximum first, then where it is: both at once compare number by number.
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCorners, 1> heights(corners.rows());
+  heights = corners.col(0) * along.x() + corners.col(1) * along.y() + corners.col(2) * along.z();
+  const auto most = std::find(heights.begin(), heights.end() - 1, heights.maxCoeff());
+  return most - heights.begin();
+}
+
+/// The nearest records of their measured places, or any within the limit, and their distance.
+DistanceResult pairWithin(const Placed& a, const Placed& b, double limit, bool any)
+{
+  if (!any) {
+    DistanceRequest request;
+    request.max_distance = limit;
+    return closestPair(a, b, request);
+  }
+  DistanceResult found;
+  found.pair = anyCollisionAt(a, b, {limit}, MeantPlaces::measured).pair;
+  if (!found.pair) return found;
+  found.distance = RecordDistance(a.hierarchy().view(), a.pose, b.hierarchy().view(), b.pose).gap(*found.pair);
+  found.interval = {found.distance * (1.0 - 0x1p-52), found.distance * (1.0 + 0x1p-52)};
+  return found;
+}
+
 Interval ofMeshes(const SphereHierarchy& a, const Kinematics::Pose& pose_a, const SphereHierarchy& b,
-                  const Kinematics::Pose& pose_b, double limit)
+                  const Kinematics::Pose& pose_b, double limit, bool any)
 {
   const double uncertain = a.storage().uncertainty.most + b.storage().uncertainty.most;
-  DistanceRequest request; // of the measured places
-  request.max_distance = std::max(limit + uncertain, 0.0);
-  DistanceResult found = closestPair({a, pose_a.isometry()}, {b, pose_b.isometry()}, request);
+  DistanceResult found =
+      pairWithin({a, pose_a.isometry()}, {b, pose_b.isometry()}, std::max(limit + uncertain, 0.0), any);
   if (!found.pair) return {limit, kInfinity};
   const PointsView &view_a = a.view(), &view_b = b.view();
   if (found.interval.upper == 0.0 && view_a.triangles && view_b.triangles) {
@@ -143,7 +170,7 @@ double Gaps::doubt(const Ball& ball, std::size_t rest) const
   return ball.doubts[static_cast<std::size_t>(first - chain.begin())];
 }
 
-ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit) const
+ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit, bool any) const
 {
   const Piece& piece = parts.pieces[ball.piece];
   const Kinematics::Pose pose = poses[ball.body] * piece.pose;
@@ -156,7 +183,7 @@ ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit
   for (std::size_t i = 0; i < obstacles().size(); ++i) {
     const double within = std::min(padded, best.upper);
     const Gap gap =
-        piece.solid ? obstacles_[i].gap(*piece.solid, pose, within) : obstacles_[i].gap(patch(), pose, within);
+        piece.solid ? obstacles_[i].gap(*piece.solid, pose, within) : obstacles_[i].gap(patch(), pose, within, any);
     if (gap.record == kNothing) continue;
     if (gap.lower < best.lower || best.possible == kNothing) {
       best.lower = std::min(best.lower, gap.lower);
@@ -168,30 +195,39 @@ ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit
       best.record = gap.record;
       best.of_record = i;
     }
+    if (any && !piece.solid) break;
   }
   static_cast<Interval&>(best) = less(best, ball.padding, off);
   return best;
 }
 
-double Gaps::hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double enough) const
+double Gaps::hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double least,
+                        double enough) const
 {
   const Piece &piece_a = parts.pieces[a.piece], &piece_b = parts.pieces[b.piece];
   if (piece_a.corners.rows() == 0 || piece_b.corners.rows() == 0) return -kInfinity;
   const auto reachOf = [](const Eigen::MatrixX3d& corners, const Kinematics::Pose& pose) {
     return [&](const Eigen::Vector3d& direction) {
       const Eigen::Vector3d along = pose.rotation.transpose() * direction;
-      Eigen::Index most = 0;
-      (corners.col(0) * along.x() + corners.col(1) * along.y() + corners.col(2) * along.z()).maxCoeff(&most);
-      return pose * corners.row(most).transpose();
+      return pose * corners.row(farthest(corners, along)).transpose();
     };
   };
   const Kinematics::Pose pose_a = poses[a.body] * piece_a.pose, pose_b = poses[b.body] * piece_b.pose;
   const double less = a.padding + b.padding + doubt(a, common) + doubt(b, common) +
                       piece_a.surface->storage().uncertainty.most + piece_b.surface->storage().uncertainty.most;
-  return convexDistance(reachOf(piece_a.corners, pose_a), reachOf(piece_b.corners, pose_b), enough + less).lower - less;
+  return convexDistance(
+             reachOf(piece_a.corners, pose_a), reachOf(piece_b.corners, pose_b),
+             [&](const Interval& bounds) {
+               return bounds.lower > enough + less ||
+                      (bounds.upper <= enough + less && (bounds.lower > least + less || bounds.upper <= least + less));
+             },
+             centerOf(a, poses) - centerOf(b, poses))
+             .lower -
+         less;
 }
 
-Interval Gaps::between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const
+Interval Gaps::between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit,
+                       bool any) const
 {
   const double off = doubt(a, common) + doubt(b, common);
   if (a.is_sphere && b.is_sphere) {
@@ -208,11 +244,14 @@ Interval Gaps::between(const Ball& a, const Ball& b, std::size_t common, const P
         return Eigen::Vector3d(pose * support(solid, pose.rotation.transpose() * direction));
       };
     };
-    return less(convexDistance(reachOf(*piece_a.solid, pose_a), reachOf(*piece_b.solid, pose_b), padded + round),
+    return less(convexDistance(
+                    reachOf(*piece_a.solid, pose_a), reachOf(*piece_b.solid, pose_b),
+                    [&](const Interval& bounds) { return bounds.lower > padded + round; },
+                    centerOf(a, poses) - centerOf(b, poses)),
                 round + padding, off);
   }
   if (!piece_a.solid && !piece_b.solid)
-    return less(ofMeshes(*piece_a.surface, pose_a, *piece_b.surface, pose_b, padded), padding, off);
+    return less(ofMeshes(*piece_a.surface, pose_a, *piece_b.surface, pose_b, padded, any), padding, off);
   const bool first = piece_a.solid.has_value();
   const Kinematics::Pose &of_solid = first ? pose_a : pose_b, &of_mesh = first ? pose_b : pose_a;
   Obstacle mesh(first ? *piece_b.surface : *piece_a.surface);

@@ -46,15 +46,19 @@ public:
   double doubt(const Ball& ball, std::size_t rest) const;
 
   /// The gap between what a ball without parts holds, with its padding, and all obstacles, up to the limit.
-  ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit) const;
+  /// @param any of a patch it need not be the least: within the limit is enough
+  ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit, bool any = false) const;
 
   /// The gap between the pieces of two balls, with their paddings. Beyond the limit the upper bound may be infinite.
   /// @param common the body that neither moves against (LinkPair)
-  Interval between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit) const;
+  /// @param any of meshes it need not be the least: within the limit is enough
+  Interval between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit,
+                   bool any = false) const;
 
   /// At least how far the pieces of two balls are apart by the hulls of meshes.
-  /// @param enough more need not be told
-  double hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double enough) const;
+  /// @param least, enough whether they are apart by more than these is told, no more
+  double hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double least,
+                    double enough) const;
 
   /// @param for_certain what is nearest for certain; else what may be
   Meeting meetingOf(const Ball& ball, const ObstacleGap& gap, bool for_certain) const;

@@ -117,6 +117,20 @@ MotionSearch::Outcome MotionSearch::outcomeOf(const Interval& gap, double cleara
   return moved > gaps_.options.tolerance && !stays ? Outcome::open : Outcome::undecided;
 }
 
+/// @param gapOf(any) the least gap, or any within the limit; infinite above where nothing is
+template <class GapOf>
+MotionSearch::Outcome MotionSearch::outcomeBy(const GapOf& gapOf, double clearance, double moved) const
+{
+  Outcome outcome = Outcome::undecided;
+  for (const bool any : {true, false}) {
+    const Interval gap = gapOf(any);
+    if (gap.upper == kInfinity) return Outcome::free;
+    outcome = outcomeOf(gap, clearance, moved);
+    if (outcome == Outcome::open || outcome == Outcome::colliding) break; // others need the least gap
+  }
+  return outcome;
+}
+
 MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
 {
   const Ball& ball = gaps_.parts.balls[index];
@@ -129,9 +143,10 @@ MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
   if (moved > (parts ? kLong * ball.radius : gaps_.options.tolerance) && gaps_.areBeyond(center, still + error_))
     return Outcome::open;
   if (parts) return Outcome::parted;
-  const ObstacleGap gap = gaps_.toObstacles(ball, s_.poses, clearance + needed);
-  if (gap.record == kNothing) return Outcome::free;
-  const Outcome outcome = outcomeOf(gap, clearance, moved);
+  ObstacleGap gap;
+  const Outcome outcome =
+      outcomeBy([&](bool any) -> Interval { return gap = gaps_.toObstacles(ball, s_.poses, clearance + needed, any); },
+                clearance, moved);
   if (outcome >= Outcome::colliding) meeting_ = gaps_.meetingOf(ball, gap, outcome == Outcome::colliding);
   return outcome;
 }
@@ -148,12 +163,12 @@ MotionSearch::Outcome MotionSearch::ofPair(const LinkPair& pair, double h)
   if (a.piece == kNoPart || b.piece == kNoPart)
     return moved > kLong * (a.radius + b.radius) && least > clearance + doubt + error_ ? Outcome::open
                                                                                        : Outcome::parted;
-  const double apart = gaps_.hullsApart(a, b, pair.common, s_.poses, needed);
+  const bool is_long = moved > gaps_.options.tolerance;
+  const double apart = gaps_.hullsApart(a, b, pair.common, s_.poses, is_long ? clearance + error_ : needed, needed);
   if (apart > needed) return Outcome::free;
-  if (moved > gaps_.options.tolerance && apart > clearance + error_) return Outcome::open;
-  const Interval gap = gaps_.between(a, b, pair.common, s_.poses, needed);
-  if (gap.upper == kInfinity) return Outcome::free;
-  const Outcome outcome = outcomeOf(gap, clearance, moved);
+  if (is_long && apart > clearance + error_) return Outcome::open;
+  const Outcome outcome =
+      outcomeBy([&](bool any) { return gaps_.between(a, b, pair.common, s_.poses, needed, any); }, clearance, moved);
   if (outcome >= Outcome::colliding) meeting_ = gaps_.meetingOf(a, b);
   return outcome;
 }

@@ -75,6 +75,8 @@ private:
   Outcome ofBall(std::uint32_t index, double h);
   Outcome ofPair(const LinkPair& pair, double h);
   Outcome outcomeOf(const Interval& gap, double clearance, double moved) const;
+  template <class GapOf>
+  Outcome outcomeBy(const GapOf& gapOf, double clearance, double moved) const;
   bool isFreeUntilEnd(const Task& task);
 
   double bendOf(std::uint32_t index, std::size_t rest);

@@ -55,7 +55,7 @@ private:
       const Eigen::Vector3d center(at(node.x, 0), at(node.y, 1), at(node.z, 2));
       const double radius = frame.unit * static_cast<double>(node.r[i]);
       constexpr double roundings = 0x1p-44;
-      const double gap = probe_.toPoint(center, reach() + radius + cloud_.uncertainty.most).lower - radius -
+      const double gap = probe_.atLeast(center, reach() + radius + cloud_.uncertainty.most) - radius -
                          roundings * (center.lpNorm<1>() + radius) - cloud_.uncertainty.most;
       if (gap <= reach()) children[count++] = {gap, i};
     }
@@ -113,6 +113,7 @@ struct PointProbe {
   const Eigen::Vector3d& at;
   TriangleDistance triangles{Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
 
+  double atLeast(const Eigen::Vector3d& p, double) const { return (p - at).norm(); }
   Interval toPoint(const Eigen::Vector3d& p, double) const
   {
     const double distance = (p - at).norm();
@@ -124,53 +125,14 @@ struct PointProbe {
   }
 };
 
-/// Triangles in the obstacle's frame.
-class PatchProbe {
+/// A triangle between planes: its own, and those through its edges and across it. Their normals have length 1.
+class Planes {
 public:
-  PatchProbe(const Patch& patch, const Kinematics::Pose& pose, const Eigen::Vector3d& center)
-  : patch_(patch),
-    center_(center),
-    distances_(Eigen::Isometry3d::Identity(), pose.isometry())
+  /// Whether they are known: those of a narrow triangle turn as it is rounded.
+  bool set(const Triangle3& triangle, const Kinematics::Pose& pose)
   {
-    for (const std::uint32_t* record = patch.begin; record != patch.end; ++record)
-      if (const auto i = static_cast<std::size_t>(record - patch.begin); i < kPlanes)
-        planes_[i] = planeOf(patch_.triangle(record), pose);
-  }
-
-  /// @param enough bounds beyond it need not be near to each other
-  Interval toPoint(const Eigen::Vector3d& p, double enough) const
-  {
-    const double far = (p - center_).norm() - patch_.radius;
-    if (far > enough) return {far, kInfinity};
-    Interval all{kInfinity, kInfinity};
-    for (const std::uint32_t* record = patch_.begin; record != patch_.end; ++record) {
-      const auto i = static_cast<std::size_t>(record - patch_.begin);
-      const double across =
-          i < kPlanes ? std::abs(planes_[i].normal.dot(p) - planes_[i].offset) - kTurned * (far + 2.0 * patch_.radius)
-                      : 0.0;
-      add(all, across > enough ? Interval{across, kInfinity}
-                               : enclosed(distances_, Point3{p.x(), p.y(), p.z()}, patch_.triangle(record)));
-    }
-    return all;
-  }
-  Interval toTriangle(const Triangle3& corners, double) const
-  {
-    Interval all{kInfinity, kInfinity};
-    for (const std::uint32_t* record = patch_.begin; record != patch_.end; ++record)
-      add(all, enclosed(distances_, corners, patch_.triangle(record)));
-    return all;
-  }
-
-private:
-  struct Plane {
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    double offset = 0.0;
-  };
-
-  static Plane planeOf(const Triangle3& triangle, const Kinematics::Pose& pose)
-  {
-    // Coordinates are off by 2^-50 of their size, so an edge by less than 2^-35 of its length, and the normal turns by
-    // less than a few 2^-25.
+    // Coordinates are off by 2^-50 of their size, so an edge by less than 2^-35 of its length, and normals turn by less
+    // than a few 2^-25.
     constexpr double kNarrow = 0x1p-10, kShort = 0x1p-14;
     std::array<Eigen::Vector3d, 3> at;
     double size = pose.translation.lpNorm<1>();
@@ -179,11 +141,78 @@ private:
       at[k] = pose * corner;
       size = std::max(size, corner.lpNorm<1>());
     }
-    const Eigen::Vector3d one = at[1] - at[0], other = at[2] - at[0], normal = one.cross(other);
-    const double length = normal.norm();
+    const Eigen::Vector3d one = at[1] - at[0], other = at[2] - at[0], across = one.cross(other);
+    const double length = across.norm();
     const bool is_wide = length > kNarrow * one.norm() * other.norm();
-    if (!is_wide || !(std::min(one.norm(), other.norm()) > kShort * size)) return {};
-    return {normal / length, normal.dot(at[0]) / length};
+    if (!is_wide || !(std::min(one.norm(), other.norm()) > kShort * size)) return false;
+    const Eigen::Vector3d normal = across / length;
+    put(0, normal, at[0]);
+    for (std::size_t k = 0; k < 3; ++k)
+      put(static_cast<Eigen::Index>(k) + 1, (at[(k + 1) % 3] - at[k]).cross(normal).normalized(), at[k]);
+    return true;
+  }
+
+  /// A point is no nearer to the triangle. @param turned how far rounding moves it from a plane
+  double atLeast(const Eigen::Vector3d& p, double turned) const
+  {
+    const Eigen::Vector4d beyond =
+        normals_.col(0) * p.x() + normals_.col(1) * p.y() + normals_.col(2) * p.z() - offsets_;
+    const double above = std::max(std::abs(beyond[0]) - turned, 0.0);
+    const double outside = std::max(std::max({beyond[1], beyond[2], beyond[3]}) - turned, 0.0);
+    return std::sqrt(above * above + outside * outside);
+  }
+
+private:
+  void put(Eigen::Index i, const Eigen::Vector3d& normal, const Eigen::Vector3d& place)
+  {
+    normals_.row(i) = normal;
+    offsets_[i] = normal.dot(place);
+  }
+
+  Eigen::Matrix<double, 4, 3> normals_;
+  Eigen::Vector4d offsets_;
+};
+
+/// Triangles in the obstacle's frame.
+class PatchProbe {
+public:
+  PatchProbe(const Patch& patch, const Kinematics::Pose& pose, const Eigen::Vector3d& center)
+  : patch_(patch),
+    center_(center),
+    distances_(Eigen::Isometry3d::Identity(), pose.isometry())
+  {
+    for (std::size_t i = 0; i < std::min(kPlanes, count()); ++i)
+      if (planes_[i].set(patch_.triangle(patch_.begin + i), pose)) known_ |= 1u << i;
+  }
+
+  double atLeast(const Eigen::Vector3d& p, double enough) const { return near(p, enough, false).lower; }
+
+  /// @param enough bounds beyond it need not be near to each other
+  Interval toPoint(const Eigen::Vector3d& p, double enough) const { return near(p, enough, true); }
+  Interval toTriangle(const Triangle3& corners, double) const
+  {
+    Interval all{kInfinity, kInfinity};
+    for (std::size_t i = 0; i < count(); ++i)
+      add(all, enclosed(distances_, corners, patch_.triangle(patch_.begin + i)));
+    return all;
+  }
+
+private:
+  std::size_t count() const { return static_cast<std::size_t>(patch_.end - patch_.begin); }
+
+  Interval near(const Eigen::Vector3d& p, double enough, bool both) const
+  {
+    const double far = (p - center_).norm() - patch_.radius;
+    if (far > enough) return {far, kInfinity};
+    Interval all{kInfinity, kInfinity};
+    for (std::size_t i = 0; i < count(); ++i) {
+      const bool is_known = i < kPlanes && (known_ >> i & 1u) != 0;
+      const double least = is_known ? planes_[i].atLeast(p, kTurned * (far + 2.0 * patch_.radius)) : 0.0;
+      add(all, least > enough || (is_known && !both)
+                   ? Interval{least, kInfinity}
+                   : enclosed(distances_, Point3{p.x(), p.y(), p.z()}, patch_.triangle(patch_.begin + i)));
+    }
+    return all;
   }
 
   static void add(Interval& all, const Interval& one)
@@ -191,22 +220,27 @@ private:
     all = {std::min(all.lower, one.lower), std::min(all.upper, one.upper)};
   }
 
-  static constexpr std::size_t kPlanes = 8;
+  static constexpr std::size_t kPlanes = 16;
   static constexpr double kTurned = 0x1p-20; ///< by which rounding turns normals, at most
 
   const Patch& patch_;
   const Eigen::Vector3d center_;
   const TriangleDistance distances_;
-  std::array<Plane, kPlanes> planes_; ///< of the first triangles
+  std::array<Planes, kPlanes> planes_; ///< of the first triangles
+  std::uint32_t known_ = 0;            ///< of these, a bit each
 };
 
 struct SolidProbe {
   const Solid& solid;
   const Kinematics::Pose& pose;
 
+  double atLeast(const Eigen::Vector3d& p, double) const
+  {
+    return signedDistance(solid, pose.rotation.transpose() * (p - pose.translation));
+  }
   Interval toPoint(const Eigen::Vector3d& p, double) const
   {
-    const double distance = signedDistance(solid, pose.rotation.transpose() * (p - pose.translation));
+    const double distance = atLeast(p, 0.0);
     return {distance, distance};
   }
   Interval toTriangle(const std::array<Point3, 3>& corners, double limit) const
@@ -223,7 +257,8 @@ struct SolidProbe {
           }
           return best;
         },
-        limit + round);
+        [&](const Interval& bounds) { return bounds.lower > limit + round; },
+        pose.translation - Eigen::Vector3d(corners[0][0], corners[0][1], corners[0][2]));
     found.lower -= round;
     found.upper -= round;
     return found;
@@ -303,12 +338,12 @@ Gap Obstacle::gap(const Solid& solid, const Kinematics::Pose& place, double limi
   return GapWalk<SolidProbe>(*hierarchy_, {solid, seen}, limit).run();
 }
 
-Gap Obstacle::gap(const Patch& patch, const Kinematics::Pose& place, double limit) const
+Gap Obstacle::gap(const Patch& patch, const Kinematics::Pose& place, double limit, bool any) const
 {
   const Kinematics::Pose back = pose.inverse();
   const double uncertain = patch.surface.storage().uncertainty.most;
   const PatchProbe probe(patch, back * place, back * patch.center);
-  Gap found = GapWalk<PatchProbe>(*hierarchy_, probe, limit + uncertain).run();
+  Gap found = GapWalk<PatchProbe>(*hierarchy_, probe, limit + uncertain, any).run();
   found.lower -= uncertain;
   found.upper += uncertain;
   return found;

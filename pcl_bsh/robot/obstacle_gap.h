@@ -59,8 +59,8 @@ public:
   /// The gap of a solid that stands there.
   Gap gap(const Solid& solid, const Kinematics::Pose& pose, double limit) const;
 
-  /// The gap of triangles whose mesh stands there.
-  Gap gap(const Patch& patch, const Kinematics::Pose& pose, double limit) const;
+  /// The gap of triangles whose mesh stands there. @param any it need not be the least: within the limit is enough
+  Gap gap(const Patch& patch, const Kinematics::Pose& pose, double limit, bool any = false) const;
 
 private:
   const SphereHierarchy* hierarchy_;

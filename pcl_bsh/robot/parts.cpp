@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kChildren = 4;
 constexpr std::size_t kPatches = 128, kPatchTriangles = 2; ///< of a mesh, at most; of a patch, at least
-constexpr std::size_t kMostCorners = 1024;                 ///< of a hull: each step of a distance looks at all
 
 struct Corners : std::array<Eigen::Vector3d, 3> {
   std::uint32_t record = 0;
@@ -42,7 +41,7 @@ Eigen::MatrixX3d cornersOf(const std::vector<Corners>& triangles)
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   });
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  if (all.size() > kMostCorners) return {};
+  if (all.size() > std::size_t{kMostCorners}) return {};
   Eigen::MatrixX3d corners(static_cast<Eigen::Index>(all.size()), 3);
   for (std::size_t i = 0; i < all.size(); ++i) corners.row(static_cast<Eigen::Index>(i)) = all[i];
   return corners;

@@ -14,6 +14,7 @@
 namespace pcl_bsh::robots {
 
 inline constexpr std::uint32_t kNoPart = 0xffffffffu;
+inline constexpr int kMostCorners = 1024; ///< of a hull: each step of a distance looks at all
 
 /// A solid or a mesh of a link, in the frame of its body.
 struct Piece {

@@ -57,7 +57,7 @@ TEST(Shapes, DistancesAreThoseToTheirSupports)
       if (at_p <= 0.0) continue;
       const Interval by_steps =
           convexDistance([&](const Eigen::Vector3d& along) { return support(solid, along); },
-                         [&](const Eigen::Vector3d&) { return p; }, std::numeric_limits<double>::infinity());
+                         [&](const Eigen::Vector3d&) { return p; }, [](const Interval&) { return false; }, q);
       EXPECT_LE(by_steps.lower - roundness(solid), at_p + 1e-12);
       EXPECT_GE(by_steps.upper - roundness(solid), at_p - 1e-12);
       EXPECT_LT(by_steps.upper - by_steps.lower, 1e-7) << kind;
@@ -128,7 +128,7 @@ TEST(ObstacleGap, OfTrianglesIsThatOfTheirInsides)
   }
 }
 
-/// Triangles of all widths, of which some are narrower than those whose planes are known.
+/// Triangles of all widths, of which some are narrower than those whose planes are known, and more than these.
 TEST(ObstacleGap, OfPatchesIsThatOfTheirTriangles)
 {
   test::Random random(3);
@@ -137,7 +137,7 @@ TEST(ObstacleGap, OfPatchesIsThatOfTheirTriangles)
   const SphereHierarchy cloud(view);
   const Obstacle obstacle(cloud);
   for (int i = 0; i < 60; ++i) {
-    constexpr std::size_t kTriangles = 12;
+    constexpr std::size_t kTriangles = 20;
     std::vector<float> xyz = madeFloats(random, 9 * kTriangles, -0.2, 0.2);
     if (i % 2 == 0)
       for (std::size_t k = 6; k < xyz.size(); k += 9)
