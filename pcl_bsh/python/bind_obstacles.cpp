@@ -34,7 +34,7 @@ clearances : mapping of str to float, optional
 solids : mapping of str to bool, optional
     In place of `solid`: whether an obstacle counts with what its faces enclose.
 between : bool, default False
-    Obstacles are compared with each other, too.
+    Obstacles are compared with each other, too. Where they are more than 32, pairs that are free are not told.
 overlap : bool, default False
     With `between`: the area of each surface inside another obstacle that is a solid.
 ignore : sequence of str, optional

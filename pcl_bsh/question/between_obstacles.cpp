@@ -2,14 +2,50 @@
 #include <pcl_bsh/question/obstacles.h>
 
 #include <pcl_bsh/base/parallel.h>
+#include <pcl_bsh/clashes/near_boxes.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/question/overlap.h>
+#include <pcl_bsh/scene/pairs/object_boxes.h>
 
 #include <algorithm>
 #include <utility>
 
 namespace pcl_bsh {
 namespace {
+
+using Numbers = std::pair<std::uint32_t, std::uint32_t>;
+
+std::vector<Numbers> allPairs(std::uint32_t obstacles)
+{
+  std::vector<Numbers> all;
+  for (std::uint32_t i = 0; i < obstacles; ++i)
+    for (std::uint32_t k = i + 1; k < obstacles; ++k) all.emplace_back(i, k);
+  return all;
+}
+
+/// Pairs whose boxes come within the greater of their clearances, in order: all others are free.
+/// @param shapes whose hierarchies are built. @param questions about each
+std::vector<Numbers> nearPairs(const std::vector<Shape>& shapes, const std::vector<Question>& questions)
+{
+  std::vector<std::uint32_t> numbers; // of those that are somewhere
+  std::vector<Extent> boxes;
+  for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+    const Box3 box = moved(boxOf(shapes[i].hierarchy()), questions[i].pose);
+    if (box.empty()) continue;
+    numbers.push_back(i);
+    boxes.push_back({{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}});
+  }
+  NearBoxes tree(boxes);
+  std::vector<Numbers> near;
+  for (std::size_t b = 0; b < boxes.size(); ++b)
+    tree.visitNear(boxes[b], questions[numbers[b]].clearance.value_or(0.0), [&](std::size_t other) {
+      if (other != b) near.emplace_back(std::minmax(numbers[b], numbers[other]));
+      return false;
+    });
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
 
 /// The area of a surface of an obstacle in another, which is asked about as the question says.
 std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
@@ -63,10 +99,12 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
     shapes.back().ignore(question.obstacle_ignore_points);
     shapes.back().hierarchy(questions.back().uncertaintyOfObstacle(), question.threads);
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> asked;
-  for (std::uint32_t i = 0; i < obstacles.size(); ++i)
-    for (std::uint32_t k = i + 1; k < obstacles.size(); ++k)
-      if (wanted(i, k)) asked.emplace_back(i, k);
+  const bool tells_free = obstacles.size() <= most_obstacles_with_free_pairs;
+  std::vector<Numbers> asked =
+      tells_free ? allPairs(static_cast<std::uint32_t>(obstacles.size())) : nearPairs(shapes, questions);
+  asked.erase(
+      std::remove_if(asked.begin(), asked.end(), [&](const Numbers& pair) { return !wanted(pair.first, pair.second); }),
+      asked.end());
 
   if (asked.size() > 1) of_one.threads = 1; // of each pair
 
@@ -85,6 +123,8 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
     progress.step();
   });
   progress.end();
+  const auto isUntold = [&](const ObstaclePair& pair) { return !tells_free && pair.verdict == Verdict::free; };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), isUntold), pairs.end());
   return pairs;
 }
 

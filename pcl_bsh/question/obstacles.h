@@ -84,9 +84,13 @@ struct ObstaclePair {
   std::optional<Interval> second_within = {}; ///< the same the other way
 };
 
+/// askBetween() leaves out pairs of more obstacles that are free.
+inline constexpr std::size_t most_obstacles_with_free_pairs = 32;
+
 /// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not
-/// count. Pairs are shared out among the threads.
-/// @param wanted whether a pair counts, by its numbers; called by the thread that asks
+/// count. Pairs are shared out among the threads. Where obstacles are many, pairs are asked about whose boxes come
+/// within the clearance, and those of them are told that are not free.
+/// @param wanted whether a pair counts, by its numbers; called by the thread that asks, for pairs that are asked about
 /// @throws as ask() does
 std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,
                                      const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);

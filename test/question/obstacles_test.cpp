@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -66,6 +67,8 @@ struct Crowd {
   std::vector<std::vector<Point3>> places;
   std::vector<Eigen::Vector3d> shifts;
 };
+
+constexpr auto any_two = [](std::uint32_t, std::uint32_t) { return true; };
 
 Question contactsWithin(double clearance)
 {
@@ -261,14 +264,13 @@ TEST(Obstacles, StandAgainstEachOther)
   boxes[2].pose.translation().x() = 4.0;
   Question question;
   question.clearance = 0.1;
-  const auto all = [](std::uint32_t, std::uint32_t) { return true; };
-  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, all);
+  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, any_two);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_EQ(pairs[0].verdict, Verdict::colliding);
   EXPECT_EQ(pairs[1].verdict, Verdict::free);
   EXPECT_EQ(pairs[1].closest.distance, 3.0);
   boxes[2].clearance = 3.0;
-  EXPECT_EQ(askBetween(question, boxes, all)[1].verdict, Verdict::colliding);
+  EXPECT_EQ(askBetween(question, boxes, any_two)[1].verdict, Verdict::colliding);
   EXPECT_THAT(askBetween(question, boxes, [](std::uint32_t, std::uint32_t) { return false; }), IsEmpty());
 }
 
@@ -282,12 +284,12 @@ TEST(Obstacles, StandAgainstEachOtherOnAnyNumberOfThreads)
   }
   Question question;
   question.clearance = 0.125;
-  const auto all = [](std::uint32_t i, std::uint32_t k) { return i + k != 4; };
-  const std::vector<ObstaclePair> one = askBetween(question, obstacles, all);
+  const auto some = [](std::uint32_t i, std::uint32_t k) { return i + k != 4; };
+  const std::vector<ObstaclePair> one = askBetween(question, obstacles, some);
   question.threads = 4;
   std::size_t told = 0;
   question.progress = [&](double done) { return ++told, done == 1.0; };
-  const std::vector<ObstaclePair> four = askBetween(question, obstacles, all);
+  const std::vector<ObstaclePair> four = askBetween(question, obstacles, some);
   ASSERT_EQ(one.size(), 13U);
   ASSERT_EQ(four.size(), one.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -298,7 +300,49 @@ TEST(Obstacles, StandAgainstEachOtherOnAnyNumberOfThreads)
   }
   EXPECT_GT(told, 0U);
   question.progress = [](double) { return false; };
-  EXPECT_THROW(askBetween(question, obstacles, all), Cancelled);
+  EXPECT_THROW(askBetween(question, obstacles, some), Cancelled);
+}
+
+/// A plate of many boxes, some of which touch their neighbours, within their own clearances.
+TEST(Obstacles, OfManyThoseThatAreNearStandAgainstEachOther)
+{
+  constexpr std::uint32_t side = 45;
+  const test::TestMesh box = test::boxMesh(1, 1, 1);
+  test::Random random(29);
+  std::vector<PlacedShape> boxes(side * side, {Shape("box", viewOf(box.trianglesView()))});
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    boxes[i].pose = Eigen::AngleAxisd(random.uniform(0, 0.2), Eigen::Vector3d::UnitZ());
+    boxes[i].pose.translation() << 1.3 * (i / side), 1.3 * (i % side), random.uniform(0, 0.5);
+    if (i % 100 == 7) boxes[i].clearance = 0.9;
+    boxes[i].uncertainty = Uncertainty(i % 3 == 0 ? 0.05 : 0.0);
+  }
+  Question question;
+  question.clearance = 0.25;
+  question.threads = 2;
+  std::size_t asked = 0;
+  const auto count = [&](std::uint32_t i, std::uint32_t k) { return ++asked, i % 50 != 3 || k % 2 == 0; };
+  const std::vector<ObstaclePair> found = askBetween(question, boxes, count);
+  EXPECT_LT(asked, 8 * boxes.size()) << "of " << boxes.size() * boxes.size() / 2 << " pairs";
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < boxes.size(); i += 31) // each with all others, two at a time
+    for (std::uint32_t k = i + 1; k < boxes.size(); ++k) {
+      const bool counts = i % 50 != 3 || k % 2 == 0;
+      const bool may_touch = (boxes[i].pose.translation() - boxes[k].pose.translation()).norm() < 3.0;
+      const auto told = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(at), found.end(),
+                                     [&](const ObstaclePair& pair) { return pair.first == i && pair.second == k; });
+      if (told != found.end()) at = static_cast<std::size_t>(told - found.begin());
+      if (!counts || !may_touch) {
+        EXPECT_EQ(told, found.end()) << i << ", " << k;
+        continue;
+      }
+      const ObstaclePair alone = askBetween(question, {boxes[i], boxes[k]}, any_two)[0];
+      ASSERT_EQ(told != found.end(), alone.verdict != Verdict::free) << i << ", " << k;
+      if (told == found.end()) continue;
+      EXPECT_EQ(told->verdict, alone.verdict);
+      EXPECT_EQ(told->closest.distance, alone.closest.distance);
+      EXPECT_EQ(told->clearance, alone.clearance);
+    }
+  EXPECT_GT(found.size(), boxes.size() / 2);
 }
 
 TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
@@ -311,10 +355,9 @@ TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
   boxes[2].solid = true;
   Question question;
   question.clearance = 5.0;
-  const auto all = [](std::uint32_t, std::uint32_t) { return true; };
-  EXPECT_FALSE(askBetween(question, boxes, all)[0].second_within) << "it was not asked for";
+  EXPECT_FALSE(askBetween(question, boxes, any_two)[0].second_within) << "it was not asked for";
   question.wanted.overlap = true;
-  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, all);
+  const std::vector<ObstaclePair> pairs = askBetween(question, boxes, any_two);
   ASSERT_TRUE(pairs[0].second_within);
   EXPECT_FALSE(pairs[0].first_within) << "the second is no solid";
   constexpr double expected = 0.5 * 0.9375 + 0.25 * 0.9375 + 0.5 * 0.25;
@@ -323,7 +366,7 @@ TEST(Obstacles, TellHowMuchOfEachOtherIsWithin)
   EXPECT_EQ(pairs[1].first_within->upper, 0.0) << "near is not within";
   EXPECT_EQ(pairs[1].second_within->upper, 0.0);
   std::swap(boxes[0], boxes[1]);
-  EXPECT_EQ(askBetween(question, boxes, all)[0].first_within->upper, pairs[0].second_within->upper);
+  EXPECT_EQ(askBetween(question, boxes, any_two)[0].first_within->upper, pairs[0].second_within->upper);
 }
 
 TEST(Obstacles, TellProgressThatNeverFalls)

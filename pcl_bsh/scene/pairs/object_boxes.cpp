@@ -67,9 +67,9 @@ Box3 boxOf(const LocalFrame& frame)
   return box;
 }
 
-Box3 boxOf(const ScenePart& part)
+Box3 boxOf(const SphereHierarchy& hierarchy)
 {
-  const SphereHierarchy::Storage& storage = part.hierarchy->storage();
+  const SphereHierarchy::Storage& storage = hierarchy.storage();
   if (storage.size == 0) return Box3();
   Box3 box = boxOf(storage.frame);
   // Balls of large triangles, those of a floor, say, reach far beyond them.
@@ -78,14 +78,14 @@ Box3 boxOf(const ScenePart& part)
     box.grow(storage.uncertainty.most * (1.0 + kMargin) + kMargin * largest(box));
     return box;
   }
-  box.grow(outreach(*part.hierarchy) + kMargin * largest(box));
+  box.grow(outreach(hierarchy) + kMargin * largest(box));
   return box;
 }
 
 Box3 boxOf(const SceneObject& object)
 {
   Box3 box;
-  for (const ScenePart& part : object.parts) box.merge(moved(boxOf(part), part.pose));
+  for (const ScenePart& part : object.parts) box.merge(moved(boxOf(*part.hierarchy), part.pose));
   return box;
 }
 

@@ -10,7 +10,6 @@ namespace pcl_bsh {
 
 struct LocalFrame;
 struct SceneObject;
-struct ScenePart;
 class SphereHierarchy;
 
 /// Closed; empty when low > high.
@@ -49,8 +48,8 @@ double outreach(const SphereHierarchy& hierarchy);
 /// Box of all places that a frame stores, within rounding.
 Box3 boxOf(const LocalFrame& frame);
 
-/// Box of all places that a part's points and their radii may take, in the frame of its cloud.
-Box3 boxOf(const ScenePart& part);
+/// Box of all places that a cloud's points and their radii may take, in its frame.
+Box3 boxOf(const SphereHierarchy& hierarchy);
 
 /// Box of all parts, in the object's frame.
 Box3 boxOf(const SceneObject& object);

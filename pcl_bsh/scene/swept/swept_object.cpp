@@ -28,7 +28,7 @@ SweptObject::SweptObject(const Body& body, const Eigen::Isometry3d& to, const Ei
 {
   for (std::uint32_t i = 0; i < body.world.size(); ++i) {
     if (!body.isPartMoved(i)) continue;
-    const Box3 box = boxOf(body.object.parts[i]);
+    const Box3 box = boxOf(*body.object.parts[i].hierarchy);
     const Leg leg = legOf(body, i, leg_, box);
     own_.push_back({i, leg, ObjectMotion(leg, box)});
   }

@@ -131,7 +131,9 @@ void SeveralObstacles::addTo(CLI::App& app)
                  "Without NAME= its name is the file's. A path moves all of them")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
-  app.add_flag("--between", between, "the obstacles are compared with each other, too, as they stand");
+  app.add_flag("--between", between,
+               "the obstacles are compared with each other, too, as they stand; where they\n"
+               "are more than 32, pairs that are clear are not told");
   app.add_flag("--overlap", overlap,
                "with --between: the area of each surface inside another obstacle that\n"
                "is a solid, as an interval that holds it");
