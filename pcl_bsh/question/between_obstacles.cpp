@@ -4,6 +4,7 @@
 #include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/clashes/near_boxes.h>
 #include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/question/joined_answers.h>
 #include <pcl_bsh/question/overlap.h>
 #include <pcl_bsh/scene/pairs/object_boxes.h>
 
@@ -23,15 +24,17 @@ std::vector<Numbers> allPairs(std::uint32_t obstacles)
   return all;
 }
 
-/// Pairs whose boxes come within the greater of their clearances, in order: all others are free.
+/// Pairs whose boxes of all poses come within the greater of their clearances, in order: all others are free.
 /// @param shapes whose hierarchies are built. @param questions about each
 std::vector<Numbers> nearPairs(const std::vector<Shape>& shapes, const std::vector<Question>& questions)
 {
   std::vector<std::uint32_t> numbers; // of those that are somewhere
   std::vector<Extent> boxes;
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
-    const Box3 box = moved(boxOf(shapes[i].hierarchy()), questions[i].pose);
-    if (box.empty()) continue;
+    const Box3 shape = boxOf(shapes[i].hierarchy());
+    if (shape.empty()) continue;
+    Box3 box;
+    for (const Eigen::Isometry3d& pose : questions[i].poses()) box.merge(moved(shape, pose));
     numbers.push_back(i);
     boxes.push_back({{box.low.x(), box.low.y(), box.low.z()}, {box.high.x(), box.high.y(), box.high.z()}});
   }
@@ -82,6 +85,39 @@ ObstaclePair pairOf(const Question& question, const Question& one, Shape& first,
   return pair;
 }
 
+/// Adds how they stand at a later pose.
+void join(ObstaclePair& all, ObstaclePair&& now)
+{
+  const bool is_graver = graver(all.verdict, now.verdict) != all.verdict;
+  const Verdict verdict = is_graver ? now.verdict : all.verdict;
+  const std::int32_t first_pose = is_graver ? now.first_pose : all.first_pose;
+  if (now.closest.distance < all.closest.distance) all = std::move(now);
+  all.verdict = verdict;
+  all.first_pose = first_pose;
+}
+
+/// How they stand to each other at all poses of their paths.
+ObstaclePair pairAlong(const Question& question, Question one, Shape& first, Question other, Shape& second)
+{
+  if (!one.path) return pairOf(question, one, first, other, second);
+  ObstaclePair all;
+  for (std::size_t k = 0; k < one.path->size(); ++k) {
+    const Eigen::Isometry3d &of_one = (*one.path)[k], &of_other = (*other.path)[k];
+    if (k > 0 && of_one.matrix() == one.pose.matrix() && of_other.matrix() == other.pose.matrix()) continue;
+    one.pose = of_one;
+    other.pose = of_other;
+    ObstaclePair now = pairOf(question, one, first, other, second);
+    const auto pose = static_cast<std::int32_t>(k);
+    now.first_pose = now.verdict == Verdict::free ? -1 : pose;
+    now.closest_pose = now.closest.pair ? pose : -1;
+    if (k == 0)
+      all = std::move(now);
+    else
+      join(all, std::move(now));
+  }
+  return all;
+}
+
 } // namespace
 
 std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,
@@ -89,6 +125,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
 {
   Question of_one = question;
   of_one.path.reset();
+  requirePaths(of_one, obstacles);
   of_one.pose.setIdentity();
   of_one.pose_uncertainty = {};
   std::vector<Question> questions;
@@ -117,7 +154,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
     if (progress.stopped()) return;
     const std::uint32_t i = asked[p].first, k = asked[p].second;
     Shape first = shapes[i], second = shapes[k]; // which share what is built
-    pairs[p] = pairOf(of_one, questions[i], first, questions[k], second);
+    pairs[p] = pairAlong(of_one, questions[i], first, questions[k], second);
     pairs[p].first = i;
     pairs[p].second = k;
     progress.step();

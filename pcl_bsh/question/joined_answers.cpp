@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace pcl_bsh {
 namespace {
@@ -233,6 +234,22 @@ DistanceResult closestOf(const TrajectoryResult& found)
     widen(closest.interval, interval);
   }
   return closest;
+}
+
+void requirePaths(const Question& question, const std::vector<PlacedShape>& obstacles)
+{
+  const auto posesOf = [](const PlacedShape& obstacle) { return obstacle.path ? obstacle.path->size() : 0; };
+  for (const PlacedShape& obstacle : obstacles) {
+    if (obstacle.path && question.path)
+      throw InvalidInput(Input::trajectory, obstacle.shape.name(), "has a path, and the question, too",
+                         "leave one of them out");
+    const std::size_t poses = posesOf(obstacle), others = posesOf(obstacles.front());
+    if (poses != others || (obstacle.path && poses == 0))
+      throw InvalidInput(Input::trajectory, obstacle.shape.name(),
+                         "has a path of " + std::to_string(poses) + " poses, and " + obstacles.front().shape.name() +
+                             " of " + std::to_string(others),
+                         "give all obstacles as many, one at least, or none a path");
+  }
 }
 
 void widen(Interval& all, const Interval& one)

@@ -53,6 +53,9 @@ private:
 /// The smallest distance of what collides along a path, as it is told, with its pair: of several, the first record's.
 DistanceResult closestOf(const TrajectoryResult& found);
 
+/// Refuses paths of obstacles that do not belong together. @throws InvalidInput
+void requirePaths(const Question& question, const std::vector<PlacedShape>& obstacles);
+
 /// The interval of a smallest distance holds those of all that may have it. @param all as it begins, nothing is known
 void widen(Interval& all, const Interval& one);
 

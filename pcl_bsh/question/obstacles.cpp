@@ -80,9 +80,11 @@ Question questionOf(const Question& question, const PlacedShape& obstacle)
     place(one.pose);
     if (one.path) std::for_each(one.path->begin(), one.path->end(), place);
   }
+  if (obstacle.path) one.path = obstacle.path;
   if (obstacle.clearance) one.clearance = obstacle.clearance;
   if (obstacle.solid) one.solid = *obstacle.solid;
   if (obstacle.uncertainty) one.obstacle_uncertainty = *obstacle.uncertainty;
+  if (obstacle.uncertainty && !obstacle.uncertainty->pose.isZero()) one.pose_uncertainty = obstacle.uncertainty->pose;
   return one;
 }
 
@@ -91,6 +93,8 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
   if (obstacles.empty()) throw InvalidInput(Input::points, "obstacles", "there are none", "give one at least");
   const Wanted& wanted = question.wanted;
   requireSeveral(question, obstacles.size());
+  requirePaths(question, obstacles);
+  const std::optional<std::vector<Eigen::Isometry3d>>& path = question.path ? question.path : obstacles.front().path;
   const std::size_t records = input.hierarchy(question.uncertaintyOfInput(), question.threads).view().count;
   JoinedAnswers joined(records, wanted);
   for (std::uint32_t i = 0; i < obstacles.size(); ++i) {
@@ -109,8 +113,8 @@ ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedSh
     }
     if (told) told(i, one, answer);
   }
-  joined.fill(question.poses().size());
-  return joined.finish(question.path.has_value());
+  joined.fill(path ? path->size() : 1);
+  return joined.finish(path.has_value());
 }
 
 } // namespace pcl_bsh

@@ -29,8 +29,11 @@ struct PlacedShape {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape: the question's poses stand before it
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
-  std::optional<Uncertainty> uncertainty = {}; ///< of its points
+  std::optional<Uncertainty> uncertainty = {}; ///< of its points and, where that is not 0, of its pose
   bool ignores_input = false;                  ///< it is compared with other obstacles alone
+  /// Its poses, one after another, in place of `pose` and of the question's. All obstacles have as many, or none has
+  /// any.
+  std::optional<std::vector<Eigen::Isometry3d>> path = {};
 };
 
 /// The question about one of several obstacles. A product of two poses that both move is rounded in double.
@@ -69,7 +72,7 @@ using AnswerOf = std::function<void(std::size_t obstacle, const Question& questi
 
 /// Asks about each obstacle. All obstacles share the hierarchy of the input. Where poses alone are asked about, an
 /// obstacle that anyCollision() finds free costs no more than that and its smallest distance.
-/// @throws InvalidInput for no obstacle; as ask() of one does
+/// @throws InvalidInput for no obstacle, and for paths that are not all as long; as ask() of one does
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
                     const AnswerOf& told = nullptr);
 
@@ -78,7 +81,9 @@ struct ObstaclePair {
   std::uint32_t first = 0, second = 0;
   double clearance = 0.0; ///< the greater of theirs
   Verdict verdict = Verdict::free;
-  DistanceResult closest; ///< records of the first and of the second
+  DistanceResult closest;         ///< records of the first and of the second
+  std::int32_t first_pose = -1;   ///< of their paths, at which the verdict is first; -1: none, or it is free
+  std::int32_t closest_pose = -1; ///< of their paths, at which they are closest; -1: they have none
   /// With Wanted::overlap, areaWithin() of its surface in the other; none where that is no solid, or it no surface.
   std::optional<Interval> first_within = {};
   std::optional<Interval> second_within = {}; ///< the same the other way
@@ -87,9 +92,10 @@ struct ObstaclePair {
 /// askBetween() leaves out pairs of more obstacles that are free.
 inline constexpr std::size_t most_obstacles_with_free_pairs = 32;
 
-/// Asks about obstacles against each other, at their poses. A path moves all of them together, so that it does not
-/// count. Pairs are shared out among the threads. Where obstacles are many, pairs are asked about whose boxes come
-/// within the clearance, and those of them are told that are not free.
+/// Asks about obstacles against each other, at their poses. A path of the question moves all of them together, so that
+/// it does not count. Paths of their own do: two obstacles stand at poses of one number, the gravest verdict counts,
+/// and areas are those of the closest pose. Pairs are shared out among the threads. Where obstacles are many, pairs are
+/// asked about whose boxes come within the clearance, and those of them are told that are not free.
 /// @param wanted whether a pair counts, by its numbers; called by the thread that asks, for pairs that are asked about
 /// @throws as ask() does
 std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,

@@ -41,6 +41,10 @@ public:
     checkOfSeveral(all_.question);
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
       passing_.emplace_back();
+      if (obstacles[i].path)
+        throw InvalidInput(Input::trajectory, obstacles[i].shape.name(),
+                           "has a path of its own, and the input is a site",
+                           "give the question a path, which moves all obstacles");
       if (obstacles[i].ignores_input) continue;
       Question one = questionOf(all_.question, obstacles[i]);
       one.progress = nullptr;

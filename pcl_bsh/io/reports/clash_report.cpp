@@ -214,6 +214,9 @@ Json betweenJson(const BetweenObstacles& two)
                {"state", nameOfState(two.pair.verdict)},
                {"distance", closestJson(two.pair.closest)},
                {"closest_pair", pairJson(two.pair.closest)}};
+  for (const auto& [name, pose] :
+       {std::pair{"first_pose", two.pair.first_pose}, {"closest_pose", two.pair.closest_pose}})
+    if (pose >= 0) json[name] = pose;
   for (const auto& [name, area] :
        {std::pair{"area_of_first_within", &two.pair.first_within}, {"area_of_second_within", &two.pair.second_within}})
     if (*area) json[name] = {(*area)->lower, (*area)->upper};

@@ -38,6 +38,8 @@ std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std:
   for (const BetweenObstacles& two : between) {
     out << two.first << " and " << two.second << ": " << nameOfState(two.pair.verdict);
     tell_distance(two.pair.closest);
+    if (two.pair.closest_pose >= 0) out << " at pose " << two.pair.closest_pose;
+    if (two.pair.first_pose >= 0) out << ", first at pose " << two.pair.first_pose;
     for (const auto& [name, area] :
          {std::pair{&two.first, &two.pair.first_within}, {&two.second, &two.pair.second_within}})
       if (*area && (*area)->upper > 0.0) out << ", area of " << *name << " inside " << areaText(*area);
