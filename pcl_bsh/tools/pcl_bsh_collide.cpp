@@ -170,15 +170,7 @@ void check(const Options& options, const Question& question)
     io::requireWritableCloud(*options.obstacle_out); // a surface's file is checked once its format is known
   if (options.report) files::requireWritable(*options.report);
   if (!options.poses_out.empty()) files::requireWritable(options.poses_out);
-  for (const fs::path& list : options.clashes) {
-    try {
-      io::requireClashFormat(list);
-    }
-    catch (const files::FileError& error) {
-      throw cli::UsageError(std::string("--clashes: ") + error.what());
-    }
-    files::requireWritable(list);
-  }
+  options.requireWritable();
   if (options.distances) io::reportDate(); // refuses a wrong SOURCE_DATE_EPOCH before anything is done
   if (!options.distance_page) return;
   if (options.distance_page->extension() != ".html")

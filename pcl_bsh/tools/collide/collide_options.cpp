@@ -59,8 +59,7 @@ void requireConsistent(const CollideOptions& options)
   const auto refuse = [](const char* option, const char* wrong) {
     throw UsageError(std::string(option) + ": " + wrong);
   };
-  if (options.clashes.empty() && (options.cluster_distance > 0 || options.previous))
-    refuse(options.previous ? "--previous" : "--cluster-distance", "no clash report is written: give --clashes FILE");
+  options.ClashOptions::requireConsistent();
   for (const auto& [given, option] : {std::pair{options.question.max_distance.has_value(), "--max-distance"},
                                       {options.distance_page.has_value(), "--distance-page"}}) {
     if (given && !options.distances) refuse(option, "no distances are asked for: give --distances");
@@ -111,7 +110,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   app.add_option("INPUT", options.input, "the cloud whose points are tested")->type_name("")->required();
   app.add_option("OBSTACLE", options.obstacle, "cloud or mesh to collide with")->type_name("")->required();
   app.add_option("OUTPUT", options.output, "INPUT's points with all their fields")->type_name("");
-  options.addTo(app);
+  options.SeveralObstacles::addTo(app);
   addQuestionOptions(app, question, {"clearance"});
   pose.addTo(app);
   path.addTo(app);
@@ -142,23 +141,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   reading.addSystemsTo(app, true);
   app.add_flag("--in-place", in_place, "OUTPUT may be INPUT, which it then replaces");
   app.add_option("--report", options.report, "JSON file for the results and what they cost")->type_name("FILE");
-  app.add_option("--clashes", options.clashes,
-                 "list of the places that collide, to .json, .csv, .html, .bcf (3.0) or\n"
-                 ".bcfzip (2.1); may be given more than once")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  app.add_option("--cluster-distance", options.cluster_distance,
-                 "colliding points no farther apart belong to one clash (default: the\n"
-                 "greater of D and four spacings of INPUT, rounded up to a power of two)")
-      ->type_name("L")
-      ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-  app.add_option("--previous", options.previous,
-                 "earlier list, .json or BCF, of the same options but --swept and --seen:\n"
-                 "clashes are new, persisting, resolved, or not visited by the path or not\n"
-                 "scanned any more; BCF brings comments and topics' states")
-      ->type_name("FILE");
-  app.add_option("--unit", options.unit, "name of INPUT's unit, for reports of distances and clashes")
-      ->type_name("NAME");
+  options.ClashOptions::addTo(app, "reports of distances and clashes");
   if (!understood(app, collide_program, argc, argv)) return std::nullopt;
 
   setObstacles(options);
@@ -195,10 +178,10 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
     for (const std::filesystem::path& mask : io::maskFilesOf(*ignored)) files.reads(option, mask);
     io::readMasks(*ignored);
   }
-  files.reads("--previous", options.previous.value_or("")).writes("OUTPUT", options.output, in_place ? "INPUT" : "");
+  files.writes("OUTPUT", options.output, in_place ? "INPUT" : "");
   files.writes("--report", options.report.value_or("")).writes("--distance-page", options.distance_page.value_or(""));
   files.writes("--obstacle-out", options.obstacle_out.value_or(""));
-  for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
+  options.ClashOptions::addTo(files);
   return options;
 }
 

@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_collide.
 #pragma once
 
+#include <pcl_bsh/tools/cli/clash_options.h>
 #include <pcl_bsh/tools/cli/obstacle_choice.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
@@ -21,23 +22,19 @@ inline constexpr auto collide_program = "pcl_bsh_collide";
 
 enum class Keep { flagged, colliding, free };
 
-struct CollideOptions : SeveralObstacles {
+struct CollideOptions : SeveralObstacles, ClashOptions {
   std::filesystem::path input;
   std::filesystem::path obstacle; ///< where there are no `obstacles`
   std::filesystem::path output;
   std::optional<std::filesystem::path> obstacle_out;
   std::optional<std::filesystem::path> report;
   Keep keep = Keep::flagged;
-  Question question;                          ///< its path: a straight run, or that of the trajectory, once it is read
-  std::filesystem::path trajectory;           ///< a file of poses, or empty
-  std::filesystem::path pairs;                ///< of places, which the pose is to fit, or empty
-  std::filesystem::path poses_out;            ///< for the poses that are asked about, or empty
-  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
-  double cluster_distance = 0;                ///< 0: from clearance and spacing
-  std::optional<std::filesystem::path> previous;
-  bool distances = false; ///< of every point
+  Question question;                ///< its path: a straight run, or that of the trajectory, once it is read
+  std::filesystem::path trajectory; ///< a file of poses, or empty
+  std::filesystem::path pairs;      ///< of places, which the pose is to fit, or empty
+  std::filesystem::path poses_out;  ///< for the poses that are asked about, or empty
+  bool distances = false;           ///< of every point
   std::optional<std::filesystem::path> distance_page;
-  std::string unit; ///< of the clouds, for reports; empty: not known
   ReadChoice reading;
   std::vector<std::string> warnings;       ///< of the options themselves
   std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these

@@ -33,8 +33,7 @@ std::string listClashes(const CollideOptions& options, const SphereHierarchy& a,
   listing.coordinate_system = report.coordinate_system;
   listing.between = report.between;
   const io::ClashLists lists = listOf(listing, a, hierarchies, report.obstacles, report.answer, report.warnings);
-  for (const std::filesystem::path& file : options.clashes)
-    for (std::string& remark : io::writeClashes(file, lists)) report.warnings.push_back(std::move(remark));
+  options.write(lists, report.warnings);
   report.seconds.clashes = step.done(io::clashCounts(lists));
   return io::clashCounts(lists);
 }
