@@ -103,6 +103,23 @@ TEST_F(ObstaclePaths, AreComparedWithEachOtherAtPosesOfOneNumber)
   EXPECT_GT(later, 0U) << "else the first pose decides all";
 }
 
+TEST_F(ObstaclePaths, MeetAtALaterPoseAmongMany)
+{
+  const auto standing = [](double x) {
+    std::vector<Eigen::Isometry3d> path(3, Eigen::Isometry3d::Identity());
+    for (Eigen::Isometry3d& pose : path) pose.translation().x() = x;
+    return path;
+  };
+  std::vector<PlacedShape> crowd(most_obstacles_with_free_pairs + 1, obstacles[0]);
+  for (std::size_t i = 0; i < crowd.size(); ++i) crowd[i].path = standing(10.0 * static_cast<double>(i));
+  crowd[3].path->at(2) = crowd[17].path->at(2);
+  const std::vector<ObstaclePair> pairs = askBetween({}, crowd, [](std::uint32_t, std::uint32_t) { return true; });
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0].first, 3U);
+  EXPECT_EQ(pairs[0].second, 17U);
+  EXPECT_EQ(pairs[0].first_pose, 2);
+}
+
 TEST_F(ObstaclePaths, BelongTogether)
 {
   Question question;
