@@ -5,6 +5,7 @@
 #include <pcl_bsh/tools/cli/scene_bodies.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
+#include <pcl_bsh/tools/scene/clashes.h>
 #include <pcl_bsh/tools/scene/cloud_names.h>
 #include <pcl_bsh/tools/scene/explain.h>
 #include <pcl_bsh/tools/scene/scene_report.h>
@@ -38,14 +39,17 @@ flagged clouds if the scene asks for them. Where clouds have an `uncertainty`, w
 certain, is undecided, flag 2. In steps.jsonl, `unswept` lists objects that did more in a step than first_contact and
 swept look at: those `reshaped` by a wave, and those `detoured` by a response or gravity. With the effect bodies,
 `bodies` has the pose of each (12 numbers, row by row), its velocity and spin, and `body_contacts` what holds it.
+With the effect clashes, --clashes lists where other objects came too near to the scan at any step, place by place;
+poses are numbers of steps. summary.json has `clashes`, a table of the objects.
 Exit code: 0 done; 1 failed, the scene file is wrong included; 2 command line not understood; 130 stopped by Ctrl-C.
 
 Example:
   pcl_bsh_scene examples/scenes/drift.json --out drift
   pcl_bsh_scene examples/scenes/drift.json --explain
-  pcl_bsh_scene examples/scenes/drift.json --validate --json)";
+  pcl_bsh_scene examples/scenes/drift.json --validate --json
+  pcl_bsh_scene hall.json --clashes week48.html --clashes week48.bcf --previous week47.bcf)";
 
-struct Options {
+struct Options : cli::ClashOptions {
   fs::path scene;
   fs::path out;
   bool validate = false;
@@ -129,6 +133,10 @@ void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::Sc
 void check(const io::SceneFile& file, const cli::CloudNames& names, const Options& options)
 {
   cli::requireBodies(file);
+  if (!file.clashes && !options.clashes.empty())
+    throw cli::UsageError("--clashes: " + file.path.string() +
+                          " does not list the effect 'clashes': add \"clashes\": {\"of\": SCAN} to 'effects'");
+  options.requireWritable();
   cli::CommandFiles used;
   used.reads("SCENE", options.scene);
   for (const auto& [what, path] : file.files()) used.reads(what, path);
@@ -139,11 +147,12 @@ void check(const io::SceneFile& file, const cli::CloudNames& names, const Option
         if (names.mayBe(cloud.file.filename().string())) used.writes("--out", options.out / cloud.file.filename());
     }
   }
+  options.addTo(used);
   used.requireApart();
 }
 
 nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTotals& totals, std::size_t points,
-                                 double load_seconds, bool tests_pairs)
+                                 double load_seconds, bool tests_pairs, const cli::SceneClashList* clashes)
 {
   nlohmann::ordered_json json = {{"scene", file.path.string()},
                                  {"objects", file.objects.size()},
@@ -169,6 +178,7 @@ nlohmann::ordered_json summaryOf(const io::SceneFile& file, const cli::SceneTota
   if (file.options.effects.first_contact || file.options.effects.swept) json["unswept_steps"] = totals.unswept_steps;
   if (totals.wanted > 0.0)
     json["moves"] = {{"travelled", totals.travelled}, {"wanted", totals.wanted}, {"touched", totals.touched_moves}};
+  if (clashes) json["clashes"] = clashes->json();
   return json;
 }
 
@@ -233,6 +243,8 @@ void runScene(const io::SceneFile& file, const Options& options)
   cli::warn(program, world.warnings());
   const std::unique_ptr<SceneBodies> bodies = cli::bodiesOf(file, world.scene());
   if (bodies) cli::warn(program, bodies->warnings());
+  std::optional<cli::SceneClashList> clashes;
+  if (file.clashes) clashes.emplace(file, world, options);
   const double load_seconds = seconds(start);
   if (!options.json)
     std::printf("%s: %zu objects, %zu points in %zu clouds\n", options.scene.c_str(), file.objects.size(),
@@ -251,6 +263,7 @@ void runScene(const io::SceneFile& file, const Options& options)
     else
       done = cli::stepOf(world.scene(), bodies.get(), file.dt);
     totals.add(done, seconds(start));
+    if (clashes) clashes->addStep();
     progress.done(step);
     if (!files) continue;
     table.writeRow(files->csv(), step, done);
@@ -261,13 +274,19 @@ void runScene(const io::SceneFile& file, const Options& options)
         (file.cloud_output == io::CloudOutput::last && step == file.steps))
       writeClouds(file, names, world, done.scene, options.out, step);
   }
+  if (clashes) {
+    clashes->finish();
+    cli::warn(program, clashes->warnings());
+  }
   const bool tests_pairs = world.scene().testsPairs();
-  const nlohmann::ordered_json summary = summaryOf(file, totals, world.points(), load_seconds, tests_pairs);
+  const nlohmann::ordered_json summary =
+      summaryOf(file, totals, world.points(), load_seconds, tests_pairs, clashes ? &*clashes : nullptr);
   if (files) files->finish(summary);
   if (options.json)
     cli::writeJson(std::cout, summary);
   else
     printSummary(file, totals, tests_pairs);
+  if (clashes && !options.json) std::cout << clashes->summary();
 }
 
 void run(const Options& options)
@@ -297,8 +316,10 @@ int main(int argc, char** argv)
     app.add_flag("--validate", options.validate, "only check the scene file");
     app.add_flag("--explain", options.explain,
                  "only print which effects are on, what each makes the program build, and why");
+    options.ClashOptions::addTo(app, "lists of clashes");
     app.add_flag("--json", options.json, "print what is found as JSON, for programs");
     if (!cli::understood(app, program, argc, argv)) return 0;
+    options.requireConsistent();
     options.scene = scene;
     options.out = out;
     run(options);

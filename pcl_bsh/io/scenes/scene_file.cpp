@@ -47,6 +47,7 @@ public:
     if (file_.bodies && std::none_of(file_.objects.begin(), file_.objects.end(),
                                      [](const ObjectEntry& object) { return object.body.falls(); }))
       root_.at("effects").at("bodies").fail("no object is a body", "give one a 'body' with its mass or density");
+    if (root_.has("effects") && root_.at("effects").has("clashes")) parseClashes(root_.at("effects").at("clashes"));
     if (root_.has("pairs")) parsePairs(root_.at("pairs"));
     if (root_.has("outputs")) parseOutputs(root_.at("outputs"));
     return std::move(file_);
@@ -114,6 +115,37 @@ private:
     read(reader, "margin", bodies.margin);
     read(reader, "push", bodies.most_push);
     read(reader, "damping", bodies.damping);
+  }
+
+  void parseClashes(const JsonReader& reader)
+  {
+    SceneClashes& clashes = file_.clashes.emplace();
+    const JsonReader of = reader.at("of");
+    std::vector<std::string> names;
+    for (const ObjectEntry& object : file_.objects) names.push_back(object.name);
+    const std::string name = of.oneOf(names);
+    clashes.of = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    const ObjectEntry& scan = file_.objects[clashes.of];
+    const auto stands = [](const Eigen::Isometry3d& pose) { return pose.matrix().isIdentity(0.0); };
+    if (!scan.fixed) of.fail("'" + name + "' is not fixed", "give it \"fixed\": true, or name another object");
+    if (scan.parts.size() > 1 || !stands(scan.pose) || !stands(scan.parts[0].pose))
+      of.fail("'" + name + "' has parts or a pose, and places are told in its cloud's coordinates",
+              "make it one cloud without a pose; its 'shift' may place it");
+    if (names.size() < 2) of.fail("there is no other object", "add one");
+    if (file_.options.effects.deform) reader.fail("does not go with the effect 'deform'", "leave one out");
+    read(reader, "between", clashes.between);
+    Question& question = clashes.question;
+    read(reader, "seen", question.seen);
+    for (const char* const option : {"origin", "seen_angle"})
+      if (reader.has(option) && !question.seen) reader.at(option).fail("needs 'seen'", "give \"seen\": true, too");
+    read(reader, "seen_angle", question.seen_angle);
+    if (!reader.has("origin")) return;
+    try {
+      question.origin = ScanOrigins::parse(reader.at("origin").text());
+    }
+    catch (const InvalidInput& error) {
+      reader.at("origin").fail(error.wrong(), error.remedy());
+    }
   }
 
   /// The identity where none is given.

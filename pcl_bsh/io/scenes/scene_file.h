@@ -8,6 +8,7 @@
 
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/physics/scene_bodies.h>
+#include <pcl_bsh/question/question.h>
 #include <pcl_bsh/scene/scene.h>
 #include <pcl_bsh/search/uncertainty.h>
 
@@ -36,6 +37,12 @@ struct CloudSource {
   ColumnNames columns;               ///< of a file of columns; empty: as it says
   bool allow_scale = false;          ///< of a .ptx, whose transforms may scale uniformly then
   std::string place;                 ///< in the document
+
+  /// Whether its coordinates are those of the file.
+  bool isAsRead() const { return scale == 1.0 && shift.isZero(0.0); }
+
+  /// Returns the name that users know it by.
+  std::string text() const { return file.empty() ? "cloud '" + name + "'" : file.string(); }
 };
 
 /// A wave that runs through an object's points along x: amplitude * sin(2 pi (x / length - time / period)).
@@ -70,6 +77,13 @@ struct RuleEntry {
   PairRule rule;
 };
 
+/// The effect clashes: a list of the places where other objects come too near to one, the scan.
+struct SceneClashes {
+  std::size_t of = 0;   ///< the scan, among the objects: fixed, one cloud, its points in the scene's frame
+  bool between = false; ///< the other objects are compared with each other, too
+  Question question;    ///< its options `seen`, `origin` and `seen_angle`
+};
+
 /// Which clouds are written, with a field 'collision' of the effect `flags` (or `swept` where that is not listed).
 enum class CloudOutput { none, last, every };
 
@@ -77,6 +91,7 @@ struct SceneFile {
   std::filesystem::path path;
   SceneOptions options;
   std::optional<BodiesOptions> bodies; ///< where the effect bodies is listed
+  std::optional<SceneClashes> clashes; ///< where the effect clashes is listed
   std::size_t steps = 1;
   double dt = 0.1; ///< seconds
   std::vector<CloudSource> clouds;
@@ -125,6 +140,11 @@ public:
     const Obstacle& found = clouds_.at(name).shape;
     return found.isSurface() ? &found : nullptr;
   }
+  /// A cloud as queries ask about it.
+  const Obstacle& obstacle(const std::string& name) const { return clouds_.at(name).shape; }
+  const CloudFacts& facts(const std::string& name) const { return clouds_.at(name).facts; } ///< of its file
+  /// Where the scanners of a cloud stood, scaled and shifted as its points are.
+  ScanOrigins origins(const CloudSource& source) const;
   std::size_t points() const;                                            ///< of all clouds; of surfaces, triangles
   const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
 
@@ -134,6 +154,7 @@ public:
 private:
   struct Loaded {
     Obstacle shape;
+    CloudFacts facts;
     std::shared_ptr<SphereHierarchy> hierarchy;
   };
   struct Waving {

@@ -2,6 +2,7 @@
 // From a scene file to the scene: clouds are read, hierarchies made, objects placed.
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/records.h>
+#include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/scenes/scene_file.h>
@@ -96,7 +97,7 @@ void write(pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t i, co
 /// Nothing is rounded to float32: the cloud gets float64 coordinates where they are needed.
 void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const std::string& file)
 {
-  if (source.scale == 1.0 && source.shift.isZero(0.0)) return;
+  if (source.isAsRead()) return;
   PointsView view = viewOf(cloud);
   bool fits = true;
   for (std::uint32_t i = 0; i < view.count; ++i) {
@@ -160,8 +161,7 @@ Obstacle shapeOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
 /// With a hierarchy of its own: that of the scene is built only where effects go.
 Shape namedShape(const CloudSource& source, const PointsView& view)
 {
-  const std::string name = source.file.empty() ? "cloud '" + source.name + "'" : source.file.string();
-  return Shape(name, std::make_shared<const SphereHierarchy>(view));
+  return Shape(source.text(), std::make_shared<const SphereHierarchy>(view));
 }
 
 const std::string& placeOf(const std::string& cloud, const SceneFile& file)
@@ -263,7 +263,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
 void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
 {
   Mesh mesh;
-  CloudFacts facts;
+  CloudFacts& facts = loaded.facts;
   if (!source.shape.empty())
     mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
   else
@@ -278,6 +278,13 @@ void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& 
       uncertainView(loaded.shape.view(), has_fields ? loaded.shape.points().fields : std::vector<pcl::PCLPointField>(),
                     source, file.path.string());
   loaded.hierarchy = std::make_shared<SphereHierarchy>(view, options);
+}
+
+ScanOrigins SceneWorld::origins(const CloudSource& source) const
+{
+  ScanOrigins origins = originsOf(cloud(source.name), facts(source.name));
+  for (ScanOrigins::Entry& entry : origins.entries) entry.origin = placed(entry.origin, source);
+  return origins;
 }
 
 std::size_t SceneWorld::points() const

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <ostream>
+#include <string>
 
 namespace pcl_bsh::cli {
 namespace {
@@ -46,6 +47,21 @@ constexpr auto bodies_explained =
     "objects with a 'body' fall, slide and rest, and what has a motion pushes them; a collider of each cloud, and in "
     "each solution the contacts of all pairs of which one is a body";
 
+std::string clashesExplained(const io::SceneFile& file)
+{
+  const io::SceneClashes& clashes = *file.clashes;
+  return "where objects come too near to '" + file.objects[clashes.of].name +
+         "' at any step; poses are kept, and asked about together after the last step" +
+         (clashes.between ? ", also of two other objects" : "") +
+         (clashes.question.seen ? "; a tree of the scan's beams, and what they did not see of the objects" : "");
+}
+
+/// Whether nothing is computed.
+bool isIdle(const io::SceneFile& file)
+{
+  return file.options.effects.none() && !file.bodies && !file.clashes;
+}
+
 std::size_t fixedObjects(const io::SceneFile& file)
 {
   return static_cast<std::size_t>(std::count_if(file.objects.begin(), file.objects.end(),
@@ -65,21 +81,23 @@ void explain(const io::SceneFile& file, std::ostream& out)
     if (effects.has(effect)) out << "  " << nameOf(effect) << ": " << explanationOf(effect) << '\n';
   }
   if (file.bodies) out << "  bodies: " << bodies_explained << '\n';
+  if (file.clashes) out << "  clashes: " << clashesExplained(file) << '\n';
   if (!file.options.accuracy.isExact())
-    out << "  accuracy of any, flags, distance and self: " << file.options.accuracy.text() << '\n';
+    out << "  accuracy of any, flags, distance" << (file.clashes ? ", clashes" : "")
+        << " and self: " << file.options.accuracy.text() << '\n';
   for (const io::CloudSource& cloud : file.clouds)
     if (!cloud.uncertainty.isZero())
       out << "  points of cloud '" << cloud.name << "' may be elsewhere: each verdict about them takes two searches\n";
-  if (effects.none() && !file.bodies) out << "  none: objects move, nothing is tested and no voxel is built\n";
+  if (isIdle(file)) out << "  none: objects move, nothing is tested and no voxel is built\n";
   out << "\nEffects that are off (no code runs for them, nothing is allocated or built):\n ";
   for (std::size_t e = 0; e < kEffects; ++e)
     if (!effects.has(static_cast<Effect>(e))) out << ' ' << nameOf(static_cast<Effect>(e));
   if (!file.bodies) out << " bodies";
+  if (!file.clashes) out << " clashes";
 
   const bool pairs = effects.ofPairs();
   out << "\n\nWhat is built:\n  voxels of every cloud: points are sorted into them when the cloud is read\n";
-  out << "  octree and spheres of a voxel: when an effect first visits it"
-      << (effects.none() && !file.bodies ? ", so never\n" : "\n");
+  out << "  octree and spheres of a voxel: when an effect first visits it" << (isIdle(file) ? ", so never\n" : "\n");
   out << "  grid over the scene: " << (pairs ? "yes, " : "no, no effect asks for pairs of objects\n");
   if (pairs)
     out << "only objects that share one of its voxels are tested\n  pairs of the " << fixedObjects(file)
@@ -110,7 +128,11 @@ nlohmann::ordered_json explanationJson(const io::SceneFile& file)
     json["effects"]["bodies"] = bodies_explained;
   else
     json["off"].push_back("bodies");
-  json["built"] = {{"voxels", true}, {"spheres", !effects.none() || file.bodies}, {"grid", effects.ofPairs()}};
+  if (file.clashes)
+    json["effects"]["clashes"] = clashesExplained(file);
+  else
+    json["off"].push_back("clashes");
+  json["built"] = {{"voxels", true}, {"spheres", !isIdle(file)}, {"grid", effects.ofPairs()}};
   json["fixed_objects"] = fixedObjects(file);
   json["rules"] = file.rules.size();
   return json;

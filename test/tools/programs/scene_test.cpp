@@ -299,7 +299,7 @@ TEST(SceneProgram, TellsProgramsTheSameAsPeople)
   const Json explained = Json::parse(run("pcl_bsh_scene", scene + " --explain --json").out);
   EXPECT_EQ(explained["effects"].size(), 2u);
   EXPECT_THAT(explained["effects"]["any"].get<std::string>(), HasSubstr("which pairs collide"));
-  EXPECT_EQ(explained["effects"].size() + explained["off"].size(), 12U);
+  EXPECT_EQ(explained["effects"].size() + explained["off"].size(), 13U);
   EXPECT_EQ(explained["built"], (Json{{"voxels", true}, {"spheres", true}, {"grid", true}}));
   EXPECT_EQ(explained["fixed_objects"], 1);
   EXPECT_EQ(explained["accuracy"], "exact");
@@ -427,7 +427,7 @@ TEST(SceneProgram, FailsInOneLine)
 
 TEST(SceneProgram, SamplesAreSound)
 {
-  for (const char* sample : {"drift.json", "tunnel.json", "falling_stone.json", "push.json"}) {
+  for (const char* sample : {"drift.json", "tunnel.json", "falling_stone.json", "push.json", "carry.json"}) {
     const Outcome valid =
         run("pcl_bsh_scene", std::string(PCL_BSH_SOURCE_DIR) + "/examples/scenes/" + sample + " --validate");
     EXPECT_EQ(valid.exit_code, 0) << valid.err;
