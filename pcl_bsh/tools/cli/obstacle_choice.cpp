@@ -120,17 +120,22 @@ std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts
   return choices;
 }
 
-void SeveralObstacles::addTo(CLI::App& app)
+void SeveralObstacles::addObstaclesTo(CLI::App& app)
 {
   app.add_option("--obstacle", texts_,
-                 "one of several obstacles, beside OBSTACLE or in its place; may be given\n"
-                 "again and again. Its own options follow after ';':\n"
+                 "one of several obstacles, beside one without a name or in its place; may\n"
+                 "be given again and again. Its own options follow after ';':\n"
                  "\"NAME=FILE;pose=POSE;unit=mm\", and clearance=D, solid=true and\n"
                  "uncertainty=U alike; parts=true makes an obstacle of each object or\n"
                  "group of an .obj, or solid of an .stl, named PART or NAME/PART.\n"
                  "Without NAME= its name is the file's. A path moves all of them")
       ->type_name("NAME=FILE")
       ->allow_extra_args(false);
+}
+
+void SeveralObstacles::addTo(CLI::App& app)
+{
+  addObstaclesTo(app);
   app.add_flag("--between", between,
                "the obstacles are compared with each other, too, as they stand; where they\n"
                "are more than 32, pairs that are clear are not told");

@@ -54,6 +54,7 @@ struct SeveralObstacles {
   bool overlap = false;                  ///< and tell how much of one lies within another
 
   void addTo(CLI::App& app);
+  void addObstaclesTo(CLI::App& app); ///< --obstacle alone
 
   /// Whether --obstacle is given.
   bool areGiven() const { return !texts_.empty(); }

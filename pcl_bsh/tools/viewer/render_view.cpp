@@ -38,7 +38,7 @@ RenderView::RenderView(const ViewContent& content, vtkRenderer& renderer)
   renderer.SetBackground(c[0], c[1], c[2]);
   for (const ViewedCloud& viewed : content.viewedClouds())
     clouds_.push_back(
-        makeCloudActor(viewed, renderer, viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color,
+        makeCloudActor(viewed, renderer, plainColor(viewed),
                        viewed.role == ViewedCloud::Role::scan ? colliding_color : obstacle_colliding_color));
   if (options.cut) clouds_[0]->cut(*options.cut);
   extras_ = {options.level, options.voxels, options.cells, options.trace, options.open_edges, options.beams > 0};
@@ -68,7 +68,12 @@ void RenderView::show(std::size_t step)
   path_props_.clear();
   addPaths(path_props_, content_.paths(step_));
   closest_props_.clear();
-  if (collisions_.closest) addClosestPair(closest_props_, *collisions_.closest, content_.options().unit);
+  const std::string& unit = content_.options().unit;
+  if (collisions_.closest)
+    addClosestPair(closest_props_, *collisions_.closest, lengthOf(collisions_.closest->distance, unit));
+  for (const NamedCollisions& one : collisions_.named)
+    if (one.colliding > 0 && one.closest)
+      addClosestPair(closest_props_, *one.closest, one.name + ": " + lengthOf(one.closest->distance, unit));
   drawContacts(content_.contacts(step_));
   drawExtras();
   writeTexts();
@@ -85,7 +90,7 @@ void RenderView::follow(const DragStep& now, const std::string& note)
   closest_props_.clear();
   if (now.nearest)
     addClosestPair(closest_props_, {now.nearest->place, now.nearest->other, now.nearest->distance},
-                   content_.options().unit);
+                   lengthOf(now.nearest->distance, content_.options().unit));
   drawContacts(now.contacts);
   writeTexts();
   setNote(note);
@@ -170,10 +175,7 @@ std::vector<LegendEntry> RenderView::legend() const
   for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
     const ViewedCloud& viewed = content_.viewedClouds()[i];
     if (viewed.role == ViewedCloud::Role::obstacle) {
-      add(viewed.legend, all_measured_ ? compared_color : obstacle_color);
-      if (!collisions_.flags[i].empty()) add(viewed.legend + ", colliding", obstacle_colliding_color);
-      if (!collisions_.flags[i].empty() && countOf(collisions_.flags[i], Verdict::unseen) > 0)
-        add(viewed.legend + ", unseen", unseen_color);
+      if (viewed.number < most_named) add(viewed.legend, all_measured_ ? compared_color : plainColor(viewed));
       continue;
     }
     const bool by_value = coloring_ == Coloring::distance || coloring_ == Coloring::first_pose;
@@ -189,7 +191,16 @@ std::vector<LegendEntry> RenderView::legend() const
     if (collisions_.unseen > 0 && (!by_value || content_.options().range))
       add(viewed.legend + ", unseen", unseen_color);
   }
+  for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
+    const ViewedCloud& viewed = content_.viewedClouds()[i];
+    if (viewed.role != ViewedCloud::Role::obstacle || collisions_.flags[i].empty()) continue;
+    const std::string marked = collisions_.named.empty() ? viewed.legend : "obstacle";
+    add(marked + ", colliding", obstacle_colliding_color);
+    if (countOf(collisions_.flags[i], Verdict::unseen) > 0) add(marked + ", unseen", unseen_color);
+  }
   if (const MotionPaths paths = content_.paths(step_); !paths.poses.empty()) add(paths.name, path_color);
+  const auto collides = [](const NamedCollisions& one) { return one.colliding > 0 && one.closest; };
+  if (std::any_of(collisions_.named.begin(), collisions_.named.end(), collides)) add("nearest places", segment_color);
   if (collisions_.closest) add("closest pair", segment_color);
   if (!content_.contacts(step_).empty()) add("contacts", contact_color);
   if (extras_.level) add("spheres", sphere_color);

@@ -17,7 +17,8 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-constexpr auto footer = R"(Points of the first CLOUD within D of another CLOUD or of the MODEL collide, decided exactly;
+constexpr auto footer =
+    R"(Points of the first CLOUD within D of another CLOUD, of the MODEL or of an --obstacle collide, decided exactly;
 they are drawn larger and in orange, all others dimmed. A file with faces is a surface, drawn as one:
 its triangles are compared, coloured and picked. The inside of a closed one counts with --solid: distances
 are signed, and inside they are orange to red. A surface that does not close is refused: --open-edges shows why.
@@ -26,6 +27,7 @@ properties, shows these as they are.
 For a site, the folder that pcl_bsh_site makes, the overview is drawn at once, and the tiles that the
 camera sees nearest one by one, as many as the budget holds; with its fields collision, distance ...
 coloured as clouds are.
+Each --obstacle has a colour, a line of what collides with it, and a mark where it is nearest if anything does.
 A scene's objects are drawn at their poses of one step, responses included: fixed ones in grey, moving ones in blue,
 and points within the scene's clearance, or D, in orange and yellow.
 Reads {read}, pipes, and standard input as -.
@@ -38,6 +40,7 @@ Examples:
     --title "The wagon's way" --screenshot way.png
   pcl_bsh_view after.pcd before.pcd --color distance --unit m --screenshot change.png
   pcl_bsh_view machine.stl --model hall.las --pose 1.5,2,0,0,0,1.57 --clearance 0.05
+  pcl_bsh_view hall.las --obstacle "press=press.stl;pose=2,1,0,0,0,0" --obstacle mill=mill.stl --clearance 0.05
   pcl_bsh_view hall.ply --model press.stl --pose 1.5,2,0,0,0,0 --solid --color distance --screenshot depth.png
   pcl_bsh_view press.stl --open-edges
   pcl_bsh_view --scene walk.json --step 80 --clearance 0.3
@@ -133,6 +136,7 @@ void checkScene(const Options& options)
   };
   if (!options.clouds.empty()) refuse("CLOUD");
   if (options.model) refuse("--model");
+  if (options.areGiven()) refuse("--obstacle");
   if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
   if (options.question.solid) refuse("--solid");
@@ -147,12 +151,27 @@ void checkScene(const Options& options)
     throw UsageError("--export: " + options.export_to->string() + ": holds one cloud: name a .vtm file");
 }
 
+/// Obstacles with names have poses of their own.
+void checkNamed(const Options& options)
+{
+  if (options.clouds.size() > 1)
+    throw UsageError("CLOUD: " + options.clouds[1].string() +
+                     " is an obstacle without a name, and others have names: give it as --obstacle, too");
+  for (const auto& [given, option] : {std::pair{options.model.has_value(), "--model"},
+                                      {!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0), "--pose"}})
+    if (given)
+      throw UsageError(std::string(option) +
+                       ": is of one model, and obstacles have names: give --obstacle \"NAME=FILE;pose=POSE\"");
+}
+
 void checkClouds(const Options& options)
 {
   if (options.clouds.empty()) throw UsageError("CLOUD: is missing: name a cloud, or a scene with --scene");
+  if (options.areGiven()) checkNamed(options);
   const bool moves = options.trajectory || !options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0);
-  if (moves && !options.model) throw UsageError("--model: is missing: say which cloud the poses are for");
-  const bool obstacles = options.model || options.clouds.size() > 1;
+  if (moves && !options.model && !options.areGiven())
+    throw UsageError("--model: is missing: say which cloud the poses are for");
+  const bool obstacles = options.model || options.areGiven() || options.clouds.size() > 1;
   if (options.question.clearance && !obstacles)
     throw UsageError("--clearance: there is nothing to collide with: give a second cloud or --model");
   if ((options.question.solid || options.question.input_solid) && !obstacles)
@@ -177,6 +196,7 @@ void checkSite(const Options& options)
   if (!options.clouds.empty()) refuse("CLOUD");
   if (options.scene) refuse("--scene");
   if (options.model) refuse("--model");
+  if (options.areGiven()) refuse("--obstacle");
   if (!options.question.pose.isApprox(Eigen::Isometry3d::Identity(), 0.0)) refuse("--pose");
   if (options.trajectory) refuse("--trajectory");
   if (options.question.clearance) refuse("--clearance");
@@ -225,10 +245,12 @@ std::optional<Options> parseOptions(int argc, char** argv)
   app.add_option("--scene", options.scene, "a scene file in place of clouds: objects, their motions and responses")
       ->type_name("SCENE.json");
   app.add_option("--model", options.model, "an obstacle that has poses")->type_name("CLOUD");
+  options.addObstaclesTo(app);
   app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
       ->type_name("POSE");
   app.add_option("--trajectory", options.trajectory,
-                 "poses of the model, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty tz qx qy qz qw")
+                 "poses of the model or of all --obstacle, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty "
+                 "tz qx qy qz qw")
       ->type_name("FILE");
   app.add_option("--step", options.step,
                  "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
@@ -240,6 +262,7 @@ std::optional<Options> parseOptions(int argc, char** argv)
       {"clearance", "solid", "input_solid", "seen", "origin", "seen_angle", "vertices_only", "threads"});
   cli::ReadOptions reading;
   reading.addTo(app);
+  reading.addUnitsTo(app);
   app.add_option("--color", options.color,
                  "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
                  "--clearance is of all points,\nwith a histogram")
@@ -293,12 +316,13 @@ std::optional<Options> parseOptions(int argc, char** argv)
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   cli::requireAccepted(options.question);
 
+  std::vector<std::string> warnings;
+  options.readObstacles({}, warnings);
   if (!pose.empty()) {
     if (options.trajectory) throw UsageError("--pose: a model has one pose or a --trajectory: give one of the two");
-    std::vector<std::string> warnings;
     options.question.pose = cli::parsePose("--pose", pose, warnings);
-    cli::warn(program, warnings);
   }
+  cli::warn(program, warnings);
   if (!cut.empty()) options.cut = parseCut(cut);
   if (!options.clouds.empty() && std::filesystem::is_directory(options.clouds[0])) {
     options.site = options.clouds[0];
@@ -309,6 +333,11 @@ std::optional<Options> parseOptions(int argc, char** argv)
   for (const std::filesystem::path& cloud : options.clouds) options.files.reads("CLOUD", cloud);
   std::vector<std::filesystem::path> read = options.clouds;
   if (options.model) read.push_back(*options.model);
+  for (const cli::ObstacleChoice& one : options.obstacles) {
+    if (one.part > 0) continue;
+    read.push_back(one.file);
+    options.files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
+  }
   options.reading = reading.read(read);
   options.files.reads("--scene", path(options.scene)).reads("--model", path(options.model));
   options.files.reads("--trajectory", path(options.trajectory)).readsPose("--pose", pose);

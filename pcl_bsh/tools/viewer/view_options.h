@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_view.
 #pragma once
 
+#include <pcl_bsh/tools/cli/obstacle_choice.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 
@@ -33,7 +34,7 @@ struct Cut {
   std::array<double, 3> point = {}, normal = {};
 };
 
-struct Options {
+struct Options : cli::SeveralObstacles {
   std::vector<std::filesystem::path> clouds;  ///< the first is the one asked about, the others are obstacles
   std::optional<std::filesystem::path> scene; ///< in place of clouds
   std::optional<std::filesystem::path> site;  ///< in place of clouds

@@ -124,11 +124,6 @@ std::vector<Color> colorsOfVerdicts(const std::vector<Verdict>& flags)
   return colors;
 }
 
-Color plainColor(const ViewedCloud& viewed)
-{
-  return viewed.role == ViewedCloud::Role::scan ? scan_color : obstacle_color;
-}
-
 template <class Value>
 const Value& required(const std::optional<Value>& value, const ViewContent& content, const std::string& what)
 {
@@ -167,6 +162,11 @@ void paintScan(CloudActor& cloud, ValueBar& bar, const ViewContent& content, Col
 }
 
 } // namespace
+
+Color plainColor(const ViewedCloud& viewed)
+{
+  return viewed.role == ViewedCloud::Role::scan ? scan_color : named_colors[viewed.number % named_colors.size()];
+}
 
 Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions)
 {

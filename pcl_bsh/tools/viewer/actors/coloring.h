@@ -8,6 +8,9 @@
 
 namespace pcl_bsh::viewer {
 
+/// The colour of what is free.
+Color plainColor(const ViewedCloud& viewed);
+
 /// As the options say, or what fits best.
 Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions);
 

@@ -2,7 +2,6 @@
 #include "extras.h"
 
 #include "caption.h"
-#include "text.h"
 
 #include <pcl_bsh/hierarchy/triangles_view.h>
 #include <pcl_bsh/solid/open_edges.h>
@@ -180,7 +179,7 @@ void addExtras(PropGroup& group, const ViewContent& content, const Extras& extra
   }
 }
 
-void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit)
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& text)
 {
   vtkNew<vtkLineSource> line;
   line->SetPoint1(closest.a.data());
@@ -194,7 +193,7 @@ void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::str
   const Eigen::Vector3d middle = (closest.a + closest.b) / 2;
   label->SetPosition(middle.x(), middle.y(), middle.z());
   label->SetDisplayOffset(8, 8);
-  label->SetInput(lengthOf(closest.distance, unit).c_str());
+  label->SetInput(text.c_str());
   const std::array<double, 3> c = fractions(segment_color);
   label->GetTextProperty()->SetColor(c[0], c[1], c[2]);
   label->GetTextProperty()->SetFontSize(text_size);

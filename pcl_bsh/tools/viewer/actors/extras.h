@@ -25,8 +25,8 @@ void addExtras(PropGroup& group, const ViewContent& content, const Extras& extra
 /// How many edges of its triangles nothing closes; 0 of points.
 std::size_t openEdgesOf(const ViewedCloud& viewed);
 
-/// Adds a closest pair as a segment, with its distance.
-void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& unit);
+/// Adds a closest pair as a segment with a label.
+void addClosestPair(PropGroup& group, const ClosestPair& closest, const std::string& text);
 
 /// Adds contacts as arrows along their normals, before all else, red where the gap is below 0.
 void addContacts(PropGroup& group, const std::vector<Contact>& contacts, double length);

@@ -24,6 +24,9 @@ inline constexpr Color undecided_color = {204, 121, 167};
 inline constexpr Color sparse_color = {0, 158, 115};
 inline constexpr Color unseen_color = {0, 114, 178};
 inline constexpr Color obstacle_colliding_color = {240, 228, 66};
+/// The colours of obstacles that have names, one after another. None is a colour of verdicts.
+inline constexpr std::array<Color, 6> named_colors = {
+    {obstacle_color, {150, 226, 186}, {178, 163, 255}, {255, 178, 200}, {226, 228, 232}, {110, 202, 196}}};
 inline constexpr Color sphere_color = {86, 180, 233};
 inline constexpr Color voxel_color = {0, 158, 115};
 inline constexpr Color cell_color = {204, 121, 167};

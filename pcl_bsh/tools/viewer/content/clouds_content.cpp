@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "clouds_content.h"
 
+#include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
@@ -23,30 +24,50 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// A cloud with faces is a surface.
-/// @param origins null, or gets where its scanners stood
-ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options,
-                 ScanOrigins* origins = nullptr)
+/// Shows a cloud that is loaded. One with faces is a surface.
+ViewedCloud viewedOf(const io::Obstacle& read, const std::filesystem::path& file, ViewedCloud::Role role,
+                     unsigned threads)
 {
   ViewedCloud viewed;
   viewed.name = viewed.legend = file.filename().string();
   viewed.role = role;
   viewed.file = file;
-  cli::Step step("Loading " + file.string());
-  const io::SurfaceSettings settings = {options.question.vertices_only};
-  io::CloudFacts facts;
-  io::Mesh mesh = io::readMesh(file, settings, &facts, options.reading.of(file), options.question.threads);
-  viewed.face_values = std::move(mesh.face_values);
-  const io::Obstacle read = io::obstacleOf(file, std::move(mesh), settings);
   HierarchyOptions how;
-  how.threads = options.question.threads;
+  how.threads = threads;
   viewed.hierarchy = std::make_shared<SphereHierarchy>(read.view(), how);
   viewed.cloud = read.cloud();
   if (read.isSurface()) viewed.surface = read;
+  return viewed;
+}
+
+ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, const Options& options,
+                 const io::ReadSettings& reading, io::CloudFacts& facts)
+{
+  cli::Step step("Loading " + file.string());
+  const io::SurfaceSettings settings = {options.question.vertices_only};
+  io::Mesh mesh = io::readMesh(file, settings, &facts, reading, options.question.threads);
+  std::vector<io::FaceValues> face_values = std::move(mesh.face_values);
+  ViewedCloud viewed = viewedOf(io::obstacleOf(file, std::move(mesh), settings), file, role, options.question.threads);
+  viewed.face_values = std::move(face_values);
   step.done(counted(viewed.parts(), viewed.partName()));
   cli::warnOfFile(program, file, facts.remarks);
-  if (origins) *origins = io::originsOf(*viewed.cloud, facts);
   return viewed;
+}
+
+/// A line for each obstacle; of many, for those that something collides with, as many as there is room for.
+std::string linesOf(std::vector<NamedCollisions> all, const std::string& unit)
+{
+  const std::size_t told = std::min(all.size(), most_named);
+  if (told < all.size())
+    std::stable_partition(all.begin(), all.end(), [](const NamedCollisions& one) { return one.colliding > 0; });
+  std::string text;
+  for (std::size_t i = 0; i < told; ++i) {
+    text += '\n' + all[i].name + ": " +
+            (all[i].colliding > 0 ? groupedCount(all[i].colliding, "collides", "collide") : "free");
+    if (all[i].closest) text += ", smallest distance " + lengthOf(all[i].closest->distance, unit);
+  }
+  if (told < all.size()) text += "\nand " + std::to_string(all.size() - told) + " more obstacles";
+  return text;
 }
 
 } // namespace
@@ -61,28 +82,53 @@ CloudsContent::CloudsContent(const Options& options) : FieldContent(options), po
   if (options.step >= poses_.size())
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the trajectory has " +
                           counted(poses_.size(), "pose") + ", counted from 0");
-  for (const std::filesystem::path& file : options.clouds)
-    viewed_clouds_.push_back(load(file, viewed_clouds_.empty() ? ViewedCloud::Role::scan : ViewedCloud::Role::obstacle,
-                                  options, viewed_clouds_.empty() ? &origins_ : nullptr));
-  if (!options.question.origin.empty()) origins_ = options.question.origin;
+  io::CloudFacts of_scan, facts;
+  viewed_clouds_.push_back(
+      load(options.clouds[0], ViewedCloud::Role::scan, options, options.reading.ofInput(options.clouds[0]), of_scan));
+  origins_ = options.question.origin.empty() ? io::originsOf(*scan().cloud, of_scan) : options.question.origin;
+  const auto add = [&](const std::filesystem::path& file) {
+    viewed_clouds_.push_back(load(file, ViewedCloud::Role::obstacle, options,
+                                  options.reading.ofObstacle(file, of_scan.unit, {}), facts = {}));
+  };
+  std::for_each(options.clouds.begin() + 1, options.clouds.end(), add);
   if (options.question.seen)
     seen_from_ = Shape(scan().file.string(), scan().points(), recordFields(scan().cloud->fields));
   if (options.model) {
     model_ = viewed_clouds_.size();
-    viewed_clouds_.push_back(load(*options.model, ViewedCloud::Role::obstacle, options));
+    add(*options.model);
   }
   if (scan().hierarchy->empty()) throw std::invalid_argument(scan().file.string() + ": has no finite point to show");
-  for (std::size_t i = 0; i < viewed_clouds_.size(); ++i)
-    shapes_.emplace_back(viewed_clouds_[i].file.string(), viewed_clouds_[i].hierarchy);
+  for (const ViewedCloud& viewed : viewed_clouds_) shapes_.emplace_back(viewed.file.string(), viewed.hierarchy);
+  if (!options.obstacles.empty()) loadNamed(of_scan);
   warnOfQuestions();
+}
+
+void CloudsContent::loadNamed(const io::CloudFacts& of_scan)
+{
+  double seconds = 0.0;
+  const std::vector<cli::LoadedObstacle> loaded =
+      cli::loadObstacles(options_.obstacles, options_.question, {options_.reading, of_scan.unit}, seconds);
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    const cli::ObstacleChoice& choice = options_.obstacles[i];
+    const io::Obstacle& read = loaded[i].obstacle;
+    ViewedCloud viewed = viewedOf(read, choice.file, ViewedCloud::Role::obstacle, options_.question.threads);
+    viewed.name = viewed.legend = choice.name;
+    viewed.number = i;
+    const Uncertainty uncertainty = choice.uncertainty.value_or(Uncertainty());
+    shapes_.push_back(uncertainty.isZero() ? Shape(choice.file.string(), viewed.hierarchy)
+                                           : read.shape(choice.file.string()));
+    cli::named([&] { shapes_.back().hierarchy(uncertainty, options_.question.threads); });
+    viewed_clouds_.push_back(std::move(viewed));
+    cli::warn(program, cli::warningsOf(read, choice.file));
+  }
 }
 
 void CloudsContent::warnOfQuestions() const
 {
   std::vector<std::string> told;
   Question question;
-  question.clearance = options_.question.clearance;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    question.clearance = clearanceOf(other);
     question.path = pathOf(other);
     addTexts(warningsOf(question, shapes_[0].facts(true), shapes_[other].facts(true)), told);
   }
@@ -91,21 +137,38 @@ void CloudsContent::warnOfQuestions() const
 
 Eigen::Isometry3d CloudsContent::poseOf(std::size_t cloud, std::size_t step) const
 {
-  return cloud == model_ ? poses_[step] : Eigen::Isometry3d::Identity();
+  if (cloud == model_) return poses_[step];
+  const cli::ObstacleChoice* const choice = choiceOf(cloud);
+  if (!choice) return Eigen::Isometry3d::Identity();
+  Question question;
+  question.pose = poses_[step];
+  return questionOf(question, choice->placed(Shape())).pose;
+}
+
+std::optional<double> CloudsContent::clearanceOf(std::size_t other) const
+{
+  const cli::ObstacleChoice* const choice = choiceOf(other);
+  return choice && choice->clearance ? choice->clearance : options_.question.clearance;
 }
 
 std::vector<Eigen::Isometry3d> CloudsContent::pathOf(std::size_t cloud) const
 {
-  return cloud == model_ ? poses_ : std::vector{poseOf(cloud, 0)};
+  std::vector<Eigen::Isometry3d> path;
+  for (std::size_t step = 0; step < (moves(cloud) ? steps() : 1); ++step) path.push_back(poseOf(cloud, step));
+  return path;
 }
 
 Answer CloudsContent::asked(std::size_t other, std::size_t step, Question question, Shape* input) const
 {
-  question.clearance = options_.question.clearance;
+  question.clearance = clearanceOf(other);
   question.threads = options_.question.threads;
   question.solid = options_.question.solid;
   question.input_solid = options_.question.input_solid;
   question.pose = poseOf(other, step);
+  if (const cli::ObstacleChoice* const choice = choiceOf(other)) {
+    if (choice->solid) question.solid = *choice->solid;
+    if (choice->uncertainty) question.obstacle_uncertainty = *choice->uncertainty;
+  }
   Shape& scan = question.seen ? seen_from_ : input ? *input : shapes_[0];
   Answer answer = cli::named([&] { return ask(question, scan, shapes_[other]); }, question);
   for (const Warning& warning : answer.warnings)
@@ -132,6 +195,8 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
       const std::vector<Verdict>& of_scan = answer.collisions.flags;
       for (std::size_t i = 0; i < of_scan.size(); ++i) found.flags[0][i] = graver(found.flags[0][i], of_scan[i]);
       found.flags[other] = std::move(answer.obstacle_flags);
+      if (const cli::ObstacleChoice* const choice = choiceOf(other))
+        found.named.push_back({choice->name, answer.collisions.colliding, closest(other, step)});
     }
     countVerdicts(found);
     for (std::size_t other = 1; other < found.flags.size(); ++other)
@@ -141,17 +206,23 @@ StepCollisions CloudsContent::collisions(std::size_t step) const
   return found;
 }
 
+std::optional<ClosestPair> CloudsContent::closest(std::size_t other, std::size_t step) const
+{
+  Question question;
+  question.wanted.closest = true;
+  const DistanceResult found = asked(other, step, question).closest;
+  if (!found.pair) return std::nullopt;
+  const auto [a, b] = nearestPoints(scan().cornersOf(found.pair->a, poseOf(0, step)),
+                                    viewed_clouds_[other].cornersOf(found.pair->b, poseOf(other, step)));
+  return ClosestPair{Eigen::Vector3d(a.data()), Eigen::Vector3d(b.data()), found.distance};
+}
+
 std::optional<ClosestPair> CloudsContent::closest(std::size_t step) const
 {
   std::optional<ClosestPair> nearest;
-  Question question;
-  question.wanted.closest = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
-    const DistanceResult found = asked(other, step, question).closest;
-    if (!found.pair || (nearest && nearest->distance <= found.distance)) continue;
-    const auto [a, b] = nearestPoints(scan().cornersOf(found.pair->a, poseOf(0, step)),
-                                      viewed_clouds_[other].cornersOf(found.pair->b, poseOf(other, step)));
-    nearest = {Eigen::Vector3d(a.data()), Eigen::Vector3d(b.data()), found.distance};
+    const std::optional<ClosestPair> found = closest(other, step);
+    if (found && !(nearest && nearest->distance <= found->distance)) nearest = found;
   }
   return nearest;
 }
@@ -168,6 +239,7 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
     if (options_.question.clearance)
       text << "  (clearance " << lengthOf(*options_.question.clearance, options_.unit) << ')';
   }
+  text << linesOf(collisions.named, options_.unit);
   if (steps() > 1) text << "\npose " << step << " of 0.." << steps() - 1;
   return text.str();
 }
@@ -175,7 +247,7 @@ std::string CloudsContent::heading(const StepCollisions& collisions, std::size_t
 MotionPaths CloudsContent::paths(std::size_t /*step*/) const
 {
   if (steps() == 1) return {};
-  return {"path of the model", {poses_}};
+  return {model_ ? "path of the model" : "path of the obstacles", {poses_}};
 }
 
 std::vector<std::array<Eigen::Vector3d, 2>> CloudsContent::beams() const
@@ -213,9 +285,9 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
   if (!options_.question.clearance) return FieldContent::distances(step);
   std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
   Question question; // along a path of one pose, which tells floats
-  question.max_distance = options_.range.value_or(*options_.question.clearance);
   question.wanted.distances = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
+    question.max_distance = options_.range.value_or(*clearanceOf(other));
     question.path = {poseOf(other, step)};
     const std::vector<float> found = asked(other, step, question).collisions.distance;
     for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = std::fmin(distances[i], found[i]);
@@ -275,8 +347,7 @@ std::vector<Trace> CloudsContent::traces(std::size_t step) const
   std::vector<Trace> traces;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other)
     traces.push_back(
-        {0, other,
-         traceCollision(placed(0, step), placed(other, step), {options_.question.clearance.value_or(0.0), {}})});
+        {0, other, traceCollision(placed(0, step), placed(other, step), {clearanceOf(other).value_or(0.0), {}})});
   return traces;
 }
 

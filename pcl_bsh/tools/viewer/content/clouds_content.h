@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scan, obstacles that do not move, and a model that takes poses.
+// A scan, and obstacles: some that do not move and a model that takes poses, or several with names, which a path moves
+// together.
 #pragma once
 
 #include "field_content.h"
@@ -20,7 +21,7 @@ public:
 
   std::size_t steps() const override { return poses_.size(); }
   Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
-  bool moves(std::size_t cloud) const override { return cloud == model_; }
+  bool moves(std::size_t cloud) const override { return cloud == model_ || (choiceOf(cloud) && steps() > 1); }
 
   /// Asked of the queries; without a clearance, read from the scan's field `collision`, if any.
   StepCollisions collisions(std::size_t step) const override;
@@ -47,11 +48,19 @@ private:
   {
     return {*viewed_clouds_[cloud].hierarchy, poseOf(cloud, step)};
   }
+  /// Returns how the command line names the obstacle; null of a cloud without a name.
+  const cli::ObstacleChoice* choiceOf(std::size_t cloud) const
+  {
+    return cloud > 0 && !options_.obstacles.empty() ? &options_.obstacles[cloud - 1] : nullptr;
+  }
+  std::optional<double> clearanceOf(std::size_t other) const;
+  void loadNamed(const io::CloudFacts& of_scan);
   std::vector<Eigen::Isometry3d> pathOf(std::size_t cloud) const; ///< all its poses, one after another
   void warnOfQuestions() const;                                   ///< of the scan and each other cloud
 
   /// Asks the scan and another cloud at a step. @param input part of the scan; null: all of it
   Answer asked(std::size_t other, std::size_t step, Question question, Shape* input = nullptr) const;
+  std::optional<ClosestPair> closest(std::size_t other, std::size_t step) const;
   std::optional<ClosestPair> closest(std::size_t step) const;
   std::optional<double> distanceOf(std::uint32_t part, std::size_t step) const;
 

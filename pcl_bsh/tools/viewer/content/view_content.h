@@ -30,6 +30,13 @@ struct ClosestPair {
   double distance = 0.0;
 };
 
+/// The collisions with one of several obstacles that have names.
+struct NamedCollisions {
+  std::string name;
+  std::size_t colliding = 0;          ///< parts of the scan
+  std::optional<ClosestPair> closest; ///< where it is nearest to the scan
+};
+
 /// The collisions at one step.
 struct StepCollisions {
   bool known = false;                      ///< whether a query ran or a field says it
@@ -39,6 +46,7 @@ struct StepCollisions {
   std::size_t sparse = 0;                  ///< parts not scanned densely enough
   std::size_t unseen = 0;                  ///< free parts that no scanner saw
   std::optional<ClosestPair> closest;
+  std::vector<NamedCollisions> named; ///< of each obstacle that has a name; those of each that collides are marked
 };
 
 /// The poses that clouds take one after another, each path drawn as a line.

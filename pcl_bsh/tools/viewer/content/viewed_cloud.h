@@ -17,6 +17,9 @@
 
 namespace pcl_bsh::viewer {
 
+/// How many obstacles with names a picture names, for want of room.
+inline constexpr std::size_t most_named = 12;
+
 struct ViewedCloud {
   /// A scan is drawn in grey and marked in orange, an obstacle in blue and yellow.
   enum class Role { scan, obstacle };
@@ -24,6 +27,7 @@ struct ViewedCloud {
   std::string name;   ///< for titles
   std::string legend; ///< clouds of the same role may share an entry
   Role role = Role::scan;
+  std::size_t number = 0; ///< of obstacles that have names: each has its own colour
   std::filesystem::path file;
   std::shared_ptr<const pcl::PCLPointCloud2> cloud; ///< as it was read; none where fields are not shown
   std::optional<io::Obstacle> surface;              ///< where it has faces: these are drawn, and asked about
