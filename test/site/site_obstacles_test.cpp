@@ -198,6 +198,10 @@ TEST_F(SiteObstacles, RefuseWhatIsNotToldOfSeveral)
   question.wanted = {};
   question.wanted.flags = true;
   EXPECT_THROW(ask(question, site, none), InvalidInput);
+  std::vector<PlacedShape> moving(1);
+  moving[0].path.emplace(2, Eigen::Isometry3d::Identity());
+  EXPECT_THAT([&] { ask(question, site, moving); },
+              testing::ThrowsMessage<InvalidInput>(HasSubstr("has a path of its own, and the input is a site")));
 }
 
 } // namespace

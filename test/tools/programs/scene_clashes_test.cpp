@@ -128,7 +128,7 @@ TEST_F(SceneClashes, TellWhereOthersMeetAndWhen)
                                   "motion": {"velocity": [-0.5, 0, 0]}})";
   const Outcome done = runScene(scene(6, R"(, "between": true)", "", drone), lists("steps") + "--out out");
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  const ListJson between = json("steps.json")["between"];
+  ListJson between = json("steps.json")["between"];
   ASSERT_EQ(between.size(), 3U);
   EXPECT_EQ(between[2]["first"], "mill");
   EXPECT_EQ(between[2]["second"], "drone");
