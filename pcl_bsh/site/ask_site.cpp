@@ -117,7 +117,7 @@ public:
     if (wanted.distances) visit(measure);
     part_.question.progress = nullptr;
     part_.means.answers = nullptr;
-    if (question_.seen) lookAround(part_, answer_);
+    if (question_.seen) lookAround({&part_}, {&answer_}, answer_);
     if (part_.shape) {
       answer_.obstacle_colliding = countOf(answer_.obstacle_flags, Verdict::colliding);
       answer_.obstacle_undecided = countOf(answer_.obstacle_flags, Verdict::undecided);

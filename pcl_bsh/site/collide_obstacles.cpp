@@ -64,8 +64,14 @@ public:
         tiles, [&](const auto&... tile) { return askedOf(tile...); }, [&](const auto& numbers) { add(numbers); }, false,
         [&](std::uint32_t tile) { return !nearTo(all_.site.tiles[tile]).empty(); });
     nearest_.gather();
-    SiteObstaclesAnswer found = joined();
+    SiteAnswer sight;
+    std::vector<SiteAnswer> each(passing_.size());
+    if (all_.question.seen) look(each, sight);
+    SiteObstaclesAnswer found = joined(each);
     found.all.tiles = read;
+    found.all.tiles += sight.tiles;
+    found.all.beam_tiles = std::move(sight.beam_tiles);
+    found.all.beams_kept = sight.beams_kept;
     found.all.collisions.colliding = sumOfAllRanks(colliding_);
     found.all.collisions.undecided = sumOfAllRanks(undecided_);
     return found;
@@ -270,8 +276,21 @@ private:
     }
   }
 
-  /// The answers about all tiles of all ranks.
-  SiteObstaclesAnswer joined()
+  void look(std::vector<SiteAnswer>& each, SiteAnswer& sight)
+  {
+    std::vector<const QuestionPart*> parts;
+    std::vector<Answer*> answers;
+    for (std::size_t i = 0; i < passing_.size(); ++i) {
+      if (!passing_[i]) continue;
+      passing_[i]->part.means.answers = nullptr; // of tiles that are asked about
+      parts.push_back(&passing_[i]->part);
+      answers.push_back(&each[i]);
+    }
+    lookAround(parts, answers, sight);
+  }
+
+  /// The answers about all tiles of all ranks. @param each_seen what is unseen of each obstacle
+  SiteObstaclesAnswer joined(std::vector<SiteAnswer>& each_seen)
   {
     SiteObstaclesAnswer found;
     found.each.resize(passing_.size());
@@ -282,7 +301,7 @@ private:
         joined.skip();
         continue;
       }
-      SiteAnswer one;
+      SiteAnswer& one = each_seen[i];
       passing_[i]->sum.tell(one);
       one.closest = {}; // which has no pair
       SiteObstacleAnswer& each = found.each[i];
@@ -291,6 +310,7 @@ private:
       joined.add(i, one);
       joined.setClosest(each.closest, each.closest_pose);
       each.found = std::move(one.collisions);
+      each.not_seen = std::move(one.unseen);
       if (one.first_pose)
         found.all.first_pose = std::min(*one.first_pose, found.all.first_pose.value_or(*one.first_pose));
     }
@@ -324,8 +344,6 @@ void checkOfSeveral(const Question& question)
 {
   check(question, false);
   const Wanted& wanted = question.wanted;
-  if (question.seen)
-    throw InvalidOption("seen", "is not answered of several obstacles of a site", "ask about one alone");
   for (const auto& [is_wanted, name] :
        {std::pair{wanted.any, "any"}, {wanted.distances, "distances"}, {wanted.obstacle_flags, "obstacle_flags"}})
     if (is_wanted)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of a question about a site that finds the unseen records of the obstacle.
+// The part of a question about a site that finds the unseen records of obstacles.
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/base/parallel.h>
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/ball_about_box.h>
 #include <pcl_bsh/question/model_shift.h>
@@ -19,37 +20,62 @@ namespace pcl_bsh::site {
 namespace {
 
 using Poses = std::vector<Eigen::Isometry3d>;
+using Parts = std::vector<const QuestionPart*>;
 using VerdictsAtPoses = std::vector<std::vector<Verdict>>;
 
-/// The verdict of a record of the model at a pose.
+/// The verdict of a record of an obstacle at a pose.
 struct Found {
-  std::uint32_t pose, record;
+  std::uint32_t obstacle, pose, record;
   Verdict verdict;
 };
 
-TilesRead collide(const QuestionPart& part, const Poses& poses, VerdictsAtPoses& verdicts)
+/// Flags of all records of an obstacle that a tile decides.
+std::vector<Found> collide(const QuestionPart& part, std::uint32_t obstacle, const SphereHierarchy& tile,
+                           unsigned threads)
 {
-  const SphereHierarchy& model = part.model();
-  PathReach reach;
-  reach.distance = part.clearance();
-  const FlagsRequest wanted(part.clearance(), Flagged::b, part.question.threads);
+  const FlagsRequest wanted(part.clearance(), Flagged::b, threads);
+  const Poses poses = part.question.poses();
+  std::vector<Found> some;
+  FlagsResult found;
+  for (std::uint32_t k = 0; k < poses.size(); ++k) {
+    collisionFlags({tile}, {part.model(), poses[k]}, wanted, found);
+    for (std::uint32_t i = 0; i < found.b.size(); ++i)
+      if (found.b[i] != Verdict::free) some.push_back({obstacle, k, i, found.b[i]});
+  }
+  return some;
+}
+
+/// @param verdicts of each obstacle
+TilesRead collide(const Parts& parts, std::vector<VerdictsAtPoses>& verdicts)
+{
+  const QuestionPart& first = *parts.front();
+  const PlacedSite site = first.input();
+  std::vector<std::vector<std::uint32_t>> near(site.site.tiles.size()); // obstacles of each tile
+  for (std::uint32_t i = 0; i < parts.size(); ++i) {
+    PathReach reach;
+    reach.distance = parts[i]->clearance();
+    const CloudBoxes boxes(parts[i]->model().view());
+    for (const std::uint32_t tile : tilesAlong(site.site, boxes, parts[i]->question.poses(), reach, site.uncertainty))
+      near[tile].push_back(i);
+  }
+  std::vector<std::uint32_t> needed;
+  for (std::uint32_t t = 0; t < near.size(); ++t)
+    if (!near[t].empty()) needed.push_back(t);
   std::vector<Found> own;
-  const PlacedSite site = part.input();
-  TileQuery tile_query(part, site);
-  const auto find = [&](const Tile&, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
-    FlagsResult found;
-    for (std::uint32_t k = 0; k < poses.size(); ++k) {
-      collisionFlags({hierarchy}, {model, poses[k]}, wanted, found);
-      for (std::uint32_t i = 0; i < found.b.size(); ++i)
-        if (found.b[i] != Verdict::free) own.push_back({k, i, found.b[i]});
-    }
+  const auto find = [&](const Tile& tile, const pcl::PCLPointCloud2&, const SphereHierarchy& hierarchy) {
+    const std::vector<std::uint32_t>& some = near[static_cast<std::size_t>(&tile - site.site.tiles.data())];
+    const unsigned threads = threadCount(first.question.threads);
+    std::vector<std::vector<Found>> of_each(some.size());
+    parallelFor(some.size(), threads, [&](std::size_t i) {
+      of_each[i] = collide(*parts[some[i]], some[i], hierarchy, some.size() > 1 ? 1 : threads);
+    });
+    for (const std::vector<Found>& found : of_each) own.insert(own.end(), found.begin(), found.end());
     return std::vector<double>();
   };
-  const TilesRead read =
-      tile_query.visitAndAdd(tilesAlong(site.site, CloudBoxes(model.view()), poses, reach, site.uncertainty), find,
-                             [](const std::vector<double>&) {});
+  TileQuery tile_query(first, site);
+  const TilesRead read = tile_query.visitAndAdd(needed, find, [](const std::vector<double>&) {});
   for (const Found& found : gatheredFromAllRanks(own)) {
-    Verdict& verdict = verdicts[found.pose][found.record];
+    Verdict& verdict = verdicts[found.obstacle][found.pose][found.record];
     verdict = graver(verdict, found.verdict);
   }
   return read;
@@ -67,16 +93,16 @@ double ballAt(const Eigen::Isometry3d& pose, const CornerBox& model, const Quest
   return part.clearance() + shiftOf(part.question.input_pose_uncertainty, model, pose);
 }
 
-/// The beams of all tiles that count, of each scan.
+/// The beams of all tiles that count for any obstacle, of each scan.
 class Beams {
 public:
-  Beams(const QuestionPart& part, const Poses& poses) : part_(part), site_(part.site), origins_(part.question.origin)
+  explicit Beams(const Parts& parts) : part_(*parts.front()), site_(part_.site), origins_(part_.question.origin)
   {
-    const SphereHierarchy& model = part.model();
-    const CornerBox bounds(model.view());
-    for (const ScanOrigins::Entry& entry : origins_.entries) {
-      looked_.emplace_back(entry.origin, angle());
-      for (const Eigen::Isometry3d& pose : poses) looked_.back().add({model, pose}, ballAt(pose, bounds, part));
+    for (const ScanOrigins::Entry& entry : origins_.entries) looked_.emplace_back(entry.origin, angle());
+    for (const QuestionPart* const part : parts) {
+      const CornerBox bounds(part->model().view());
+      for (const Eigen::Isometry3d& pose : part->question.poses())
+        for (LookedAt& looked : looked_) looked.add({part->model(), pose}, ballAt(pose, bounds, *part));
     }
     collect();
   }
@@ -175,7 +201,7 @@ private:
                        "give some " + std::to_string(bytes) + " bytes for each, or ask about a part of the path");
   }
 
-  const QuestionPart& part_;
+  const QuestionPart& part_; ///< of any obstacle: all are asked about the same scans
   const Site& site_;
   const ScanOrigins& origins_;
   std::vector<LookedAt> looked_; ///< of each scan
@@ -186,30 +212,39 @@ private:
 
 } // namespace
 
-void lookAround(const QuestionPart& part, SiteAnswer& answer)
+void lookAround(const std::vector<const QuestionPart*>& parts, const std::vector<Answer*>& each, SiteAnswer& all)
 {
-  const Question& question = part.question;
-  const SphereHierarchy& model = part.model();
-  const Poses poses = question.poses();
-  if (question.origin.empty()) scansOf(PointsView{}, {}, part.site.folder.string(), question.origin); // refuses that
-  requireUncertainty(part.site, question.uncertaintyOfInput());
-  VerdictsAtPoses verdicts(poses.size(), std::vector<Verdict>(model.view().count, Verdict::free));
-  const Beams beams(part, poses);
-  answer.tiles += collide(part, poses, verdicts);
-  answer.beam_tiles = beams.read;
-  answer.beams_kept = beams.count();
+  if (parts.empty()) return;
+  const Question& first = parts.front()->question;
+  const Site& site = parts.front()->site;
+  if (first.origin.empty()) scansOf(PointsView{}, {}, site.folder.string(), first.origin); // refuses that
+  requireUncertainty(site, first.uncertaintyOfInput());
+  std::vector<VerdictsAtPoses> verdicts;
+  for (const QuestionPart* const part : parts)
+    verdicts.emplace_back(part->question.poses().size(),
+                          std::vector<Verdict>(part->model().view().count, Verdict::free));
+  const Beams beams(parts);
+  all.tiles += collide(parts, verdicts);
+  all.beam_tiles = beams.read;
+  all.beams_kept = beams.count();
   const SeenSpace space = beams.space();
-  for (std::size_t s = 0; s < space.size(); ++s) answer.unseen.angles.push_back(space.angle(s));
-  const CornerBox bounds(model.view());
-  UnseenRequest wanted;
-  wanted.threads = question.threads;
-  wanted.kinds = true;
-  wanted.parts = question.wanted.unseen_places;
-  answer.obstacle_flags.assign(model.view().count, Verdict::free);
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    wanted.clearance = ballAt(poses[k], bounds, part);
-    UnseenResult found = markUnseen(space, {model, poses[k]}, wanted, verdicts[k]);
-    answer.unseen.addPose(verdicts[k], question.wanted.unseen_places, answer.obstacle_flags, std::move(found.kinds));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const QuestionPart& part = *parts[i];
+    Answer& answer = *each[i];
+    for (std::size_t s = 0; s < space.size(); ++s) answer.unseen.angles.push_back(space.angle(s));
+    const CornerBox bounds(part.model().view());
+    const bool places = part.question.wanted.unseen_places;
+    UnseenRequest wanted;
+    wanted.threads = part.question.threads;
+    wanted.kinds = true;
+    wanted.parts = places;
+    answer.obstacle_flags.assign(part.model().view().count, Verdict::free);
+    const Poses poses = part.question.poses();
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      wanted.clearance = ballAt(poses[k], bounds, part);
+      UnseenResult found = markUnseen(space, {part.model(), poses[k]}, wanted, verdicts[i][k]);
+      answer.unseen.addPose(verdicts[i][k], places, answer.obstacle_flags, std::move(found.kinds));
+    }
   }
 }
 

@@ -24,6 +24,7 @@ struct SiteObstacleAnswer : ObstacleAnswer {
   std::optional<SitePair> pair; ///< that of `closest`, whose own has 0 for the site's point
   Point3 place = {0, 0, 0};     ///< where the site's point of the pair is
   TrajectoryResult found;       ///< its counts, poses and first contacts
+  Answer::Unseen not_seen;      ///< with `seen`: its records that are unseen
 };
 
 /// The answer about all obstacles, together and one by one.
@@ -34,7 +35,8 @@ struct SiteObstaclesAnswer {
   std::vector<SiteObstacleAnswer> each; ///< in the order of the obstacles
 };
 
-/// Asks for flags, contacts, poses and the smallest distances. A receiver gets the answer about all obstacles together.
+/// Asks for flags, contacts, poses, the smallest distances and what is unseen. A receiver gets the answer about all
+/// obstacles together.
 /// @param means whose `clashes` are left out
 /// @param clashes a finder for each obstacle, or none
 /// @throws as ask() of one obstacle does; InvalidInput for no obstacle, and for other answers

@@ -12,6 +12,7 @@
 #include <pcl_bsh/question/model_shift.h>
 #include <pcl_bsh/seen/unseen_points.h>
 #include <pcl_bsh/site/make_site.h>
+#include <pcl_bsh/site/site_obstacles.h>
 
 #ifdef PCL_BSH_SITE_QUERIES
 
@@ -166,6 +167,35 @@ TEST_F(SeeSite, TheSitesPoseMayBeUncertain)
     EXPECT_EQ(found.unseen.where, right.where);
     EXPECT_EQ(found.obstacle_flags, at_once);
   }
+}
+
+/// Each with its own pose and clearance, of one visit to the beams.
+TEST_F(SeeSite, SeveralObstaclesAreSeenAsEachAlone)
+{
+  const Shape shape("machine", viewOf(machine.front().data(), machine.size()));
+  std::vector<PlacedShape> obstacles(4, {shape});
+  obstacles[1].pose.translation().z() = 0.5;
+  obstacles[1].clearance = 0.3;
+  obstacles[2].pose.translation().x() = -1.0;
+  obstacles[3].ignores_input = true;
+  Question question = request;
+  question.path = poses;
+  question.wanted.flags = true;
+  question.threads = 2;
+  const Site site = siteOf(500);
+  const SiteObstaclesAnswer found = ask(question, site, obstacles);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Shape alone = shape;
+    const SiteAnswer right = ask(questionOf(question, obstacles[i]), site, alone);
+    ASSERT_GT(right.unseen.count, 0u);
+    EXPECT_EQ(found.each[i].unseen, right.unseen.count);
+    EXPECT_EQ(found.each[i].not_seen.where, right.unseen.where);
+    EXPECT_EQ(found.each[i].not_seen.at_poses, right.unseen.at_poses);
+    EXPECT_EQ(found.each[i].not_seen.shadow_at_poses, right.unseen.shadow_at_poses);
+    EXPECT_GE(found.all.beams_kept, right.beams_kept);
+  }
+  EXPECT_EQ(found.each[3].unseen, 0u);
+  EXPECT_LE(found.all.beam_tiles.read, site.tiles.size());
 }
 
 /// Each beam is as uncertain as its own return, on whichever tile that is; and the pose on top shortens none.

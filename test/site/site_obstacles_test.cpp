@@ -82,6 +82,7 @@ protected:
     for (Json& one : list["obstacles"])
       if (!one["closest_pair"].is_null()) one["closest_pair"][0] = numberOf(one["closest_pair"][0]);
     for (Json& clash : list["clashes"]) {
+      if (!clash.contains("closest_pair")) continue; // unseen
       Json& input = clash["closest_pair"]["input"];
       input = {{"point", numberOf(input)}, {"at", input["at"]}};
     }
@@ -147,6 +148,16 @@ TEST_F(SiteObstacles, HaveTheAnswersOfOneCloudAlongAPath)
   expectSame("--trajectory poses.txt --swept 0.01 --uncertainty 0.01");
 }
 
+TEST_F(SiteObstacles, AreSeenAsInOneCloud)
+{
+  expectSame("--seen --origin 8,3,4 --seen-angle 0.2 --ignore \"input:m/part1\"");
+  EXPECT_GT(read("report.json")["obstacles"][1]["unseen"], 0);
+  EXPECT_EQ(read("report.json")["obstacles"][5]["unseen"], 0) << "it ignores the site";
+  EXPECT_GT(read("report.json")["unseen"]["beams"], 0);
+  EXPECT_EQ(read("report.json")["tiles_of_beams"]["all"], site.tiles.size());
+  expectSame("--seen --origin 8,3,4 --seen-angle 0.2 --trajectory poses.txt");
+}
+
 TEST_F(SiteObstacles, ReadEachTileOnceAndNoneThatIsFar)
 {
   const Outcome done = ofSite("--obstacle \"press=crate.off;pose=3,1,0.1,0,0,0.3\" --obstacle "
@@ -180,7 +191,7 @@ TEST_F(SiteObstacles, TellOfFacesThatCloseRoundPoints)
 TEST_F(SiteObstacles, RefuseWhatIsNotToldOfSeveral)
 {
   const std::string one = "--obstacle crate.off --clearance 0.05 --report report.json ";
-  for (const char* const option : {"--any", "--closest", "--distances", "--seen", "--obstacle-out x.ply"}) {
+  for (const char* const option : {"--any", "--closest", "--distances", "--obstacle-out x.ply"}) {
     const Outcome done = ofSite(one + option);
     EXPECT_EQ(done.exit_code, 2) << option;
     EXPECT_THAT(done.err, HasSubstr(std::string(option).substr(0, std::string(option).find(' ')) +

@@ -5,6 +5,8 @@
 #include <pcl_bsh/site/ask_site.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace pcl_bsh::site {
 
@@ -55,7 +57,10 @@ void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< of another
 void findClosest(const QuestionPart& part, SiteAnswer& answer);
 void measure(const QuestionPart& part, SiteAnswer& answer);
 void followPath(const QuestionPart& part, SiteAnswer& answer);
-void lookAround(const QuestionPart& part, SiteAnswer& answer); ///< the unseen records of the obstacle
+
+/// Tells the unseen records of obstacles that are asked about the same scans.
+/// @param each gets `unseen` and `obstacle_flags` of an obstacle. @param all gets the tiles that were read, and beams
+void lookAround(const std::vector<const QuestionPart*>& parts, const std::vector<Answer*>& each, SiteAnswer& all);
 
 /// Returns the warning of question/warnings/hollow.h about an obstacle in memory that is no solid, and whose faces
 /// close round a place of the site while no point of the site is near them. Reads up to four of the tiles that meet its

@@ -86,6 +86,7 @@ void SiteClashList::finish(ObstacleFiles& obstacles, const site::SiteObstaclesAn
     all.push_back(listed(obstacles, i, one.found));
     Listed& listed = all.back();
     listed.answer = one;
+    if (options_.question.seen) listed.unseen = &one.not_seen;
     if (!one.pair) continue;
     listed.answer->closest.pair->a = static_cast<std::uint32_t>(listed.clashes.points.size());
     listed.clashes.points.push_back(one.pair->a);

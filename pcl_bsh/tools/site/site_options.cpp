@@ -141,7 +141,6 @@ struct CollideTexts {
     for (const auto& [given, option] : {std::pair{any, "--any"},
                                         {closest, "--closest"},
                                         {distances, "--distances"},
-                                        {options.question.seen, "--seen"},
                                         {!options.obstacle_out.empty(), "--obstacle-out"}})
       if (given && options.areGiven())
         throw UsageError(std::string(option) +

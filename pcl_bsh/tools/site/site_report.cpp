@@ -63,13 +63,12 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
 {
   const Question& question = options.question;
   const Wanted& wanted = question.wanted;
-  if (!options.obstacles.empty())
-    return options.alongPath() ? putPath(report, found, question) : putFlags(report, found);
+  const bool several = !options.obstacles.empty(); // whose smallest distance is no answer of its own
   if (wanted.any) {
     report["collides"] = found.any.verdict == Verdict::colliding;
     report["undecided"] = found.any.verdict == Verdict::undecided;
   }
-  else if (wanted.closest) {
+  else if (wanted.closest && !several) {
     report["distance"] = io::orNull(found.closest.distance);
     report["distance_interval"] = {io::orNull(found.closest.interval.lower), io::orNull(found.closest.interval.upper)};
     if (found.pair) {
@@ -89,7 +88,7 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
     putFlags(report, found);
   }
   if (question.seen) {
-    report["unseen"] = io::unseenJson(found.unseen);
+    if (!several) report["unseen"] = io::unseenJson(found.unseen);
     report["unseen"]["beams"] = found.beams_kept;
     putTiles(report, "tiles_of_beams", found.beam_tiles);
   }
