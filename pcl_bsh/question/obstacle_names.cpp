@@ -42,7 +42,26 @@ InvalidInput wrongName(const char* option, const std::string& wrong, const std::
   return {Input::points, option, wrong, remedy};
 }
 
+void requireMatch(const char* option, const std::string& pattern, const std::vector<std::string>& names,
+                  const char* remedy)
+{
+  const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };
+  if (std::none_of(names.begin(), names.end(), fits))
+    throw wrongName(option, "'" + pattern + "' matches no obstacle", remedy);
+}
+
 } // namespace
+
+std::vector<bool> fittingNames(const char* option, const std::vector<std::string>& patterns,
+                               const std::vector<std::string>& names)
+{
+  for (const std::string& pattern : patterns) requireMatch(option, pattern, names, "give one of their names");
+  std::vector<bool> fitting;
+  for (const std::string& name : names)
+    fitting.push_back(std::any_of(patterns.begin(), patterns.end(),
+                                  [&](const std::string& pattern) { return matches(pattern.c_str(), name.c_str()); }));
+  return fitting;
+}
 
 void checkObstacleNames(const std::vector<std::string>& names)
 {
@@ -65,11 +84,8 @@ IgnoredPairs::IgnoredPairs(const std::vector<std::string>& texts, const std::vec
       throw wrongName("ignore", "'" + text + "' is no pair of names",
                       "give FIRST:SECOND, where * is any letters and \\: a colon within a name");
     const std::pair two(text.substr(0, colon), text.substr(colon + 1));
-    for (const std::string& pattern : {two.first, two.second}) {
-      const auto fits = [&](const std::string& name) { return matches(pattern.c_str(), name.c_str()); };
-      if (std::none_of(names.begin(), names.end(), fits))
-        throw wrongName("ignore", "'" + pattern + "' matches no obstacle", "give input, or one of their names");
-    }
+    for (const std::string& pattern : {two.first, two.second})
+      requireMatch("ignore", pattern, names, "give input, or one of their names");
     patterns_.push_back(two);
   }
 }

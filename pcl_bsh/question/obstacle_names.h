@@ -20,6 +20,11 @@ inline constexpr auto kInputName = "input";
 /// @throws InvalidInput for two obstacles of one name, one without a name, and one that has the input's
 void checkObstacleNames(const std::vector<std::string>& names);
 
+/// Whether one of the patterns, as those of IgnoredPairs, fits each name.
+/// @param option that has the patterns. @throws InvalidInput for a pattern that no name matches
+std::vector<bool> fittingNames(const char* option, const std::vector<std::string>& patterns,
+                               const std::vector<std::string>& names);
+
 /// Two obstacles, or an obstacle and the input, that do not count against each other.
 class IgnoredPairs {
 public:

@@ -197,7 +197,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
   for (std::size_t i = 0; i < all.size(); ++i) {
     shapes.push_back({all[i].loaded.shape(all[i].file)});
     if (several) shapes.back() = options.obstacles[i].placed(shapes.back().shape);
-    shapes.back().ignores_input = several && ignored.holds(kInputName, all[i].name);
+    shapes.back().ignores_input = several && (!all[i].asked || ignored.holds(kInputName, all[i].name));
     all[i].question = pcl_bsh::questionOf(question, shapes.back());
     shapes.back().shape.ignore(question.obstacle_ignore_points);
     const SphereHierarchy& b = cli::build(shapes.back().shape, all[i].question.uncertaintyOfObstacle(),
@@ -214,6 +214,9 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
     report.obstacle.points = vertices.count;
     report.obstacle.finite = SphereHierarchy(vertices).size();
   }
+  listing.unit = report.unit;
+  listing.coordinate_system = report.coordinate_system;
+  listing.keep(all, ignored, extentOf(a.view()), report.warnings);
   const auto ask_all = [&](const Question& asked) {
     ObstaclesAnswer found = io::askAbout(asked, scan, shapes, all);
     if (asked.wanted.collisions()) {
@@ -291,11 +294,13 @@ int collide(Options options)
   };
   std::vector<cli::ObstacleChoice> choices = options.obstacles;
   if (choices.empty()) choices.push_back({"", options.obstacle});
-  std::vector<cli::LoadedObstacle> loaded =
-      cli::loadObstacles(choices, question, {options.reading, input.facts.unit}, report.seconds.load, warn_of);
-  for (std::size_t i = 0; i < choices.size(); ++i)
+  std::vector<cli::LoadedObstacle> loaded = cli::loadObstacles(
+      choices, question, {options.reading, input.facts.unit, true, options.between}, report.seconds.load, warn_of);
+  for (std::size_t i = 0; i < choices.size(); ++i) {
     report.obstacles.push_back(
         {choices[i].name, choices[i].file.string(), std::move(loaded[i].obstacle), std::move(loaded[i].facts)});
+    report.obstacles.back().asked = choices[i].asked;
+  }
   if (options.obstacle_out) cli::requireWritableFlags(*options.obstacle_out, report.obstacles[0].loaded);
   if (!options.pairs.empty()) {
     const io::PoseFit fit = io::readPoseFit(options.pairs, report.obstacles[0].facts.scale);

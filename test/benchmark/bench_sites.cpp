@@ -156,16 +156,15 @@ public:
     if (options_.parts > 0) {
       const fs::path parts = options_.folder / "parts.obj";
       writeParts(parts, tunnel / "poses.txt", options_.parts);
-      const auto askAbout = [&](const std::string& obstacles) {
-        return costOf({site_program, "collide", site.string(), "--obstacle", obstacles, "--clearance",
-                       options_.clearance, "--memory", options_.memory, "--threads", std::to_string(options_.threads),
-                       "--clashes", (options_.folder / "clashes.json").string(), "--report", report.string()});
-      };
-      const Cost of_parts =
-          medianOf("parts", scale, [&] { return askAbout("plant=" + parts.string() + ";parts=true"); });
-      add(growth, "parts", 1, of_parts);
-      writeParts(parts, tunnel / "poses.txt", 1);
-      add(growth, "a part", 1, medianOf("a part", scale, [&] { return askAbout("plant=" + parts.string()); }));
+      const std::string list = (options_.folder / "clashes.json").string();
+      std::vector<std::string> ask = {site_program, "collide", site.string()};
+      ask.insert(ask.end(), {"--obstacle", "plant=" + parts.string() + ";parts=true", "--clearance", options_.clearance,
+                             "--memory", options_.memory, "--threads", std::to_string(options_.threads), "--clashes",
+                             list, "--report", report.string()});
+      add(growth, "parts", 1, medianOf("parts", scale, [&] { return costOf(ask); }));
+      const std::string one = "plant/part" + std::to_string(options_.parts / 2);
+      ask.insert(ask.end(), {"--only", one, "--previous", list});
+      add(growth, "a part", 1, medianOf("a part", scale, [&] { return costOf(ask); }));
     }
     fs::remove_all(site);
     return growth;

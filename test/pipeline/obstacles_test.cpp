@@ -153,6 +153,24 @@ TEST_F(Obstacles, AreComparedWithAnEarlierListByName)
     EXPECT_EQ(clash["status"], clash["obstacle_name"] == "press" ? "persisting" : "resolved") << clash;
 }
 
+TEST_F(Obstacles, MayBeAskedAboutAlone)
+{
+  list(two); // to list.json
+  const std::string moved =
+      "[" + one + R"(, {"file": )" + quoted("mill.off") +
+      R"(, "name": "the mill", "pose": [5, 0, 0.1, 0, 0, 0], "solid": true, "unit": "mm", "to_unit": "m"}])";
+  std::filesystem::copy_file(folder / "list.json", folder / "before.json");
+  const std::string previous = R"(, "previous": )" + quoted("before.json");
+  EXPECT_EQ(list(moved, previous + R"(, "only": ["the *"])"), list(moved, previous));
+  const auto refusal = [&](const std::string& options) { return errorOf([&] { list(moved, options); }); };
+  EXPECT_THAT(refusal(R"(, "only": ["the *"])"),
+              EndsWith("/only: is given, and nothing tells of the other obstacles: give `previous`"));
+  EXPECT_THAT(refusal(previous + R"(, "only": ["lathe"])"),
+              EndsWith("/only: 'lathe' matches no obstacle: give one of their names"));
+  EXPECT_THAT(refusal(previous + R"(, "only": ["press"])"),
+              HasSubstr("before.json: tells of 'the mill' at other poses: ask about it, too"));
+}
+
 TEST_F(Obstacles, GoThroughTheDocumentOfARun)
 {
   const PipelineResult first = run("filters.bsh_flag", R"("clearance": 0.1, "obstacles": )" + two);

@@ -47,6 +47,17 @@ TEST(IgnoredPairs, HaveColonsInNames)
     EXPECT_THROW(IgnoredPairs({text}, names), InvalidInput) << text;
 }
 
+TEST(ObstacleNames, FitPatterns)
+{
+  const std::vector<std::string> names = {"press:1", "press:2", "mill"};
+  EXPECT_EQ(fittingNames("only", {"press:*"}, names), (std::vector<bool>{true, true, false}));
+  EXPECT_EQ(fittingNames("only", {R"(press\:2)", "m*"}, names), (std::vector<bool>{false, true, true}));
+  EXPECT_EQ(test::refusalOf([&] {
+              fittingNames("only", {"press:1", "press"}, names);
+            }),
+            "only: 'press' matches no obstacle: give one of their names");
+}
+
 TEST(ObstacleNames, RefuseOnesThatTellNothingApart)
 {
   EXPECT_NO_THROW(checkObstacleNames({"a", "b"}));

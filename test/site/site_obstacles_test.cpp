@@ -158,6 +158,40 @@ TEST_F(SiteObstacles, AreSeenAsInOneCloud)
   expectSame("--seen --origin 8,3,4 --seen-angle 0.2 --trajectory poses.txt");
 }
 
+TEST_F(SiteObstacles, OneThatHasChangedIsAskedAboutAlone)
+{
+  const auto with_mill_at = [&](const char* place) {
+    return "--obstacle \"press=crate.off;pose=3,1,0.1,0,0,0.3;clearance=0.2\" --obstacle \"mill=crate.off;pose=" +
+           std::string(place) +
+           ",-0.2,0,0,0;uncertainty=0.02\" --obstacle \"m=parts.obj;parts=true\" --clearance 0.05 "
+           "--seen --origin 8,3,4 --seen-angle 0.2 ";
+  };
+  ASSERT_EQ(ofSite(with_mill_at("15,2") + "--clashes 1.json").exit_code, 0);
+  ASSERT_EQ(ofSite(with_mill_at("20,2") + "--clashes 2.json --previous 1.json").exit_code, 0);
+  const std::string back = with_mill_at("15.2,2") + "--previous 2.json ";
+  ASSERT_EQ(ofSite(back + "--clashes all.json --clashes all.csv").exit_code, 0);
+  ASSERT_NE(read("all.json")["clashes"], read("2.json")["clashes"]);
+  const Outcome alone =
+      ofSite(back + "--only mill --clashes alone.json --clashes alone.csv --clashes alone.html --report report.json");
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_THAT(alone.err, HasSubstr("2.json: tells of 4 obstacles"));
+  EXPECT_EQ(io::contentOf(folder / "alone.json"), io::contentOf(folder / "all.json"));
+  EXPECT_EQ(io::contentOf(folder / "alone.csv"), io::contentOf(folder / "all.csv"));
+  EXPECT_LT(read("report.json")["tiles"]["read"], site.tiles.size() / 2);
+  EXPECT_EQ(read("report.json")["obstacles"][0]["colliding"], read("all.json")["obstacles"][0]["colliding"]);
+  const std::string others = with_mill_at("20,2") + "--previous 2.json --clashes 3.json --only \"m/*\" --only press ";
+  ASSERT_EQ(ofSite(others).exit_code, 0) << "the mill has a place that is not visited any more";
+  ASSERT_EQ(ofSite(with_mill_at("20,2") + "--previous 2.json --clashes all.json").exit_code, 0);
+  EXPECT_EQ(io::contentOf(folder / "3.json"), io::contentOf(folder / "all.json"));
+  EXPECT_THAT(io::contentOf(folder / "3.json"), HasSubstr("not_visited"));
+  EXPECT_THAT(ofSite(with_mill_at("15.2,2") + "--only press --previous 2.json --clashes 3.json").err,
+              HasSubstr("2.json: tells of 'mill' at other poses: ask about it, too"));
+  if (!hasMpirun()) return;
+  const Outcome on_two = runOnTwoRanks("collide site " + others, folder.path());
+  ASSERT_EQ(on_two.exit_code, 0) << on_two.err;
+  EXPECT_EQ(io::contentOf(folder / "3.json"), io::contentOf(folder / "all.json"));
+}
+
 TEST_F(SiteObstacles, ReadEachTileOnceAndNoneThatIsFar)
 {
   const Outcome done = ofSite("--obstacle \"press=crate.off;pose=3,1,0.1,0,0,0.3\" --obstacle "

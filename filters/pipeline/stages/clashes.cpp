@@ -5,6 +5,8 @@
 #include <pcl_bsh/filters/pipeline/stages/question_stage.h>
 #include <pcl_bsh/io/files/replace_file.h>
 
+#include <set>
+
 namespace pcl_bsh::pipeline {
 namespace {
 
@@ -18,6 +20,7 @@ struct ClashWriter : Stage, QuestionStage {
   bool between = false;
   bool overlap = false;
   std::vector<std::string> ignore;
+  std::vector<std::string> only;
 
   CloudHeader plan(const std::vector<CloudHeader>& inputs) override
   {
@@ -36,7 +39,10 @@ struct ClashWriter : Stage, QuestionStage {
   StageCloudPtr run(StageClouds&& inputs) override
   {
     requirePoints(*inputs[0]);
-    write(ask(inputs[0], *this, ignored_), inputs[0]->coordinate_system);
+    const auto ignores_input = [&](const std::string& name) {
+      return unasked_.count(name) > 0 || ignored_.holds(kInputName, name);
+    };
+    write(ask(inputs[0], *this, ignores_input), inputs[0]->coordinate_system);
     return inputs[0];
   }
 
@@ -61,6 +67,15 @@ private:
     if (names.empty() && (between || !ignore.empty()))
       throw OptionError(between ? "between" : "ignore", "is given, and there is one obstacle: give `obstacles`");
     ignored_ = namingOption("ignore", [&] { return IgnoredPairs(ignore, names); });
+    if (!only.empty()) {
+      if (names.empty()) throw OptionError("only", "is given, and there is one obstacle: give `obstacles`");
+      if (!previous) throw OptionError("only", "is given, and nothing tells of the other obstacles: give `previous`");
+      const std::vector<bool> fitting = namingOption("only", [&] { return fittingNames("only", only, names); });
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        compared[i].asked = fitting[i];
+        if (!fitting[i]) unasked_.insert(names[i]);
+      }
+    }
     listing_ = {input_name, unit};
     listing_.cluster_distance = cluster_distance;
     if (!previous) return;
@@ -75,8 +90,11 @@ private:
     std::vector<const SphereHierarchy*> hierarchies;
     for (std::size_t i = 0; i < found.shapes.size(); ++i) hierarchies.push_back(&found.obstacleHierarchy(i));
     listing_.coordinate_system = coordinate_system;
-    if (between) listing_.between = io::askBetween(question, found.shapes, found.obstacles, ignored_);
     std::vector<std::string> warnings;
+    for (io::ComparedObstacle& one : found.obstacles) one.asked = unasked_.count(one.name) == 0;
+    const std::optional<Extent> box = extentOf(found.inputHierarchy(question).view());
+    namingOption("previous", [&] { listing_.keep(found.obstacles, ignored_, box, warnings); });
+    if (between) listing_.between = io::askBetween(question, found.shapes, found.obstacles, ignored_);
     const io::ClashLists lists =
         io::listOf(listing_, found.inputHierarchy(question), hierarchies, found.obstacles, found.answer, warnings);
     for (std::string& warning : warnings) warn(std::move(warning));
@@ -86,6 +104,7 @@ private:
   }
 
   IgnoredPairs ignored_;
+  std::set<std::string> unasked_; ///< names of obstacles that `previous` tells of
   io::ClashListing listing_;
 };
 
@@ -113,13 +132,19 @@ StageType clashWriter()
               "the .json or BCF of an earlier run with the same options but `swept` and `seen`: tells clashes that are "
               "new, persisting, resolved, not visited, unseen or not scanned any more; may be `filename`")
       .replaceable()
-      .option(&ClashWriter::between, "between", "the `obstacles` are compared with each other, too, as they stand")
+      .option(&ClashWriter::between, "between",
+              "the `obstacles` are compared with each other, too, as they stand; where they are more than 32, pairs "
+              "that are clear are not told")
       .option(&ClashWriter::overlap, "overlap",
               "with `between`: the area of each surface inside another obstacle that is a solid, as an interval")
       .option(
           &ClashWriter::ignore, "ignore",
           "pairs of names that are not compared, of `obstacles` or `input`: \"FIRST:SECOND\", where * is any letters, "
           "and a backslash stands before a colon within a name")
+      .option(
+          &ClashWriter::only, "only",
+          "names of the `obstacles` that are asked about, * is any letters; what `previous` lists of the others, for "
+          "the same cloud and question, is listed again")
       .option(&ClashWriter::unit, "unit", "name of the clouds' unit, for the list and the page")
       .option(&ClashWriter::input_name, "input_name", "name of the input in the list");
 }

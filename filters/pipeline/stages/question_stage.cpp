@@ -268,7 +268,7 @@ std::vector<QuestionStage::Asked> QuestionStage::asked(std::vector<std::string>&
 }
 
 QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, Stage& stage,
-                                                   const IgnoredPairs& ignored) const
+                                                   const std::function<bool(const std::string&)>& ignores_input) const
 {
   Question asked = question;
   asked.wanted.spacings = asked.wanted.collisions();
@@ -299,7 +299,7 @@ QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, S
     one.loaded = std::move(shapes.back());
     shapes.pop_back();
     shape.shape = one.loaded.shape(one.name.empty() ? "the obstacle" : one.name);
-    shape.ignores_input = !one.name.empty() && ignored.holds(kInputName, one.name);
+    shape.ignores_input = ignores_input && !one.name.empty() && ignores_input(one.name);
     found.obstacles.push_back(std::move(one));
     found.shapes.push_back(std::move(shape));
   }

@@ -73,8 +73,9 @@ protected:
   };
 
   /// For run(): asks, until the stage is cancelled, and adds the warnings of the answer.
-  /// @param ignored obstacles that `input` is paired with are not asked about
-  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage, const IgnoredPairs& ignored = {}) const;
+  /// @param ignores_input by the name of one of several obstacles, whether it is not compared with the input
+  AnsweredQuestion ask(const StageCloudPtr& input, Stage& stage,
+                       const std::function<bool(const std::string&)>& ignores_input = nullptr) const;
 
   /// Whether the triangles of the input are asked about, not its points.
   bool asksAboutFaces(const StageCloud& input) const

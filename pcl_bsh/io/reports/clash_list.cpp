@@ -201,19 +201,25 @@ void addClashes(const JsonReader& reader, std::vector<ClashList>& lists)
 
 } // namespace
 
-std::vector<ClashList> readClashLists(const std::filesystem::path& path)
+ListText readListText(const std::filesystem::path& path)
 {
   const FileBytes file(path);
-  if (!isBcfExtension(extensionOf(path))) return parseClashLists(file.view(), path.string());
+  if (!isBcfExtension(extensionOf(path))) return {std::string(file.view()), path.string()};
   try {
-    const BcfContents contents = parseBcf(file.view());
-    std::vector<ClashList> lists = parseClashLists(contents.list, path.string() + ": " + bcf_list_file);
-    for (ClashList& list : lists) list.topics = contents.topics;
-    return lists;
+    BcfContents contents = parseBcf(file.view());
+    return {std::move(contents.list), path.string() + ": " + bcf_list_file, std::move(contents.topics)};
   }
   catch (const FormatError& error) {
     throw files::FileError(path, error.what(), error.remedy());
   }
+}
+
+std::vector<ClashList> readClashLists(const std::filesystem::path& path)
+{
+  const ListText text = readListText(path);
+  std::vector<ClashList> lists = parseClashLists(text.list, text.name);
+  for (ClashList& list : lists) list.topics = text.topics;
+  return lists;
 }
 
 std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name)

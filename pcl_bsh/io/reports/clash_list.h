@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,12 @@ namespace pcl_bsh::io {
 /// A question with a clearance. A list that was read states its options alone.
 struct ClashQuestion : Question {
   std::string input, obstacle; ///< file names
+};
+
+/// The source of a point of an input that is made of several files.
+struct SourcePoint {
+  std::string file;
+  std::uint32_t record = 0;
 };
 
 /// A length, or `K x field NAME`; with that of poses behind it.
@@ -48,6 +55,16 @@ struct ClashList {
   std::vector<Clash> clashes;
   BcfTopics topics = {}; ///< of a BCF file
 };
+
+/// A list in JSON, of its own file or of BCF.
+struct ListText {
+  std::string list;
+  std::string name; ///< of its place, for errors
+  BcfTopics topics = {};
+};
+
+/// @throws as readClashLists()
+ListText readListText(const std::filesystem::path& path);
 
 /// The lists of an earlier run, one for each of its obstacles, for compareWithEarlier().
 /// @param path of a list in JSON, or of BCF

@@ -82,6 +82,9 @@ private:
     const ClashQuestion& question = first_.question;
     std::string promise = first_.surface != nullptr ? promiseOf(*first_.surface, question.solid) : "";
     if (lists_.haveNames()) promise.clear();
+    const auto& reports = lists_.obstacles;
+    const auto kept = static_cast<std::size_t>(
+        std::count_if(reports.begin(), reports.end(), [](const auto& report) { return report.kept != nullptr; }));
     Object page = pageAbout(question, first_.coordinate_system, question.accuracy.text(), promise);
     if (lists_.haveNames()) page["obstacle"] = counted(lists_.obstacles.size(), "obstacle");
     page.insert(
@@ -96,6 +99,7 @@ private:
          {"swept", question.swept > 0.0 ? Data(number(question.swept)) : Data(false)},
          {"cluster_distance", number(first_.cluster_distance)},
          {"compared", false},
+         {"kept", kept > 0 ? Data(counted(kept, "obstacle")) : Data(false)},
          {"previous", false},
          {"obstacles", obstacleTable(lists_)},
          {"path", path()},
@@ -180,6 +184,8 @@ private:
             {"closest_pose", std::to_string(clash.closest_pose)}};
   }
 
+  static bool hasCard(const ClashReport& report, const Clash& clash) { return isPresent(clash.status) && !report.kept; }
+
   enum class Table { certain, perhaps, unseen }; ///< each kind of clash has its own
 
   static Table tableOf(const Clash& clash)
@@ -194,7 +200,7 @@ private:
     std::size_t cards = 0;
     for (const auto& [report, one] : all_) {
       const Clash& clash = *one;
-      const bool has_card = isPresent(clash.status) && cards++ < most_clash_pictures;
+      const bool has_card = hasCard(*report, clash) && cards++ < most_clash_pictures;
       if (tableOf(clash) != table) continue;
       Object row = factsOf(*report, clash);
       row["size"] = number(longestSide(clash), 3);
@@ -226,7 +232,7 @@ private:
     List cards;
     bool all = true;
     for (const auto& [report, clash] : all_) {
-      if (!isPresent(clash->status)) continue;
+      if (!hasCard(*report, *clash)) continue;
       all = cards.size() < most_clash_pictures;
       if (!all) break;
       cards.push_back(card(*report, *clash));

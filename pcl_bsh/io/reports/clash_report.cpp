@@ -66,10 +66,15 @@ Json toJson(const ClashReport& report, const Clash& clash)
   return json;
 }
 
-/// The question about an obstacle.
-Json askedJson(const ClashQuestion& question, const Obstacle* surface)
+Json surfaceOf(const ClashReport& report)
 {
-  return {{"surface", surfaceJson(surface, question.solid)},
+  return report.kept ? report.kept->surface : surfaceJson(report.surface, report.question.solid);
+}
+
+/// The question about an obstacle.
+Json askedJson(const ClashQuestion& question, Json surface)
+{
+  return {{"surface", std::move(surface)},
           {"clearance", *question.clearance},
           {"options", optionsJson(question)},
           {"uncertainty",
@@ -108,6 +113,7 @@ const char* certaintyOf(const Clash& clash)
 
 Eigen::Vector3d ClashReport::modelPoint(const Clash& clash) const
 {
+  if (kept != nullptr) return vectorOf(kept->places.at(clash.id));
   const Eigen::Isometry3d& pose = poses[static_cast<std::size_t>(clash.closest_pose)];
   if (!model.triangles) return pose * vectorOf(model.point(clash.model_point));
   const Eigen::Vector3d seen = pose.inverse() * scanPoint(clash);
@@ -189,11 +195,11 @@ const char* nameOfState(Verdict verdict)
   return "clear";
 }
 
-Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
-                  const ObstacleAnswer& found, const std::optional<SourcePoint>& nearest)
+Json obstacleJson(const std::string& name, const ClashQuestion& question, Json surface, const ObstacleAnswer& found,
+                  const std::optional<SourcePoint>& nearest)
 {
   Json json = {{"name", name}, {"file", question.obstacle}};
-  json.update(askedJson(question, surface));
+  json.update(askedJson(question, std::move(surface)));
   json.update({{"state", nameOfState(found)},
                {"colliding", found.colliding},
                {"undecided", found.undecided},
@@ -238,7 +244,7 @@ std::string clashJson(const ClashLists& lists)
   Json json = {{"program", reportProgram()}, {"date", reportDate()}, {"input", question.input}};
   if (!lists.haveNames()) json["obstacle"] = question.obstacle;
   json.update({{"unit", textOrNull(first.unit)}, {"coordinate_system", textOrNull(first.coordinate_system)}});
-  if (!lists.haveNames()) json.update(askedJson(question, first.surface));
+  if (!lists.haveNames()) json.update(askedJson(question, surfaceOf(first)));
   json.update({{"accuracy", question.accuracy.text()},
                {"cluster_distance", first.cluster_distance},
                {"poses", first.poses.size()},
@@ -251,7 +257,8 @@ std::string clashJson(const ClashLists& lists)
     for (const ClashReport& report : lists.obstacles) {
       std::optional<SourcePoint> nearest;
       if (const auto& pair = report.answer->closest.pair; pair && report.source_of) nearest = report.source_of(pair->a);
-      json["obstacles"].push_back(obstacleJson(report.name, report.question, report.surface, *report.answer, nearest));
+      json["obstacles"].push_back(
+          obstacleJson(report.name, report.question, surfaceOf(report), *report.answer, nearest));
       json["obstacles"].back().update({{"clashes", report.present()}, {"path", pathJson(report.survey)}});
     }
     for (const BetweenObstacles& two : lists.between) json["between"].push_back(betweenJson(two));

@@ -9,6 +9,7 @@
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/io/reports/clash_list.h>
+#include <pcl_bsh/io/reports/kept_obstacles.h>
 #include <pcl_bsh/neighbors/spacing.h>
 #include <pcl_bsh/question/obstacles.h>
 
@@ -23,12 +24,6 @@
 #include <vector>
 
 namespace pcl_bsh::io {
-
-/// The source of a point of an input that is made of several files.
-struct SourcePoint {
-  std::string file;
-  std::uint32_t record = 0;
-};
 
 /// Clashes of the input with an obstacle, in the frame of the input. Clouds and result are borrowed.
 struct ClashReport {
@@ -52,12 +47,17 @@ struct ClashReport {
   std::function<SourcePoint(std::uint32_t)> model_source_of = nullptr;
   std::string name = {};                  ///< of the obstacle, where it is one of several
   const ObstacleAnswer* answer = nullptr; ///< set where the obstacle is one of several
+  const KeptObstacle* kept = nullptr;     ///< set where it is not asked about: there are no points to draw
 
   /// Returns the id in lists and pages: of several obstacles, it begins with the obstacle's name.
   std::string idOf(const Clash& clash) const { return name.empty() ? clash.id : name + '/' + clash.id; }
 
   /// Returns the name of a record of the obstacle: "point" or "triangle".
-  const char* partName() const { return surface != nullptr ? surface->partName() : "point"; }
+  const char* partName() const
+  {
+    if (kept != nullptr) return kept->partName();
+    return surface != nullptr ? surface->partName() : "point";
+  }
 
   std::size_t count(ClashStatus status) const
   {
@@ -76,7 +76,10 @@ struct ClashReport {
     return countIf([](const Clash& clash) { return isPresent(clash.status) && !clash.isCertain(); });
   }
 
-  Eigen::Vector3d scanPoint(const Clash& clash) const { return vectorOf(scan.point(clash.scan_point)); }
+  Eigen::Vector3d scanPoint(const Clash& clash) const
+  {
+    return vectorOf(kept != nullptr ? clash.place : scan.point(clash.scan_point));
+  }
 
   /// Returns the obstacle's point of the closest pair at the closest pose (swept: when the motion from there begins).
   /// Where the obstacle is a surface, it is the triangle's point that is nearest to the scan's, rounded.
@@ -138,8 +141,9 @@ Json unseenJson(const Answer::Unseen& unseen);
 
 /// The question about an obstacle and its answer; the answer about two obstacles.
 /// @param nearest the input's point of the closest pair, where the input is several files
-Json obstacleJson(const std::string& name, const ClashQuestion& question, const Obstacle* surface,
-                  const ObstacleAnswer& found, const std::optional<SourcePoint>& nearest = std::nullopt);
+/// @param surface surfaceJson()
+Json obstacleJson(const std::string& name, const ClashQuestion& question, Json surface, const ObstacleAnswer& found,
+                  const std::optional<SourcePoint>& nearest = std::nullopt);
 Json betweenJson(const BetweenObstacles& two);
 
 /// Both ends of an area in four digits; one number where they agree. Empty without an area.

@@ -2,6 +2,8 @@
 #include <pcl_bsh/io/reports/compared_obstacles.h>
 
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/number_text.h>
 #include <pcl_bsh/question/warnings/warnings.h>
 
 #include <algorithm>
@@ -30,7 +32,7 @@ std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std:
   for (const ComparedObstacle& one : obstacles) {
     out << one.name << ": " << nameOfState(one.found);
     if (one.found.colliding > 0) out << " of " << counted(one.found.colliding, part);
-    if (one.found.unseen > 0) out << ", " << counted(one.found.unseen, one.loaded.partName()) << " unseen";
+    if (one.found.unseen > 0) out << ", " << counted(one.found.unseen, one.partName()) << " unseen";
     tell_distance(one.found.closest);
     if (one.found.closest_pose >= 0) out << " at pose " << one.found.closest_pose;
     out << '\n';
@@ -46,6 +48,19 @@ std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std:
     out << '\n';
   }
   return out.str();
+}
+
+Json obstacleJson(const ComparedObstacle& one, const std::string& input, const std::optional<SourcePoint>& nearest)
+{
+  const ClashQuestion question = {one.question, input, one.file};
+  if (!one.kept) {
+    const Obstacle* const surface = one.loaded.isSurface() ? &one.loaded : nullptr;
+    return obstacleJson(one.name, question, surfaceJson(surface, question.solid), one.found, nearest);
+  }
+  const auto& pair = one.found.closest.pair;
+  const bool has_source = pair && !one.kept->sources.empty();
+  return obstacleJson(one.name, question, one.kept->surface, one.found,
+                      has_source ? std::optional(one.kept->sources[pair->a]) : std::nullopt);
 }
 
 double greatestClearance(const std::vector<ComparedObstacle>& obstacles)
@@ -73,7 +88,8 @@ ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<Pla
     obstacles[i].answer = std::move(answer);
   });
   if (!keep) return found;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) obstacles[i].found = found.each[i];
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (obstacles[i].asked) obstacles[i].found = found.each[i];
   return found;
 }
 
@@ -93,11 +109,61 @@ void ClashListing::readEarlier(const std::vector<ComparedObstacle>& obstacles, s
 {
   if (!previous) return;
   earlier = readClashLists(*previous);
+  std::vector<std::string> names;
+  for (const ComparedObstacle& one : obstacles)
+    if (!one.asked) names.push_back(one.name);
+  if (!names.empty()) {
+    kept = readKeptObstacles(*previous, names);
+    if (cluster_distance.value_or(kept->cluster_distance) != kept->cluster_distance)
+      throw files::FileError(*previous, "has the cluster distance " + numberText(kept->cluster_distance),
+                             "give the same, or ask about all obstacles");
+    cluster_distance = kept->cluster_distance;
+  }
   for (const ComparedObstacle& one : obstacles) {
+    if (!one.asked) continue; // keep() compares more
     const ClashQuestion asked = {one.question, input, one.file};
     if (const ClashList* const list = findList(earlier, one.name, asked))
       addEachOnce(requireComparable(*previous, *list, asked), warnings);
   }
+}
+
+void ClashListing::keep(std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored,
+                        const std::optional<Extent>& scan, std::vector<std::string>& warnings) const
+{
+  if (!kept) return;
+  for (ComparedObstacle& one : obstacles) {
+    if (one.asked) continue;
+    kept->requireSame(one.name, {one.question, input, one.file}, ignored.holds(kInputName, one.name),
+                      {one.question.poses(), scan}, unit, coordinate_system);
+    one.kept = &kept->by_name.at(one.name);
+    one.found = one.kept->answer;
+  }
+  warnings.push_back(previous->string() + ": tells of " + counted(kept->by_name.size(), "obstacle") +
+                     ": the others alone are asked about and counted");
+}
+
+ClashReport ClashListing::keptReport(ComparedObstacle& one, double distance, const std::optional<Extent>& scan) const
+{
+  static const PointsView nothing;
+  const KeptObstacle& obstacle = *one.kept;
+  one.poses = one.question.poses();
+  ClashReport report{.question = {one.question, input, one.file},
+                     .cluster_distance = distance,
+                     .clashes = obstacle.list.clashes,
+                     .scan = nothing,
+                     .model = nothing,
+                     .poses = one.poses,
+                     .found = obstacle.counts,
+                     .survey = {one.poses, scan},
+                     .unit = unit,
+                     .coordinate_system = coordinate_system,
+                     .previous = previous->string(),
+                     .topics = obstacle.list.topics,
+                     .name = one.name,
+                     .answer = &one.found,
+                     .kept = &obstacle};
+  if (!obstacle.sources.empty()) report.source_of = [&obstacle](std::uint32_t i) { return obstacle.sources.at(i); };
+  return report;
 }
 
 void ClashListing::compare(ClashReport& list, const std::function<std::vector<std::string>(const ClashList&)>& compared,
@@ -126,6 +192,10 @@ ClashLists listOf(const ClashListing& listing, const SphereHierarchy& scan,
   ClashLists lists;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     ComparedObstacle& one = obstacles[i];
+    if (one.kept) {
+      lists.obstacles.push_back(listing.keptReport(one, distance, box));
+      continue;
+    }
     one.poses = one.question.poses();
     const bool has_name = !one.name.empty();
     ClashReport list{.question = {one.question, listing.input, one.file},

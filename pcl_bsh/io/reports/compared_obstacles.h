@@ -29,6 +29,10 @@ struct ComparedObstacle {
   CollidingRecords colliding = {}; ///< of that answer
   ObstacleAnswer found = {};
   std::vector<Eigen::Isometry3d> poses = {};
+  bool asked = true;                  ///< about the input; else an earlier list tells of it
+  const KeptObstacle* kept = nullptr; ///< what that list tells: after ClashListing::keep()
+
+  const char* partName() const { return kept ? kept->partName() : loaded.partName(); } ///< "point" or "triangle"
 };
 
 /// Asks about the only obstacle, or about several with names. Where collisions are asked for, each of several keeps the
@@ -45,6 +49,11 @@ double greatestClearance(const std::vector<ComparedObstacle>& obstacles);
 std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<PlacedShape>& shapes,
                                          const std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored);
 
+/// obstacleJson() of one of several.
+/// @param input its name. @param nearest as obstacleJson() takes it
+Json obstacleJson(const ComparedObstacle& one, const std::string& input,
+                  const std::optional<SourcePoint>& nearest = std::nullopt);
+
 /// One line for each of several obstacles, and for two of them. @param part a record of the input
 std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std::vector<BetweenObstacles>& between,
                       const char* part);
@@ -56,12 +65,24 @@ struct ClashListing {
   std::optional<double> cluster_distance = {};        ///< none: from the greatest clearance and the input's spacing
   std::optional<std::filesystem::path> previous = {}; ///< file of an earlier list
   std::vector<ClashList> earlier = {};                ///< of that file
+  std::optional<KeptObstacles> kept = {};             ///< of that file: those that are not asked about
   std::vector<BetweenObstacles> between = {};
 
-  /// Reads the earlier list. @param obstacles with names, files and questions
+  /// Reads the earlier list. Where it tells of obstacles that are not asked about, its cluster distance is used.
+  /// @param obstacles with names, files and questions
   /// @param warnings gets what requireComparable() tells
   /// @throws as readClashLists() and requireComparable() do
   void readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings);
+
+  /// Takes over the answers about obstacles that are not asked about. To be called after readEarlier(), with `unit` and
+  /// `coordinate_system`. Does nothing where all are asked about.
+  /// @param scan box of the input. @param warnings gets a line
+  /// @throws as KeptObstacles::requireSame() does
+  void keep(std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored, const std::optional<Extent>& scan,
+            std::vector<std::string>& warnings) const;
+
+  /// The list of an obstacle that was taken over. Borrows it.
+  ClashReport keptReport(ComparedObstacle& one, double distance, const std::optional<Extent>& scan) const;
 
   /// Compares the list of an obstacle with its earlier one, where there is one. @param compared calls compareWithList()
   void compare(ClashReport& list, const std::function<std::vector<std::string>(const ClashList&)>& compared,

@@ -30,15 +30,16 @@ Data obstacleTable(const ClashLists& lists)
   bool has_areas = false, have_paths = false;
   for (const ClashReport& report : lists.obstacles) {
     const ObstacleAnswer& found = *report.answer;
-    rows.push_back(Object{{"name", plain(report.name)},
-                          {"file", plain(report.question.obstacle)},
-                          {"state", nameOfState(found)},
-                          {"clearance", number(*report.question.clearance)},
-                          {"clashes", std::to_string(report.present())},
-                          {"points", std::to_string(found.colliding)},
-                          {"distance", distanceOf(found.closest)},
-                          {"place", found.closest.pair ? placeOf(report, found.closest.pair->a) : std::string()},
-                          {"pose", poseText(found.closest_pose)}});
+    rows.push_back(
+        Object{{"name", plain(report.name)},
+               {"file", plain(report.question.obstacle)},
+               {"state", nameOfState(found)},
+               {"clearance", number(*report.question.clearance)},
+               {"clashes", std::to_string(report.present())},
+               {"points", std::to_string(found.colliding)},
+               {"distance", distanceOf(found.closest)},
+               {"place", found.closest.pair && !report.kept ? placeOf(report, found.closest.pair->a) : std::string()},
+               {"pose", poseText(found.closest_pose)}});
   }
   for (const BetweenObstacles& two : lists.between) {
     has_areas = has_areas || two.pair.first_within || two.pair.second_within;

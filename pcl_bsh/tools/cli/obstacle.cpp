@@ -57,7 +57,12 @@ std::vector<LoadedObstacle> loadObstacles(const std::vector<ObstacleChoice>& cho
   std::vector<io::Obstacle> loaded; // of the last file
   io::CloudFacts facts;
   for (const ObstacleChoice& one : choices) {
-    if (one.part == 0) {
+    if (one.part == 0) loaded.clear();
+    if (!one.asked && !loading.unasked) {
+      all.emplace_back();
+      continue;
+    }
+    if (loaded.empty()) {
       loaded = load(one, question, loading, facts = {}, seconds);
       if (told) told(one, facts);
     }

@@ -34,9 +34,10 @@ struct Loading {
   const ReadChoice& reading;
   std::optional<io::LengthUnit> input_unit; ///< as the input was read
   bool shows = true;                        ///< each file is a step of the program
+  bool unasked = false;                     ///< also obstacles that are not asked about
 };
 
-/// Loads obstacles of a question, each file with parts once.
+/// Loads obstacles of a question, each file with parts once. Others have no points.
 /// @param seconds that it took are added. @param told called for each file, once it is loaded; may be null
 /// @throws as io::readObstacle(), io::readMesh() and io::obstaclesOf() do; UsageError where a unit is not known
 std::vector<LoadedObstacle>

@@ -147,6 +147,13 @@ void SeveralObstacles::addTo(CLI::App& app)
                  "letters, \\: a colon within a name; may be given again and again")
       ->type_name("FIRST:SECOND")
       ->allow_extra_args(false);
+  app.add_option("--only", only,
+                 "obstacles that are asked about, by name; * is any letters; may be given\n"
+                 "again and again. The others are listed as --previous tells of them,\n"
+                 "which must be of the same scan and question; OUTPUT, counts and\n"
+                 "drawings leave them out")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
 }
 
 void SeveralObstacles::readObstacles(const std::filesystem::path& first, std::vector<std::string>& warnings)
@@ -155,27 +162,43 @@ void SeveralObstacles::readObstacles(const std::filesystem::path& first, std::ve
   if (!first.empty()) all.insert(all.begin(), first.string());
   obstacles = parseObstacles(all, warnings);
   ignoredPairs(); // fails now
+  if (only.empty()) return;
+  std::vector<bool> fitting;
+  try {
+    fitting = fittingNames("only", only, names());
+  }
+  catch (const InvalidInput& error) {
+    throw UsageError("--only: " + error.advice());
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) obstacles[i].asked = fitting[i];
 }
 
-void SeveralObstacles::requireConsistent(bool solid) const
+void SeveralObstacles::requireConsistent(bool solid, bool previous) const
 {
   const auto refuse = [](const char* option, const char* wrong) {
     throw UsageError(std::string(option) + ": " + wrong);
   };
   if (obstacles.empty() && (between || !ignored.empty()))
     refuse(between ? "--between" : "--ignore", "there is one obstacle: give --obstacle NAME=FILE for each");
+  if (obstacles.empty() && !only.empty()) refuse("--only", "there is one obstacle: give --obstacle NAME=FILE for each");
+  if (!only.empty() && !previous) refuse("--only", "nothing tells of the other obstacles: give --previous FILE");
   const auto isSolid = [&](const ObstacleChoice& one) { return one.solid.value_or(solid); };
   if (overlap && !between) refuse("--overlap", "is of obstacles that are compared with each other: give --between");
   if (overlap && std::none_of(obstacles.begin(), obstacles.end(), isSolid))
     refuse("--overlap", "no obstacle is a solid: give --solid, or solid=true of one");
 }
 
-IgnoredPairs SeveralObstacles::ignoredPairs() const
+std::vector<std::string> SeveralObstacles::names() const
 {
   std::vector<std::string> names;
   for (const ObstacleChoice& one : obstacles) names.push_back(one.name);
+  return names;
+}
+
+IgnoredPairs SeveralObstacles::ignoredPairs() const
+{
   try {
-    return {ignored, names};
+    return {ignored, names()};
   }
   catch (const InvalidInput& error) {
     throw UsageError("--ignore: " + error.advice());

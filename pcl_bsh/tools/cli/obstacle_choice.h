@@ -34,6 +34,7 @@ struct ObstacleChoice {
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {};
+  bool asked = true; ///< about the input; else --previous tells of it
 
   /// The obstacle where it stands.
   PlacedShape placed(Shape shape) const { return {std::move(shape), pose, clearance, solid, uncertainty}; }
@@ -50,6 +51,7 @@ std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts
 struct SeveralObstacles {
   std::vector<ObstacleChoice> obstacles; ///< that have names, or none
   std::vector<std::string> ignored;      ///< pairs of them, as typed
+  std::vector<std::string> only;         ///< patterns of names that are asked about; empty: all are
   bool between = false;                  ///< whether they are compared with each other
   bool overlap = false;                  ///< and tell how much of one lies within another
 
@@ -60,17 +62,20 @@ struct SeveralObstacles {
   bool areGiven() const { return !texts_.empty(); }
 
   /// Reads the obstacles. @param first one more, which comes before them; empty: none
-  /// @throws as parseObstacles() and ignoredPairs() do
+  /// @throws as parseObstacles() and ignoredPairs() do; UsageError for a pattern that no name matches
   void readObstacles(const std::filesystem::path& first, std::vector<std::string>& warnings);
 
-  /// @param solid whether obstacles are solids that do not say themselves
+  /// @param solid whether obstacles are solids that do not say themselves. @param previous whether an earlier list is
+  ///   given
   /// @throws UsageError for options that exclude or need others
-  void requireConsistent(bool solid) const;
+  void requireConsistent(bool solid, bool previous) const;
 
   /// @throws UsageError where IgnoredPairs refuses them
   IgnoredPairs ignoredPairs() const;
 
 private:
+  std::vector<std::string> names() const;
+
   std::vector<std::string> texts_; ///< as typed
 };
 

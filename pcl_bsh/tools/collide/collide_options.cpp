@@ -71,7 +71,7 @@ void requireConsistent(const CollideOptions& options)
     refuse("--obstacle-out", "are flags at one pose: leave out the path and --clashes, or give --seen");
   if (!options.unit.empty() && !options.distances && options.clashes.empty())
     refuse("--unit", "no report tells it: give --distances or --clashes FILE");
-  options.SeveralObstacles::requireConsistent(options.question.solid);
+  options.SeveralObstacles::requireConsistent(options.question.solid, options.previous.has_value());
   if (!options.obstacles.empty() && options.obstacle_out)
     refuse("--obstacle-out", "is of one obstacle: leave it out, or give OBSTACLE alone");
   if (!options.obstacles.empty() && !options.pairs.empty())

@@ -66,8 +66,7 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   if (report.haveNames()) {
     json["obstacles"] = json["between"] = nlohmann::ordered_json::array();
     for (const io::ComparedObstacle& one : report.obstacles)
-      json["obstacles"].push_back(io::obstacleJson(one.name, {one.question, report.input.file, one.file},
-                                                   one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
+      json["obstacles"].push_back(io::obstacleJson(one, report.input.file));
     for (const io::BetweenObstacles& two : report.between) json["between"].push_back(io::betweenJson(two));
   }
   json["unit"] = report.unit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.unit);

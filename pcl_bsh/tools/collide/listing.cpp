@@ -16,10 +16,11 @@ io::ClashListing listingOf(const CollideOptions& options, const Question& questi
   const auto add = [&](const std::string& name, const std::filesystem::path& file, const Question& asked) {
     obstacles.push_back({name, file.string()});
     obstacles.back().question = asked;
+    return &obstacles.back();
   };
   if (options.obstacles.empty()) add("", options.obstacle, question);
   for (const ObstacleChoice& one : options.obstacles)
-    add(one.name, one.file, questionOf(question, one.placed(Shape())));
+    add(one.name, one.file, questionOf(question, one.placed(Shape())))->asked = one.asked;
   listing.readEarlier(obstacles, warnings);
   return listing;
 }
@@ -29,8 +30,6 @@ std::string listClashes(const CollideOptions& options, const SphereHierarchy& a,
                         CollisionReport& report)
 {
   Step step("Listing clashes");
-  listing.unit = report.unit;
-  listing.coordinate_system = report.coordinate_system;
   listing.between = report.between;
   const io::ClashLists lists = listOf(listing, a, hierarchies, report.obstacles, report.answer, report.warnings);
   options.write(lists, report.warnings);

@@ -22,7 +22,7 @@ PointsView viewOfPlaces(const std::vector<Point3>& places)
 
 } // namespace
 
-SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options, const ObstacleFiles* obstacles)
+SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options, ObstacleFiles* obstacles)
 : site_(site),
   options_(options)
 {
@@ -33,15 +33,18 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options,
   }
   std::vector<io::ComparedObstacle> other; // that is a site
   if (!obstacles) other.push_back({"", options.obstacle.string(), {}, {}, options.question});
-  const std::vector<io::ComparedObstacle>& all = obstacles ? obstacles->all : other;
+  std::vector<io::ComparedObstacle>& all = obstacles ? obstacles->all : other;
+  listing_.input = options.site.string();
+  listing_.unit = options.unit;
+  listing_.coordinate_system = site::coordinateSystemOf(site);
+  listing_.previous = options.previous;
+  if (options.cluster_distance > 0) listing_.cluster_distance = options.cluster_distance;
+  listing_.readEarlier(all, warnings_);
+  listing_.keep(all, options.ignoredPairs(), extentOf(site.bounds), warnings_);
   Spacing spacing;
   spacing.median = site::spacingOf(site);
-  distance_ = options.cluster_distance > 0 ? options.cluster_distance
-                                           : io::clusterDistanceFor(io::greatestClearance(all), spacing);
+  distance_ = listing_.cluster_distance.value_or(io::clusterDistanceFor(io::greatestClearance(all), spacing));
   for (std::size_t i = 0; i < all.size(); ++i) finders_.push_back(std::make_unique<site::ClashFinder>(site, distance_));
-  listing_.input = options.site.string();
-  listing_.previous = options.previous;
-  listing_.readEarlier(all, warnings_);
 }
 
 std::vector<site::ClashFinder*> SiteClashList::finders() const
@@ -85,6 +88,7 @@ void SiteClashList::finish(ObstacleFiles& obstacles, const site::SiteObstaclesAn
     if (!one.asked) obstacles.shapes[i].shape.hierarchy(obstacles.all[i].question.uncertaintyOfObstacle(), 1);
     all.push_back(listed(obstacles, i, one.found));
     Listed& listed = all.back();
+    if (obstacles.all[i].kept) listed.kept = &obstacles.all[i];
     listed.answer = one;
     if (options_.question.seen) listed.unseen = &one.not_seen;
     if (!one.pair) continue;
@@ -128,6 +132,10 @@ void SiteClashList::write(std::deque<Listed>& all, const std::vector<io::Between
 {
   io::ClashLists lists;
   for (Listed& one : all) {
+    if (one.kept) {
+      lists.obstacles.push_back(listing_.keptReport(*one.kept, distance_, extentOf(site_.bounds)));
+      continue;
+    }
     one.question.progress = nullptr;
     one.poses = one.question.poses();
     one.scan = viewOfPlaces(one.clashes.places);
@@ -139,8 +147,8 @@ void SiteClashList::write(std::deque<Listed>& all, const std::vector<io::Between
                                .poses = one.poses,
                                .found = one.found,
                                .survey = {one.poses, extentOf(site_.bounds)},
-                               .unit = options_.unit,
-                               .coordinate_system = site::coordinateSystemOf(site_),
+                               .unit = listing_.unit,
+                               .coordinate_system = listing_.coordinate_system,
                                .surface = one.surface,
                                .unseen = one.unseen,
                                .source_of =
@@ -172,6 +180,7 @@ void SiteClashList::compare(io::ClashLists& lists, const std::deque<Listed>& all
   motion.threads = options_.question.threads;
   for (std::size_t i = 0; i < all.size(); ++i) {
     io::ClashReport& list = lists.obstacles[i];
+    if (list.kept) continue;
     const auto look = [&](FormerPlaces& former) {
       all[i].visit(former, motion);
       for (const site::Tile& tile : site_.tiles)

@@ -23,9 +23,10 @@ namespace pcl_bsh::cli {
 class SiteClashList {
 public:
   /// Reads the earlier list. To be called by all ranks.
-  /// @param obstacles in memory, with their questions; null: the obstacle is a site
+  /// @param obstacles in memory, with their questions; null: the obstacle is a site. They get their answers
+  ///   where they are not asked about
   /// @throws files::FileError for a list that cannot be written or compared with
-  SiteClashList(const site::Site& site, const SiteOptions& options, const ObstacleFiles* obstacles);
+  SiteClashList(const site::Site& site, const SiteOptions& options, ObstacleFiles* obstacles);
 
   bool isWanted() const noexcept { return !finders_.empty(); }
 
@@ -70,6 +71,7 @@ private:
     std::function<io::SourcePoint(std::uint32_t)> model_source_of = nullptr;
     PointsView scan = {};
     std::vector<Eigen::Isometry3d> poses = {};
+    io::ComparedObstacle* kept = nullptr; ///< set where it is not asked about: nothing else is needed
   };
 
   Listed listed(ObstacleFiles& obstacles, std::size_t i, const TrajectoryResult& found) const;

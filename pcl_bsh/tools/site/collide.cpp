@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,6 +65,141 @@ private:
   std::optional<site::ResultSite> out_;
 };
 
+/// The thing that the site is compared with: each kind is asked, told and listed in its own way.
+class Compared {
+public:
+  virtual ~Compared() = default;
+
+  virtual ObstacleFiles* files() { return nullptr; } ///< null where it is a site
+
+  /// Begins the report, and what is written beside it. @return warnings for users, a line each
+  virtual std::vector<std::string> begin(Json& /*report*/) { return {}; }
+
+  virtual site::SiteAnswer ask(site::SiteMeans means, const std::vector<site::ClashFinder*>& finders) = 0;
+
+  /// Writes lists and flags, and adds the answer to the report.
+  virtual void finish(const site::SiteAnswer& found, SiteClashList& clashes, Json& report) = 0;
+
+  virtual void summarise(std::ostream& /*summary*/) const {}
+
+protected:
+  Compared(const site::Site& site, const SiteOptions& options) : site_(site), options_(options) {}
+
+  const site::Site& site_;
+  const SiteOptions& options_; ///< with the question that is asked
+};
+
+/// An obstacle in memory.
+class OneObstacle : public Compared {
+public:
+  OneObstacle(const site::Site& site, const SiteOptions& options) : Compared(site, options), files_(options) {}
+
+  ObstacleFiles* files() override { return &files_; }
+
+  std::vector<std::string> begin(Json& report) override
+  {
+    report["surface"] = io::surfaceJson(files_.surface(), options_.question.solid);
+    return {};
+  }
+
+  site::SiteAnswer ask(site::SiteMeans means, const std::vector<site::ClashFinder*>& finders) override
+  {
+    means.clashes = finders.empty() ? nullptr : finders.front();
+    return site::ask(options_.question, site_, files_.shapes.front().shape, means);
+  }
+
+  void finish(const site::SiteAnswer& found, SiteClashList& clashes, Json& report) override
+  {
+    files_.write(found.obstacle_flags, options_);
+    putAnswer(report, site_, nullptr, files_.only().partName(), options_, found);
+    if (clashes.isWanted()) clashes.finish(files_, found, report);
+  }
+
+  void summarise(std::ostream& summary) const override
+  {
+    if (files_.surface()) summary << io::promiseOf(*files_.surface(), options_.question.solid) << '\n';
+  }
+
+private:
+  ObstacleFiles files_;
+};
+
+/// Several obstacles in memory, with names.
+class NamedObstacles : public Compared {
+public:
+  NamedObstacles(const site::Site& site, const SiteOptions& options) : Compared(site, options), files_(options) {}
+
+  ObstacleFiles* files() override { return &files_; }
+
+  site::SiteAnswer ask(site::SiteMeans means, const std::vector<site::ClashFinder*>& finders) override
+  {
+    found_ = site::ask(options_.question, site_, files_.shapes, means, finders);
+    for (std::size_t i = 0; i < found_.each.size(); ++i)
+      if (files_.all[i].asked) files_.all[i].found = found_.each[i];
+    return found_.all;
+  }
+
+  void finish(const site::SiteAnswer& found, SiteClashList& clashes, Json& report) override
+  {
+    if (options_.between && site::rankHere() == 0)
+      between_ = io::askBetween(options_.question, files_.shapes, files_.all, options_.ignoredPairs());
+    putAnswer(report, site_, nullptr, "point", options_, found);
+    putObstacles(report, site_, files_, found_, between_);
+    if (clashes.isWanted()) clashes.finish(files_, found_, between_, report);
+  }
+
+  void summarise(std::ostream& summary) const override { summary << io::summaryOf(files_.all, between_, "point"); }
+
+private:
+  ObstacleFiles files_;
+  site::SiteObstaclesAnswer found_;
+  std::vector<io::BetweenObstacles> between_;
+};
+
+/// Another site.
+class AnotherSite : public Compared {
+public:
+  AnotherSite(const site::Site& site, const SiteOptions& options)
+  : Compared(site, options),
+    other_(site::readSite(options.obstacle))
+  {
+  }
+
+  std::vector<std::string> begin(Json& report) override
+  {
+    report["points_of_obstacle"] = other_.points;
+    if (options_.obstacle_out.empty()) return {};
+    out_.emplace(site_, other_, options_);
+    return out_->warnings;
+  }
+
+  site::SiteAnswer ask(site::SiteMeans means, const std::vector<site::ClashFinder*>& finders) override
+  {
+    means.clashes = finders.empty() ? nullptr : finders.front();
+    if (out_) means.obstacle_receiver = out_->receiver();
+    return site::ask(options_.question, site_, other_, means);
+  }
+
+  void finish(const site::SiteAnswer& found, SiteClashList& clashes, Json& report) override
+  {
+    if (out_) out_->finish();
+    putAnswer(report, site_, &other_, "point", options_, found);
+    if (clashes.isWanted()) clashes.finish(other_, found, report);
+    putTiles(report, "tiles_of_obstacle", found.obstacle_tiles);
+  }
+
+private:
+  const site::Site other_;
+  std::optional<ObstacleOutput> out_;
+};
+
+std::unique_ptr<Compared> comparedWith(const site::Site& site, const SiteOptions& options)
+{
+  if (options.obstacleIsSite()) return std::make_unique<AnotherSite>(site, options);
+  if (options.obstacles.empty()) return std::make_unique<OneObstacle>(site, options);
+  return std::make_unique<NamedObstacles>(site, options);
+}
+
 /// @param keeps set where what is found stays in --out although the run fails
 int answer(SiteOptions options, bool& keeps)
 {
@@ -80,31 +216,24 @@ int answer(SiteOptions options, bool& keeps)
   const bool reports = !options.report.empty();
   if (tells && reports) files::requireWritable(options.report);
   const site::Site site = site::readSite(options.site);
-  std::optional<ObstacleFiles> memory;
-  if (!options.obstacleIsSite()) {
-    memory.emplace(options);
-    std::vector<std::string> of_files;
+  const std::unique_ptr<Compared> compared = comparedWith(site, options);
+  ObstacleFiles* const memory = compared->files();
+  std::vector<std::string> of_files, of_poses;
+  if (memory)
     for (const io::ComparedObstacle& one : memory->all)
       for (std::string& remark : warningsOf(one.loaded, one.file)) addOnce(std::move(remark), of_files);
-    warn_of(of_files);
-  }
-  std::optional<site::Site> other;
-  if (!memory) other = site::readSite(options.obstacle);
-  std::vector<std::string> of_poses;
+  warn_of(of_files);
   Question& question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &of_poses);
   warn_of(of_poses);
   if (memory) memory->setQuestion(question);
-  SiteClashList clashes(site, options, memory ? &*memory : nullptr);
+  SiteClashList clashes(site, options, memory);
   warn_of(clashes.warnings());
-  SiteOutput output(site, memory ? &*memory : nullptr, clashes.clusterDistance(), options);
+  SiteOutput output(site, memory, clashes.clusterDistance(), options);
   warn_of(output.warnings());
   keeps = output.answers() != nullptr;
-  std::optional<ObstacleOutput> obstacle_out;
-  if (other && !options.obstacle_out.empty()) {
-    obstacle_out.emplace(site, *other, options);
-    warn_of(obstacle_out->warnings);
-  }
+  Json report = beginReport(site, options);
+  warn_of(compared->begin(report));
   std::optional<Step> shown;
   if (tells) {
     shown.emplace("Asking about tiles");
@@ -113,41 +242,13 @@ int answer(SiteOptions options, bool& keeps)
       return true;
     };
   }
-  Json report = beginReport(site, options);
-  const bool several = memory && memory->haveNames();
-  if (!memory)
-    report["points_of_obstacle"] = other->points;
-  else if (!several)
-    report["surface"] = io::surfaceJson(memory->surface(), question.solid);
-  const std::vector<site::ClashFinder*> finders = clashes.finders();
-  const site::SiteMeans means = {options.memory, output.answers(), finders.empty() ? nullptr : finders.front(),
-                                 output.receiver(), obstacle_out ? obstacle_out->receiver() : nullptr};
-  site::SiteObstaclesAnswer of_each;
   const auto ask = [&] {
-    if (!memory) return site::ask(question, site, *other, means);
-    if (!several) return site::ask(question, site, memory->shapes.front().shape, means);
-    of_each = site::ask(question, site, memory->shapes, means, finders);
-    for (std::size_t i = 0; i < of_each.each.size(); ++i) memory->all[i].found = of_each.each[i];
-    return of_each.all;
+    return compared->ask({.memory = options.memory, .answers = output.answers(), .receiver = output.receiver()},
+                         clashes.finders());
   };
   site::SiteAnswer found = cli::named(ask, question, {options.trajectory.empty() ? "--pose" : "--trajectory"});
-  std::vector<io::BetweenObstacles> between;
-  if (options.between && tells) between = io::askBetween(question, memory->shapes, memory->all, options.ignoredPairs());
-  if (obstacle_out) obstacle_out->finish();
-  if (memory && !several) memory->write(found.obstacle_flags, options);
-  putAnswer(report, site, other ? &*other : nullptr, memory && !several ? memory->only().partName() : "point", options,
-            found);
-  if (several) putObstacles(report, site, *memory, of_each, between);
-  if (clashes.isWanted()) {
-    if (several)
-      clashes.finish(*memory, of_each, between, report);
-    else if (memory)
-      clashes.finish(*memory, found, report);
-    else
-      clashes.finish(*other, found, report);
-  }
+  compared->finish(found, clashes, report);
   putTiles(report, "tiles", found.tiles);
-  if (other) putTiles(report, "tiles_of_obstacle", found.obstacle_tiles);
   if (tells) shown->done(counted(found.tiles.read, "tile") + " read");
   std::vector<std::string> told;
   addTexts(found.warnings, told);
@@ -162,10 +263,8 @@ int answer(SiteOptions options, bool& keeps)
   report["warnings"] = warnings;
   if (!tells) return 0;
   std::ostream& summary = options.files.summary();
-  if (several) summary << io::summaryOf(memory->all, between, "point");
+  compared->summarise(summary);
   if (clashes.isWanted()) summary << clashes.counts() << '\n';
-  if (memory && !several && memory->surface() != nullptr)
-    summary << report["surface"]["promise"].get<std::string>() << '\n';
   if (!options.obstacle_out.empty())
     summary << "wrote which points of the obstacle collide to " << options.obstacle_out.string() << '\n';
   if (!options.out.empty()) summary << "wrote what was found of each point to " << options.out.string() << '\n';

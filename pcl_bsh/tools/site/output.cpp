@@ -55,6 +55,10 @@ nlohmann::json obstacleText(const ObstacleFiles* given, const SiteOptions& optio
   if (given != nullptr) {
     for (std::size_t i = 0; i < given->all.size(); ++i) {
       const io::ComparedObstacle& one = given->all[i];
+      if (!one.asked) {
+        text.push_back(one.name);
+        continue;
+      }
       text.push_back(checksumOf(one.loaded.points().data));
       for (const pcl::PCLPointField& field : one.loaded.points().fields)
         text.push_back({field.name, field.offset, field.datatype, field.count});
@@ -112,14 +116,16 @@ ObstacleFiles::ObstacleFiles(const SiteOptions& options)
 {
   double seconds = 0.0;
   const std::vector<ObstacleChoice> choices = options.choices();
-  std::vector<LoadedObstacle> loaded = loadObstacles(
-      choices, options.question, {options.reading, options.reading.input_unit, site::rankHere() == 0}, seconds);
+  std::vector<LoadedObstacle> loaded =
+      loadObstacles(choices, options.question,
+                    {options.reading, options.reading.input_unit, site::rankHere() == 0, options.between}, seconds);
   const IgnoredPairs ignored = options.ignoredPairs();
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const std::string file = choices[i].file.string();
     all.push_back({choices[i].name, file, std::move(loaded[i].obstacle), std::move(loaded[i].facts)});
+    all.back().asked = choices[i].asked;
     shapes.push_back(choices[i].placed(all.back().loaded.shape(file)));
-    shapes.back().ignores_input = haveNames() && ignored.holds(kInputName, choices[i].name);
+    shapes.back().ignores_input = haveNames() && (!choices[i].asked || ignored.holds(kInputName, choices[i].name));
   }
   setQuestion(options.question);
   if (!options.obstacle_out.empty()) requireWritableFlags(options.obstacle_out, only());

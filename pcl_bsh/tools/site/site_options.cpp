@@ -146,7 +146,7 @@ struct CollideTexts {
         throw UsageError(std::string(option) +
                          ": is not told of several obstacles of a site: leave it out, or give OBSTACLE alone");
     if (options.areGiven()) options.readObstacles(options.obstacle, options.warnings);
-    options.requireConsistent(options.question.solid);
+    options.requireConsistent(options.question.solid, options.previous.has_value());
     for (const ObstacleChoice& one : options.obstacles)
       if (std::filesystem::is_directory(one.file))
         throw UsageError("--obstacle: " + one.file.string() + ": is a folder: ask about a site alone, as OBSTACLE");

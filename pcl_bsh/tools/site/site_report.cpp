@@ -102,13 +102,10 @@ void putObstacles(Json& report, const site::Site& site, const ObstacleFiles& obs
   if (found.closest != kNothing) report["closest_obstacle"] = obstacles.all[found.closest].name;
   report["obstacles"] = report["between"] = Json::array();
   for (std::size_t i = 0; i < found.each.size(); ++i) {
-    const io::ComparedObstacle& one = obstacles.all[i];
     std::optional<io::SourcePoint> nearest;
     if (const auto& pair = found.each[i].pair)
       nearest = io::SourcePoint{site.sources.at(pair->a.source).file, pair->a.record};
-    report["obstacles"].push_back(io::obstacleJson(one.name, {one.question, site.folder.string(), one.file},
-                                                   one.loaded.isSurface() ? &one.loaded : nullptr, found.each[i],
-                                                   nearest));
+    report["obstacles"].push_back(io::obstacleJson(obstacles.all[i], site.folder.string(), nearest));
   }
   for (const io::BetweenObstacles& two : between) report["between"].push_back(io::betweenJson(two));
 }

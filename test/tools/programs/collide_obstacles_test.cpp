@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <set>
+
 namespace pcl_bsh {
 namespace {
 
@@ -164,6 +166,110 @@ TEST_F(CollideObstacles, AreComparedWithAnEarlierListByName)
   EXPECT_EQ(json("one.json")["clashes"][0]["status"], "persisting");
   EXPECT_THAT(refused("--obstacle \"press=crate.off;solid=true\" --clashes one.json --previous list.json"),
               HasSubstr("lists clashes with solid not given, now it is true"));
+}
+
+/// Two weeks after which a list has clashes of each kind, and then the crane is moved.
+class CollideOneAlone : public CollideObstacles {
+protected:
+  CollideOneAlone()
+  {
+    folder.write("scan.xyz", "0.5 0.5 0\n5.5 0.5 0.3\n9 9 9\n0.5 0.55 0\n-4 -4 0\n10.5 0.5 0.3\n");
+    EXPECT_EQ(collide(two + "--obstacle \"bar=copy.off;pose=10,0,0.25,0,0,0\" --clashes 1.json").exit_code, 0);
+    folder.write("scan.xyz", "0.5 0.5 0\n5.5 0.5 -3\n9 9 9\n0.5 0.5 1\n-4 -4 0\n10.5 0.5 0.3\n");
+    EXPECT_EQ(collide(three("20,0,0,0,0,0") + "--clashes 2.json --clashes 2.bcf --previous 1.json").exit_code, 0);
+  }
+
+  std::string three(const std::string& pose_of_bar) const
+  {
+    return two +
+           "--between --obstacle \"crane=copy.off;pose=9,9,8.5,0,0,0\" --obstacle \"bar=copy.off;pose=" + pose_of_bar +
+           "\" ";
+  }
+
+  std::string refusedAlone(const std::string& arguments) const
+  {
+    std::filesystem::remove(folder / "3.json");
+    const std::string said = refused("--clashes 3.json --previous 2.json " + arguments);
+    EXPECT_FALSE(std::filesystem::exists(folder / "3.json")) << arguments;
+    return said;
+  }
+
+  const std::string moved = two + "--obstacle \"crane=copy.off;pose=8.6,8.5,8.95,0,0,0\" "
+                                  "--obstacle \"bar=copy.off;pose=20,0,0,0,0,0\" ";
+};
+
+TEST_F(CollideOneAlone, HasTheListOfAskingAboutAll)
+{
+  std::set<std::string> states;
+  for (const SeveralJson& clash : json("2.json")["clashes"]) states.insert(clash["status"]);
+  ASSERT_THAT(states, ElementsAre("new", "not_visited", "persisting", "resolved"));
+  for (const std::string previous : {"2.json", "2.bcf"}) {
+    const std::string lists = "--previous " + previous + " --clashes ";
+    for (const char* const list : {".json", ".csv", ".bcf", ".html"}) {
+      ASSERT_EQ(collide(moved + "--between " + lists + "all" + list).exit_code, 0);
+      const Outcome alone = collide(moved + "--between --only \"c*e\" " + lists + "alone" + list + " --report r.json");
+      ASSERT_EQ(alone.exit_code, 0) << alone.err;
+      EXPECT_THAT(alone.err,
+                  HasSubstr(previous + ": tells of 3 obstacles: the others alone are asked about and counted"));
+      if (list != std::string(".html") && list != std::string(".bcf"))
+        EXPECT_EQ(io::contentOf(folder / ("alone" + std::string(list))),
+                  io::contentOf(folder / ("all" + std::string(list))));
+    }
+  }
+  const std::string page = io::contentOf(folder / "alone.html");
+  EXPECT_THAT(page, HasSubstr("compared with 2.bcf, which 3 obstacles are taken over from"));
+  EXPECT_THAT(page, Not(HasSubstr("href=\"#press/")));
+  EXPECT_THAT(page, HasSubstr("href=\"#crane/"));
+  EXPECT_THAT(io::contentOf(folder / "all.html"), HasSubstr("href=\"#press/"));
+  EXPECT_EQ(json("r.json")["obstacles"][0]["colliding"], 2);
+  EXPECT_EQ(json("r.json")["colliding"], 1) << "of the crane";
+  ASSERT_EQ(collide(moved + "--clashes next.json --previous alone.bcf").exit_code, 0);
+  ASSERT_EQ(collide(moved + "--clashes of_all.json --previous all.bcf").exit_code, 0);
+  EXPECT_EQ(json("next.json")["clashes"], json("of_all.json")["clashes"]);
+}
+
+TEST_F(CollideOneAlone, ReadsNoOtherObstacle)
+{
+  std::filesystem::remove(folder / "crate.off"); // of the press
+  const std::string arguments = moved + "--only crane --previous 2.json --clashes 3.json ";
+  EXPECT_EQ(collide(arguments).exit_code, 0);
+  EXPECT_THAT(refused(arguments + "--between"), HasSubstr("crate.off: no such file"));
+}
+
+TEST_F(CollideOneAlone, RefusesAnotherQuestionAboutTheOthers)
+{
+  EXPECT_THAT(refused(moved + "--only crane --clashes 3.json"),
+              HasSubstr("--only: nothing tells of the other obstacles: give --previous FILE"));
+  EXPECT_THAT(run("pcl_bsh_collide",
+                  "scan.xyz crate.off out.pcd --clearance 0.1 --only a --clashes 3.json --previous 2.json",
+                  folder.path())
+                  .err,
+              HasSubstr("--only: there is one obstacle"));
+  EXPECT_THAT(refusedAlone(moved + "--only crane --only lathe"),
+              HasSubstr("--only: 'lathe' matches no obstacle: give one of their names"));
+  const std::string only = "--only crane ";
+  EXPECT_THAT(refusedAlone(only + moved + "--obstacle lathe=crate.off"),
+              HasSubstr("2.json: does not tell of 'lathe': ask about it, too"));
+  const auto with_press = [&](const std::string& press) {
+    return refusedAlone(only + "--obstacle \"press=" + press + "\" --obstacle crane=copy.off");
+  };
+  EXPECT_THAT(with_press("crate.off;clearance=0.2"),
+              HasSubstr("2.json: tells of 'press' with clearance 0.1, now it is 0.2: ask about it, too"));
+  EXPECT_THAT(with_press("crate.off;solid=true"), HasSubstr("with solid not given, now it is true"));
+  EXPECT_THAT(with_press("crate.off;pose=0,0,0.5,0,0,0"), HasSubstr("tells of 'press' at other poses"));
+  EXPECT_THAT(with_press("copy.off"), HasSubstr("with the file crate.off, now it is copy.off"));
+  EXPECT_THAT(refusedAlone(only + moved + "--ignore input:press"),
+              HasSubstr("tells of 'press' as compared with the input: ask about it, too"));
+  EXPECT_THAT(refusedAlone(only + moved + "--cluster-distance 9"),
+              HasSubstr("2.json: has the cluster distance 32: give the same"));
+  EXPECT_THAT(refusedAlone(only + moved + "--unit m"), HasSubstr("with unit not given, now it is m: ask about all"));
+  folder.write("scan.xyz", "0.5 0.5 0\n5.5 0.5 -3\n9 9 9\n0.5 0.5 1\n-4 -4 0\n11.5 0.5 0.3\n");
+  EXPECT_THAT(refusedAlone(only + moved), HasSubstr("2.json: is of a scan of another extent: ask about all obstacles"));
+  folder.write("other.xyz", io::contentOf(scan));
+  EXPECT_THAT(run("pcl_bsh_collide",
+                  "other.xyz out.pcd --clearance 0.1 --clashes 3.json --previous 2.json " + only + moved, folder.path())
+                  .err,
+              HasSubstr("with the input scan.xyz, now it is other.xyz"));
 }
 
 TEST_F(CollideObstacles, HaveUnitsOfTheirOwn)
