@@ -201,6 +201,24 @@ ObstacleGap Gaps::toObstacles(const Ball& ball, const Poses& poses, double limit
   return best;
 }
 
+ObstacleGap Gaps::anyOfMesh(const Ball& ball, const Poses& poses, double limit) const
+{
+  const Piece& piece = parts.pieces[ball.piece];
+  const Placed mesh(*piece.surface, (poses[ball.body] * piece.pose).isometry());
+  const double off = doubt(ball, 0);
+  for (std::size_t i = 0; i < obstacles().size(); ++i) {
+    const SphereHierarchy& of = obstacles_[i].hierarchy();
+    const DistanceResult found =
+        pairWithin({of, obstacles_[i].pose.isometry()}, mesh, limit + ball.padding + off, true);
+    if (!found.pair) continue;
+    const auto [a, b] = *found.pair;
+    return {{less(found.interval, ball.padding, off + uncertaintyOf(of, a) + uncertaintyOf(*piece.surface, b)), a, a},
+            i,
+            i};
+  }
+  return {};
+}
+
 double Gaps::hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double least,
                         double enough) const
 {

@@ -49,6 +49,9 @@ public:
   /// @param any of a patch it need not be the least: within the limit is enough
   ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit, bool any = false) const;
 
+  /// The gap of a record that is measured within the limit of the mesh that a ball holds; or no record.
+  ObstacleGap anyOfMesh(const Ball& ball, const Poses& poses, double limit) const;
+
   /// The gap between the pieces of two balls, with their paddings. Beyond the limit the upper bound may be infinite.
   /// @param common the body that neither moves against (LinkPair)
   /// @param any of meshes it need not be the least: within the limit is enough

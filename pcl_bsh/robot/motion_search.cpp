@@ -142,8 +142,16 @@ MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
   const bool parts = ball.count > 0;
   if (moved > (parts ? kLong * ball.radius : gaps_.options.tolerance) && gaps_.areBeyond(center, still + error_))
     return Outcome::open;
-  if (parts) return Outcome::parted;
   ObstacleGap gap;
+  if (parts && ball.piece != kNoPart && h > 0.0) {
+    // One that collides now settles the motion, before its patches' times are halved.
+    gap = gaps_.anyOfMesh(ball, s_.poses, clearance);
+    if (gap.record != kNothing && gap.upper + error_ <= clearance) {
+      meeting_ = gaps_.meetingOf(ball, gap, true);
+      return Outcome::colliding;
+    }
+  }
+  if (parts) return Outcome::parted;
   const Outcome outcome =
       outcomeBy([&](bool any) -> Interval { return gap = gaps_.toObstacles(ball, s_.poses, clearance + needed, any); },
                 clearance, moved);

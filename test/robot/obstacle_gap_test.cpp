@@ -64,6 +64,24 @@ TEST(Shapes, DistancesAreThoseToTheirSupports)
     }
 }
 
+/// Bounds end as soon as they tell: here at the first direction, which is the way between the middles.
+TEST(Shapes, AreApartByOneDirection)
+{
+  const auto cube = [](const Eigen::Vector3d& middle, int& asked) {
+    return [&middle, &asked](const Eigen::Vector3d& along) {
+      ++asked;
+      return Eigen::Vector3d(middle + support(Box{{1, 1, 1}}, along));
+    };
+  };
+  const Eigen::Vector3d here(0, 0, 0), there(0.1, 4, 0.2);
+  int asked = 0;
+  const Interval bounds = convexDistance(
+      cube(here, asked), cube(there, asked), [](const Interval& of) { return of.lower > 2.5; }, here - there);
+  EXPECT_GT(bounds.lower, 2.5);
+  EXPECT_LE(bounds.lower, 3.0);
+  EXPECT_EQ(asked, 2);
+}
+
 TEST(Shapes, AreDeepInside)
 {
   EXPECT_DOUBLE_EQ(signedDistance(Solid(Box{{2, 4, 6}}), {0.5, 0, 0}), -0.5);
@@ -154,7 +172,13 @@ TEST(ObstacleGap, OfPatchesIsThatOfTheirTriangles)
       for (const std::uint32_t& record : records)
         least = std::min(least, exact.distance(view.point(p), patch.triangle(&record)));
     const double limit = random.uniform(0, 0.4);
-    const Gap gap = obstacle.gap(patch, pose, limit);
+    const Gap gap = obstacle.gap(patch, pose, limit), any = obstacle.gap(patch, pose, limit, true);
+    EXPECT_EQ(any.record == kNothing, least > limit);
+    EXPECT_NEAR(obstacle.gap(patch, pose, 1.0001 * least, true).upper, least, 1.0001e-4 * least); // no bound is above
+    if (any.record != kNothing) {
+      EXPECT_GE(any.upper, least - 1e-14);
+      EXPECT_LE(any.upper, limit + 1e-14);
+    }
     EXPECT_LE(gap.lower, least + 1e-14);
     EXPECT_EQ(gap.record == kNothing, least > limit);
     if (least > limit) continue;

@@ -5,6 +5,7 @@
 #include "support/refusal.h"
 #include <pcl_bsh/base/cancelled.h>
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
 
 #include <gmock/gmock.h>
@@ -333,6 +334,125 @@ TEST(RobotWorld, HoldsMeshesAgainstAll)
   EXPECT_EQ(walled.checkMotion({0.0, 0.3}, {1.5, 0.3}).verdict, Verdict::colliding);
   robot.links[1].shapes = {{Mesh{"unread.stl"}}};
   EXPECT_THAT(test::refusalOf([&] { RobotWorld(robot, {}); }), testing::HasSubstr("unread.stl, which is not read"));
+}
+
+/// Two links with meshes of many patches, on a base that has one, too, and a cloud.
+struct MeshScene {
+  explicit MeshScene(std::uint64_t seed) : random(seed)
+  {
+    Joint turn{"turn", Joint::Kind::continuous, 0}, bend{"bend", Joint::Kind::continuous, 1};
+    turn.axis = Eigen::Vector3d::UnitZ();
+    bend.axis = Eigen::Vector3d::UnitY();
+    bend.origin.translation() = Eigen::Vector3d(0.5, 0, 0);
+    robot = {"meshes", {{"base", {madeMesh()}, {}}, {"upper", {madeMesh()}, turn}, {"lower", {madeMesh()}, bend}}};
+    for (std::size_t i = 0; i < 3 * kPoints; ++i) xyz.push_back(static_cast<float>(random.uniform(-1.2, 1.2)));
+    for (std::size_t i = 0; i < kPoints; ++i) radii.push_back(static_cast<float>(random.uniform(0.02, 0.05)));
+    view = viewOf(xyz.data(), kPoints);
+    view.radii = radii.data();
+    cloud = std::make_unique<SphereHierarchy>(view);
+  }
+
+  Shape madeMesh()
+  {
+    corners.push_back(std::make_unique<std::vector<float>>());
+    numbers.push_back(std::make_unique<std::vector<std::uint32_t>>());
+    for (std::uint32_t i = 0; i < kTriangles; ++i) {
+      const Eigen::Vector3d middle = test::madeVector(random, 0.2);
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3d corner = middle + test::madeVector(random, 0.05);
+        for (const double x : {corner.x(), corner.y(), corner.z()}) corners.back()->push_back(static_cast<float>(x));
+        numbers.back()->push_back(3 * i + k);
+      }
+    }
+    const TrianglesView triangles{viewOf(corners.back()->data(), 3 * kTriangles), numbers.back()->data(), kTriangles};
+    return {Mesh{"made.stl", {1, 1, 1}, std::make_shared<SphereHierarchy>(viewOf(triangles))}};
+  }
+
+  static const PointsView& surfaceOf(const Robot& robot, std::size_t link)
+  {
+    return std::get<Mesh>(robot.links[link].shapes[0].form).surface->view();
+  }
+
+  /// All pairs.
+  double toPoints(const RobotState& state) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    const std::vector<Eigen::Isometry3d> poses = Kinematics(robot).linkPoses(state);
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      const TriangleDistance distance(Eigen::Isometry3d::Identity(), poses[link]);
+      for (std::uint32_t t = 0; t < kTriangles; ++t)
+        for (std::uint32_t p = 0; p < kPoints; ++p) {
+          const Triangle3 triangle = surfaceOf(robot, link).triangles->triangle(t);
+          least = std::min(least, distance.enclose(view.point(p), triangle).high - view.radius(p));
+        }
+    }
+    return least;
+  }
+
+  /// The base and the lower link.
+  double toItself(const RobotState& state) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    const std::vector<Eigen::Isometry3d> poses = Kinematics(robot).linkPoses(state);
+    const TriangleDistance distance(poses[0], poses[2]);
+    for (std::uint32_t i = 0; i < kTriangles; ++i)
+      for (std::uint32_t k = 0; k < kTriangles; ++k)
+        least = std::min(
+            least,
+            distance.enclose(surfaceOf(robot, 0).triangles->triangle(i), surfaceOf(robot, 2).triangles->triangle(k))
+                .high);
+    return least;
+  }
+
+  static constexpr std::uint32_t kTriangles = 12;
+  static constexpr std::size_t kPoints = 60;
+
+  test::Random random;
+  std::vector<std::unique_ptr<std::vector<float>>> corners;
+  std::vector<std::unique_ptr<std::vector<std::uint32_t>>> numbers;
+  Robot robot;
+  std::vector<float> xyz, radii;
+  PointsView view;
+  std::unique_ptr<SphereHierarchy> cloud;
+};
+
+TEST(RobotWorld, AnswersForMeshesAsAllTheirTrianglesDo)
+{
+  std::array<int, 3> of_states = {}, of_motions = {};
+  for (std::uint64_t seed = 101; seed < 109; ++seed) {
+    MeshScene scene(seed);
+    WorldOptions options;
+    options.clearance = seed % 2 == 0 ? 0.0 : 0.01;
+    options.self_clearance = 0.02;
+    options.with_self = seed % 4 < 2;
+    const RobotWorld world(scene.robot, {scene.cloud.get()}, options);
+    const auto over = [&](const RobotState& state) { // by so much it is free
+      const double self = options.with_self ? scene.toItself(state) : std::numeric_limits<double>::infinity();
+      return std::min(scene.toPoints(state) - options.clearance, self - options.self_clearance);
+    };
+    for (int i = 0; i < 40; ++i) {
+      const RobotState from = {scene.random.uniform(-3, 3), scene.random.uniform(-3, 3)};
+      const RobotState to = {from[0] + scene.random.uniform(-0.2, 0.2), from[1] + scene.random.uniform(-0.2, 0.2)};
+      const StateCheck state = world.checkState(from);
+      ++of_states[static_cast<std::size_t>(state.verdict)];
+      EXPECT_EQ(state.verdict, over(from) > 0.0 ? Verdict::free : Verdict::colliding) << seed << " " << i;
+      const MotionCheck motion = world.checkMotion(from, to);
+      ++of_motions[static_cast<std::size_t>(motion.verdict)];
+      const auto at = [&](double t) {
+        return RobotState{from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])};
+      };
+      for (int sample = 0; sample <= 4 && motion.verdict == Verdict::free; ++sample)
+        ASSERT_GT(over(at(sample / 4.0)), 0.0) << seed << " " << i;
+      if (motion.verdict == Verdict::colliding) {
+        EXPECT_LE(over(at(motion.fraction)), 1e-12) << seed << " " << i;
+      }
+    }
+  }
+  EXPECT_GT(of_states[0], 10);
+  EXPECT_GT(of_states[1], 10);
+  EXPECT_GT(of_motions[0], 10);
+  EXPECT_GT(of_motions[1], 10);
+  EXPECT_LT(of_motions[2], 3);
 }
 
 auto tied(const std::optional<Meeting>& meeting)
