@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -73,25 +74,32 @@ void SweptRegion::mark(const Eigen::Vector3d& center, double radius)
     }
 }
 
+template <class T>
+bool SweptRegion::isNear(const unsigned char* point, const std::array<std::size_t, 3>& offset) const
+{
+  std::array<T, 3> p;
+  std::size_t cube = 0, cubes = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::memcpy(&p[k], point + offset[k], sizeof(T));
+    const float at = (static_cast<float>(p[k]) - low_[static_cast<Eigen::Index>(k)]) * cubes_per_m_;
+    if (!(at >= 0.0f && at < static_cast<float>(count_[k]))) return false; // no number is not
+    cube += cubes * static_cast<std::size_t>(static_cast<int>(at));
+    cubes *= count_[k];
+  }
+  return near_[cube] != 0 && p != std::array<T, 3>{};
+}
+
 void SweptRegion::recordsInside(const PointsView& cloud, std::vector<std::int32_t>& records) const
 {
-  records.resize(cloud.size());
-  std::size_t kept = 0;
-  const Eigen::Array3f count(static_cast<float>(count_[0]), static_cast<float>(count_[1]),
-                             static_cast<float>(count_[2]));
+  records.clear();
+  const bool are_floats = cloud.scalar == Scalar::float32;
+  const auto* const points = static_cast<const unsigned char*>(cloud.data);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::uint32_t record = cloud.record(i);
-    const Point3 p = cloud.point(record);
-    const Eigen::Array3f at =
-        (Eigen::Array3f(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])) - low_) *
-        cubes_per_m_;
-    const bool inside = (at >= 0.0f).all() && (at < count).all(); // no number is not
-    if (!inside || p == Point3{0.0, 0.0, 0.0}) continue;
-    const auto x = static_cast<std::size_t>(at.x()), y = static_cast<std::size_t>(at.y()),
-               z = static_cast<std::size_t>(at.z());
-    if (near_[(z * count_[1] + y) * count_[0] + x] != 0) records[kept++] = static_cast<std::int32_t>(record);
+    const unsigned char* const point = points + cloud.stride * record;
+    if (are_floats ? isNear<float>(point, cloud.offset) : isNear<double>(point, cloud.offset))
+      records.push_back(static_cast<std::int32_t>(record));
   }
-  records.resize(kept);
 }
 
 } // namespace pcl_bsh::robots

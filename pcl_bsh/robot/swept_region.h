@@ -34,6 +34,9 @@ public:
 
 private:
   void mark(const Eigen::Vector3d& center, double radius);
+  /// @tparam T of the coordinates. @param offset of these in the point
+  template <class T>
+  bool isNear(const unsigned char* point, const std::array<std::size_t, 3>& offset) const;
 
   Eigen::Array3f low_ = Eigen::Array3f::Zero(); ///< corner, m
   float cubes_per_m_ = 0.0f;

@@ -5,7 +5,8 @@
 #include <pcl_bsh/robot/swept_region.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cstring>
+#include <optional>
 
 namespace pcl_bsh::self_filter {
 
@@ -38,6 +39,33 @@ double marginOf(const PointsView& frame, double padding, double clearance)
 
 } // namespace
 
+PointsView NearPoints::take(const PointsView& frame, const std::vector<std::int32_t>& records)
+{
+  const std::size_t size = frame.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
+  coordinates_.resize(3 * size * records.size());
+  radii_.clear();
+  uncertainties_.clear();
+  unsigned char* to = coordinates_.data();
+  for (const std::int32_t number : records) {
+    const auto record = static_cast<std::size_t>(number);
+    for (const std::size_t offset : frame.offset) {
+      std::memcpy(to, static_cast<const unsigned char*>(frame.data) + frame.stride * record + offset, size);
+      to += size;
+    }
+    if (frame.radii) radii_.push_back(frame.radii[record]);
+    if (frame.uncertainties) uncertainties_.push_back(frame.uncertainties[record]);
+  }
+  PointsView view = frame;
+  view.data = coordinates_.data();
+  view.count = records.size();
+  view.stride = 3 * size;
+  view.offset = {0, size, 2 * size};
+  view.indices = nullptr;
+  if (frame.radii) view.radii = radii_.data();
+  if (frame.uncertainties) view.uncertainties = uncertainties_.data();
+  return view;
+}
+
 SeparationMonitor::SeparationMonitor(const Robot& robot, const Settings& filter, const robots::WorldOptions& options)
 : filter_(robot, filter),
   world_(withMeshes(robot), {}, options)
@@ -53,13 +81,12 @@ SeparationCheck SeparationMonitor::check(const PointsView& frame, const Eigen::I
 
   SeparationCheck check;
   check.near = records_.size();
-  PointsView points = frame;
-  points.restrictTo(records_.data(), records_.size());
+  PointsView points = near_.take(frame, records_);
   const Eigen::Isometry3d T_camera_root = rigid.inverse() * world_.options().base;
   const std::vector<Verdict>& flags = filter_.flags(points, T_camera_root, valuesOf(world_, now));
   others_.clear();
-  std::copy_if(records_.begin(), records_.end(), std::back_inserter(others_),
-               [&](std::int32_t record) { return flags[static_cast<std::size_t>(record)] == Verdict::free; });
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i] == Verdict::free) others_.push_back(static_cast<std::int32_t>(i));
   check.self = records_.size() - others_.size();
 
   points.restrictTo(others_.data(), others_.size());
@@ -67,6 +94,8 @@ SeparationCheck SeparationMonitor::check(const PointsView& frame, const Eigen::I
   world_.setObstacles({obstacle.get()}, {rigid});
   obstacle_ = std::move(obstacle);
   check.motion = world_.checkMotion(now, next, true);
+  if (std::optional<robots::Meeting>& meeting = check.motion.meeting; meeting && !meeting->other_link)
+    meeting->record = static_cast<std::uint32_t>(records_[meeting->record]);
   return check;
 }
 

@@ -28,6 +28,17 @@ struct SeparationCheck {
   std::size_t near = 0, self = 0; ///< points that the motion may come near, and those of them that are the robot
 };
 
+/// The few points of a frame that matter, one after another: an answer has an entry for each point of its view.
+class NearPoints {
+public:
+  /// A view of these records, valid until the next call.
+  PointsView take(const PointsView& frame, const std::vector<std::int32_t>& records);
+
+private:
+  std::vector<unsigned char> coordinates_;
+  std::vector<float> radii_, uncertainties_;
+};
+
 /// Keeps the robot's hierarchies, and builds those of a frame from points near the motion alone.
 class SeparationMonitor {
 public:
@@ -48,7 +59,9 @@ public:
 private:
   SelfFilter filter_;
   robots::RobotWorld world_;
-  std::vector<std::int32_t> records_, others_; ///< near the motion; without the robot
+  std::vector<std::int32_t> records_; ///< near the motion
+  NearPoints near_;                   ///< these
+  std::vector<std::int32_t> others_;  ///< of these, all but the robot
   std::unique_ptr<const SphereHierarchy> obstacle_;
 };
 
