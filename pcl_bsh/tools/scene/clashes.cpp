@@ -188,8 +188,7 @@ nlohmann::ordered_json SceneClashList::json() const
                                  {"obstacles", nlohmann::ordered_json::array()},
                                  {"between", nlohmann::ordered_json::array()}};
   for (const io::ComparedObstacle& one : obstacles_)
-    json["obstacles"].push_back(io::obstacleJson(one.name, {one.question, listing_.input, one.file},
-                                                 one.loaded.isSurface() ? &one.loaded : nullptr, one.found));
+    json["obstacles"].push_back(io::obstacleJson(one, listing_.input));
   for (const io::BetweenObstacles& two : listing_.between) json["between"].push_back(io::betweenJson(two));
   return json;
 }
