@@ -25,6 +25,8 @@ namespace {
 /// All of them, until there are too many.
 class AllPairs {
 public:
+  static constexpr bool kHasWays = false;
+
   AllPairs(const Placed& a, const Placed& b, const ContactsRequest& request, PairsWithin& result)
   : pairs(a, b, request.clearance),
     clearance_(request.clearance),
@@ -116,6 +118,8 @@ class NearestPairs {
   }
 
 public:
+  static constexpr bool kHasWays = false;
+
   NearestPairs(const Placed& a, const Placed& b, const ContactsRequest& request)
   : pairs(a, b, request.clearance),
     clearance_(request.clearance),

@@ -9,9 +9,11 @@
 #endif
 
 #include <pcl_bsh/query/progress.h>
+#include <pcl_bsh/simd/way_lanes-inl.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -25,7 +27,8 @@ enum class Added { kept, dropped, stop };
 /// Walks to every pair of points that may be within a reach and hands it to a receiver: `pairs`, which decides them;
 /// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
 /// `Added add(PointPair, bool surely, Work&)`, of which it may be known that they collide; `bool passesOver(PairWalk,
-/// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
+/// LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared. Where a's points
+/// have ways (`kHasWays`), `enter(PairWalk, LanePair)` comes first: from then on the reach is that of these two lanes.
 template <class Receiver>
 class ReachWalk : public PairVisitor {
 public:
@@ -55,6 +58,7 @@ public:
 
   Next visit(const LanePair& pair)
   {
+    if constexpr (Receiver::kHasWays) receiver_.enter(walk_, pair);
     return pair.key > receiver_.reach() || receiver_.passesOver(walk_, pair) ? Next::prune : Next::go_on;
   }
 
@@ -85,6 +89,16 @@ public:
       eachBallPairNear(leaves.frame, leaves.points, leaves.near, a, b, receiver_.reach(),
                        receiver_.pairs.surelyOfBalls(),
                        [&](std::uint32_t i, std::uint32_t j, float, bool surely) { return found(i, j, surely); });
+    }
+    else if constexpr (Receiver::kHasWays) {
+      if (!receiver_.goesOn(walk_.work)) return Next::stop;
+      const HalfWay way = receiver_.way(walk_.b, leaves.frame);
+      const float miss = receiver_.miss(leaves.frame);
+      for (std::uint32_t j = 0; j < b.count && going; ++j) {
+        std::uint32_t passing = leaves.near & pointsPassing(leaves.points, way, b.x()[j], b.y()[j], b.z()[j], miss);
+        for (; passing != 0 && going; passing &= passing - 1)
+          found(static_cast<std::uint32_t>(std::countr_zero(passing)), j, false);
+      }
     }
     else {
       const float hit = leaves.frame.band(receiver_.pairs.reach.length()).hit;

@@ -5,28 +5,23 @@
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>
 #include <pcl_bsh/scene/responses/mover.h>
+#include <pcl_bsh/scene/responses/straight_ways.h>
 #include <pcl_bsh/scene/swept/sweep.h>
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace pcl_bsh {
 namespace {
 
-constexpr int kMostContacts = 256;         // of one translation
-constexpr int kMostBounces = 32;           // of these, before points are collected anew
-constexpr std::size_t kFewPairs = 1 << 11; // of points that can meet on a turn: it is followed at once
-constexpr std::size_t kMostNear = 1 << 13; // of points about a straight way; few of them are beside it
-constexpr double kShortWay = 4.0;          // tolerances: on a shorter way, more points are followed, too
-constexpr double kSlack = 0.125;           // of a way: so far beside it, a slide may bend
-
-/// The least distance from the origin on a way from a place.
-double leastOn(const Eigen::Vector3d& from, const Eigen::Vector3d& way)
-{
-  const double square = way.squaredNorm();
-  const double s = square > 0.0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
-  return (from + s * way).norm();
-}
+constexpr int kMostContacts = 256;                // of one translation
+constexpr int kMostBounces = 32;                  // of these, before points are collected anew
+constexpr std::size_t kFewPairs = 1 << 11;        // of points that may meet on a way: it is followed at once
+constexpr std::uint64_t kFewLeafPairs = 1 << 8;   // compared for a way of which nothing is known
+constexpr std::uint64_t kMostLeafPairs = 1 << 13; // and for another
+constexpr double kShortWay = 4.0;                 // tolerances: on a shorter way, more points are followed, too
+constexpr double kSlack = 0.125;                  // of a way: so far beside it, a slide may bend
 
 } // namespace
 
@@ -52,14 +47,16 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
   return whole;
 }
 
-/// How many pairs may be near a way. @param few on a way that is not short
-std::size_t Mover::mostNear(double way, std::size_t few) const
+/// @param length of the ways @param first whether nothing is known of them: what lies on something is mostly held at
+/// once, and a short part of the way shows that sooner
+Mover::Passage Mover::passageOn(const StraightWays& ways, double length, bool first) const
 {
-  return way > kShortWay * tolerance_ ? few : kMostPairs;
+  if (length <= kShortWay * tolerance_) return {ways, kMostPairs, std::numeric_limits<std::uint64_t>::max()};
+  return {ways, kFewPairs, first ? kFewLeafPairs : kMostLeafPairs};
 }
 
-/// Along one motion from s = begin to end, in halves where too many points can meet. @param done s of the last pose
-/// taken
+/// Along one motion from s = begin to end, in halves where too many points can meet; its first part is short then.
+/// @param done s of the last pose taken
 bool Mover::follow(const ObjectMotion& motion, double begin, double end, double& done)
 {
   const double length = end - begin;
@@ -67,12 +64,14 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
     return (motion.shift().norm() * part + motion.turningReach(part)) * (1.0 + kDoubleMargin);
   };
   const double reach = wayOf(length);
-  const bool few = collect(motion.swept(), {Eigen::Vector3d::Zero(), reach, mostNear(reach, kFewPairs)});
+  const bool first = begin == 0.0;
+  const bool few = collect(motion.swept(), passageOn(waysOn(motion, begin, end), reach, first));
   if (outcome.stuck) return false;
   const bool wide = motion.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
   if (!few || wide) {
     if (reach > 0.25 * tolerance_) {
-      const double middle = 0.5 * (begin + end);
+      const double share = first ? std::min(0.5, 0.5 * kShortWay * tolerance_ / reach) : 0.5;
+      const double middle = begin + share * length;
       return follow(motion, begin, middle, done) && follow(motion, middle, end, done);
     }
     if (!few) return halt();
@@ -104,37 +103,42 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
 
 bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
 {
-  // At once where few points can meet, else in portions, each twice as long as the one before while nothing
-  // is met.
-  const double first = 0.5 * state_.rules.largestClearance() + 32 * tolerance_;
+  // At once where few points can meet, else a short portion, what is left, and then portions, each twice as long as the
+  // one before while nothing is met.
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   Eigen::Vector3d left = target.translation() - pose().translation();
   const double negligible = 1e-6 * left.norm(); // of a path that has been bent
-  double portion = unlimited;
+  double portion = unlimited, after_first = unlimited;
   bool straight = true; // nothing met so far
+  bool first = true;    // way that is looked at
   ContactPlanes planes;
   for (int contacts = 0; contacts < kMostContacts;) {
     const double length = left.norm();
     if (length <= (straight ? 0.0 : negligible)) return straight;
     const bool last = length <= portion;
     const double most_travel = last ? length : portion;
-    const Passage passage{left * (most_travel / length), slide ? kSlack * most_travel : 0.0,
-                          mostNear(most_travel, kMostNear)};
+    const Eigen::Vector3d way = left * (most_travel / length);
+    const StraightWays ways = shiftedBy(way, pose(), slide ? kSlack * most_travel : 0.0);
+    const Passage passage = passageOn(ways, most_travel, first);
     Box3 swept = body_.world_box;
-    swept.merge({swept.low + passage.way, swept.high + passage.way});
-    swept.grow(passage.slack);
+    swept.merge({swept.low + way, swept.high + way});
+    swept.grow(ways.stray);
     if (!collect(swept, passage)) {
       if (portion != unlimited && most_travel <= 0.25 * tolerance_) return halt();
-      portion = portion == unlimited ? std::min(first, 0.5 * most_travel) : 0.5 * most_travel;
+      portion = 0.5 * most_travel;
+      if (first) portion = std::min(portion, 0.5 * kShortWay * tolerance_);
+      first = false;
       continue;
     }
     if (outcome.stuck) return false;
     const Walked walked = walk(left, passage, straight && last ? &target : nullptr, slide, planes);
     if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
     if (walked == Walked::free) {
-      if (4 * near_ <= kMostNear) portion *= 2; // else there would be too many
+      const double next = std::max(2 * portion, std::exchange(after_first, 0.0));
+      if (4 * near_ <= kFewPairs) portion = next; // else there would be too many
       continue;
     }
+    first = false;
     straight = false;
     ++contacts;
   }
@@ -144,14 +148,14 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
 /// How far a way leads before it leaves the passage. @param gone what the object went since it was collected
 double Mover::roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction)
 {
-  const double length = passage.way.norm();
-  const Eigen::Vector3d axis = passage.way / length;
+  const double length = passage.length(), slack = passage.ways.stray;
+  const Eigen::Vector3d axis = 2.0 * passage.ways.shift / length;
   const double along = gone.dot(axis), climb = direction.dot(axis);
   const Eigen::Vector3d beside = gone - along * axis, drift = direction - climb * axis;
   double room = climb > 0.0 ? (length - along) / climb : climb < 0.0 ? along / -climb : length;
   // |beside + t drift| = slack
   const double a = drift.squaredNorm(), b = beside.dot(drift);
-  const double c = std::max(passage.slack * passage.slack - beside.squaredNorm(), 0.0);
+  const double c = std::max(slack * slack - beside.squaredNorm(), 0.0);
   if (a > 0.0) room = std::min(room, (std::sqrt(b * b + a * c) - b) / a);
   return std::max(room, 0.0) * (1.0 - kDoubleMargin);
 }
@@ -162,7 +166,7 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, const Passage& passage, const E
                           ContactPlanes& planes)
 {
   const Eigen::Isometry3d start = pose();
-  double most_travel = passage.way.norm();
+  double most_travel = passage.length();
   const double negligible = 1e-6 * most_travel;
   Eigen::Vector3d gone = Eigen::Vector3d::Zero();
   for (int bounce = 0; bounce < kMostBounces; ++bounce) {
@@ -233,13 +237,11 @@ bool Mover::collectFrom(ObjectId other, double clearance, const Passage& passage
       const MeantPlaces places = possiblePlaces(mine, others);
       const Reach farthest(clearance, mine.hierarchy().storage().uncertainty, others.hierarchy().storage().uncertainty,
                            places);
-      const double beside = passage.slack + 0.75 * tolerance_; // halts are at half the tolerance
-      // Seen from the middle of the way, its ends are near.
-      Eigen::Isometry3d middle = mine.pose;
-      middle.translation() += 0.5 * passage.way;
-      const double reach =
-          farthest.most + (0.5 * passage.way.norm() + passage.slack) * (1.0 + kDoubleMargin) + 0.75 * tolerance_;
-      const PairsWithin found = pairsWithin(Placed(mine.hierarchy(), middle), others, {reach, passage.most});
+      constexpr double halting = 0.75; // tolerances beyond the reach: halts are at half of one
+      const StraightWays ways = waysOf(passage.ways, body_.object.parts[i].pose);
+      const PairsWithin found =
+          pairsAlong(mine.hierarchy(), ways, others, {farthest.most + halting * tolerance_, passage.most},
+                     passage.most_leaf_pairs);
       near_ = std::max(near_, found.pairs.size());
       ++cost_.pairs;
       cost_.work += found.work;
@@ -255,9 +257,13 @@ bool Mover::collectFrom(ObjectId other, double clearance, const Passage& passage
       const double one_reach = is_one ? reachOf(reach_of_pairs.of({})) : 0.0;
       for (const PointPair pair : found.pairs) {
         const Point3 p = a.point(pair.a), q = b.point(pair.b);
+        const Eigen::Vector3d at(p[0], p[1], p[2]);
         Encounter e{pair, i, other, j, is_one ? one_reach : reachOf(reach_of_pairs.of(pair)), clearance, of_points, {}};
-        e.apart = mine.pose * Eigen::Vector3d(p[0], p[1], p[2]) - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
-        if (of_points && leastOn(e.apart, passage.way) > e.reach + beside) continue;
+        e.apart = mine.pose * at - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
+        if (of_points) {
+          const Eigen::Vector3d half = ways.half(at);
+          if (leastOnWay(e.apart + half, half) > e.reach + ways.stray + halting * tolerance_) continue;
+        }
         if ((of_points ? e.apart.norm() : separationOf(e).high) <= e.reach + 0.125 * tolerance_) {
           ++cost_.work.exact_decisions;
           if (reach_of_pairs.holds(exact, pair)) {

@@ -2,10 +2,13 @@
 // Moves one object among all the others, which stand still meanwhile.
 #pragma once
 
+#include <pcl_bsh/pairs/pairs_along.h>
 #include <pcl_bsh/scene/responses/contact_planes.h>
 #include <pcl_bsh/scene/state.h>
 #include <pcl_bsh/scene/swept/conservative_advancement.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -44,11 +47,13 @@ private:
     Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
   };
 
-  /// Where the object may go: never farther than the slack from a straight way.
+  /// Where the object may go.
   struct Passage {
-    Eigen::Vector3d way;
-    double slack = 0.0;
-    std::size_t most = 0; ///< pairs of points that are near it, with one other part
+    StraightWays ways;                 ///< of its places, in its own frame
+    std::size_t most = 0;              ///< pairs of points that may meet on it, with one other part
+    std::uint64_t most_leaf_pairs = 0; ///< compared to find them
+
+    double length() const { return 2.0 * ways.shift.norm(); } ///< where it does not turn
   };
 
   enum class Walked { free, met, blocked };
@@ -56,7 +61,7 @@ private:
   bool follow(const ObjectMotion& motion, double begin, double end, double& done);
   Walked walk(Eigen::Vector3d& left, const Passage& passage, const Eigen::Isometry3d* target, bool slide,
               ContactPlanes& planes);
-  std::size_t mostNear(double way, std::size_t few) const;
+  Passage passageOn(const StraightWays& ways, double length, bool first) const;
   static double roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction);
   bool collect(Box3 swept, const Passage& passage);
   bool collectFrom(ObjectId other, double clearance, const Passage& passage);
@@ -82,7 +87,7 @@ private:
   ObjectId crowded_ = 0; ///< whose points are too many to collect
   std::vector<ObjectId> around_;
   std::vector<Encounter> encounters_;
-  std::size_t near_ = 0; ///< pairs that were looked at for them, of the part with most
+  std::size_t near_ = 0; ///< pairs that were found for them, of the part with most
   Eigen::Isometry3d collected_at_ = Eigen::Isometry3d::Identity(); ///< the pose that their places hold for
   std::vector<ObjectId> outside_of_;                               ///< of whose solids it is outside
 };

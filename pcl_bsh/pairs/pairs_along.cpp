@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/pairs/check_request.h>
+#include <pcl_bsh/pairs/pairs_along.h>
+#include <pcl_bsh/query/progress.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pcl_bsh/pairs/pairs_along.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <pcl_bsh/pairs/reach_walk-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace pcl_bsh {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Records of a on their ways. Records below a lane differ in their ways by what the turn makes of the lane's radius.
+class PassingPairs {
+public:
+  static constexpr bool kHasWays = true;
+
+  PassingPairs(const Placed& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
+               std::uint64_t most_leaf_pairs, PairsWithin& result)
+  : pairs(a, b, request.clearance),
+    ways_(ways),
+    turn_size_(ways.turn.norm() * kUp),
+    beside_((request.clearance + ways.stray) * kUp),
+    most_(request.most),
+    most_leaf_pairs_(most_leaf_pairs),
+    result_(result)
+  {
+  }
+
+  double reach() const { return reach_; }
+
+  void enter(const PairWalk& walk, const LanePair& lanes)
+  {
+    const Sphere of_a = sphereOf(walk, walk.a, lanes.a), of_b = sphereOf(walk, walk.b, lanes.b);
+    half_ = ways_.half(of_a.center);
+    near_ = beside_ + turn_size_ * of_a.radius;
+    reach_ = near_ + half_.norm() * kUp;
+    const Eigen::Vector3d place_a = walk.a.pose * of_a.center, place_b = walk.b.pose * of_b.center;
+    const double rounding = kDoubleMargin * (of_a.center.norm() + of_b.center.norm() + place_a.norm() + place_b.norm() +
+                                             reach_ + of_a.radius + of_b.radius);
+    is_beyond_ = leastOnWay(place_a - place_b, half_) - rounding > near_ + of_a.radius + of_b.radius;
+  }
+
+  bool passesOver(const PairWalk&, const LanePair&) const { return is_beyond_; }
+
+  /// Whether to compare one more pair of leaves.
+  bool goesOn(const Work& work) { return result_.complete = work.leaf_pairs <= most_leaf_pairs_; }
+
+  /// Half of the ways of the leaf that was entered, in the frame.
+  HalfWay way(const Spaces& b, const RelativeFrame& frame) const
+  {
+    const Eigen::Vector3f half = (b.pose.linear().transpose() * half_ / frame.unit()).cast<float>();
+    const float square = half.squaredNorm();
+    return {half.x(), half.y(), half.z(), square > kLeastSquare ? 1.0f / square : 0.0f};
+  }
+
+  /// Beside the way. Rounding takes less of a point's way and of its distance than the last term, and a way that is
+  /// taken for rest is shorter than it.
+  float miss(const RelativeFrame& frame) const
+  {
+    return frame.band(near_ + 0x1p-20 * reach_ + 0x1p-19 * frame.unit() * std::sqrt(double{kLeastSquare})).miss;
+  }
+
+  Added add(PointPair pair, bool, Work&)
+  {
+    result_.complete = result_.pairs.size() < most_;
+    if (!result_.complete) return Added::stop;
+    result_.pairs.push_back(pair);
+    return Added::kept;
+  }
+
+  const PointPairs pairs;
+
+private:
+  static constexpr double kUp = 1.0 + kDoubleMargin;
+  static constexpr float kLeastSquare = 0x1p-100f; ///< of a way, in a frame's units
+
+  struct Sphere {
+    Eigen::Vector3d center; ///< in the cloud's frame
+    double radius;          ///< as poses may stretch it, and with what stored points are rounded by
+  };
+
+  static Sphere sphereOf(const PairWalk& walk, const Spaces& side, const Lane& lane)
+  {
+    const Node& node = walk.nodeOf(side, lane);
+    const LocalFrame& frame = side.frame(lane.space);
+    const Eigen::Vector3d stored(node.x[lane.lane], node.y[lane.lane], node.z[lane.lane]);
+    const double rounding = frame.slack(0) + frame.slack(1) + frame.slack(2);
+    return {stored * frame.unit + Eigen::Vector3d(frame.origin[0], frame.origin[1], frame.origin[2]),
+            (node.r[lane.lane] + rounding) * frame.unit * (1.0 + kPoseStretch)};
+  }
+
+  const StraightWays& ways_;
+  const double turn_size_;
+  const double beside_; ///< the ways, straying included
+  const std::size_t most_;
+  const std::uint64_t most_leaf_pairs_;
+  PairsWithin& result_;
+
+  // Of the lanes that were entered:
+  Eigen::Vector3d half_ = Eigen::Vector3d::Zero(); ///< of the way of their middle
+  double near_ = 0.0;                              ///< beside that way
+  double reach_ = std::numeric_limits<double>::infinity();
+  bool is_beyond_ = false;
+};
+
+} // namespace
+
+void pairsAlongOnTarget(const Placed& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
+                        std::uint64_t most_leaf_pairs, Progress& progress, PairsWithin& result)
+{
+  PassingPairs receiver(a, ways, b, request, most_leaf_pairs, result);
+  result.work = ReachWalk(a, b, receiver, progress).run();
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace pcl_bsh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pcl_bsh {
+
+HWY_EXPORT(pairsAlongOnTarget);
+
+double leastOnWay(const Eigen::Vector3d& middle, const Eigen::Vector3d& half)
+{
+  const double square = half.squaredNorm();
+  const double share = square > 0.0 ? std::clamp(middle.dot(half) / square, -1.0, 1.0) : 0.0;
+  return (middle - share * half).norm();
+}
+
+PairsWithin pairsAlong(const SphereHierarchy& a, const StraightWays& ways, const Placed& b,
+                       const ContactsRequest& request, std::uint64_t most_leaf_pairs)
+{
+  const Placed middle(a, ways.middle);
+  check(middle, b, request);
+  const DefaultFloatEnvironment environment;
+  Progress progress(request.progress);
+  PairsWithin found;
+  HWY_DYNAMIC_DISPATCH(pairsAlongOnTarget)(middle, ways, b, request, most_leaf_pairs, progress, found);
+  progress.finish();
+  return found;
+}
+
+} // namespace pcl_bsh
+#endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pairs that come near each other on straight ways, against all pairs.
+#include <pcl_bsh/pairs/pairs_along.h>
+
+#include "support/random_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace pcl_bsh {
+namespace {
+
+using test::Cloud;
+using test::Random;
+
+constexpr double kNearly = 1e-5; ///< so much farther a pair may be, as a share of the reach
+
+Eigen::Vector3d pointOf(const Cloud& cloud, std::uint32_t i)
+{
+  const Point3 p = cloud.view().point(i);
+  return {p[0], p[1], p[2]};
+}
+
+/// Whether all pairs are found that come within the clearance, and none that stays away. @return how many
+std::size_t expectSameAsAllPairs(const Cloud& cloud_a, const StraightWays& ways, const Cloud& cloud_b,
+                                 const Eigen::Isometry3d& pose_b, double clearance)
+{
+  const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+  const PairsWithin found = pairsAlong(a, ways, {b, pose_b}, {clearance});
+  EXPECT_TRUE(found.complete);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const PointPair pair : found.pairs) EXPECT_TRUE(pairs.emplace(pair.a, pair.b).second) << "twice";
+  double largest = 0.0; // way of a place, for leaves have one
+  for (std::uint32_t i = 0; i < cloud_a.view().count; ++i) largest = std::max(largest, pointOf(cloud_a, i).norm());
+  const double spread = 2.0 * ways.turn.norm() * largest;
+  std::size_t within = 0;
+  for (std::uint32_t i = 0; i < cloud_a.view().count; ++i)
+    for (std::uint32_t j = 0; j < cloud_b.view().count; ++j) {
+      const Eigen::Vector3d half = ways.half(pointOf(cloud_a, i));
+      const double least =
+          leastOnWay(ways.middle * pointOf(cloud_a, i) - pose_b * pointOf(cloud_b, j), half) - ways.stray;
+      const bool is_found = pairs.count({i, j}) > 0;
+      within += least <= clearance;
+      if (least <= clearance) {
+        EXPECT_TRUE(is_found) << i << ' ' << j << ": " << least;
+      }
+      if (is_found) {
+        EXPECT_LE(least, clearance + spread + kNearly * (clearance + half.norm() + ways.stray));
+      }
+    }
+  return within;
+}
+
+TEST(PairsAlong, TheLeastDistanceIsAtAnEndOrBetween)
+{
+  const Eigen::Vector3d half(1, 0, 0);
+  EXPECT_EQ(leastOnWay({0.5, 2, 0}, half), 2.0);
+  EXPECT_EQ(leastOnWay({4, 4, 0}, half), 5.0);
+  EXPECT_EQ(leastOnWay({-4, 4, 0}, half), 5.0);
+  EXPECT_EQ(leastOnWay({3, 4, 0}, Eigen::Vector3d::Zero()), 5.0);
+}
+
+TEST(PairsAlong, AreThoseOfAllPairs)
+{
+  std::size_t within = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double size = random.pick({0.01, 1.0, 100.0}), far = random.pick({0.0, 1.0, 1e5});
+    const Cloud a(test::makePoints(random.pick(test::all_shapes), 150, size, random), {Scalar::float64, 0, 0});
+    const Cloud b(test::makePoints(random.pick(test::all_shapes), 150, size, random), {Scalar::float64, 0, 0});
+    const Eigen::Isometry3d pose_b = random.pose(size * far);
+    StraightWays ways;
+    ways.middle = pose_b * random.pose(size);
+    const Point3 shift = random.point([&] { return size * random.uniform(-0.5, 0.5); });
+    ways.shift = random.chance(0.1) ? Eigen::Vector3d::Zero() : Eigen::Vector3d(shift[0], shift[1], shift[2]);
+    if (random.chance(0.5)) ways.turn = random.uniform(0.001, 0.1) * random.rotation().toRotationMatrix();
+    if (random.chance(0.5)) ways.stray = random.uniform(0.0, 0.1) * size;
+    within += expectSameAsAllPairs(a, ways, b, pose_b, random.uniform(0.0, 0.1) * size);
+  }
+  EXPECT_GT(within, 5000u);
+}
+
+/// A crate's face beside a floor: on its way along the floor, few points come near those of the floor.
+TEST(PairsAlong, PassOverWhatIsBesideTheWay)
+{
+  const auto sheet = [](int count, double spacing, double height) {
+    std::vector<Point3> points;
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) points.push_back({spacing * i, spacing * j, height});
+    return Cloud(points, {Scalar::float64, 0, 0});
+  };
+  const Cloud face = sheet(60, 0.01, 0.0205), floor = sheet(12, 0.05, 0.0);
+  StraightWays ways;
+  ways.shift.x() = 0.015;
+  const std::size_t within = expectSameAsAllPairs(face, ways, floor, Eigen::Isometry3d::Identity(), 0.021);
+  EXPECT_GT(within, 0u);
+  const SphereHierarchy a(face.view()), b(floor.view());
+  EXPECT_LT(5 * within, pairsWithin({a}, {b}, {0.036}).pairs.size());
+}
+
+TEST(PairsAlong, AreNotCompleteWhereThereAreMore)
+{
+  const Cloud cloud(std::vector<Point3>(20, Point3{0, 0, 0}), {Scalar::float64, 0, 0});
+  const SphereHierarchy a(cloud.view());
+  const PairsWithin found = pairsAlong(a, {}, {a}, {0.0, 399});
+  EXPECT_FALSE(found.complete);
+  EXPECT_EQ(found.pairs.size(), 399u);
+  EXPECT_TRUE(pairsAlong(a, {}, {a}, {0.0, 400}).complete);
+  EXPECT_TRUE(pairsAlong(a, {}, {a}, {0.0}, 1).complete);
+  EXPECT_FALSE(pairsAlong(a, {}, {a}, {0.0}, 0).complete);
+}
+
+} // namespace
+} // namespace pcl_bsh
