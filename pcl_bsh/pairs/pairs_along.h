@@ -26,8 +26,9 @@ struct StraightWays {
 /// The least distance from the origin on the way from a place half a way back to one half a way on.
 PCL_BSH_EXPORT_INTERNAL double leastOnWay(const Eigen::Vector3d& middle, const Eigen::Vector3d& half);
 
-/// All pairs of records that come within the clearance on a's ways, in no particular order, and some that do not. Points
-/// of these come nearly so near. Balls and triangles are found wherever the spheres of their leaves are not kept apart.
+/// All pairs of records that come within the clearance on a's ways, in no particular order, and some that do not.
+/// Points of these come nearly so near. Balls and triangles are found wherever the spheres of their leaves are not kept
+/// apart.
 /// @param request as pairsWithin() takes it @param most_leaf_pairs to compare; where there are more, the result is not
 ///   complete
 PCL_BSH_EXPORT_INTERNAL PairsWithin
