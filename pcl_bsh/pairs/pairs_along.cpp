@@ -107,7 +107,7 @@ private:
   const std::uint64_t most_leaf_pairs_;
   PairsWithin& result_;
 
-  // What belongs to the lanes that were entered:
+  // The lanes that were entered have these:
   Eigen::Vector3d half_ = Eigen::Vector3d::Zero(); ///< of the way of their middle
   double near_ = 0.0;                              ///< beside that way
   double reach_ = std::numeric_limits<double>::infinity();
