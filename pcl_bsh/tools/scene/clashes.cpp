@@ -187,8 +187,7 @@ nlohmann::ordered_json SceneClashList::json() const
                                  {"clashes_perhaps", perhaps_},
                                  {"obstacles", nlohmann::ordered_json::array()},
                                  {"between", nlohmann::ordered_json::array()}};
-  for (const io::ComparedObstacle& one : obstacles_)
-    json["obstacles"].push_back(io::obstacleJson(one, listing_.input));
+  for (const io::ComparedObstacle& one : obstacles_) json["obstacles"].push_back(io::obstacleJson(one, listing_.input));
   for (const io::BetweenObstacles& two : listing_.between) json["between"].push_back(io::betweenJson(two));
   return json;
 }
