@@ -15,7 +15,7 @@ expect() { # ROOMS FILE...
 expect "pairs" test/pairs/trace_test.cpp
 expect "pairs" pcl_bsh/pairs/trace.cpp
 expect "many_poses pairs robot scene" pcl_bsh/pairs/any_at_places.h             # which these include
-expect "clashes query question symmetries" pcl_bsh/question/question.h
+expect "clashes query question scene symmetries" pcl_bsh/question/question.h
 expect "clusters pairs" pcl_bsh/clusters/clusters.cpp test/pairs/trace_test.cpp # of both
 expect "no room of the core" filters/query_filter.h
 all="$(bash test/near.sh --list pcl_bsh/hierarchy/points_view.h)"
