@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -135,12 +134,10 @@ std::shared_ptr<RobotModel> makeRobot(const PathLike& urdf, const OptionalPath& 
   std::map<std::string, std::filesystem::path> folders;
   if (packages)
     for (const auto& [name, folder] : *packages) folders[name] = pathOf(folder);
-  const char* const found = std::getenv("ROS_PACKAGE_PATH");
-  const std::string file = pathOf(urdf), srdf_file = srdf.is_none() ? "" : pathOf(srdf),
-                    package_path = found ? found : "";
+  const std::string file = pathOf(urdf), srdf_file = srdf.is_none() ? "" : pathOf(srdf);
   io::RobotGroups groups;
   robots::Robot robot = unlocked([&] {
-    robots::Robot read = io::readRobot(file, folders, package_path);
+    robots::Robot read = io::readRobot(file, folders, io::packagePath());
     if (!srdf_file.empty()) groups = io::readGroups(srdf_file, read);
     io::readMeshes(read);
     return read;

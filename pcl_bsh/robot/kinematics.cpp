@@ -269,4 +269,25 @@ std::vector<Eigen::Isometry3d> linkPoses(const Robot& robot, const JointValues& 
   return Kinematics(robot).linkPoses(stateOf(robot, values));
 }
 
+std::vector<std::array<std::size_t, 2>> comparedLinks(const Robot& robot, const Kinematics& kinematics)
+{
+  const std::size_t count = robot.links.size();
+  std::vector<bool> compared(count * count, true);
+  const auto leaveOut = [&](std::size_t a, std::size_t b) {
+    compared[a * count + b] = compared[b * count + a] = false;
+  };
+  for (const auto& [a, b] : robot.disabled_pairs) {
+    if (a >= count || b >= count)
+      throw InvalidInput(Input::scene, "robot '" + robot.name + "'", "disables a pair of links that it has not",
+                         "name links by their numbers");
+    leaveOut(a, b);
+  }
+  for (std::size_t i = 1; i < count; ++i) leaveOut(i, robot.links[i].joint->parent);
+  std::vector<std::array<std::size_t, 2>> pairs;
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = a + 1; b < count; ++b)
+      if (compared[a * count + b] && kinematics.bodyOf(a) != kinematics.bodyOf(b)) pairs.push_back({a, b});
+  return pairs;
+}
+
 } // namespace pcl_bsh::robots

@@ -36,6 +36,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -131,6 +132,12 @@ private:
 
 /// T_root_link of every link. @throws InvalidInput as Kinematics and Robot::requireValues() do
 std::vector<Eigen::Isometry3d> linkPoses(const Robot& robot, const JointValues& values);
+
+/// Pairs of links that the robot is held against itself by: not a link and its parent, nor links of one body, nor those
+/// that are disabled. The lower number comes first. @throws InvalidInput for a disabled pair of links that are not
+/// there
+std::vector<std::array<std::size_t, 2>> comparedLinks(const Robot& robot, const Kinematics& kinematics);
+
 /// Roundings of each joint of a chain that Kinematics::error() counts.
 inline constexpr double kForwardRoundings = 128.0;
 

@@ -15,11 +15,6 @@ constexpr double kOfTwists = 1e-12; ///< their error, as a share of the greatest
 /// Radii that a ball goes in a time that is too long for its parts, too.
 constexpr double kLong = 0.5;
 
-double shortest(double way)
-{
-  return std::remainder(way, 2.0 * std::numbers::pi);
-}
-
 } // namespace
 
 MotionSearch::MotionSearch(const Gaps& gaps, const RobotState& from, const RobotState& to, MotionScratch& scratch)
@@ -31,9 +26,7 @@ MotionSearch::MotionSearch(const Gaps& gaps, const RobotState& from, const Robot
   s_.slopes.resize(from.size());
   s_.largest.resize(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const Joint& joint = *gaps.robot.links[gaps.kinematics.linkOfVariable(i)].joint;
-    const double way = to[i] - from[i];
-    s_.slopes[i] = joint.kind == Joint::Kind::continuous ? shortest(way) : way;
+    s_.slopes[i] = gaps.robot.links[gaps.kinematics.linkOfVariable(i)].joint->way(from[i], to[i]);
     s_.largest[i] = std::max(std::abs(from[i]), std::abs(to[i]));
   }
   ++s_.motion;

@@ -244,26 +244,12 @@ private:
 
   void addPairs(const std::vector<std::uint32_t>& of_links)
   {
-    const std::size_t count = robot_.links.size();
-    std::vector<bool> compared(count * count, true);
-    const auto leaveOut = [&](std::size_t a, std::size_t b) {
-      compared[a * count + b] = compared[b * count + a] = false;
-    };
-    for (const auto& [a, b] : robot_.disabled_pairs) {
-      if (a >= count || b >= count)
-        throw InvalidInput(Input::scene, "robot '" + robot_.name + "'", "disables a pair of links that it has not",
-                           "name links by their numbers");
-      leaveOut(a, b);
+    for (const auto& [a, b] : comparedLinks(robot_, kinematics_)) {
+      if (of_links[a] == kNoPart || of_links[b] == kNoPart) continue;
+      const auto &chain_a = parts_.chains[kinematics_.bodyOf(a)], &chain_b = parts_.chains[kinematics_.bodyOf(b)];
+      const auto parted = std::mismatch(chain_a.begin(), chain_a.end(), chain_b.begin(), chain_b.end()).first;
+      parts_.pairs.push_back({of_links[a], of_links[b], parted == chain_a.begin() ? 0 : *(parted - 1)});
     }
-    for (std::size_t i = 1; i < count; ++i) leaveOut(i, robot_.links[i].joint->parent);
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = a + 1; b < count; ++b) {
-        const std::size_t body_a = kinematics_.bodyOf(a), body_b = kinematics_.bodyOf(b);
-        if (!compared[a * count + b] || body_a == body_b || of_links[a] == kNoPart || of_links[b] == kNoPart) continue;
-        const auto &chain_a = parts_.chains[body_a], &chain_b = parts_.chains[body_b];
-        const auto parted = std::mismatch(chain_a.begin(), chain_a.end(), chain_b.begin(), chain_b.end()).first;
-        parts_.pairs.push_back({of_links[a], of_links[b], parted == chain_a.begin() ? 0 : *(parted - 1)});
-      }
   }
 
   Parts& parts_;

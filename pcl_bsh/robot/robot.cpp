@@ -2,7 +2,16 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/robot/robot.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace pcl_bsh::robots {
+
+double Joint::way(double from, double to) const noexcept
+{
+  const double way = to - from;
+  return kind == Kind::continuous ? std::remainder(way, 2.0 * std::numbers::pi) : way;
+}
 
 std::size_t Robot::linkNamed(const std::string& link) const
 {

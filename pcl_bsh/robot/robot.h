@@ -66,6 +66,8 @@ struct Joint {
   /** As URDF has them. */ enum class Kind : std::uint8_t { fixed, revolute, continuous, prismatic };
   /// Whether it turns about its axis.
   bool turns() const noexcept { return kind == Kind::revolute || kind == Kind::continuous; }
+  /// How far its value goes from one to another on a line in joint space.
+  double way(double from, double to) const noexcept;
 
   std::string name;
   Kind kind = Kind::fixed;

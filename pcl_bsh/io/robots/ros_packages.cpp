@@ -2,6 +2,7 @@
 #include <pcl_bsh/io/robots/ros_packages.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -93,6 +94,12 @@ std::optional<fs::path> packageIn(std::string_view folders, const std::string& n
     if (itself.filename() == name && fs::is_directory(itself, ignored)) return itself;
   }
   return std::nullopt;
+}
+
+std::string packagePath()
+{
+  const char* const found = std::getenv("ROS_PACKAGE_PATH");
+  return found ? found : "";
 }
 
 } // namespace pcl_bsh::io

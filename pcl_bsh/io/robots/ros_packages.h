@@ -16,4 +16,7 @@ namespace pcl_bsh::io {
 /// @param folders with colons between them, as ROS_PACKAGE_PATH has them
 std::optional<std::filesystem::path> packageIn(std::string_view folders, const std::string& name);
 
+/// ROS_PACKAGE_PATH as the environment has it; empty where it has none.
+std::string packagePath();
+
 } // namespace pcl_bsh::io

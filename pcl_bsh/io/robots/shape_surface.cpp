@@ -2,11 +2,11 @@
 #include <pcl_bsh/io/robots/surface.h>
 
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/io/text/format_error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <variant>
 
@@ -20,8 +20,8 @@ std::uint32_t sidesOf(double radius, double sagitta)
   constexpr double most = 100'000;
   const double sides = std::ceil(std::numbers::pi / std::acos(std::max(0.5, 1.0 - sagitta / radius)));
   if (!(sides <= most))
-    throw std::runtime_error("a circle of radius " + std::to_string(radius) +
-                             " has too many sides at this tolerance: give a coarser one");
+    throw FormatError("a circle of radius " + std::to_string(radius) + " has too many sides at this tolerance",
+                      "give a coarser one");
   return static_cast<std::uint32_t>(sides);
 }
 
@@ -55,19 +55,20 @@ Surface triangulated(const robots::Cylinder& tube, double sagitta)
 
 Surface triangulated(const robots::Sphere& ball, double sagitta)
 {
-  const std::uint32_t sides = sidesOf(ball.radius, sagitta / 2), rows = (sides + 1) / 2; // two circles' sagittas
+  const std::uint32_t sides = sidesOf(ball.radius, sagitta / 2); // two circles' sagittas
+  const std::uint32_t rows = (sides + 1) / 2 | 1;                // odd: a capsule's tube is between the middle ones
   Surface surface;
   for (std::uint32_t row = 0; row <= rows; ++row)
     for (std::uint32_t side = 0; side < sides; ++side) {
       const double tilt = std::numbers::pi * row / rows, turn = 2 * std::numbers::pi * side / sides;
-      surface.vertices.push_back({ball.radius * std::sin(tilt) * std::cos(turn),
-                                  ball.radius * std::sin(tilt) * std::sin(turn), ball.radius * std::cos(tilt)});
+      const double across = row % rows == 0 ? 0.0 : ball.radius * std::sin(tilt); // a pole is one place: it closes
+      surface.vertices.push_back({across * std::cos(turn), across * std::sin(turn), ball.radius * std::cos(tilt)});
     }
   for (std::uint32_t row = 0; row < rows; ++row)
     for (std::uint32_t side = 0; side < sides; ++side) {
       const std::uint32_t a = row * sides + side, b = row * sides + (side + 1) % sides;
-      surface.triangles.push_back({a, a + sides, b + sides});
-      surface.triangles.push_back({a, b + sides, b});
+      if (row + 1 < rows) surface.triangles.push_back({a, a + sides, b + sides});
+      if (row > 0) surface.triangles.push_back({a, b + sides, b});
     }
   return surface;
 }

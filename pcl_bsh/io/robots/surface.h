@@ -30,8 +30,8 @@ Surface readSurface(const std::filesystem::path& path);
 /// Returns a shape's surface in the link's frame. A polyhedron inside stands for a round shape.
 /// @param sagitta greatest distance of the polyhedron from the round shape, m; > 0
 /// @pre sizes above 0
-/// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error for a size that is too
-///   large for the sagitta
+/// @throws files::FileError for a mesh that cannot be read or has no faces; FormatError for a size that is too large
+///   for the sagitta
 Surface surfaceOf(const robots::Shape& shape, double sagitta);
 
 } // namespace pcl_bsh::io

@@ -6,11 +6,11 @@
 
 #include <pcl_bsh/io/robots/joint_values.h>
 #include <pcl_bsh/io/robots/read_robot.h>
+#include <pcl_bsh/io/robots/ros_packages.h>
 #include <pcl_bsh/io/text/format_error.h>
 
 #include <CLI/CLI.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -52,8 +52,7 @@ struct RobotOptions {
         throw UsageError("--package: '" + value + "' is no package with a folder: give NAME=FOLDER");
       folders[value.substr(0, equals)] = value.substr(equals + 1);
     }
-    const char* const package_path = std::getenv("ROS_PACKAGE_PATH");
-    return io::readRobot(urdf, folders, package_path ? package_path : "");
+    return io::readRobot(urdf, folders, io::packagePath());
   }
 
   /// The lines of --states, or --joints alone. @throws UsageError; as io::readJointStates() does

@@ -4,12 +4,14 @@
 #include "io/clouds/samples.h"
 
 #include <pcl_bsh/io/files/file_error.h>
+#include <pcl_bsh/solid/solid.h>
 
 #include <gmock/gmock.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -151,6 +153,25 @@ TEST_F(ReadSurface, OfColladaSaysWhatToDo)
 }
 
 #endif
+
+TEST(SurfaceOf, RoundShapesCloseAndStayWithinTheSagitta)
+{
+  for (const double sagitta : {0.1, 0.03, 0.01, 0.003, 0.001}) {
+    for (const double length : {0.0, 0.7}) {
+      const robots::Shape shape =
+          length > 0.0 ? robots::Shape{robots::Capsule{0.5, length}} : robots::Shape{robots::Sphere{0.5}};
+      const Surface surface = surfaceOf(shape, sagitta);
+      EXPECT_NO_THROW(Solid(*surface.view().triangles)) << sagitta << ' ' << length;
+      for (const Triangle& t : surface.triangles) {
+        const auto corner = [&](std::size_t k) { return Eigen::Vector3d(surface.vertices[t[k]].data()); };
+        const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+        const double reach = 0.5 + 0.5 * length * std::abs(normal.z());
+        EXPECT_GE(std::abs(normal.dot(corner(0))), reach - sagitta) << sagitta << ' ' << length;
+        EXPECT_LE(std::abs(normal.dot(corner(0))), reach + 1e-12);
+      }
+    }
+  }
+}
 
 } // namespace
 } // namespace pcl_bsh::io
