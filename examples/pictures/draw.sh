@@ -38,6 +38,12 @@ view --scene examples/scenes/walk.json --step 90 --clearance 0.3 --camera=-17,-7
 view --scene examples/scenes/push.json --step 95 --size 1000x620 --camera=-3.2,-5.6,3.6,-0.1,0,0.6 \
   --title "A man walks on, and two crates give way" --screenshot examples/pictures/bodies.png
 
+# A robot of a scene, by states of its joints (where robots are read).
+if [[ -x "$programs/pcl_bsh_arm" ]]; then
+  view --scene examples/scenes/robot.json --step 11 --size 1000x560 --camera=2.3,-1.6,1.3,0.42,0.02,0.36 \
+    --title "An arm reaches over a table" --screenshot examples/pictures/robot.png
+fi
+
 # A robot cut out of what its own camera sees (where it was built: bash cmake/setup.sh release self_filter).
 if [[ -x "$programs/pcl_bsh_self_filter" ]]; then
   "$programs/pcl_bsh_made_robot" "$work/robot" >/dev/null

@@ -3,6 +3,7 @@
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/scene_bodies.h>
+#include <pcl_bsh/tools/cli/scene_robots.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/cli/used_files.h>
 #include <pcl_bsh/tools/scene/clashes.h>
@@ -256,7 +257,7 @@ void runScene(const io::SceneFile& file, const Options& options)
   Progress progress(file.steps);
   for (std::size_t step = 0; step <= file.steps; ++step) {
     start = Clock::now();
-    if (step > 0) world.deform(world.scene().time() + file.dt);
+    if (step > 0) world.setTime(world.scene().time() + file.dt);
     BodiesStep done;
     if (step == 0)
       done.scene = world.scene().query();
@@ -294,7 +295,7 @@ void run(const Options& options)
   const bool only_tells = options.explain || options.validate;
   const io::SceneFile file =
       cli::checkTold(options.json && only_tells, {{"scene", options.scene.string()}, {"valid", false}},
-                     [&] { return io::readSceneFile(options.scene); });
+                     [&] { return cli::readScene(options.scene); });
   cli::warn(program, file.warnings);
   if (only_tells)
     tell(file, options);

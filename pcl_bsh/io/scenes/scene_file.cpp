@@ -7,6 +7,7 @@
 #include <pcl_bsh/io/json/nearest_name.h>
 #include <pcl_bsh/io/poses/pose_file.h>
 #include <pcl_bsh/io/poses/rigid_pose.h>
+#include <pcl_bsh/io/scenes/robot_entry.h>
 #include <pcl_bsh/io/scenes/scattered_motion.h>
 #include <pcl_bsh/io/scenes/scene_clouds.h>
 #include <pcl_bsh/io/text/file_bytes.h>
@@ -184,12 +185,14 @@ private:
     object.name = newName(reader.at("name"));
     if (reader.has("cloud")) object.parts.push_back({object.name, cloudName(reader.at("cloud"))});
     for (const JsonReader& part : elementsOf(reader, "parts")) parsePart(part, object);
+    if (reader.has("robot")) object.robot = robotFrom(reader, file_);
     if (reader.has("adjacent")) parseAdjacent(reader.at("adjacent"), object);
     read(reader, "group", object.group);
     object.pose = poseIn(reader, "pose");
     object.place = reader.place();
     read(reader, "fixed", object.fixed);
     read(reader, "solid", object.solid);
+    for (PartEntry& part : object.parts) part.solid = object.solid;
     if (reader.has("motion")) object.motion = parseMotion(reader.at("motion"));
     if (object.fixed && !std::holds_alternative<NoMotion>(object.motion))
       reader.fail("is fixed and moves", "leave 'fixed' or 'motion' out");

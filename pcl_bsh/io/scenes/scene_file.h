@@ -35,6 +35,7 @@ struct CloudSource {
   Uncertainty uncertainty;           ///< of its points; sigmas of a field are scaled with the cloud
   SurfaceSettings surface;           ///< of a file with faces
   ColumnNames columns;               ///< of a file of columns; empty: as it says
+  std::shared_ptr<const Mesh> mesh;  ///< of a robot's link, which is neither a file nor a shape
   bool allow_scale = false;          ///< of a .ptx, whose transforms may scale uniformly then
   std::string place;                 ///< in the document
 
@@ -56,6 +57,15 @@ struct PartEntry {
   std::string name;
   std::string cloud;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  bool solid = false;
+};
+
+/// A robot as the document has it; addRobots() (io/robots/scene_robots.h) reads it.
+struct RobotEntry {
+  std::filesystem::path urdf, srdf, states; ///< the last two may be empty
+  double interval = 0.1;                    ///< seconds from state to state
+  std::map<std::string, std::filesystem::path> packages;
+  std::string place; ///< in the document
 };
 
 struct ObjectEntry {
@@ -63,12 +73,15 @@ struct ObjectEntry {
   std::vector<PartEntry> parts;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   bool fixed = false;
-  bool solid = false; ///< all of its parts are
+  bool solid = false; ///< all of its parts are, a robot's meshes included
   Motion motion;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent;
-  SceneBody body;           ///< with the effect bodies
-  std::optional<Wave> wave; ///< with the effect deform
-  std::string place;        ///< in the document
+  SceneBody body;                  ///< with the effect bodies
+  std::optional<Wave> wave;        ///< with the effect deform
+  std::optional<RobotEntry> robot; ///< whose links are its parts, once it is read
+  /// T_object_part of each at a time; null where they rest.
+  std::function<std::vector<Eigen::Isometry3d>(double time)> part_poses;
+  std::string place; ///< in the document
 };
 
 struct RuleEntry {
@@ -108,11 +121,16 @@ struct SceneFile {
     for (const CloudSource& cloud : clouds)
       if (!cloud.file.empty()) all.emplace_back("cloud '" + cloud.name + "'", cloud.file);
     for (const std::filesystem::path& trajectory : trajectories) all.emplace_back("trajectory", trajectory);
+    for (const ObjectEntry& object : objects) {
+      if (!object.robot) continue;
+      for (const std::filesystem::path& file : {object.robot->urdf, object.robot->srdf, object.robot->states})
+        if (!file.empty()) all.emplace_back("robot '" + object.name + "'", file);
+    }
     return all;
   }
 };
 
-/// Reads and checks a scene, but none of its clouds: those must only be there.
+/// Reads and checks a scene, but none of its clouds and robots: those must only be there.
 /// @throws JsonError for what the document has wrong, files::FileError for a file that cannot be read
 SceneFile readSceneFile(const std::filesystem::path& path);
 
@@ -125,6 +143,7 @@ void setRules(Scene& scene, const std::vector<RuleEntry>& rules);
 /// The scene itself, and what it looks at.
 class SceneWorld {
 public:
+  /// @param file its robots are read already
   /// @param reading called with the name of each cloud before it is read, if not null
   /// @throws files::FileError, JsonError naming the place in the document
   explicit SceneWorld(const SceneFile& file, const std::function<void(const CloudSource&)>& reading = nullptr);
@@ -148,8 +167,9 @@ public:
   std::size_t points() const;                                            ///< of all clouds; of surfaces, triangles
   const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
 
-  /// Puts the points of waving objects where they are at this time; at first they are where they are at 0.
-  void deform(double time);
+  /// Puts robots' links and the points of waving objects where they are at this time; at first they are where they are
+  /// at 0.
+  void setTime(double time);
 
 private:
   struct Loaded {
@@ -163,12 +183,18 @@ private:
     Wave wave;
     std::vector<double> rest, now;
   };
+  /// A robot.
+  struct Jointed {
+    ObjectId object;
+    std::function<std::vector<Eigen::Isometry3d>(double time)> part_poses;
+  };
 
   void load(const CloudSource& source, const SceneFile& file, Loaded& loaded);
 
   std::map<std::string, Loaded> clouds_;
   std::vector<std::string> warnings_;
   std::vector<std::unique_ptr<Waving>> waving_;
+  std::vector<Jointed> jointed_;
   std::unique_ptr<Scene> scene_;
 };
 

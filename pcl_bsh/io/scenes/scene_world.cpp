@@ -205,7 +205,7 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   std::vector<NamedObject> objects;
   for (const ObjectEntry& object : file.objects) {
     objects.push_back({object.name, object.fixed, {}, object.pose, object.motion});
-    for (const PartEntry& part : object.parts) objects.back().parts.push_back({part.cloud, part.pose, object.solid});
+    for (const PartEntry& part : object.parts) objects.back().parts.push_back({part.cloud, part.pose, part.solid});
   }
   const double duration = static_cast<double>(file.steps) * file.dt;
   for (std::string& line : warningsOf(objects, named, file.options.clearance, duration))
@@ -242,11 +242,12 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
         hierarchy = std::make_shared<SphereHierarchy>(movedView(waving->now, hierarchy->view()));
         waving_.push_back(std::move(waving));
       }
-      if (entry.solid && !surface(part.cloud))
+      if (part.solid && !surface(part.cloud))
         throw JsonError(file.path.string(), entry.place + ".solid", "cloud '" + part.cloud + "' has no faces",
                         "give a mesh that closes, or leave it out");
-      object.parts.push_back({part.name, std::move(hierarchy), part.pose, entry.solid});
+      object.parts.push_back({part.name, std::move(hierarchy), part.pose, part.solid});
     }
+    if (entry.part_poses) jointed_.push_back({id, entry.part_poses});
     try {
       scene_->add(std::move(object));
     }
@@ -257,14 +258,16 @@ SceneWorld::SceneWorld(const SceneFile& file, const std::function<void(const Clo
   }
   setRules(*scene_, file.rules);
   if (auto untested = warningOfNoPairs(*scene_)) warnings_.push_back(std::move(*untested));
-  deform(0.0);
+  setTime(0.0);
 }
 
 void SceneWorld::load(const CloudSource& source, const SceneFile& file, Loaded& loaded)
 {
   Mesh mesh;
   CloudFacts& facts = loaded.facts;
-  if (!source.shape.empty())
+  if (source.mesh)
+    mesh = *source.mesh;
+  else if (!source.shape.empty())
     mesh.vertices = cloudOf(shapePoints(source.shape, source.size, source.spacing));
   else
     mesh = readMesh(source.file, source.surface, &facts, {source.columns, source.allow_scale}, file.options.threads);
@@ -294,8 +297,12 @@ std::size_t SceneWorld::points() const
   return count;
 }
 
-void SceneWorld::deform(double time)
+void SceneWorld::setTime(double time)
 {
+  for (const Jointed& jointed : jointed_) {
+    const std::vector<Eigen::Isometry3d> poses = jointed.part_poses(time);
+    for (std::uint32_t part = 0; part < poses.size(); ++part) scene_->setPartPose(jointed.object, part, poses[part]);
+  }
   constexpr double two_pi = 6.28318530717958647692;
   for (const auto& waving : waving_) {
     const Wave& wave = waving->wave;

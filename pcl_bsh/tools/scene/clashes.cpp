@@ -95,7 +95,7 @@ void SceneClashList::addObject(ObjectId object)
     const io::CloudSource& source = sourceOf(entry.parts[part].cloud);
     PlacedShape placed = {shapeOf(source)};
     placed.clearance = clearance;
-    placed.solid = entry.solid;
+    placed.solid = entry.parts[part].solid;
     placed.uncertainty = source.uncertainty;
     placed.ignores_input = !clearance;
     parts_.emplace_back(object, part);

@@ -94,7 +94,7 @@ TEST(SceneFile, BecomesAScene)
   SceneResult result = world.scene().query();
   EXPECT_TRUE(result.self.empty()); // of arm and hand, which are adjacent, nothing is said
   for (int step = 0; step < 5; ++step) {
-    world.deform(world.scene().time() + file.dt);
+    world.setTime(world.scene().time() + file.dt);
     result = world.scene().step(file.dt);
     EXPECT_GT(result.cost(Effect::deform).pairs, 0u);
   }
@@ -158,7 +158,7 @@ TEST(SceneFile, NamesThePlaceOfWhatIsWrong)
          "objects[2].motion: {} is no motion: give one of { \"velocity\": ... }, { \"circular\": ... }, "
          "{ \"waypoints\": ... } and { \"trajectory\": ... }");
   expect("\"name\": \"moon\", \"cloud\": \"ball\"", "\"name\": \"moon\"",
-         "objects[3]: has none or several of 'cloud', 'parts': give one");
+         "objects[3]: has none or several of 'cloud', 'parts', 'robot': give one");
   expect("[ [\"base\", \"arm\"]", "[ [\"base\"]", "objects[2].adjacent[0]: [\"base\"] is no pair: give two names");
   expect("\"center\": [0, 0, 0], ", "", "objects[3].motion.circular: 'center' is missing: add it");
   expect("[3, 0, 0, 0, 0, 1.5]", "[3, 0]",

@@ -28,7 +28,7 @@ TEST(SceneWorld, WavesMovePointsAlongX)
   SceneWorld world(readSceneFile(scene));
   const PointsView rest = viewOf(world.cloud("a"));
   for (const double time : {0.0, 0.3, 1.0, 5.75}) {
-    if (time > 0.0) world.deform(time);
+    if (time > 0.0) world.setTime(time);
     const PointsView& now = world.scene()[0].parts[0].hierarchy->view();
     ASSERT_EQ(now.count, 3u);
     for (std::uint32_t i = 0; i < 3; ++i) {

@@ -194,7 +194,8 @@ TEST_F(Samples, EachSceneRuns)
   std::size_t run = 0;
   // Links would lead back to the source's folder, where the scans may not be.
   fs::create_directories(clone / "own/scenes");
-  fs::copy_file(source / "examples/scenes/cube.off", clone / "own/scenes/cube.off");
+  for (const char* file : {"cube.off", "robot.urdf", "robot.srdf", "robot.csv"})
+    fs::copy_file(source / "examples/scenes" / file, clone / "own/scenes" / file);
   for (const auto& entry : fs::directory_iterator(source / "examples/scenes")) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos) continue;
@@ -203,6 +204,9 @@ TEST_F(Samples, EachSceneRuns)
     if (scans && !haveScans()) continue;
 #ifndef PCL_BSH_BODIES
     if (scene.find("\"bodies\"") != std::string::npos) continue;
+#endif
+#ifndef PCL_BSH_ROBOTS
+    if (scene.find("\"robot\"") != std::string::npos) continue;
 #endif
     clone.write("own/scenes/" + name, scene);
     expectDone("build/release/bin/pcl_bsh_scene own/scenes/" + name + " --out run_" + name);

@@ -224,5 +224,36 @@ TEST_F(SceneRunTest, RefusesWhatIsNoSceneOrNoStepOfIt)
   fails(scene + " --export " + (folder / "p.vtp").string(), 2, ".vtm");
 }
 
+#ifdef PCL_BSH_ROBOTS
+TEST_F(SceneRunTest, LinksAreWhereTheyAreAtTheStepShown)
+{
+  folder.write("robot.urdf", R"(<robot name="slider">
+    <link name="rail"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    <link name="cart"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+    <joint name="s" type="prismatic"><parent link="rail"/><child link="cart"/><origin xyz="0 1 0"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  folder.write("states.csv", "s\n0\n2\n");
+  Options made = options();
+  made.scene = folder.write("robot.json", R"({
+    "clouds": { "ball": { "sphere": { "radius": 0.02 }, "spacing": 0.01 } },
+    "objects": [ { "name": "ball", "cloud": "ball", "fixed": true, "pose": [1, 1, 0.11] },
+                 { "name": "slider", "robot": { "urdf": "robot.urdf", "states": "states.csv", "interval": 1 } } ],
+    "steps": 4, "dt": 0.25, "effects": { "any": true } })");
+  const std::unique_ptr<ViewContent> content = makeSceneContent(made);
+  ASSERT_EQ(content->viewedClouds().size(), 3u);
+  EXPECT_EQ(content->viewedClouds()[2].name, "slider/cart");
+  for (const std::size_t step : {2u, 0u, 4u, 1u}) {
+    EXPECT_EQ(content->poseOf(1, step).translation(), Eigen::Vector3d::Zero());
+    EXPECT_EQ(content->poseOf(2, step).translation(), Eigen::Vector3d(0.5 * static_cast<double>(step), 1, 0));
+    EXPECT_EQ(content->collisions(step).colliding > 0, step == 2) << step;
+  }
+  DraggedCloud* const drag = content->drag(2, 4);
+  ASSERT_NE(drag, nullptr);
+  drag->moveTo(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1)));
+  EXPECT_EQ(content->poseOf(2, 4).translation(), Eigen::Vector3d(2, 1, 1)) << "as the joints are at this step";
+  EXPECT_EQ(content->paths(3).poses[0].back().translation(), Eigen::Vector3d(1.5, 1, 0)) << "of the last link";
+}
+#endif
+
 } // namespace
 } // namespace pcl_bsh::viewer

@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/scene_bodies.h>
+#include <pcl_bsh/tools/cli/scene_robots.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/viewer/actors/text.h>
 
@@ -31,7 +32,7 @@ Effects movingOnly(const Effects& effects)
 
 io::SceneFile readScene(const Options& options)
 {
-  io::SceneFile file = io::readSceneFile(*options.scene);
+  io::SceneFile file = cli::readScene(*options.scene);
   if (options.step > file.steps)
     throw cli::UsageError("--step: " + std::to_string(options.step) + ": the scene has steps 0 to " +
                           std::to_string(file.steps));
@@ -67,36 +68,43 @@ SceneOptions respondingOnly(SceneOptions options)
 }
 
 struct StepState {
-  std::vector<Eigen::Isometry3d> poses; ///< of each object
-  std::vector<std::string> contacts;    ///< lines about objects that touched another
-  std::vector<Contact> touching;        ///< of bodies, or of the object that is led
+  std::vector<Eigen::Isometry3d> poses;              ///< of each object
+  std::vector<std::vector<Eigen::Isometry3d>> parts; ///< in each object, of its parts
+  std::vector<std::string> contacts;                 ///< lines about objects that touched another
+  std::vector<Contact> touching;                     ///< of bodies, or of the object that is led
 };
 
-std::vector<Eigen::Isometry3d> posesOf(const Scene& scene)
+/// Where objects and parts are.
+StepState placesOf(const Scene& scene)
 {
-  std::vector<Eigen::Isometry3d> poses;
-  for (ObjectId object = 0; object < scene.size(); ++object) poses.push_back(scene[object].pose);
-  return poses;
+  StepState state;
+  for (ObjectId object = 0; object < scene.size(); ++object) {
+    state.poses.push_back(scene[object].pose);
+    state.parts.emplace_back();
+    for (const ScenePart& part : scene[object].parts) state.parts.back().push_back(part.pose);
+  }
+  return state;
 }
 
 /// A copy of a scene, of which an object follows the mouse. Others are at rest; bodies fall, and are pushed.
 class SceneDrag final : public DraggedCloud {
 public:
-  SceneDrag(const io::SceneFile& file, const Scene& of, const std::vector<Eigen::Isometry3d>& poses, ObjectId object)
+  SceneDrag(const io::SceneFile& file, const Scene& of, const StepState& from, ObjectId object)
   : object_(object),
     scene_(respondingOnly(file.options))
   {
     for (ObjectId i = 0; i < of.size(); ++i) {
       SceneObject copy = of[i];
       copy.motion = NoMotion();
-      copy.pose = poses[i];
+      copy.pose = from.poses[i];
+      for (std::size_t part = 0; part < copy.parts.size(); ++part) copy.parts[part].pose = from.parts[i][part];
       copy.fixed = copy.fixed || (!file.bodies && i != object); // pairs of others are not asked for
       scene_.add(std::move(copy));
     }
     io::setRules(scene_, file.rules);
     bodies_ = cli::bodiesOf(file, scene_);
     led_ = std::make_unique<DraggedObject>(scene_, object);
-    state_.poses = poses;
+    state_ = placesOf(scene_);
   }
 
   ObjectId object() const { return object_; }
@@ -117,7 +125,7 @@ public:
     }
     else
       now_ = led_->moveTo(T_world_object);
-    state_.poses = posesOf(scene_);
+    state_ = placesOf(scene_);
     state_.touching = now_.contacts;
     return now_;
   }
@@ -155,7 +163,7 @@ public:
   StepCollisions collisions(std::size_t step) const override;
   std::string heading(const StepCollisions& collisions, std::size_t step) const override;
 
-  /// Paths of moving objects until this step, where they are not too many.
+  /// Paths of moving objects, and of robots' last links, until this step, where they are not too many.
   MotionPaths paths(std::size_t step) const override;
   std::vector<Contact> contacts(std::size_t step) const override { return at(step).touching; }
   DraggedCloud* drag(std::size_t cloud, std::size_t step) const override;
@@ -246,8 +254,7 @@ void SceneContent::makeQueryScene()
 StepState SceneContent::stateAfter(const SceneResult& result) const
 {
   const Scene& scene = running_scene_->scene();
-  StepState state;
-  state.poses = posesOf(scene);
+  StepState state = placesOf(scene);
   for (const Outcome& outcome : result.outcomes)
     if (outcome.touched || outcome.stuck)
       state.contacts.push_back(scene[outcome.object].name + (outcome.stuck ? " is stuck in " : " meets ") +
@@ -268,7 +275,7 @@ const StepState& SceneContent::runTo(std::size_t step) const
   const std::size_t from = states_.size();
   while (states_.size() <= step) {
     running.share(static_cast<double>(states_.size() - from) / static_cast<double>(step + 1 - from));
-    running_scene_->deform(running_scene_->scene().time() + file_.dt);
+    running_scene_->setTime(running_scene_->scene().time() + file_.dt);
     states_.push_back(stateAfter(cli::stepOf(running_scene_->scene(), bodies_.get(), file_.dt).scene));
   }
   running.done(counted(step + 1 - from, "step"));
@@ -278,19 +285,20 @@ const StepState& SceneContent::runTo(std::size_t step) const
 Eigen::Isometry3d SceneContent::poseOf(std::size_t cloud, std::size_t step) const
 {
   const Place& place = places_[cloud];
-  return at(step).poses[place.object] * running_scene_->scene()[place.object].parts[place.part].pose;
+  const StepState& state = at(step);
+  return state.poses[place.object] * state.parts[place.object][place.part];
 }
 
 DraggedCloud* SceneContent::drag(std::size_t cloud, std::size_t step) const
 {
   const ObjectId object = places_[cloud].object;
   if (running_scene_->scene()[object].fixed) return nullptr;
-  const std::vector<Eigen::Isometry3d> poses = at(step).poses;
+  const StepState from = at(step);
   if (drag_ && drag_step_ == step && drag_->object() == object) return drag_.get();
   cli::Step preparing("Getting ready to drag " + running_scene_->scene()[object].name);
-  drag_ = std::make_unique<SceneDrag>(file_, running_scene_->scene(), poses, object);
+  drag_ = std::make_unique<SceneDrag>(file_, running_scene_->scene(), from, object);
   drag_step_ = step;
-  preparing.done(counted(poses.size(), "object"));
+  preparing.done(counted(from.poses.size(), "object"));
   return drag_.get();
 }
 
@@ -298,10 +306,15 @@ StepCollisions SceneContent::collisions(std::size_t step) const
 {
   if (step != drag_step_) drag_.reset();
   const StepState& state = at(step);
-  running_scene_->deform(static_cast<double>(step) * file_.dt);
+  running_scene_->setTime(static_cast<double>(step) * file_.dt);
   for (ObjectId object = 0; object < query_scene_->size(); ++object) {
     const Eigen::Isometry3d& pose = state.poses[object];
     if (pose.matrix() != (*query_scene_)[object].pose.matrix()) query_scene_->setPose(object, pose);
+    for (std::uint32_t part = 0; part < state.parts[object].size(); ++part) {
+      const Eigen::Isometry3d& in_object = state.parts[object][part];
+      if (in_object.matrix() != (*query_scene_)[object].parts[part].pose.matrix())
+        query_scene_->setPartPose(object, part, in_object);
+    }
     if (deforms(first_cloud_[object])) query_scene_->pointsChanged(object);
   }
   const SceneResult result = query_scene_->query();
@@ -348,7 +361,11 @@ MotionPaths SceneContent::paths(std::size_t step) const
     if (!moves(first_cloud_[object])) continue;
     if (paths.poses.size() == most_paths) return {};
     paths.poses.emplace_back();
-    for (std::size_t k = 0; k <= step; ++k) paths.poses.back().push_back(states_[k].poses[object]);
+    for (std::size_t k = 0; k <= step; ++k) {
+      const StepState& state = states_[k];
+      paths.poses.back().push_back(file_.objects[object].robot ? state.poses[object] * state.parts[object].back()
+                                                               : state.poses[object]);
+    }
   }
   return paths;
 }
