@@ -185,7 +185,6 @@ public:
     if (out_) out_->finish();
     putAnswer(report, site_, &other_, "point", options_, found);
     if (clashes.isWanted()) clashes.finish(other_, found, report);
-    putTiles(report, "tiles_of_obstacle", found.obstacle_tiles);
   }
 
 private:
@@ -249,6 +248,7 @@ int answer(SiteOptions options, bool& keeps)
   site::SiteAnswer found = cli::named(ask, question, {options.trajectory.empty() ? "--pose" : "--trajectory"});
   compared->finish(found, clashes, report);
   putTiles(report, "tiles", found.tiles);
+  if (!memory) putTiles(report, "tiles_of_obstacle", found.obstacle_tiles);
   if (tells) shown->done(counted(found.tiles.read, "tile") + " read");
   std::vector<std::string> told;
   addTexts(found.warnings, told);
