@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/io/robots/ros_packages.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
 #include <pcl_bsh/python/path_of.h>
