@@ -42,10 +42,7 @@ public:
   Added add(PointPair pair, bool surely, Work& work)
   {
     if (!surely && !pairs.collide(pair, work)) return Added::dropped;
-    result_.complete = result_.pairs.size() < most_;
-    if (!result_.complete) return Added::stop;
-    result_.pairs.push_back(pair);
-    return Added::kept;
+    return keepPair(pair, most_, result_);
   }
 
   const PointPairs pairs;

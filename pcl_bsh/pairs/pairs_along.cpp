@@ -71,13 +71,7 @@ public:
     return frame.band(near_ + 0x1p-20 * reach_ + 0x1p-19 * frame.unit() * std::sqrt(double{kLeastSquare})).miss;
   }
 
-  Added add(PointPair pair, bool, Work&)
-  {
-    result_.complete = result_.pairs.size() < most_;
-    if (!result_.complete) return Added::stop;
-    result_.pairs.push_back(pair);
-    return Added::kept;
-  }
+  Added add(PointPair pair, bool, Work&) { return keepPair(pair, most_, result_); }
 
   const PointPairs pairs;
 

@@ -8,12 +8,14 @@
 #define PCL_BSH_PAIRS_REACH_WALK_INL_H_
 #endif
 
+#include <pcl_bsh/pairs/contacts.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/simd/way_lanes-inl.h>
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +25,15 @@ namespace HWY_NAMESPACE {
 
 /// Tells what a receiver did with a pair.
 enum class Added { kept, dropped, stop };
+
+/// Keeps a pair, until there are too many.
+inline Added keepPair(PointPair pair, std::size_t most, PairsWithin& result)
+{
+  result.complete = result.pairs.size() < most;
+  if (!result.complete) return Added::stop;
+  result.pairs.push_back(pair);
+  return Added::kept;
+}
 
 /// Walks to every pair of points that may be within a reach and hands it to a receiver: `pairs`, which decides them;
 /// `double reach()`, how far pairs are still of interest, which may shrink, to less than 0 where points have radii;
