@@ -216,7 +216,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
   }
   listing.unit = report.unit;
   listing.coordinate_system = report.coordinate_system;
-  listing.keep(all, ignored, extentOf(a.view()), report.warnings);
+  if (listing.kept) listing.keep(all, ignored, extentOf(a.view()), report.warnings);
   const auto ask_all = [&](const Question& asked) {
     ObstaclesAnswer found = io::askAbout(asked, scan, shapes, all);
     if (asked.wanted.collisions()) {

@@ -92,8 +92,10 @@ private:
     listing_.coordinate_system = coordinate_system;
     std::vector<std::string> warnings;
     for (io::ComparedObstacle& one : found.obstacles) one.asked = unasked_.count(one.name) == 0;
-    const std::optional<Extent> box = extentOf(found.inputHierarchy(question).view());
-    namingOption("previous", [&] { listing_.keep(found.obstacles, ignored_, box, warnings); });
+    if (listing_.kept) {
+      const std::optional<Extent> box = extentOf(found.inputHierarchy(question).view());
+      namingOption("previous", [&] { listing_.keep(found.obstacles, ignored_, box, warnings); });
+    }
     if (between) listing_.between = io::askBetween(question, found.shapes, found.obstacles, ignored_);
     const io::ClashLists lists =
         io::listOf(listing_, found.inputHierarchy(question), hierarchies, found.obstacles, found.answer, warnings);

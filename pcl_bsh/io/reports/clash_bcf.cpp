@@ -214,8 +214,7 @@ private:
       const pugi::xml_node comments = parent("Comments");
       for (const BcfComment& comment : earlier->comments) addComment(comments, comment);
     }
-    const bool has_picture =
-        drawsPictures() && isPresent(clash.status) && !report_->kept && pictures_++ < most_clash_pictures;
+    const bool has_picture = drawsPictures() && report_->draws(clash) && pictures_++ < most_clash_pictures;
     addViewpoint(parent("Viewpoints"), is_3_ ? "ViewPoint" : "Viewpoints", viewpoint, has_picture);
     if (has_picture)
       files_[guid + '/' + snapshot_file] = pngOf(drawings_.picture(*report_, clash, titleOf(clash)), snapshot_pixels);

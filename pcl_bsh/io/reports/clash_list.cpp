@@ -214,12 +214,16 @@ ListText readListText(const std::filesystem::path& path)
   }
 }
 
-std::vector<ClashList> readClashLists(const std::filesystem::path& path)
+std::vector<ClashList> listsOf(const ListText& text)
 {
-  const ListText text = readListText(path);
   std::vector<ClashList> lists = parseClashLists(text.list, text.name);
   for (ClashList& list : lists) list.topics = text.topics;
   return lists;
+}
+
+std::vector<ClashList> readClashLists(const std::filesystem::path& path)
+{
+  return listsOf(readListText(path));
 }
 
 std::vector<ClashList> parseClashLists(std::string_view text, const std::string& name)

@@ -66,6 +66,9 @@ struct ListText {
 /// @throws as readClashLists()
 ListText readListText(const std::filesystem::path& path);
 
+/// Parses the lists of a text. @throws as readClashLists()
+std::vector<ClashList> listsOf(const ListText& text);
+
 /// The lists of an earlier run, one for each of its obstacles, for compareWithEarlier().
 /// @param path of a list in JSON, or of BCF
 /// @throws files::FileError when the file cannot be read, or is no BCF; JsonError naming the place in it that no run

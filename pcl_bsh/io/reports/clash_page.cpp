@@ -184,8 +184,6 @@ private:
             {"closest_pose", std::to_string(clash.closest_pose)}};
   }
 
-  static bool hasCard(const ClashReport& report, const Clash& clash) { return isPresent(clash.status) && !report.kept; }
-
   enum class Table { certain, perhaps, unseen }; ///< each kind of clash has its own
 
   static Table tableOf(const Clash& clash)
@@ -200,7 +198,7 @@ private:
     std::size_t cards = 0;
     for (const auto& [report, one] : all_) {
       const Clash& clash = *one;
-      const bool has_card = hasCard(*report, clash) && cards++ < most_clash_pictures;
+      const bool has_card = report->draws(clash) && cards++ < most_clash_pictures;
       if (tableOf(clash) != table) continue;
       Object row = factsOf(*report, clash);
       row["size"] = number(longestSide(clash), 3);
@@ -232,7 +230,7 @@ private:
     List cards;
     bool all = true;
     for (const auto& [report, clash] : all_) {
-      if (!hasCard(*report, *clash)) continue;
+      if (!report->draws(*clash)) continue;
       all = cards.size() < most_clash_pictures;
       if (!all) break;
       cards.push_back(card(*report, *clash));

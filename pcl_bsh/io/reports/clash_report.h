@@ -64,6 +64,9 @@ struct ClashReport {
     return countIf([&](const Clash& clash) { return clash.status == status; });
   }
 
+  /// Whether a clash is drawn, as far as there is room: it is there now, and so are its points.
+  bool draws(const Clash& clash) const { return isPresent(clash.status) && kept == nullptr; }
+
   /// Clashes that are there now.
   std::size_t present() const
   {

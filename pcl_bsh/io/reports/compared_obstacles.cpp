@@ -108,12 +108,13 @@ std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<P
 void ClashListing::readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings)
 {
   if (!previous) return;
-  earlier = readClashLists(*previous);
+  const ListText text = readListText(*previous);
+  earlier = listsOf(text);
   std::vector<std::string> names;
   for (const ComparedObstacle& one : obstacles)
     if (!one.asked) names.push_back(one.name);
   if (!names.empty()) {
-    kept = readKeptObstacles(*previous, names);
+    kept = keptObstacles(*previous, text, earlier, names);
     if (cluster_distance.value_or(kept->cluster_distance) != kept->cluster_distance)
       throw files::FileError(*previous, "has the cluster distance " + numberText(kept->cluster_distance),
                              "give the same, or ask about all obstacles");
@@ -130,7 +131,6 @@ void ClashListing::readEarlier(const std::vector<ComparedObstacle>& obstacles, s
 void ClashListing::keep(std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored,
                         const std::optional<Extent>& scan, std::vector<std::string>& warnings) const
 {
-  if (!kept) return;
   for (ComparedObstacle& one : obstacles) {
     if (one.asked) continue;
     kept->requireSame(one.name, {one.question, input, one.file}, ignored.holds(kInputName, one.name),

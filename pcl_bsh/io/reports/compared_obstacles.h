@@ -75,7 +75,7 @@ struct ClashListing {
   void readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings);
 
   /// Takes over the answers about obstacles that are not asked about. To be called after readEarlier(), with `unit` and
-  /// `coordinate_system`. Does nothing where all are asked about.
+  /// `coordinate_system`. @pre some are kept
   /// @param scan box of the input. @param warnings gets a line
   /// @throws as KeptObstacles::requireSame() does
   void keep(std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored, const std::optional<Extent>& scan,

@@ -106,17 +106,13 @@ bool isSame(const std::optional<Extent>& a, const std::optional<Extent>& b)
 
 } // namespace
 
-KeptObstacles readKeptObstacles(const std::filesystem::path& path, const std::vector<std::string>& names)
+KeptObstacles keptObstacles(const std::filesystem::path& path, const ListText& text,
+                            const std::vector<ClashList>& lists, const std::vector<std::string>& names)
 {
-  const ListText text = readListText(path);
   KeptObstacles all;
   all.file = path;
-  for (ClashList& list : parseClashLists(text.list, text.name)) {
-    if (std::find(names.begin(), names.end(), list.name) == names.end()) continue;
-    list.topics = text.topics;
-    std::string name = list.name;
-    all.by_name[std::move(name)].list = std::move(list);
-  }
+  for (const ClashList& list : lists)
+    if (std::find(names.begin(), names.end(), list.name) != names.end()) all.by_name[list.name].list = list;
   for (const std::string& name : names)
     if (all.by_name.count(name) == 0) throw files::FileError(path, "does not tell of '" + name + "'", ask_about_it);
 

@@ -42,8 +42,9 @@ struct KeptObstacles {
                    const std::string& unit_now, const std::string& coordinate_system_now) const;
 };
 
-/// @param names of the obstacles that are kept
+/// @param path of the earlier list. @param text, lists what it says. @param names of the obstacles that are kept
 /// @throws as readClashLists(); files::FileError where the list does not tell of one
-KeptObstacles readKeptObstacles(const std::filesystem::path& path, const std::vector<std::string>& names);
+KeptObstacles keptObstacles(const std::filesystem::path& path, const ListText& text,
+                            const std::vector<ClashList>& lists, const std::vector<std::string>& names);
 
 } // namespace pcl_bsh::io

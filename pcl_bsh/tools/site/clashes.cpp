@@ -40,7 +40,7 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options,
   listing_.previous = options.previous;
   if (options.cluster_distance > 0) listing_.cluster_distance = options.cluster_distance;
   listing_.readEarlier(all, warnings_);
-  listing_.keep(all, options.ignoredPairs(), extentOf(site.bounds), warnings_);
+  if (listing_.kept) listing_.keep(all, options.ignoredPairs(), extentOf(site.bounds), warnings_);
   Spacing spacing;
   spacing.median = site::spacingOf(site);
   distance_ = listing_.cluster_distance.value_or(io::clusterDistanceFor(io::greatestClearance(all), spacing));
@@ -168,8 +168,7 @@ void SiteClashList::write(std::deque<Listed>& all, const std::vector<io::Between
   compare(lists, all);
   listing_.between = between;
   listing_.complete(lists, warnings_);
-  for (const std::filesystem::path& file : options_.clashes)
-    for (std::string& remark : io::writeClashes(file, lists)) warnings_.push_back(std::move(remark));
+  options_.write(lists, warnings_);
   counts_ = io::clashCounts(lists);
 }
 

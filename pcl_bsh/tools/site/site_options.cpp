@@ -87,30 +87,14 @@ struct CollideTexts {
     app.add_option("OBSTACLE", options.obstacle,
                    "cloud or mesh to collide with, which must fit into memory; or another site of any size")
         ->type_name("");
-    options.addTo(app);
+    options.SeveralObstacles::addTo(app);
     app.add_option("--report", options.report, "JSON file for the answer; -: standard output")->type_name("FILE");
     app.add_option("--out", options.out, "new site with what was found of each point, as fields more of the same tiles")
         ->type_name("SITE");
     app.add_option("--pose", pose, "of OBSTACLE in SITE's frame: x,y,z,roll,pitch,yaw or a file")->type_name("POSE");
     app.add_option("--trajectory", options.trajectory, "poses of OBSTACLE, one a line, instead of --pose")
         ->type_name("FILE");
-    app.add_option(
-           "--clashes", options.clashes,
-           "list of the places that collide, to .json, .csv, .html, .bcf (3.0) or .bcfzip (2.1); may be given more "
-           "than once")
-        ->type_name("FILE")
-        ->allow_extra_args(false);
-    app.add_option("--cluster-distance", options.cluster_distance,
-                   "colliding points no farther apart belong to one clash (default: the greater of D and four spacings "
-                   "of SITE's tiles, rounded up to a power of two)")
-        ->type_name("L")
-        ->transform(number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); }));
-    app.add_option(
-           "--previous", options.previous,
-           "earlier list, .json or BCF, of the same options but --swept and --seen: clashes are new, persisting, "
-           "resolved, or not visited by the path, unseen or not scanned any more")
-        ->type_name("FILE");
-    app.add_option("--unit", options.unit, "name of the clouds' unit, for --clashes")->type_name("NAME");
+    options.ClashOptions::addTo(app, "--clashes");
     app.add_flag("--any", any, "only whether any point collides");
     app.add_flag("--closest", closest, "the smallest distance, and the points that have it");
     app.add_flag("--distances", distances, "how many points have a distance, and the greatest");
@@ -146,7 +130,7 @@ struct CollideTexts {
         throw UsageError(std::string(option) +
                          ": is not told of several obstacles of a site: leave it out, or give OBSTACLE alone");
     if (options.areGiven()) options.readObstacles(options.obstacle, options.warnings);
-    options.requireConsistent(options.question.solid, options.previous.has_value());
+    options.SeveralObstacles::requireConsistent(options.question.solid, options.previous.has_value());
     for (const ObstacleChoice& one : options.obstacles)
       if (std::filesystem::is_directory(one.file))
         throw UsageError("--obstacle: " + one.file.string() + ": is a folder: ask about a site alone, as OBSTACLE");
@@ -204,10 +188,7 @@ struct CollideTexts {
       throw UsageError("--report, --out, --obstacle-out, --clashes: none is given: give one or more of them");
     if (lists && (any || closest || distances))
       throw UsageError("--clashes: are of flags or a path: leave out --any, --closest and --distances");
-    if (!lists && (options.cluster_distance > 0 || options.previous)) {
-      throw UsageError(std::string(options.previous ? "--previous" : "--cluster-distance") +
-                       ": no clash report is written: give --clashes FILE");
-    }
+    options.ClashOptions::requireConsistent();
     if (!lists && !options.unit.empty()) throw UsageError("--unit: no clash report tells it: give --clashes FILE");
     if (!options.plan.empty() && options.report.empty())
       throw UsageError("--plan: is told in the report: add --report");
@@ -234,9 +215,9 @@ struct CollideTexts {
     for (const ObstacleChoice& one : options.obstacles)
       if (one.part == 0) files.reads("--obstacle", one.file).readsPose("--obstacle", one.pose_text);
     files.readsPose("--pose", pose).reads("--trajectory", options.trajectory);
-    files.reads("--previous", options.previous.value_or("")).writes("--report", options.report);
+    files.writes("--report", options.report);
     files.writesFile("--obstacle-out", options.obstacle_out);
-    for (const std::filesystem::path& list : options.clashes) files.writes("--clashes", list, "--previous"); // updated
+    options.ClashOptions::addTo(files);
   }
 };
 #endif

@@ -2,6 +2,7 @@
 // The command line of pcl_bsh_site.
 #pragma once
 
+#include <pcl_bsh/tools/cli/clash_options.h>
 #include <pcl_bsh/tools/cli/obstacle_choice.h>
 #include <pcl_bsh/tools/cli/reading.h>
 #include <pcl_bsh/tools/cli/used_files.h>
@@ -20,7 +21,7 @@ inline constexpr auto site_program = "pcl_bsh_site";
 
 enum class SiteCommand : std::uint8_t { make, info, validate, write, collide };
 
-struct SiteOptions : SeveralObstacles {
+struct SiteOptions : SeveralObstacles, ClashOptions {
   SiteCommand command = SiteCommand::info;
   std::vector<std::filesystem::path> clouds; ///< to make a site of
   std::filesystem::path site;
@@ -43,12 +44,8 @@ struct SiteOptions : SeveralObstacles {
   Question question;
   bool alongPath() const { return question.path || question.wanted.contacts; } ///< also with a single pose
   std::filesystem::path obstacle, trajectory, report;
-  std::filesystem::path obstacle_out;         ///< the obstacle with its flags, a cloud or a site as it, or none
-  std::vector<std::filesystem::path> clashes; ///< files for the clash report, .json .csv .html .bcf .bcfzip
-  double cluster_distance = 0;                ///< 0: from clearance and spacing
-  std::optional<std::filesystem::path> previous;
-  std::string unit;    ///< of the clouds, for the clash report; empty: not known
-  bool resume = false; ///< go on with what the same question has left in `out`
+  std::filesystem::path obstacle_out; ///< the obstacle with its flags, a cloud or a site as it, or none
+  bool resume = false;                ///< go on with what the same question has left in `out`
   unsigned make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted
   std::vector<std::string> warnings;
