@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/programs/program_run.h"
 
+#include <pcl_bsh/site/tiles/tile_visitor.h>
+
 #include <gtest/gtest.h>
 
 #include <poll.h>
@@ -9,6 +11,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -77,6 +80,23 @@ TEST(TileVisitor, OpensNoDisplay)
   const Outcome done = run("pcl_bsh_site", "collide site scan.xyz --clearance 1 --report r.json", folder.path());
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(server.calls(), 0);
+}
+
+/// Open MPI's daemon would be sought where OPAL_BINDIR says: a question of one rank does without it, and leaves to the
+/// programs that it starts what the user's environment was.
+TEST(TileVisitor, StartsNoDaemonForOneRank)
+{
+  const io::TemporaryFolder folder;
+  folder.write("scan.xyz", "0 0 0\n1 0 0\n");
+  EXPECT_EQ(run("pcl_bsh_site", "make scan.xyz --out site", folder.path()).exit_code, 0);
+  setenv("OPAL_BINDIR", folder.path().c_str(), 1);
+  const Outcome done = run("pcl_bsh_site", "collide site scan.xyz --clearance 1 --report r.json", folder.path());
+  unsetenv("OPAL_BINDIR");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+
+  EXPECT_EQ(ranks(), 1u);
+  EXPECT_EQ(std::getenv("OMPI_MCA_pml"), nullptr);
+  EXPECT_EQ(std::getenv("OMPI_MCA_ess_singleton_isolated"), nullptr);
 }
 
 } // namespace

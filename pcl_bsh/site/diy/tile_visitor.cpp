@@ -12,15 +12,38 @@
 // clang-format on
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace pcl_bsh::site {
 
 namespace {
+
+/// Whether a launcher of MPI's began this process: else there is one rank.
+bool launched()
+{
+  constexpr std::array<const char*, 3> kLaunchers = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+  return std::any_of(kLaunchers.begin(), kLaunchers.end(), [](const char* name) { return std::getenv(name); });
+}
+
+/// MPI_Init() with these variables of the environment. A value that the user has set stays. The others are gone
+/// afterwards, for other programs that this process starts.
+void initMpi(const std::vector<std::pair<const char*, const char*>>& variables)
+{
+  std::vector<const char*> made;
+  for (const auto& [name, value] : variables) {
+    if (std::getenv(name)) continue;
+    setenv(name, value, 0);
+    made.push_back(name);
+  }
+  MPI_Init(nullptr, nullptr);
+  for (const char* name : made) unsetenv(name);
+}
 
 void beginMpi()
 {
@@ -28,9 +51,13 @@ void beginMpi()
   MPI_Initialized(&begun);
   if (begun != 0) return;
   // MPI asks hwloc what the machine is made of, and hwloc's component `gl` opens each X display from :0 to :9 for it: a
-  // server that ends meanwhile ends the program. A value that the user has set stays.
-  setenv("HWLOC_COMPONENTS", "-gl", 0);
-  MPI_Init(nullptr, nullptr);
+  // server that ends meanwhile ends the program.
+  std::vector<std::pair<const char*, const char*>> variables = {{"HWLOC_COMPONENTS", "-gl"}};
+  // Open MPI starts a daemon and looks for networks even for one rank, which takes longer than most questions.
+  if (!launched())
+    variables.insert(variables.end(),
+                     {{"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_pml", "ob1"}, {"OMPI_MCA_btl", "self"}});
+  initMpi(variables);
   std::atexit([] {
     int ended = 0;
     MPI_Finalized(&ended);
