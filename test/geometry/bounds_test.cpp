@@ -8,13 +8,13 @@
 #include <pcl_bsh/geometry/sphere_radius.h>
 #include <pcl_bsh/hierarchy/storage.h>
 
+#include "support/attacks.h"
 #include "support/random.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <vector>
 
@@ -27,12 +27,7 @@ using test::Random;
 using Floats = std::array<float, 3>;
 
 const Isometry3d identity = Isometry3d::Identity();
-
-long attacks()
-{
-  const char* asked = std::getenv("PCL_BSH_ATTACKS");
-  return asked ? std::atol(asked) : 200000;
-}
+const long kAttacks = test::attacks(200'000);
 
 Vector3d vectorOf(const Point3& p)
 {
@@ -165,7 +160,7 @@ TEST(ErrorBounds, PairsNearTheClearance)
 {
   Random random(24);
   long wrong = 0, hits = 0, misses = 0, undecided = 0;
-  for (long n = 0; n < attacks();) {
+  for (long n = 0; n < kAttacks;) {
     const VoxelPair m(random);
     for (int k = 0; k < 64; ++k, ++n) {
       const auto i = static_cast<std::size_t>(random.integer(0, 15)),
@@ -182,9 +177,9 @@ TEST(ErrorBounds, PairsNearTheClearance)
     }
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(hits, attacks() / 10);
-  EXPECT_GT(misses, attacks() / 20);
-  EXPECT_GT(undecided, attacks() / 20);
+  EXPECT_GT(hits, kAttacks / 10);
+  EXPECT_GT(misses, kAttacks / 20);
+  EXPECT_GT(undecided, kAttacks / 20);
   RecordProperty("decided", std::to_string(hits + misses));
 }
 
@@ -210,7 +205,7 @@ TEST(ErrorBounds, SpheresNearTheClearance)
   Random random(25);
   constexpr float margin = 0x1p-20f; // as the sphere kernels have it
   long wrong_apart = 0, wrong_inside = 0, apart = 0, inside = 0;
-  for (long n = 0; n < attacks();) {
+  for (long n = 0; n < kAttacks;) {
     const VoxelPair m(random);
     for (int k = 0; k < 16; ++k, ++n) {
       const auto i = static_cast<std::size_t>(random.integer(0, 15)),
@@ -248,15 +243,15 @@ TEST(ErrorBounds, SpheresNearTheClearance)
   }
   EXPECT_EQ(wrong_apart, 0);
   EXPECT_EQ(wrong_inside, 0);
-  EXPECT_GT(apart, attacks() / 20);
-  EXPECT_GT(inside, attacks() / 20);
+  EXPECT_GT(apart, kAttacks / 20);
+  EXPECT_GT(inside, kAttacks / 20);
 }
 
 TEST(ErrorBounds, FramesThatSeparate)
 {
   Random random(26);
   long wrong = 0, separate = 0;
-  for (long n = 0; n < attacks();) {
+  for (long n = 0; n < kAttacks;) {
     const VoxelPair m(random);
     double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 16; ++i)
@@ -277,7 +272,7 @@ TEST(ErrorBounds, StoredSpheresHoldTheGivenPoints)
 {
   Random random(27);
   long wrong = 0;
-  for (long n = 0; n < attacks();) {
+  for (long n = 0; n < kAttacks;) {
     const VoxelPair m(random);
     for (const Cluster* c : {&m.a, &m.b}) {
       const LocalFrame& f = c->frame;
@@ -314,7 +309,7 @@ TEST(ErrorBounds, LosslessFramesKeepEveryFloat)
 {
   Random random(29);
   long wrong = 0, lossless = 0;
-  for (long n = 0; n < attacks(); n += 16) {
+  for (long n = 0; n < kAttacks; n += 16) {
     const double scale = std::ldexp(random.uniform(1, 2), random.integer(-24, 24));
     const double place[] = {0.0, 1.0, -1.0, 0.5, random.uniform(-3, 3), 1024.0, -4097.0, 0x1p25};
     const Point3 middle = random.point([&] { return scale * random.pick(place); });
@@ -331,7 +326,7 @@ TEST(ErrorBounds, LosslessFramesKeepEveryFloat)
         wrong += cluster.frame.origin[k] + static_cast<double>(cluster.stored[i][k]) != cluster.given[i][k];
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(16 * lossless, attacks() / 4);
+  EXPECT_GT(16 * lossless, kAttacks / 4);
 }
 
 TEST(ErrorBounds, GivenSpheresHoldTheirPoints)
@@ -339,7 +334,7 @@ TEST(ErrorBounds, GivenSpheresHoldTheirPoints)
   Random random(28);
   const ExactDistance distance(identity, identity);
   long wrong = 0;
-  for (long n = 0; n < attacks();) {
+  for (long n = 0; n < kAttacks;) {
     const double scale = std::ldexp(random.uniform(1, 2), random.integer(-1074, 1000));
     const double far = random.chance(0.5) ? 0.0 : scale * std::ldexp(1.0, random.integer(0, 20));
     std::vector<Point3> points(static_cast<std::size_t>(random.integer(1, 16)));
@@ -357,7 +352,7 @@ TEST(ErrorBounds, EnclosuresHoldTheDistance)
 {
   Random random(29);
   long wrong = 0;
-  for (long n = 0; n < attacks() / 4;) {
+  for (long n = 0; n < kAttacks / 4;) {
     const VoxelPair m(random);
     for (std::size_t i = 0; i < 16; ++i, ++n) {
       const ExactDistance::Enclosure interval = m.distance.enclose(m.a.given[i], m.b.given[i]);

@@ -2,6 +2,7 @@
 #include <pcl_bsh/robot/kinematics.h>
 
 #include "made_arms.h"
+#include "support/attacks.h"
 #include "support/refusal.h"
 #include <pcl_bsh/base/invalid_input.h>
 
@@ -45,9 +46,11 @@ TEST(Kinematics, TurnsAndSlidesLinks)
   EXPECT_LT((poses[3].translation() - Eigen::Vector3d(0, 1.5, 3)).norm(), 1e-15);
 }
 
-/// Climbs to the states where doubles are farthest from the exact place.
+/// Climbs to the states where doubles are farthest from the exact place. PCL_BSH_ATTACKS in the environment: how many
+/// states.
 TEST(Kinematics, BoundsTheErrorOfPlaces)
 {
+  const long steps = test::attacks(18'000) / 6;
   double most = 0.0;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
     test::Random random(seed);
@@ -66,7 +69,7 @@ TEST(Kinematics, BoundsTheErrorOfPlaces)
     };
     RobotState best = test::madeState(random, robot);
     double worst = share(best);
-    for (int step = 0; step < 3000; ++step) {
+    for (long step = 0; step < steps; ++step) {
       RobotState next = step % 3 == 0 ? test::madeState(random, robot) : best;
       if (step % 3 != 0)
         for (double& value : next) value += random.uniform(-1e-2, 1e-2);
