@@ -128,7 +128,8 @@ std::vector<Verdict> race(Racer& racer, const std::vector<robots::RobotWorld::Mo
 /// A cloud of points of one radius, as sensors give it to a world.
 struct Scan {
   Scan(const test::ArmProblem& problem, std::size_t points, test::Random& random)
-      : xyz(problem.cloud(points, random)), radii(xyz.size() / 3, static_cast<float>(kPointRadius))
+  : xyz(problem.cloud(points, random)),
+    radii(xyz.size() / 3, static_cast<float>(kPointRadius))
   {
   }
 
@@ -164,8 +165,7 @@ bool run(const Options& options, Table& rows)
   const std::vector<test::ArmProblem> problems = test::armProblems(options.data / "problems.txt");
   test::Random random(1);
   Racer first, again, with_self, sampled, states, ready, mesh_motions, mesh_states;
-  for (std::size_t i = 0; i < problems.size(); i += options.every)
-    makeReady(ready, arm, problems[i], options, random);
+  for (std::size_t i = 0; i < problems.size(); i += options.every) makeReady(ready, arm, problems[i], options, random);
   for (std::size_t i = 0; i < problems.size(); i += options.every) {
     progress(problems[i].name);
     const Scan scan(problems[i], options.points, random);

@@ -2,7 +2,6 @@
 #ifdef PCL_BSH_SITE_QUERIES
 #include "clashes.h"
 
-#include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
 #include <utility>
@@ -27,10 +26,7 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options,
   options_(options)
 {
   if (options.clashes.empty()) return;
-  for (const std::filesystem::path& list : options.clashes) {
-    io::requireClashFormat(list);
-    files::requireWritable(list);
-  }
+  options.requireWritable();
   std::vector<io::ComparedObstacle> other; // that is a site
   if (!obstacles) other.push_back({"", options.obstacle.string(), {}, {}, options.question});
   std::vector<io::ComparedObstacle>& all = obstacles ? obstacles->all : other;
