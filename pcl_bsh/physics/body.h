@@ -90,6 +90,12 @@ struct WorldBody {
                        bullet(axes.translation() - origin));
   }
 
+  /// A place of the world, as the solver knows it of the body.
+  btVector3 inOwnAxes(const Eigen::Vector3d& place) const
+  {
+    return bullet(own_axes.inverse() * (pose.inverse() * place));
+  }
+
   /// No place of it moves faster.
   double mostSpeed() const { return velocity.norm() + spin.norm() * reach; }
 };

@@ -3,10 +3,9 @@
 
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/pairs/closest_pair.h>
-#include <pcl_bsh/physics/body.h>
+#include <pcl_bsh/physics/island_world.h>
+#include <pcl_bsh/physics/joint.h>
 #include <pcl_bsh/query/request_check.h>
-
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 
 #include <Eigen/Eigenvalues>
 
@@ -43,27 +42,6 @@ void check(const Material& material)
   checkNumber("restitution", material.restitution, 0.0, 1.0, false);
 }
 
-/// Islands are those of the manifolds, not of boxes that overlap.
-class IslandWorld final : public btDiscreteDynamicsWorld {
-public:
-  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
-
-protected:
-  void calculateSimulationIslands() override
-  {
-    btSimulationIslandManager& islands = *getSimulationIslandManager();
-    islands.updateActivationState(getCollisionWorld(), getCollisionWorld()->getDispatcher());
-    btDispatcher& dispatcher = *getCollisionWorld()->getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-      const btPersistentManifold& touching = *dispatcher.getManifoldByIndexInternal(i);
-      const btCollisionObject &a = *touching.getBody0(), &b = *touching.getBody1();
-      if (!a.isStaticOrKinematicObject() && !b.isStaticOrKinematicObject())
-        islands.getUnionFind().unite(a.getIslandTag(), b.getIslandTag());
-    }
-    islands.storeIslandActivationState(getCollisionWorld());
-  }
-};
-
 } // namespace
 
 struct World::State {
@@ -83,6 +61,7 @@ struct World::State {
   }
   ~State()
   {
+    for (const auto& [bodies_of_it, joint] : joints) world.removeConstraint(joint.get());
     for (WorldBody& body : bodies) world.removeRigidBody(body.solved.get());
   }
 
@@ -122,6 +101,16 @@ struct World::State {
     return static_cast<BodyId>(bodies.size() - 1);
   }
 
+  void join(const std::pair<BodyId, BodyId>& key, const Joint& joint)
+  {
+    const WorldBody &a = bodies.at(key.first), &b = bodies.at(key.second);
+    std::unique_ptr<btTypedConstraint>& held = joints[key];
+    if (held) world.removeConstraint(held.get());
+    held = constraintOf(a, b, joint);
+    world.addConstraint(held.get());
+    for (const WorldBody* body : {&a, &b}) body->solved->activate();
+  }
+
   bool areNear(const WorldBody& a, const WorldBody& b, double within) const
   {
     return (a.center() - b.center()).norm() <= a.reach + b.reach + within;
@@ -137,6 +126,7 @@ struct World::State {
         const std::pair<BodyId, BodyId> key(i, j);
         if (!a.is_free && a.moves()) b.solved->activate();
         if (!b.is_free && b.moves()) a.solved->activate();
+        if (joints.count(key) != 0) continue;
         const auto before = manifolds.find(key);
         const bool rest = (a.isAsleep() || (!a.is_free && !a.moves())) && (b.isAsleep() || (!b.is_free && !b.moves()));
         if (!rest) {
@@ -176,8 +166,7 @@ struct World::State {
         into = dispatcher.getNewManifold(a.solved.get(), b.solved.get());
       const double least = -options.most_push * dt / kErrorReduction;
       const double gap = std::max(bounces ? std::min(contact.distance, 0.0) : contact.distance, least);
-      btManifoldPoint point(bullet(a.own_axes.inverse() * (a.pose.inverse() * contact.place_a)),
-                            bullet(b.own_axes.inverse() * (b.pose.inverse() * contact.place_b)), bullet(contact.normal),
+      btManifoldPoint point(a.inOwnAxes(contact.place_a), b.inOwnAxes(contact.place_b), bullet(contact.normal),
                             static_cast<btScalar>(gap));
       point.m_positionWorldOnA = bullet(contact.place_a - origin);
       point.m_positionWorldOnB = bullet(contact.place_b - origin);
@@ -248,7 +237,7 @@ struct World::State {
     return std::min(seconds, dt);
   }
 
-  /// For how many seconds each body may move. Two that come near each other move for equally long.
+  /// For how many seconds each body may move. Two that come near each other or are joined move for equally long.
   std::vector<double> secondsOfBodies(double dt, Work& work) const
   {
     std::vector<double> seconds(bodies.size(), dt);
@@ -256,6 +245,10 @@ struct World::State {
     for (BodyId i = 0; i < bodies.size(); ++i)
       for (BodyId j = i + 1; j < bodies.size(); ++j) {
         if (!bodies[i].is_free && !bodies[j].is_free) continue;
+        if (joints.count({i, j}) != 0) {
+          near.emplace_back(i, j);
+          continue;
+        }
         if (const auto known = manifolds.find({i, j}); known != manifolds.end() && areInEachOther(known->second))
           continue;
         const auto before = secondsBefore(bodies[i], bodies[j], dt, work);
@@ -285,6 +278,7 @@ struct World::State {
   std::vector<WorldBody> bodies;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(); ///< of the solver's floats: beside the bodies
   std::map<std::pair<BodyId, BodyId>, Manifold> manifolds;
+  std::map<std::pair<BodyId, BodyId>, std::unique_ptr<btTypedConstraint>> joints;
   std::map<std::tuple<BodyId, BodyId, std::uint32_t>, btScalar> impulses; ///< of the last step, by contact
   std::vector<std::tuple<BodyId, BodyId, std::uint32_t>> given;           ///< contacts in the order of the solver's
 };
@@ -312,6 +306,12 @@ BodyId World::add(const Collider& collider, const Eigen::Isometry3d& T_world_col
                   const Material& material)
 {
   return state_->add(collider, T_world_collider, &mass, material);
+}
+
+void World::join(BodyId a, BodyId b, const Joint& joint)
+{
+  check(joint, state_->bodies.at(a), state_->bodies.at(b));
+  state_->join(std::minmax(a, b), joint);
 }
 
 std::size_t World::size() const noexcept

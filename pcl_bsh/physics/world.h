@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 PCL_BSH_EXPORT_BEGIN
@@ -31,6 +32,12 @@ using BodyId = std::uint32_t; ///< counted from 0 in the order of being added
 struct Material {
   double friction = 0.7;    ///< finite, >= 0
   double restitution = 0.0; ///< in [0, 1]
+};
+
+/// Two bodies keep a place in common, and a hinge an axis.
+struct Joint {
+  Eigen::Vector3d place;                    ///< in the world, metres
+  std::optional<Eigen::Vector3d> axis = {}; ///< of a hinge, of any length above 0; none: a ball and socket
 };
 
 /// The options of a world.
@@ -80,6 +87,10 @@ public:
   /// A body that moves freely. @throws InvalidInput as above, and for a mass or an inertia that is not finite and > 0
   BodyId add(const Collider& collider, const Eigen::Isometry3d& T_world_collider, const MassProperties& mass,
              const Material& material = {});
+
+  /// Holds two bodies together as they are now. They do not touch each other from then on.
+  /// @throws InvalidInput for a body and itself, two that are fixed, a place or an axis without meaning
+  void join(BodyId a, BodyId b, const Joint& joint);
 
   std::size_t size() const noexcept;                ///< bodies
   const Eigen::Isometry3d& pose(BodyId body) const; ///< T_world_collider

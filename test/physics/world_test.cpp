@@ -145,6 +145,90 @@ TEST(World, BallsBounceAsHighAsRestitutionSays)
   EXPECT_NEAR(highest, 0.25, 0.02);
 }
 
+/// A ball that swings about a place 1 m from its middle.
+TEST(World, ASocketHoldsAPendulum)
+{
+  const Ball ball(0.1f), nail(0.01f);
+  World world;
+  const BodyId hook = world.addFixed(nail.collider, at(5e6, 0, 2));
+  const double angle = 0.1, inertia = 1.0 + 0.4 * 0.01;
+  const Eigen::Vector3d place = at(5e6, 0, 2).translation();
+  const BodyId body = world.add(ball.collider, at(5e6 + std::sin(angle), 0, 2 - std::cos(angle)), ball.mass(1000));
+  world.join(body, hook, {place});
+  const Eigen::Vector3d held = world.pose(body).inverse() * place;
+  int crossings = 0, last = 0;
+  for (int i = 1; i <= 2400; ++i) {
+    const double before = world.pose(body).translation().x() - 5e6;
+    world.step(kStep);
+    ASSERT_LT((world.pose(body) * held - place).norm(), 1e-4) << i;
+    if (before * (world.pose(body).translation().x() - 5e6) < 0.0) ++crossings, last = i;
+  }
+  const double period = 2 * std::numbers::pi * std::sqrt(inertia / kGravity) * (1 + angle * angle / 16);
+  EXPECT_NEAR(last * kStep, (0.5 * crossings - 0.25) * period, 0.01 * last * kStep);
+  EXPECT_EQ(crossings, 10); // in 10 s
+}
+
+TEST(World, AHingeKeepsItsAxis)
+{
+  const Shape post = box(0.1, 0.1, 2), door = box(0.8, 0.05, 2);
+  World world;
+  const BodyId frame = world.addFixed(post.collider);
+  const BodyId leaf = world.add(door.collider, at(0.45, 0, 0), door.mass(500), {});
+  world.join(leaf, frame, {{0.05, 0, 0}, Eigen::Vector3d(0, 0, 3)});
+  world.setVelocity(leaf, {0, 0.8, 0}, {0.5, 0, 2});
+  double turned = 0.0;
+  for (int i = 0; i < 480; ++i) {
+    world.step(kStep);
+    turned += kStep * world.spin(leaf).z();
+    ASSERT_LT((world.pose(leaf) * Eigen::Vector3d(-0.4, 0, 0) - Eigen::Vector3d(0.05, 0, 0)).norm(), 1e-2) << i;
+    ASSERT_GT(world.pose(leaf).linear()(2, 2), 0.999) << i;
+  }
+  EXPECT_GT(turned, 1.0);
+  EXPECT_TRUE(world.contacts().empty()); // though it stands in its post as it turns
+}
+
+/// The first of two balls in a row is cut at a plate: the other one waits with it.
+TEST(World, JoinedBodiesAreCutTogether)
+{
+  const Shape plate = plane();
+  const Ball ball(0.1f);
+  World world;
+  world.addFixed(plate.collider);
+  const BodyId lower = world.add(ball.collider, at(0, 0, 1), ball.mass(1000));
+  const BodyId upper = world.add(ball.collider, at(0, 0, 1.15), ball.mass(1000));
+  world.join(lower, upper, {{0, 0, 1.075}});
+  for (const BodyId body : {lower, upper}) world.setVelocity(body, {0, 0, -1000});
+  std::size_t cut = 0;
+  for (int i = 0; i < 240; ++i) {
+    cut += world.step(kStep).cut;
+    const Eigen::Vector3d low = world.pose(lower) * Eigen::Vector3d(0, 0, 0.075),
+                          high = world.pose(upper) * Eigen::Vector3d(0, 0, -0.075);
+    ASSERT_LT((low - high).norm(), 1e-2) << i;
+    ASSERT_GE(world.pose(lower).translation().z(), 0.1) << i;
+  }
+  EXPECT_GE(cut, 2u);
+}
+
+/// A crate at rest holds a ball that swings: it stays awake for as long.
+TEST(World, JoinedBodiesSleepTogether)
+{
+  const Shape ground = plane(), crate = box(1, 1, 1);
+  const Ball ball(0.1f);
+  WorldOptions options;
+  options.damping = 0.5;
+  World world(options);
+  world.addFixed(ground.collider);
+  const BodyId holds = world.add(crate.collider, at(0, 0, 0.501), crate.mass(1000));
+  const BodyId swings = world.add(ball.collider, at(1.1, 0, 0.8), ball.mass(10));
+  world.join(holds, swings, {{0.7, 0, 0.8}});
+  for (int i = 0; i < 4800; ++i) {
+    world.step(kStep);
+    ASSERT_EQ(world.isAsleep(holds), world.isAsleep(swings)) << i;
+  }
+  EXPECT_TRUE(world.isAsleep(swings));
+  EXPECT_NEAR(world.pose(swings).translation().z(), 0.4, 1e-2);
+}
+
 TEST(World, BallsRollDownASlope)
 {
   const Shape slope = plane(200);
@@ -313,6 +397,14 @@ TEST(World, RefusesWhatHasNoMeaning)
   EXPECT_THROW(world.addFixed(ball.collider, at(nan, 0, 0)), InvalidInput);
   EXPECT_THROW(world.step(0), InvalidInput);
   EXPECT_EQ(world.size(), 0u);
+
+  const BodyId floor = world.addFixed(ball.collider), wall = world.addFixed(ball.collider, at(0, 9, 0)),
+               body = world.add(ball.collider, at(9, 0, 0), ball.mass(1));
+  EXPECT_THROW(world.join(floor, wall, {{0, 0, 0}}), InvalidInput);
+  EXPECT_THROW(world.join(body, body, {{0, 0, 0}}), InvalidInput);
+  EXPECT_THROW(world.join(body, floor, {{nan, 0, 0}}), InvalidInput);
+  EXPECT_THROW(world.join(body, floor, {{0, 0, 0}, Eigen::Vector3d(0, 0, 0)}), InvalidInput);
+  EXPECT_THROW(world.join(body, floor, {{0, 0, 0}, Eigen::Vector3d(0, 0, nan)}), InvalidInput);
 }
 
 } // namespace
