@@ -13,6 +13,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
+constexpr std::size_t kLeastKept = std::size_t{1} << 18;
 constexpr std::size_t kVector = 64;
 constexpr std::size_t kMostBytes = std::numeric_limits<std::ptrdiff_t>::max() - kHugePage;
 
@@ -22,15 +23,19 @@ constexpr bool kKeeps = true;
 constexpr bool kKeeps = false; // without a word to the system, or where use after free is to be found
 #endif
 
-/// Whether a buffer is large enough for huge pages, and to be kept.
-bool isLarge(std::size_t bytes)
+bool hasHugePages(std::size_t bytes)
 {
   return bytes >= 2 * kHugePage;
 }
 
+bool isKept(std::size_t bytes)
+{
+  return kKeeps && bytes >= kLeastKept;
+}
+
 std::align_val_t alignmentOf(std::size_t bytes)
 {
-  return std::align_val_t{isLarge(bytes) ? kHugePage : kVector};
+  return std::align_val_t{hasHugePages(bytes) ? kHugePage : kVector};
 }
 
 } // namespace
@@ -38,14 +43,14 @@ std::align_val_t alignmentOf(std::size_t bytes)
 AllocatedBuffer allocateBuffer(std::size_t bytes)
 {
   if (bytes > kMostBytes) throw std::bad_alloc();
-  const bool large = isLarge(bytes + kVector); // some less than it would be rounded up to a large one
-  const std::size_t alignment = large ? kHugePage : kVector;
+  const bool huge = hasHugePages(bytes + kVector); // some less than it would be rounded up to a large one
+  const std::size_t alignment = huge ? kHugePage : kVector;
   const std::size_t size = std::max(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (large && kKeeps)
+  if (isKept(size))
     if (const AllocatedBuffer kept = takeKeptBuffer(size); kept.p) return kept;
   void* const p = ::operator new(size, alignmentOf(size));
 #ifdef __linux__
-  if (large) madvise(p, size, MADV_HUGEPAGE);
+  if (huge) madvise(p, size, MADV_HUGEPAGE);
 #endif
   return {p, size};
 }
@@ -57,7 +62,7 @@ void freeBuffer(const AllocatedBuffer& buffer) noexcept
 
 void FreeBuffer::operator()(void* p) const noexcept
 {
-  if (isLarge(size) && kKeeps)
+  if (isKept(size))
     keepBuffer({p, size});
   else
     freeBuffer({p, size});

@@ -14,9 +14,9 @@ struct FreeBuffer {
   void operator()(void* p) const noexcept;
 };
 
-/// Uninitialised storage. Large buffers ask the system for huge pages and are kept when they are freed, within the
-/// limit of retained_memory.h. A page's first touch would cost more than sorting the points that go there, most of all
-/// on a virtual machine.
+/// Uninitialised storage. Buffers of 256 KB and more are kept when they are freed, within the limit of
+/// retained_memory.h; those of 4 MB and more ask the system for huge pages. A page's first touch would cost more than
+/// sorting the points that go there, most of all on a virtual machine.
 template <class T>
 using LargeBuffer = std::unique_ptr<T[], FreeBuffer>;
 

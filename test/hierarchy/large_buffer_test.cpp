@@ -43,6 +43,16 @@ TEST(LargeBuffer, IsUsedAgain)
   EXPECT_EQ(again.get(), first);
   EXPECT_EQ(retainedMemory(), kept - again.get_deleter().size);
 }
+
+/// A sensor's frame is kept, too; small buffers are not.
+TEST(LargeBuffer, IsKeptFromAQuarterOfAMegabyte)
+{
+  releaseRetainedMemory();
+  makeBuffer<unsigned char>((256 << 10) - 64);
+  EXPECT_EQ(retainedMemory(), 0u);
+  makeBuffer<unsigned char>(256 << 10);
+  EXPECT_EQ(retainedMemory(), std::size_t{256 << 10});
+}
 #endif
 
 TEST(LargeBuffer, IsNobodyElses)
