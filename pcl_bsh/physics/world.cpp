@@ -104,10 +104,12 @@ struct World::State {
   void join(const std::pair<BodyId, BodyId>& key, const Joint& joint)
   {
     const WorldBody &a = bodies.at(key.first), &b = bodies.at(key.second);
+    std::unique_ptr<btTypedConstraint> made = constraintOf(a, b, joint);
     std::unique_ptr<btTypedConstraint>& held = joints[key];
     if (held) world.removeConstraint(held.get());
-    held = constraintOf(a, b, joint);
+    held = std::move(made);
     world.addConstraint(held.get());
+    manifolds.erase(key);
     for (const WorldBody* body : {&a, &b}) body->solved->activate();
   }
 

@@ -88,7 +88,8 @@ public:
   BodyId add(const Collider& collider, const Eigen::Isometry3d& T_world_collider, const MassProperties& mass,
              const Material& material = {});
 
-  /// Holds two bodies together as they are now. They do not touch each other from then on.
+  /// Holds two bodies together as they are now, in place of an earlier joint of the two. They do not touch each other
+  /// from then on.
   /// @throws InvalidInput for a body and itself, two that are fixed, a place or an axis without meaning
   void join(BodyId a, BodyId b, const Joint& joint);
 
