@@ -39,16 +39,21 @@ public:
 
   double reach() const { return reach_; }
 
-  void enter(const PairWalk& walk, const LanePair& lanes)
+  void enter(PairWalk& walk, const LanePair& lanes)
   {
     const Sphere of_a = sphereOf(walk, walk.a, lanes.a), of_b = sphereOf(walk, walk.b, lanes.b);
     half_ = ways_.half(of_a.center);
     near_ = beside_ + turn_size_ * of_a.radius;
     reach_ = near_ + half_.norm() * kUp;
     const Eigen::Vector3d place_a = walk.a.pose * of_a.center, place_b = walk.b.pose * of_b.center;
-    const double rounding = kDoubleMargin * (of_a.center.norm() + of_b.center.norm() + place_a.norm() + place_b.norm() +
-                                             reach_ + of_a.radius + of_b.radius);
-    is_beyond_ = leastOnWay(place_a - place_b, half_) - rounding > near_ + of_a.radius + of_b.radius;
+    const double radii = of_a.radius + of_b.radius;
+    const double rounding = kDoubleMargin * (of_a.center.lpNorm<1>() + of_b.center.lpNorm<1>() + place_a.lpNorm<1>() +
+                                             place_b.lpNorm<1>() + reach_ + radii);
+    const Eigen::Vector3d apart = place_a - place_b;
+    is_beyond_ = leastOnWay(apart, half_) - rounding > near_ + radii;
+    if (!is_beyond_ && walk.haveSlabs(lanes.a, lanes.b))
+      is_beyond_ = areSlabsBeyond(slabOf(walk, walk.a, lanes.a, of_a.radius),
+                                  slabOf(walk, walk.b, lanes.b, of_b.radius), apart, rounding);
   }
 
   bool passesOver(const PairWalk&, const LanePair&) const { return is_beyond_; }
@@ -92,6 +97,44 @@ private:
     const double rounding = frame.slack(0) + frame.slack(1) + frame.slack(2);
     return {stored * frame.unit + Eigen::Vector3d(frame.origin[0], frame.origin[1], frame.origin[2]),
             (node.r[lane.lane] + rounding) * frame.unit * (1.0 + kPoseStretch)};
+  }
+
+  /// A sphere's points between two planes, in the world.
+  struct WorldSlab {
+    Eigen::Vector3d normal;
+    double h, radius;
+
+    /// How far from its centre it reaches along a unit vector.
+    double support(const Eigen::Vector3d& along) const
+    {
+      return std::abs(normal.dot(along)) * h + normal.cross(along).norm() * radius;
+    }
+  };
+
+  static WorldSlab slabOf(PairWalk& walk, const Spaces& side, const Lane& lane, double radius)
+  {
+    const Slabs& slabs = walk.slabsOf(side, lane);
+    const Eigen::Vector3d normal(slabs.x[lane.lane], slabs.y[lane.lane], slabs.z[lane.lane]);
+    return {side.pose.linear() * normal, slabs.h[lane.lane] * side.frame(lane.space).unit, radius};
+  }
+
+  /// Whether slabs stay farther apart than `near_` on all of the way: along the normal of either and across it. Spheres
+  /// of facing surfaces overlap on most of the way; a way along the surfaces keeps their gap. kSlabMargin of all
+  /// lengths pays for normals that are not of length one, as in FacingSlabs. A normal of 0 proves nothing.
+  bool areSlabsBeyond(const WorldSlab& a, const WorldSlab& b, const Eigen::Vector3d& apart, double rounding) const
+  {
+    if (a.normal.isZero(0.0) || b.normal.isZero(0.0)) return false;
+    const auto along = [&](const WorldSlab& own, const WorldSlab& other) {
+      return std::abs(own.normal.dot(apart)) - std::abs(own.normal.dot(half_)) - own.h - other.support(own.normal);
+    };
+    const double along_a = along(a, b), along_b = along(b, a);
+    const Eigen::Vector3d& normal = along_a > along_b ? a.normal : b.normal;
+    const double radii = a.radius + b.radius;
+    const double margin = kSlabMargin * (apart.lpNorm<1>() + half_.lpNorm<1>() + radii) + rounding;
+    const double far_along = std::max(std::max(along_a, along_b) - margin, 0.0);
+    const double across = std::max(
+        leastOnWay(apart - normal.dot(apart) * normal, half_ - normal.dot(half_) * normal) - radii - margin, 0.0);
+    return far_along * far_along + across * across > near_ * near_ * kUp;
   }
 
   const StraightWays& ways_;

@@ -104,6 +104,19 @@ public:
     return ra > rb ? Opened::a : Opened::b;
   }
 
+  /// Whether slabs can be compared: both lanes are in voxels of one unit, and records are no balls.
+  bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
+  {
+    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.areBalls() &&
+           !b.storage.view.areBalls() && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
+  }
+
+  const Slabs& slabsOf(const Spaces& side, const Lane& lane)
+  {
+    Voxel& voxel = side.storage.voxels[lane.space];
+    return voxel.slabs.of(voxel, side.storage.view, work)[lane.node];
+  }
+
   /// The sum of both radii, in the clouds' unit. Gaps of points below differ by at most twice that.
   double radiiOf(const LanePair& pair) const
   {
@@ -215,19 +228,6 @@ protected:
   static Voxel* voxelOf(const Spaces& side, const Lane& lane)
   {
     return lane.space == kAboveVoxels ? nullptr : &side.storage.voxels[lane.space];
-  }
-
-  /// Whether slabs can be compared: both lanes are in voxels of one unit, and records are no balls.
-  bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
-  {
-    return lane_a.space != kAboveVoxels && lane_b.space != kAboveVoxels && !a.storage.view.areBalls() &&
-           !b.storage.view.areBalls() && a.frame(lane_a.space).unit == b.frame(lane_b.space).unit;
-  }
-
-  const Slabs& slabsOf(const Spaces& side, const Lane& lane)
-  {
-    Voxel& voxel = side.storage.voxels[lane.space];
-    return voxel.slabs.of(voxel, side.storage.view, work)[lane.node];
   }
 
   const Slabs& crossSlabsOf(const Spaces& side, const Lane& lane)

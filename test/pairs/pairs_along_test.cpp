@@ -103,6 +103,53 @@ TEST(PairsAlong, PassOverWhatIsBesideTheWay)
   EXPECT_LT(5 * within, pairsWithin({a}, {b}, {0.036}).pairs.size());
 }
 
+/// A crate's face that leaves a floor, or is led along it: leaves are compared only where they face each other.
+TEST(PairsAlong, CompareFewLeavesOfFacingSheets)
+{
+  const auto sheet = [](int count, double spacing, double height) {
+    std::vector<Point3> points;
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) points.push_back({spacing * i, spacing * j, height + 0.004 * i / count});
+    return Cloud(points, {Scalar::float64, 0, 0});
+  };
+  const Cloud face = sheet(120, 0.01, 0.03), floor = sheet(40, 0.03, 0.0);
+  const SphereHierarchy a(face.view()), b(floor.view());
+  const Eigen::Vector3d up(0.1, 0, 0.1), aside(0.05, 0, 0);
+  for (const Eigen::Vector3d& half : {up, aside}) {
+    StraightWays ways;
+    ways.shift = half;
+    ways.middle.translation() = half;
+    EXPECT_GT(pairsWithin({a}, {b}, {0.03 + half.norm()}).work.leaf_pairs, 2000u);
+    const PairsWithin found = pairsAlong(a, ways, {b}, {0.029});
+    EXPECT_EQ(found.pairs.size(), 0u);
+    EXPECT_LT(found.work.leaf_pairs, 10u) << half;
+  }
+}
+
+/// Layers that are thick beside the clearance, led along each other: only few points meet on the way.
+TEST(PairsAlong, FindPointsOfThickLayers)
+{
+  std::size_t within = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const auto layer = [&] {
+      std::vector<Point3> points;
+      for (int i = 0; i < 1000; ++i)
+        points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.03, 0.03)});
+      return Cloud(points, {Scalar::float64, 0, 0});
+    };
+    const Cloud a = layer(), b = layer();
+    const Eigen::Isometry3d pose_b = random.pose(10.0);
+    StraightWays ways;
+    ways.middle = pose_b * Eigen::Translation3d(0, 0, random.uniform(0.03, 0.06)) *
+                  Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitZ());
+    ways.shift = pose_b.linear() * Eigen::Vector3d(random.uniform(-0.2, 0.2), 0.1, random.uniform(0, 0.01));
+    within += expectSameAsAllPairs(a, ways, b, pose_b, 0.01);
+  }
+  EXPECT_GT(within, 500u);
+}
+
 TEST(PairsAlong, AreNotCompleteWhereThereAreMore)
 {
   const Cloud cloud(std::vector<Point3>(20, Point3{0, 0, 0}), {Scalar::float64, 0, 0});
