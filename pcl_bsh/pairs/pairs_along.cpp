@@ -26,13 +26,14 @@ public:
   static constexpr bool kHasWays = true;
 
   PassingPairs(const Placed& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
-               std::uint64_t most_leaf_pairs, PairsWithin& result)
+               std::uint64_t most_leaf_pairs, const EndOfWays& end_of_ways, PairsWithin& result)
   : pairs(a, b, request.clearance),
     ways_(ways),
     turn_size_(ways.turn.norm() * kUp),
     beside_((request.clearance + ways.stray) * kUp),
     most_(request.most),
     most_leaf_pairs_(most_leaf_pairs),
+    end_of_ways_(end_of_ways),
     result_(result)
   {
   }
@@ -42,15 +43,15 @@ public:
   void enter(PairWalk& walk, const LanePair& lanes)
   {
     const Sphere of_a = sphereOf(walk, walk.a, lanes.a), of_b = sphereOf(walk, walk.b, lanes.b);
-    half_ = ways_.half(of_a.center);
+    way_ = end_ * ways_.way(of_a.center);
     near_ = beside_ + turn_size_ * of_a.radius;
-    reach_ = near_ + half_.norm() * kUp;
+    reach_ = near_ + way_.norm() * kUp;
     const Eigen::Vector3d place_a = walk.a.pose * of_a.center, place_b = walk.b.pose * of_b.center;
     const double radii = of_a.radius + of_b.radius;
     const double rounding = kDoubleMargin * (of_a.center.lpNorm<1>() + of_b.center.lpNorm<1>() + place_a.lpNorm<1>() +
                                              place_b.lpNorm<1>() + reach_ + radii);
     const Eigen::Vector3d apart = place_a - place_b;
-    is_beyond_ = leastOnWay(apart, half_) - rounding > near_ + radii;
+    is_beyond_ = leastOnWay(apart, way_) - rounding > near_ + radii;
     if (!is_beyond_ && walk.haveSlabs(lanes.a, lanes.b))
       is_beyond_ = areSlabsBeyond(slabOf(walk, walk.a, lanes.a, of_a.radius),
                                   slabOf(walk, walk.b, lanes.b, of_b.radius), apart, rounding);
@@ -61,12 +62,12 @@ public:
   /// Whether to compare one more pair of leaves.
   bool goesOn(const Work& work) { return result_.complete = work.leaf_pairs <= most_leaf_pairs_; }
 
-  /// Half of the ways of the leaf that was entered, in the frame.
-  HalfWay way(const Spaces& b, const RelativeFrame& frame) const
+  /// The ways of the leaf that was entered, in the frame.
+  PointsWay way(const Spaces& b, const RelativeFrame& frame) const
   {
-    const Eigen::Vector3f half = (b.pose.linear().transpose() * half_ / frame.unit()).cast<float>();
-    const float square = half.squaredNorm();
-    return {half.x(), half.y(), half.z(), square > kLeastSquare ? 1.0f / square : 0.0f};
+    const Eigen::Vector3f way = (b.pose.linear().transpose() * way_ / frame.unit()).cast<float>();
+    const float square = way.squaredNorm();
+    return {way.x(), way.y(), way.z(), square > kLeastSquare ? 1.0f / square : 0.0f};
   }
 
   /// Beside the way. Rounding takes less of a point's way and of its distance than the last term, and a way that is
@@ -76,7 +77,12 @@ public:
     return frame.band(near_ + 0x1p-20 * reach_ + 0x1p-19 * frame.unit() * std::sqrt(double{kLeastSquare})).miss;
   }
 
-  Added add(PointPair pair, bool, Work&) { return keepPair(pair, most_, result_); }
+  Added add(PointPair pair, bool, Work&)
+  {
+    const Added added = keepPair(pair, most_, result_);
+    if (added == Added::kept && end_of_ways_) end_ = std::min(end_, end_of_ways_(pair));
+    return added;
+  }
 
   const PointPairs pairs;
 
@@ -118,6 +124,13 @@ private:
     return {side.pose.linear() * normal, slabs.h[lane.lane] * side.frame(lane.space).unit, radius};
   }
 
+  /// The least size of from + t way, t from 0 to 1.
+  static double leastAlong(double from, double way)
+  {
+    const double to = from + way;
+    return from * to <= 0.0 ? 0.0 : std::min(std::abs(from), std::abs(to));
+  }
+
   /// Whether slabs stay farther apart than `near_` on all of the way: along the normal of either and across it. Spheres
   /// of facing surfaces overlap on most of the way; a way along the surfaces keeps their gap. kSlabMargin of all
   /// lengths pays for normals that are not of length one, as in FacingSlabs. A normal of 0 proves nothing.
@@ -125,15 +138,15 @@ private:
   {
     if (a.normal.isZero(0.0) || b.normal.isZero(0.0)) return false;
     const auto along = [&](const WorldSlab& own, const WorldSlab& other) {
-      return std::abs(own.normal.dot(apart)) - std::abs(own.normal.dot(half_)) - own.h - other.support(own.normal);
+      return leastAlong(own.normal.dot(apart), own.normal.dot(way_)) - own.h - other.support(own.normal);
     };
     const double along_a = along(a, b), along_b = along(b, a);
     const Eigen::Vector3d& normal = along_a > along_b ? a.normal : b.normal;
     const double radii = a.radius + b.radius;
-    const double margin = kSlabMargin * (apart.lpNorm<1>() + half_.lpNorm<1>() + radii) + rounding;
+    const double margin = kSlabMargin * (apart.lpNorm<1>() + way_.lpNorm<1>() + radii) + rounding;
     const double far_along = std::max(std::max(along_a, along_b) - margin, 0.0);
     const double across = std::max(
-        leastOnWay(apart - normal.dot(apart) * normal, half_ - normal.dot(half_) * normal) - radii - margin, 0.0);
+        leastOnWay(apart - normal.dot(apart) * normal, way_ - normal.dot(way_) * normal) - radii - margin, 0.0);
     return far_along * far_along + across * across > near_ * near_ * kUp;
   }
 
@@ -142,11 +155,13 @@ private:
   const double beside_; ///< the ways, straying included
   const std::size_t most_;
   const std::uint64_t most_leaf_pairs_;
+  const EndOfWays& end_of_ways_;
   PairsWithin& result_;
+  double end_ = 1.0; ///< of the ways of interest
 
   // The lanes that were entered have these:
-  Eigen::Vector3d half_ = Eigen::Vector3d::Zero(); ///< of the way of their middle
-  double near_ = 0.0;                              ///< beside that way
+  Eigen::Vector3d way_ = Eigen::Vector3d::Zero(); ///< of their middle, as far as it is of interest
+  double near_ = 0.0;                             ///< beside that way
   double reach_ = std::numeric_limits<double>::infinity();
   bool is_beyond_ = false;
 };
@@ -154,9 +169,10 @@ private:
 } // namespace
 
 void pairsAlongOnTarget(const Placed& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
-                        std::uint64_t most_leaf_pairs, Progress& progress, PairsWithin& result)
+                        std::uint64_t most_leaf_pairs, const EndOfWays& end_of_ways, Progress& progress,
+                        PairsWithin& result)
 {
-  PassingPairs receiver(a, ways, b, request, most_leaf_pairs, result);
+  PassingPairs receiver(a, ways, b, request, most_leaf_pairs, end_of_ways, result);
   result.work = ReachWalk(a, b, receiver, progress).run();
 }
 
@@ -169,22 +185,22 @@ namespace pcl_bsh {
 
 HWY_EXPORT(pairsAlongOnTarget);
 
-double leastOnWay(const Eigen::Vector3d& middle, const Eigen::Vector3d& half)
+double leastOnWay(const Eigen::Vector3d& from, const Eigen::Vector3d& way)
 {
-  const double square = half.squaredNorm();
-  const double share = square > 0.0 ? std::clamp(middle.dot(half) / square, -1.0, 1.0) : 0.0;
-  return (middle - share * half).norm();
+  const double square = way.squaredNorm();
+  const double share = square > 0.0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
+  return (from + share * way).norm();
 }
 
 PairsWithin pairsAlong(const SphereHierarchy& a, const StraightWays& ways, const Placed& b,
-                       const ContactsRequest& request, std::uint64_t most_leaf_pairs)
+                       const ContactsRequest& request, std::uint64_t most_leaf_pairs, const EndOfWays& end_of_ways)
 {
-  const Placed middle(a, ways.middle);
-  check(middle, b, request);
+  const Placed start(a, ways.start);
+  check(start, b, request);
   const DefaultFloatEnvironment environment;
   Progress progress(request.progress);
   PairsWithin found;
-  HWY_DYNAMIC_DISPATCH(pairsAlongOnTarget)(middle, ways, b, request, most_leaf_pairs, progress, found);
+  HWY_DYNAMIC_DISPATCH(pairsAlongOnTarget)(start, ways, b, request, most_leaf_pairs, end_of_ways, progress, found);
   progress.finish();
   return found;
 }

@@ -8,31 +8,36 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 namespace pcl_bsh {
 
-/// The ways of a cloud's places. One that is at p in the cloud's frame goes straight from middle p - half(p) to middle
-/// p + half(p), and strays from that way by `stray` at most. Lengths are in the clouds' unit.
+/// The ways of a cloud's places. One that is at p in the cloud's frame is at start p + t way(p) while t runs from 0 to
+/// 1, and strays from there by `stray` at most. Lengths are in the clouds' unit.
 struct StraightWays {
-  Eigen::Isometry3d middle = Eigen::Isometry3d::Identity();
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero(); ///< of half the ways
+  Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero(); ///< of the ways
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   double stray = 0.0;
 
-  Eigen::Vector3d half(const Eigen::Vector3d& p) const { return turn * p + shift; }
+  Eigen::Vector3d way(const Eigen::Vector3d& p) const { return turn * p + shift; }
 };
 
-/// The least distance from the origin on the way from a place half a way back to one half a way on.
-PCL_BSH_EXPORT_INTERNAL double leastOnWay(const Eigen::Vector3d& middle, const Eigen::Vector3d& half);
+/// The least distance from the origin on the way from a place.
+PCL_BSH_EXPORT_INTERNAL double leastOnWay(const Eigen::Vector3d& from, const Eigen::Vector3d& way);
 
-/// All pairs of records that come within the clearance on a's ways, in no particular order, and some that do not.
-/// Points of these come nearly so near. Balls and triangles are found wherever the spheres of their leaves are not kept
-/// apart.
+/// Takes a pair that was found. Returns the t up to which ways are of interest from now on, from 0 to 1. It may only
+/// fall: the first of all meetings makes ways so short that little is left to compare.
+using EndOfWays = std::function<double(PointPair)>;
+
+/// All pairs of records that come within the clearance on a's ways of interest, in no particular order, and some that
+/// do not. Points of these come nearly so near. Balls and triangles are found wherever the spheres of their leaves are
+/// not kept apart.
 /// @param request as pairsWithin() takes it @param most_leaf_pairs to compare; where there are more, the result is not
-///   complete
-PCL_BSH_EXPORT_INTERNAL PairsWithin
-pairsAlong(const SphereHierarchy& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
-           std::uint64_t most_leaf_pairs = std::numeric_limits<std::uint64_t>::max());
+///   complete @param end_of_ways called for each pair; null: all of each way is of interest
+PCL_BSH_EXPORT_INTERNAL PairsWithin pairsAlong(
+    const SphereHierarchy& a, const StraightWays& ways, const Placed& b, const ContactsRequest& request,
+    std::uint64_t most_leaf_pairs = std::numeric_limits<std::uint64_t>::max(), const EndOfWays& end_of_ways = nullptr);
 
 } // namespace pcl_bsh

@@ -103,7 +103,7 @@ public:
     }
     else if constexpr (Receiver::kHasWays) {
       if (!receiver_.goesOn(walk_.work)) return Next::stop;
-      const HalfWay way = receiver_.way(walk_.b, leaves.frame);
+      const PointsWay way = receiver_.way(walk_.b, leaves.frame);
       const float miss = receiver_.miss(leaves.frame);
       for (std::uint32_t j = 0; j < b.count && going; ++j) {
         std::uint32_t passing = leaves.near & pointsPassing(leaves.points, way, b.x()[j], b.y()[j], b.z()[j], miss);

@@ -16,15 +16,15 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
 namespace HWY_NAMESPACE {
 
-/// Half of a straight way. Points are in the middle of theirs.
-struct HalfWay {
+/// A straight way of points, from where they are.
+struct PointsWay {
   float x = 0.0f, y = 0.0f, z = 0.0f;
   float per_square = 0.0f; ///< 1 over the square of its length, or 0: then points stay where they are
 };
 
 /// Which of sixteen points do not stay, on their way, farther from (qx, qy, qz) than a squared distance. The place at
 /// which one is nearest is rounded; it is on the way all the same.
-HWY_INLINE std::uint32_t pointsPassing(const LeafPoints& points, const HalfWay& way, float qx, float qy, float qz,
+HWY_INLINE std::uint32_t pointsPassing(const LeafPoints& points, const PointsWay& way, float qx, float qy, float qz,
                                        float squared_limit)
 {
   const LaneTag d;
@@ -36,7 +36,7 @@ HWY_INLINE std::uint32_t pointsPassing(const LeafPoints& points, const HalfWay& 
     const LaneVector dy = hn::Sub(hn::Load(d, points.y + i), hn::Set(d, qy));
     const LaneVector dz = hn::Sub(hn::Load(d, points.z + i), hn::Set(d, qz));
     const LaneVector back = hn::Mul(FacingSlabs::dot(wx, wy, wz, dx, dy, dz), hn::Set(d, way.per_square));
-    const LaneVector share = hn::Min(hn::Max(back, hn::Set(d, -1.0f)), hn::Set(d, 1.0f));
+    const LaneVector share = hn::Min(hn::Max(back, hn::Set(d, -1.0f)), hn::Zero(d));
     const LaneVector squared =
         squaredNorm(hn::Sub(dx, hn::Mul(share, wx)), hn::Sub(dy, hn::Mul(share, wy)), hn::Sub(dz, hn::Mul(share, wz)));
     far |= bitsOf(d, hn::Gt(squared, limit)) << i;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -40,16 +41,16 @@ std::size_t expectSameAsAllPairs(const Cloud& cloud_a, const StraightWays& ways,
   std::size_t within = 0;
   for (std::uint32_t i = 0; i < cloud_a.view().count; ++i)
     for (std::uint32_t j = 0; j < cloud_b.view().count; ++j) {
-      const Eigen::Vector3d half = ways.half(pointOf(cloud_a, i));
+      const Eigen::Vector3d way = ways.way(pointOf(cloud_a, i));
       const double least =
-          leastOnWay(ways.middle * pointOf(cloud_a, i) - pose_b * pointOf(cloud_b, j), half) - ways.stray;
+          leastOnWay(ways.start * pointOf(cloud_a, i) - pose_b * pointOf(cloud_b, j), way) - ways.stray;
       const bool is_found = pairs.count({i, j}) > 0;
       within += least <= clearance;
       if (least <= clearance) {
         EXPECT_TRUE(is_found) << i << ' ' << j << ": " << least;
       }
       if (is_found) {
-        EXPECT_LE(least, clearance + spread + kNearly * (clearance + half.norm() + ways.stray));
+        EXPECT_LE(least, clearance + spread + kNearly * (clearance + way.norm() + ways.stray));
       }
     }
   return within;
@@ -57,10 +58,10 @@ std::size_t expectSameAsAllPairs(const Cloud& cloud_a, const StraightWays& ways,
 
 TEST(PairsAlong, TheLeastDistanceIsAtAnEndOrBetween)
 {
-  const Eigen::Vector3d half(1, 0, 0);
-  EXPECT_EQ(leastOnWay({0.5, 2, 0}, half), 2.0);
-  EXPECT_EQ(leastOnWay({4, 4, 0}, half), 5.0);
-  EXPECT_EQ(leastOnWay({-4, 4, 0}, half), 5.0);
+  const Eigen::Vector3d way(2, 0, 0);
+  EXPECT_EQ(leastOnWay({-0.5, 2, 0}, way), 2.0);
+  EXPECT_EQ(leastOnWay({3, 4, 0}, way), 5.0);
+  EXPECT_EQ(leastOnWay({-5, 4, 0}, way), 5.0);
   EXPECT_EQ(leastOnWay({3, 4, 0}, Eigen::Vector3d::Zero()), 5.0);
 }
 
@@ -75,10 +76,10 @@ TEST(PairsAlong, AreThoseOfAllPairs)
     const Cloud b(test::makePoints(random.pick(test::all_shapes), 150, size, random), {Scalar::float64, 0, 0});
     const Eigen::Isometry3d pose_b = random.pose(size * far);
     StraightWays ways;
-    ways.middle = pose_b * random.pose(size);
-    const Point3 shift = random.point([&] { return size * random.uniform(-0.5, 0.5); });
+    ways.start = pose_b * random.pose(size);
+    const Point3 shift = random.point([&] { return size * random.uniform(-1.0, 1.0); });
     ways.shift = random.chance(0.1) ? Eigen::Vector3d::Zero() : Eigen::Vector3d(shift[0], shift[1], shift[2]);
-    if (random.chance(0.5)) ways.turn = random.uniform(0.001, 0.1) * random.rotation().toRotationMatrix();
+    if (random.chance(0.5)) ways.turn = random.uniform(0.002, 0.2) * random.rotation().toRotationMatrix();
     if (random.chance(0.5)) ways.stray = random.uniform(0.0, 0.1) * size;
     within += expectSameAsAllPairs(a, ways, b, pose_b, random.uniform(0.0, 0.1) * size);
   }
@@ -96,7 +97,8 @@ TEST(PairsAlong, PassOverWhatIsBesideTheWay)
   };
   const Cloud face = sheet(60, 0.01, 0.0205), floor = sheet(12, 0.05, 0.0);
   StraightWays ways;
-  ways.shift.x() = 0.015;
+  ways.start.translation().x() = -0.015;
+  ways.shift.x() = 0.03;
   const std::size_t within = expectSameAsAllPairs(face, ways, floor, Eigen::Isometry3d::Identity(), 0.021);
   EXPECT_GT(within, 0u);
   const SphereHierarchy a(face.view()), b(floor.view());
@@ -114,15 +116,14 @@ TEST(PairsAlong, CompareFewLeavesOfFacingSheets)
   };
   const Cloud face = sheet(120, 0.01, 0.03), floor = sheet(40, 0.03, 0.0);
   const SphereHierarchy a(face.view()), b(floor.view());
-  const Eigen::Vector3d up(0.1, 0, 0.1), aside(0.05, 0, 0);
-  for (const Eigen::Vector3d& half : {up, aside}) {
+  const Eigen::Vector3d up(0.2, 0, 0.2), aside(0.1, 0, 0);
+  for (const Eigen::Vector3d& way : {up, aside}) {
     StraightWays ways;
-    ways.shift = half;
-    ways.middle.translation() = half;
-    EXPECT_GT(pairsWithin({a}, {b}, {0.03 + half.norm()}).work.leaf_pairs, 2000u);
+    ways.shift = way;
+    EXPECT_GT(pairsWithin({a}, {b}, {0.03 + 0.5 * way.norm()}).work.leaf_pairs, 2000u);
     const PairsWithin found = pairsAlong(a, ways, {b}, {0.029});
     EXPECT_EQ(found.pairs.size(), 0u);
-    EXPECT_LT(found.work.leaf_pairs, 10u) << half;
+    EXPECT_LT(found.work.leaf_pairs, 10u) << way;
   }
 }
 
@@ -142,12 +143,60 @@ TEST(PairsAlong, FindPointsOfThickLayers)
     const Cloud a = layer(), b = layer();
     const Eigen::Isometry3d pose_b = random.pose(10.0);
     StraightWays ways;
-    ways.middle = pose_b * Eigen::Translation3d(0, 0, random.uniform(0.03, 0.06)) *
-                  Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitZ());
-    ways.shift = pose_b.linear() * Eigen::Vector3d(random.uniform(-0.2, 0.2), 0.1, random.uniform(0, 0.01));
+    ways.start = pose_b * Eigen::Translation3d(0, -0.1, random.uniform(0.03, 0.06)) *
+                 Eigen::AngleAxisd(random.uniform(-3, 3), Eigen::Vector3d::UnitZ());
+    ways.shift = pose_b.linear() * Eigen::Vector3d(random.uniform(-0.4, 0.4), 0.2, random.uniform(0, 0.02));
     within += expectSameAsAllPairs(a, ways, b, pose_b, 0.01);
   }
   EXPECT_GT(within, 500u);
+}
+
+/// The t at which a point first comes within the clearance of another; 2: it does not.
+double meetingOf(const Eigen::Vector3d& from, const Eigen::Vector3d& way, double clearance)
+{
+  if (from.norm() <= clearance) return 0.0;
+  if (!(leastOnWay(from, way) <= clearance)) return 2.0;
+  const double a = way.squaredNorm(), b = from.dot(way), c = from.squaredNorm() - clearance * clearance;
+  return std::min(1.0, c / (std::sqrt(std::max(0.0, b * b - a * c)) - b));
+}
+
+/// Ways that end at the first meeting so far: whatever the order, the first of all is found, and less is compared.
+TEST(PairsAlong, FindTheFirstMeetingOfAll)
+{
+  std::size_t met = 0;
+  std::uint64_t compared = 0, of_all = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const Cloud cloud_a(test::makePoints(random.pick(test::all_shapes), 300, 1.0, random), {Scalar::float64, 0, 0});
+    const Cloud cloud_b(test::makePoints(random.pick(test::all_shapes), 300, 1.0, random), {Scalar::float64, 0, 0});
+    const Eigen::Isometry3d pose_b = random.pose(10.0);
+    StraightWays ways;
+    ways.start = pose_b * random.pose(1.0);
+    const Point3 shift = random.point([&] { return random.uniform(-2, 2); });
+    ways.shift = Eigen::Vector3d(shift[0], shift[1], shift[2]);
+    if (random.chance(0.5)) ways.turn = random.uniform(0.001, 0.5) * random.rotation().toRotationMatrix();
+    const double clearance = random.uniform(0.0, 0.1);
+    const auto meeting = [&](PointPair pair) {
+      const Eigen::Vector3d p = pointOf(cloud_a, pair.a);
+      return meetingOf(ways.start * p - pose_b * pointOf(cloud_b, pair.b), ways.way(p), clearance);
+    };
+    double first = 2.0, found = 2.0;
+    for (std::uint32_t i = 0; i < cloud_a.view().count; ++i)
+      for (std::uint32_t j = 0; j < cloud_b.view().count; ++j) first = std::min(first, meeting({i, j}));
+    const SphereHierarchy a(cloud_a.view()), b(cloud_b.view());
+    const auto end_of_ways = [&](PointPair pair) { return found = std::min(found, meeting(pair)); };
+    const PairsWithin least =
+        pairsAlong(a, ways, {b, pose_b}, {clearance}, std::numeric_limits<std::uint64_t>::max(), end_of_ways);
+    EXPECT_TRUE(least.complete);
+    EXPECT_EQ(found, first);
+    met += first <= 1.0;
+    compared += least.work.leaf_pairs;
+    of_all += pairsAlong(a, ways, {b, pose_b}, {clearance}).work.leaf_pairs;
+  }
+  EXPECT_GT(met, 100u);
+  EXPECT_LT(met, 290u);
+  EXPECT_LT(5 * compared, 4 * of_all);
 }
 
 TEST(PairsAlong, AreNotCompleteWhereThereAreMore)

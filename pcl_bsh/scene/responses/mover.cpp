@@ -18,9 +18,10 @@ namespace {
 constexpr int kMostContacts = 256;                // of one translation
 constexpr int kMostBounces = 32;                  // of these, before points are collected anew
 constexpr std::size_t kFewPairs = 1 << 11;        // of points that may meet on a way: it is followed at once
-constexpr std::uint64_t kFewLeafPairs = 1 << 8;   // compared for a way of which nothing is known
-constexpr std::uint64_t kMostLeafPairs = 1 << 13; // and for another
+constexpr std::uint64_t kMostLeafPairs = 1 << 13; // compared for a way
 constexpr double kShortWay = 4.0;                 // tolerances: on a shorter way, more points are followed, too
+constexpr double kFirstWay = 0.25;                // of the object's size: what lies on something is mostly held at once
+constexpr double kLonger = 16.0;                  // times as long is the way after one on which nothing was met
 constexpr double kSlack = 0.125;                  // of a way: so far beside it, a slide may bend
 
 } // namespace
@@ -39,7 +40,7 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
   Leg leg{pose(), target, body_.center(), turn};
   const ObjectMotion motion(leg, body_.box);
   double done = 0.0;
-  const bool whole = follow(motion, 0.0, 1.0, done);
+  const bool whole = follow(motion, 0.0, 1.0, firstWay(), done);
   if (done == 0.0) return whole;
   leg.to = pose();
   leg.turn *= done;
@@ -47,52 +48,45 @@ bool Mover::follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn)
   return whole;
 }
 
-/// @param length of the ways @param first whether nothing is known of them: what lies on something is mostly held at
-/// once, and a short part of the way shows that sooner
-Mover::Passage Mover::passageOn(const StraightWays& ways, double length, bool first) const
+/// @param length of the ways
+Mover::Passage Mover::passageOn(const StraightWays& ways, double length) const
 {
   if (length <= kShortWay * tolerance_) return {ways, kMostPairs, std::numeric_limits<std::uint64_t>::max()};
-  return {ways, kFewPairs, first ? kFewLeafPairs : kMostLeafPairs};
+  return {ways, kFewPairs, kMostLeafPairs};
 }
 
-/// Along one motion from s = begin to end, in halves where too many points can meet; its first part is short then.
-/// @param done s of the last pose taken
-bool Mover::follow(const ObjectMotion& motion, double begin, double end, double& done)
+double Mover::firstWay() const
+{
+  return std::max(kFirstWay * 2.0 * body_.box.half().norm(), kShortWay * tolerance_);
+}
+
+/// Along one motion from s = begin to end, in halves where too many points can meet.
+/// @param most that a point goes in its first part @param done s of the last pose taken
+bool Mover::follow(const ObjectMotion& motion, double begin, double end, double most, double& done)
 {
   const double length = end - begin;
-  const auto wayOf = [&motion](double part) { // no point goes farther in a part of the motion
-    return (motion.shift().norm() * part + motion.turningReach(part)) * (1.0 + kDoubleMargin);
-  };
-  const double reach = wayOf(length);
-  const bool first = begin == 0.0;
-  const bool few = collect(motion.swept(), passageOn(waysOn(motion, begin, end), reach, first));
+  // No point goes farther.
+  const double reach = (motion.shift().norm() * length + motion.turningReach(length)) * (1.0 + kDoubleMargin);
+  if (reach > most) {
+    const double middle = begin + length * (most / reach);
+    return follow(motion, begin, middle, reach, done) && follow(motion, middle, end, kLonger * most, done);
+  }
+  Passage passage = passageOn(waysOn(motion, begin, end), reach);
+  passage.until_met = FirstContact{&motion, begin, end};
+  const bool few = collect(motion.swept(), passage);
   if (outcome.stuck) return false;
   const bool wide = motion.angle() * length > kWideTurn && encounters_.size() > kFewToTurn;
   if (!few || wide) {
     if (reach > 0.25 * tolerance_) {
-      const double share = first ? std::min(0.5, 0.5 * kShortWay * tolerance_ / reach) : 0.5;
-      const double middle = begin + share * length;
-      return follow(motion, begin, middle, done) && follow(motion, middle, end, done);
+      const double middle = 0.5 * (begin + end);
+      return follow(motion, begin, middle, most, done) && follow(motion, middle, end, most, done);
     }
     if (!few) return halt();
   }
   double last = end;
   const Encounter* met = nullptr;
-  const auto look = [&](const Encounter& e) {
-    if (const auto s = contactOn(motion, e, begin, last)) last = *s, met = &e;
-  };
-  // The nearest points first: where these meet, most of the others are too far apart to meet before them.
-  const auto apart = [](const Encounter& e) { return e.of_points ? e.apart.norm() - e.reach : 0.0; };
-  const auto nearest = std::min_element(encounters_.begin(), encounters_.end(),
-                                        [&](const auto& l, const auto& r) { return apart(l) < apart(r); });
-  if (nearest != encounters_.end()) look(*nearest);
-  double way = wayOf(last - begin);
-  for (auto e = encounters_.begin(); e != encounters_.end() && last > begin; ++e) {
-    if (e == nearest || (e->of_points && apart(*e) > way + tolerance_)) continue;
-    const double before = last;
-    look(*e);
-    if (last < before) way = wayOf(last - begin);
-  }
+  for (const Encounter& e : encounters_)
+    if (e.meets && (!met || *e.meets < last)) last = *e.meets, met = &e;
   if (met) touch(*met);
   if (last > begin) {
     if (!accept(motion.at(last))) return false;
@@ -103,14 +97,13 @@ bool Mover::follow(const ObjectMotion& motion, double begin, double end, double&
 
 bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
 {
-  // At once where few points can meet, else a short portion, what is left, and then portions, each twice as long as the
-  // one before while nothing is met.
-  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  // In portions to the first contact. A slide goes on at once where few points can meet, else in portions, too, each
+  // twice as long as the one before while nothing is met.
   Eigen::Vector3d left = target.translation() - pose().translation();
   const double negligible = 1e-6 * left.norm(); // of a path that has been bent
-  double portion = unlimited, after_first = unlimited;
-  bool straight = true; // nothing met so far
-  bool first = true;    // way that is looked at
+  double portion = firstWay();
+  const std::size_t legs_before = legs.size();
+  bool straight = true; // nothing met so far: the first contact is sought
   ContactPlanes planes;
   for (int contacts = 0; contacts < kMostContacts;) {
     const double length = left.norm();
@@ -118,27 +111,34 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
     const bool last = length <= portion;
     const double most_travel = last ? length : portion;
     const Eigen::Vector3d way = left * (most_travel / length);
-    const StraightWays ways = shiftedBy(way, pose(), slide ? kSlack * most_travel : 0.0);
-    const Passage passage = passageOn(ways, most_travel, first);
+    Passage passage = passageOn(shiftedBy(way, pose(), straight ? 0.0 : kSlack * most_travel), most_travel);
+    Eigen::Isometry3d ahead = pose();
+    ahead.translation() += way;
+    const RigidMotion motion(pose(), ahead, body_.center(), Eigen::Vector3d::Zero());
+    if (straight) passage.until_met = FirstContact{&motion, 0.0, 1.0};
     Box3 swept = body_.world_box;
     swept.merge({swept.low + way, swept.high + way});
-    swept.grow(ways.stray);
+    swept.grow(passage.ways.stray);
     if (!collect(swept, passage)) {
-      if (portion != unlimited && most_travel <= 0.25 * tolerance_) return halt();
+      if (most_travel <= 0.25 * tolerance_) return halt();
       portion = 0.5 * most_travel;
-      if (first) portion = std::min(portion, 0.5 * kShortWay * tolerance_);
-      first = false;
       continue;
     }
     if (outcome.stuck) return false;
     const Walked walked = walk(left, passage, straight && last ? &target : nullptr, slide, planes);
+    if (straight && legs.size() > legs_before + 1) { // portions of one straight leg
+      legs[legs_before].to = legs.back().to;
+      legs.resize(legs_before + 1);
+    }
     if (walked == Walked::blocked || (walked == Walked::met && !slide)) return false;
     if (walked == Walked::free) {
-      const double next = std::max(2 * portion, std::exchange(after_first, 0.0));
-      if (4 * near_ <= kFewPairs) portion = next; // else there would be too many
+      if (straight)
+        portion *= kLonger;
+      else if (4 * near_ <= kFewPairs) // else there would be too many
+        portion *= 2.0;
       continue;
     }
-    first = false;
+    if (straight) portion = std::numeric_limits<double>::infinity();
     straight = false;
     ++contacts;
   }
@@ -149,7 +149,7 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
 double Mover::roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction)
 {
   const double length = passage.length(), slack = passage.ways.stray;
-  const Eigen::Vector3d axis = 2.0 * passage.ways.shift / length;
+  const Eigen::Vector3d axis = passage.ways.shift / length;
   const double along = gone.dot(axis), climb = direction.dot(axis);
   const Eigen::Vector3d beside = gone - along * axis, drift = direction - climb * axis;
   double room = climb > 0.0 ? (length - along) / climb : climb < 0.0 ? along / -climb : length;
@@ -180,10 +180,7 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, const Passage& passage, const E
     ahead.translation() += part;
     const RigidMotion motion(pose(), ahead, body_.center(), Eigen::Vector3d::Zero());
     for (const Encounter& e : encounters_) {
-      const ContactZone zone{e.reach, tolerance_};
-      const Eigen::Vector3d apart = e.apart + gone;
-      const bool is_quick = e.of_points && !zone.isNext(apart.norm() - tolerance_ / 16); // more than rounding takes
-      const auto s = is_quick ? timeOfContact(apart, part, zone) : contactOn(motion, e, 0.0, end);
+      const auto s = passage.until_met ? e.meets : contactOn(motion, part, e, gone, end);
       if (!s || (met && *s >= end)) continue;
       end = *s;
       met = &e;
@@ -202,100 +199,11 @@ Mover::Walked Mover::walk(Eigen::Vector3d& left, const Passage& passage, const E
     touch(*met);
     if (distance > tolerance_) planes.forget();
     left = planes.add(normalOf(*met), left);
-    if (!slide) return Walked::met;
+    if (!slide || passage.until_met) return Walked::met;
     if (left == Eigen::Vector3d::Zero()) return Walked::met;
     most_travel = roomIn(passage, gone, left.normalized());
   }
   return Walked::met;
-}
-
-/// Collects all pairs of points that can meet while the object is within `swept` and goes by the passage. @return false
-/// where too many of one other part are near
-bool Mover::collect(Box3 swept, const Passage& passage)
-{
-  encounters_.clear();
-  near_ = 0;
-  collected_at_ = pose();
-  if (body_.box.empty()) return true;
-  swept.grow(state_.rules.largestClearance() * (1.0 + kDoubleMargin) + tolerance_);
-  state_.grid.around(swept, around_);
-  for (const ObjectId other : around_) {
-    if (other == object_) continue;
-    const std::optional<double> clearance = state_.rules.clearanceOf(object_, other);
-    if (!clearance || !swept.meets(state_.bodies[other].world_box)) continue;
-    if (!collectFrom(other, *clearance, passage)) return false;
-    if (outcome.stuck) return true;
-  }
-  return true;
-}
-
-bool Mover::collectFrom(ObjectId other, double clearance, const Passage& passage)
-{
-  for (std::uint32_t i = 0; i < body_.world.size(); ++i)
-    for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
-      const Placed mine = state_.placed(object_, i), others = state_.placed(other, j);
-      const MeantPlaces places = possiblePlaces(mine, others);
-      const Reach farthest(clearance, mine.hierarchy().storage().uncertainty, others.hierarchy().storage().uncertainty,
-                           places);
-      constexpr double halting = 0.75; // tolerances beyond the reach: halts are at half of one
-      const StraightWays ways = waysOf(passage.ways, body_.object.parts[i].pose);
-      const PairsWithin found =
-          pairsAlong(mine.hierarchy(), ways, others, {farthest.most + halting * tolerance_, passage.most},
-                     passage.most_leaf_pairs);
-      near_ = std::max(near_, found.pairs.size());
-      ++cost_.pairs;
-      cost_.work += found.work;
-      if (!found.complete) {
-        crowded_ = other;
-        return false;
-      }
-      const PointsView &a = mine.hierarchy().view(), &b = others.hierarchy().view();
-      const RecordDistance exact(a, mine.pose, b, others.pose);
-      const PairReach reach_of_pairs(a, b, clearance, places);
-      const bool of_points = !a.triangles && !b.triangles;
-      const bool is_one = reach_of_pairs.isOne() && !a.radii && !b.radii;
-      const double one_reach = is_one ? reachOf(reach_of_pairs.of({})) : 0.0;
-      for (const PointPair pair : found.pairs) {
-        const Point3 p = a.point(pair.a), q = b.point(pair.b);
-        const Eigen::Vector3d at(p[0], p[1], p[2]);
-        Encounter e{pair, i, other, j, is_one ? one_reach : reachOf(reach_of_pairs.of(pair)), clearance, of_points, {}};
-        e.apart = mine.pose * at - others.pose * Eigen::Vector3d(q[0], q[1], q[2]);
-        if (of_points) {
-          const Eigen::Vector3d half = ways.half(at);
-          if (leastOnWay(e.apart + half, half) > e.reach + ways.stray + halting * tolerance_) continue;
-        }
-        if ((of_points ? e.apart.norm() : separationOf(e).high) <= e.reach + 0.125 * tolerance_) {
-          ++cost_.work.exact_decisions;
-          if (reach_of_pairs.holds(exact, pair)) {
-            outcome.stuck = true;
-            touch(e);
-            return true;
-          }
-        }
-        encounters_.push_back(e);
-      }
-    }
-  outcome.stuck = isInside(other);
-  return true;
-}
-
-/// Whether the object begins inside of the other one, or round it. It has not met its surface since, so it is asked
-/// once.
-bool Mover::isInside(ObjectId other)
-{
-  if (state_.solids.none() || std::find(outside_of_.begin(), outside_of_.end(), other) != outside_of_.end())
-    return false;
-  for (std::uint32_t i = 0; i < body_.world.size(); ++i)
-    for (std::uint32_t j = 0; j < state_.bodies[other].world.size(); ++j) {
-      if (!state_.areSolid({object_, other, i, j})) continue;
-      if (!state_.solids.find(state_.standing(object_, i), state_.standing(other, j), std::nullopt, cost_.work))
-        continue;
-      outcome.touched = true;
-      outcome.against = other;
-      return true;
-    }
-  outside_of_.push_back(other);
-  return false;
 }
 
 /// Takes the pose, unless any of the pairs that can have met does collide there, in exact arithmetic.
@@ -344,6 +252,16 @@ std::optional<double> Mover::contactOn(const RigidMotion& motion, const Encounte
   return timeOfContact(motion, placedBy(part.pose, cornersOf(part.hierarchy->view(), e.pair.a)), still,
                        placedBy(worldOf(e), cornersOf(hierarchyOf(e).view(), e.pair.b)), {e.reach, tolerance_}, begin,
                        end);
+}
+
+/// The same on a straight way. @param gone since the pair was collected
+std::optional<double> Mover::contactOn(const RigidMotion& motion, const Eigen::Vector3d& way, const Encounter& e,
+                                       const Eigen::Vector3d& gone, double end) const
+{
+  const ContactZone zone{e.reach, tolerance_};
+  const Eigen::Vector3d apart = e.apart + gone;
+  const bool is_quick = e.of_points && !zone.isNext(apart.norm() - tolerance_ / 16); // more than rounding takes
+  return is_quick ? timeOfContact(apart, way, zone) : contactOn(motion, e, 0.0, end);
 }
 
 /// At the object's pose.

@@ -7,6 +7,7 @@
 #include <pcl_bsh/scene/state.h>
 #include <pcl_bsh/scene/swept/conservative_advancement.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -41,10 +42,20 @@ private:
     std::uint32_t part = 0;
     ObjectId other = 0;
     std::uint32_t other_part = 0;
-    double reach = 0.0;     ///< at most so far apart, they may collide
-    double clearance = 0.0; ///< of the objects
-    bool of_points = true;  ///< of both; else one is a triangle
-    Eigen::Vector3d apart;  ///< from the other's point to the mover's, at the pose they were collected at
+    double reach = 0.0;          ///< at most so far apart, they may collide
+    double clearance = 0.0;      ///< of the objects
+    bool of_points = true;       ///< of both; else one is a triangle
+    Eigen::Vector3d apart;       ///< from the other's point to the mover's, at the pose they were collected at
+    std::optional<double> meets; ///< s of their contact, where the first of all was sought and it may be that
+  };
+
+  /// A motion from s = begin to end of which only the way to the first contact counts.
+  struct FirstContact {
+    const RigidMotion* motion = nullptr;
+    double begin = 0.0, end = 1.0;
+
+    /// The share of the way to an s.
+    double shareAt(double s) const { return std::min(1.0, (s - begin) / (end - begin) * (1.0 + kDoubleMargin)); }
   };
 
   /// Where the object may go.
@@ -52,16 +63,18 @@ private:
     StraightWays ways;                 ///< of its places, in its own frame
     std::size_t most = 0;              ///< pairs of points that may meet on it, with one other part
     std::uint64_t most_leaf_pairs = 0; ///< compared to find them
+    std::optional<FirstContact> until_met = {};
 
-    double length() const { return 2.0 * ways.shift.norm(); } ///< where it does not turn
+    double length() const { return ways.shift.norm(); } ///< where it does not turn
   };
 
   enum class Walked { free, met, blocked };
 
-  bool follow(const ObjectMotion& motion, double begin, double end, double& done);
+  double firstWay() const;
+  bool follow(const ObjectMotion& motion, double begin, double end, double most, double& done);
   Walked walk(Eigen::Vector3d& left, const Passage& passage, const Eigen::Isometry3d* target, bool slide,
               ContactPlanes& planes);
-  Passage passageOn(const StraightWays& ways, double length, bool first) const;
+  Passage passageOn(const StraightWays& ways, double length) const;
   static double roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction);
   bool collect(Box3 swept, const Passage& passage);
   bool collectFrom(ObjectId other, double clearance, const Passage& passage);
@@ -70,6 +83,8 @@ private:
   bool go(const Eigen::Isometry3d& target);
   std::optional<double> contactOn(const RigidMotion& motion, const Encounter& encounter, double begin,
                                   double end) const;
+  std::optional<double> contactOn(const RigidMotion& motion, const Eigen::Vector3d& way, const Encounter& encounter,
+                                  const Eigen::Vector3d& gone, double end) const;
   Separation separationOf(const Encounter& encounter) const;
   Eigen::Vector3d normalOf(const Encounter& encounter) const;
   Corners mineOf(const Encounter& encounter) const;
@@ -87,7 +102,8 @@ private:
   ObjectId crowded_ = 0; ///< whose points are too many to collect
   std::vector<ObjectId> around_;
   std::vector<Encounter> encounters_;
-  std::size_t near_ = 0; ///< pairs that were found for them, of the part with most
+  double first_contact_ = 1.0; ///< s, where it is sought
+  std::size_t near_ = 0;       ///< pairs that were found for them, of the part with most
   Eigen::Isometry3d collected_at_ = Eigen::Isometry3d::Identity(); ///< the pose that their places hold for
   std::vector<ObjectId> outside_of_;                               ///< of whose solids it is outside
 };

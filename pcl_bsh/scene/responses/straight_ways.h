@@ -11,23 +11,20 @@ namespace pcl_bsh {
 /// The ways of one that stays as it is turned.
 inline StraightWays shiftedBy(const Eigen::Vector3d& way, const Eigen::Isometry3d& from, double stray)
 {
-  StraightWays ways{from, Eigen::Matrix3d::Zero(), 0.5 * way, stray};
-  ways.middle.translation() += ways.shift;
-  return ways;
+  return {from, Eigen::Matrix3d::Zero(), way, stray};
 }
 
-/// Ways stray by two bows: that of their ends, and that of their middle.
+/// Ways stray by the bow of the turn.
 inline StraightWays waysOn(const ObjectMotion& motion, double begin, double end)
 {
   const Eigen::Isometry3d from = motion.at(begin), to = motion.at(end);
-  return {motion.at(0.5 * (begin + end)), 0.5 * (to.linear() - from.linear()),
-          0.5 * (to.translation() - from.translation()), 2.0 * motion.turningBow(end - begin)};
+  return {from, to.linear() - from.linear(), to.translation() - from.translation(), motion.turningBow(end - begin)};
 }
 
 /// The ways of a part of what has these.
 inline StraightWays waysOf(const StraightWays& object, const Eigen::Isometry3d& part)
 {
-  return {worldPoseOf(object.middle, part), object.turn * part.linear(), object.half(part.translation()), object.stray};
+  return {worldPoseOf(object.start, part), object.turn * part.linear(), object.way(part.translation()), object.stray};
 }
 
 } // namespace pcl_bsh
