@@ -33,6 +33,7 @@ struct WaitingNodes {
   LanePair lanes;
   Eigen::Vector3d middle;
   double radius, slack, least_gap;
+  bool is_measured = false; ///< leaves, whose points bound the gap
   bool is_opened = false;
 };
 struct WaitingRecords {
@@ -47,18 +48,12 @@ struct NearRecord {
   PointPair pair;
   double least_gap, most_gap;
 };
-struct Turn {
-  double bound;
-  std::pair<std::size_t, bool> of; ///< which of the nodes or of the records
-  bool operator<(const Turn& other) const { return bound < other.bound; }
-};
-
 /// Memory of one search after another.
 struct ChannelScratch {
   std::vector<WaitingNodes> nodes;
   std::vector<WaitingRecords> records;
   std::vector<NearRecord> of_leaf; ///< that is compared
-  std::vector<Turn> order;
+  std::vector<SearchTurn> order;
 };
 
 /// To be had by a ScratchLease.
@@ -69,7 +64,7 @@ struct CandidateScratch {
     std::size_t all = 0;
     for (const ChannelScratch& one : of_channels)
       all += one.nodes.capacity() * sizeof(WaitingNodes) + one.records.capacity() * sizeof(WaitingRecords) +
-             one.of_leaf.capacity() * sizeof(NearRecord) + one.order.capacity() * sizeof(Turn);
+             one.of_leaf.capacity() * sizeof(NearRecord) + one.order.capacity() * sizeof(SearchTurn);
     return all;
   }
 };
@@ -110,7 +105,7 @@ public:
     SearchPulse pulse({}, order_.size(), walk_.work);
     while (!order_.empty() && !(order_.front().bound < best.score)) {
       pulse.step(order_.size());
-      const Turn turn = order_.front();
+      const SearchTurn turn = order_.front();
       std::pop_heap(order_.begin(), order_.end());
       order_.pop_back();
       if (turn.of.second)
@@ -123,11 +118,24 @@ public:
   }
 
 private:
-  static double down(double x) { return std::nextafter(x, -kInfinity); }
+  static double down(double x) { return x - std::abs(x) * 0x1p-52 - std::numeric_limits<double>::denorm_min(); }
 
-  static double boundOf(const PatchGoal& goal, const WaitingNodes& nodes)
+  double boundOf(const PatchGoal& goal, const WaitingNodes& nodes)
   {
-    return goal.bound(nodes.middle, nodes.radius, nodes.slack, nodes.least_gap);
+    const double bound = goal.bound(nodes.middle, nodes.radius, nodes.slack, nodes.least_gap);
+    if (bound == -kInfinity || !goal.hasEndedPatches() || !walk_.haveSlabs(nodes.lanes.a, nodes.lanes.b)) return bound;
+    // A leaf of a flat face reaches as far across its patch as the patch is high, but hardly along the patch's normal.
+    const Lane& lane = nodes.lanes.a;
+    const Slabs& slabs = walk_.slabsOf(walk_.a, lane);
+    const Eigen::Vector3d normal =
+        walk_.a.pose.linear() * Eigen::Vector3d(slabs.x[lane.lane], slabs.y[lane.lane], slabs.z[lane.lane]);
+    const double h = slabs.h[lane.lane] * walk_.a.frame(lane.space).unit;
+    if (normal.isZero(0.0)) return bound;
+    const auto reach = [&](const Eigen::Vector3d& n) {
+      const double margin = static_cast<double>(kSlabMargin) * nodes.radius; // for normals that are not of length one
+      return std::abs(n.dot(normal)) * h + n.cross(normal).norm() * nodes.radius + margin + nodes.slack;
+    };
+    return goal.isTaken(nodes.middle, nodes.slack, reach) ? -kInfinity : bound;
   }
   static double boundOf(const PatchGoal& goal, const WaitingRecords& records)
   {
@@ -166,9 +174,15 @@ private:
 
   void open(const PatchGoal& goal, std::size_t index, const Candidate& best)
   {
-    nodes_[index].is_opened = true;
     const LanePair pair = nodes_[index].lanes;
     const Opened opened = walk_.choose(pair);
+    if (opened == Opened::neither && measures() && !std::exchange(nodes_[index].is_measured, true)) {
+      nodes_[index].is_opened = !measure(nodes_[index]);
+      if (!nodes_[index].is_opened && consider(boundOf(goal, nodes_[index]), {index, false}, best))
+        std::push_heap(order_.begin(), order_.end());
+      return;
+    }
+    nodes_[index].is_opened = true;
     const std::size_t nodes = nodes_.size(), records = records_.size();
     if (opened == Opened::neither) {
       compare(pair);
@@ -186,6 +200,30 @@ private:
       if (child.key <= reach_) wait(child);
     }
     enter(goal, nodes_, nodes, best);
+  }
+
+  /// Whether points bound how near two leaves are.
+  bool measures() const { return !walk_.haveTriangles() && !pairs_.haveRadii(); }
+
+  /// Bounds the gap of two leaves by that of their points in floats. Most leaves are as near as the best candidate by
+  /// their spheres and slabs, but none of their points is; those are never made records. @return whether any is near
+  bool measure(WaitingNodes& leaves_waiting)
+  {
+    const ComparedLeaves leaves = walk_.compare(leaves_waiting.lanes, reach_);
+    float least = std::numeric_limits<float>::infinity();
+    bool is_bounded = true;
+    const float miss = leaves.frame.band(reach_).miss;
+    eachPairNotBeyond(leaves.points, leaves.near, leaves.b, miss, [&](std::uint32_t, std::uint32_t, float squared) {
+      if (squared > miss) return false;
+      is_bounded = is_bounded && squared >= 0.0f; // not where squares leave the range of floats
+      least = std::min(least, squared);
+      return false;
+    });
+    if (is_bounded && least > miss) return false;
+    const double apart = std::sqrt(static_cast<double>(least)) * leaves.frame.unit() * (1.0 - 0x1p-20);
+    if (is_bounded && leaves.frame.band(apart).miss < least)
+      leaves_waiting.least_gap = std::max(leaves_waiting.least_gap, down(apart - thickness_));
+    return true;
   }
 
   void compare(const LanePair& pair)
@@ -286,7 +324,7 @@ private:
   std::vector<WaitingNodes>& nodes_;
   std::vector<WaitingRecords>& records_;
   std::vector<NearRecord>& of_leaf_;
-  std::vector<Turn>& order_;
+  std::vector<SearchTurn>& order_;
 };
 
 class SearchOfAll final : public CandidateSearch {

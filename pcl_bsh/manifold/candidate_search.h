@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace pcl_bsh {
@@ -35,7 +36,19 @@ struct EdgeCrossing {
 std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges);
 
 /// The place of a channel's probe, in the world.
-Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record);
+inline Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record)
+{
+  const Point3 p = channel.probe.hierarchy().view().point(record);
+  return channel.probe.pose * Eigen::Vector3d(p[0], p[1], p[2]);
+}
+
+/// The place in a heap of one of a search's nodes or records. Here, and not where code is compiled for each
+/// instruction set, because heaps of the standard library are not.
+struct SearchTurn {
+  double bound;
+  std::pair<std::size_t, bool> of; ///< its number, whether it is a record
+  bool operator<(const SearchTurn& other) const { return bound < other.bound; }
+};
 
 /// Searches channels.
 class CandidateSearch {

@@ -241,12 +241,6 @@ private:
 
 } // namespace
 
-Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record)
-{
-  const Point3 p = channel.probe.hierarchy().view().point(record);
-  return channel.probe.pose * Eigen::Vector3d(p[0], p[1], p[2]);
-}
-
 std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges)
 {
   constexpr double parallel = 1e-12, slack = 1e-9;

@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -48,6 +50,13 @@ struct PatchSlab {
 class PlaneHull {
 public:
   using Point = Eigen::Vector2d;
+
+  /// Above 0: a point is to the left of the way between two others, by twice the area of their triangle.
+  static double turn(const Point& from, const Point& to, const Point& at)
+  {
+    const Point way = to - from, other = at - from;
+    return way.x() * other.y() - way.y() * other.x();
+  }
 
   void clear() { corners_.clear(), diameter_ = 0.0; }
   std::size_t size() const { return corners_.size(); }
@@ -90,7 +99,21 @@ public:
   /// middle and radius may be off by
   double bound(const Eigen::Vector3d& middle, double radius, double slack, double least_gap) const;
 
+  bool hasEndedPatches() const { return !ended_.empty(); }
+
+  /// Whether a patch that was ended holds all places about a middle that reach( normal ) bounds: how far they reach
+  /// from it along a patch's normal.
+  template <class Reach>
+  bool isTaken(const Eigen::Vector3d& middle, double slack, const Reach& reach) const
+  {
+    for (const PatchSlab& slab : ended_)
+      if (slab.from(middle) + reach(slab.normal) + slack <= slab.height) return true;
+    return false;
+  }
+
 private:
+  static constexpr double kNone = -std::numeric_limits<double>::infinity();
+
   Eigen::Vector2d flat(const Eigen::Vector3d& place) const
   {
     const Eigen::Vector3d at = place - patch_slab_.place;
@@ -107,5 +130,49 @@ private:
   std::array<Eigen::Vector3d, 2> axes_; ///< of its plane
   PlaneHull hull_;
 };
+
+// Searches ask these of each pair of nodes, so they are defined here.
+
+inline double PlaneHull::gain(const Point& point) const
+{
+  if (corners_.size() < 2) return 0.0;
+  if (corners_.size() == 2) return 0.5 * std::abs(turn(corners_[0], corners_[1], point));
+  double gained = 0.0;
+  for (std::size_t i = 0; i < corners_.size(); ++i)
+    gained += std::max(0.0, -turn(corners_[i], corners_[(i + 1) % corners_.size()], point));
+  return 0.5 * gained;
+}
+
+inline double PatchGoal::weight(double gap) const
+{
+  if (!(most_gap_ > least_gap_)) return 1.0;
+  return std::clamp((most_gap_ - gap) / (most_gap_ - least_gap_), 0.0, 1.0);
+}
+
+inline double PatchGoal::score(const Eigen::Vector3d& place, double gap) const
+{
+  if (!(gap <= most_gap_)) return kNone;
+  for (const PatchSlab& slab : ended_)
+    if (slab.holds(place)) return kNone;
+  if (!patch_) return -gap;
+  if (!patch_slab_.holds(place)) return kNone;
+  const double score = extent(flat(place)) * weight(gap);
+  return score > 0.0 ? score : kNone;
+}
+
+inline double PatchGoal::bound(const Eigen::Vector3d& middle, double radius, double slack, double least_gap) const
+{
+  const double reach = radius + slack;
+  if (isTaken(middle, slack, [&](const Eigen::Vector3d&) { return reach; })) return kNone;
+  if (!patch_) return -least_gap;
+  if (patch_slab_.from(middle) - reach - slack > patch_slab_.height) return kNone;
+  const Eigen::Vector2d at = flat(middle);
+  // A corner that moves by a length changes the hull's area by at most half of that times the hull's diameter.
+  const double change = hull_.size() < 2 ? 1.0 : 0.5 * hull_.diameter();
+  const double span = hull_.diameter() + at.norm() + reach;
+  const double rounding = hull_.size() < 2 ? 1e-12 * span : 1e-12 * span * span;
+  const double most = extent(at) + change * reach + rounding;
+  return most * (1.0 + 1e-12) * weight(least_gap);
+}
 
 } // namespace pcl_bsh

@@ -231,6 +231,35 @@ TEST(ManifoldTwin, OfPointsAndBallsIsThatOfComparingAll)
   expectManyAsTheTwin(90000, 0, false);
 }
 
+/// Terraces above a floor, with nodes as flat as scans: what a patch holds is passed over by their slabs.
+TEST(ManifoldTwin, OfTerracesIsThatOfComparingAll)
+{
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 0; seed < 80; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const auto points = [&](double step) {
+      std::vector<Point3> all;
+      for (int i = 0; i < 500; ++i) {
+        const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+        all.push_back({x, y, step * std::floor(2 * x) + random.uniform(0.0, 0.01)});
+      }
+      return all;
+    };
+    const Thing terraces(points(random.pick({0.03, 0.06, 0.1}))), floor(points(0.0));
+    const Eigen::Isometry3d pose = random.pose(random.pick({1.0, 1e4}));
+    Eigen::Isometry3d above = pose * Eigen::Translation3d(0, 0, random.uniform(0.05, 0.25));
+    above.rotate(Eigen::AngleAxisd(random.uniform(-0.1, 0.1), Eigen::Vector3d::UnitX()));
+    ManifoldRequest request;
+    request.margin = random.uniform(0.05, 0.2);
+    request.thickness = random.pick({0.0, 0.05});
+    request.height = random.pick({0.0251, 0.0513, 0.2017});
+    contacts += expectAsTheTwin({terraces, floor, above, pose, request, 4.0});
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(contacts, 500u) << "cases are no test";
+}
+
 TEST(ManifoldTwin, OfSurfacesIsThatOfComparingAll)
 {
   expectManyAsTheTwin(12000, 1000000, true);
