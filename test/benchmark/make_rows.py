@@ -29,6 +29,7 @@ NEAR_LION = "0.05,0,0,0,0,0"
 # File of rows: the benchmark programs that make it, and their options.
 PROGRAMS = {
     "arm.csv": ["bench_arm --clock cpu"],
+    "arm_million.csv": ["bench_arm --clock cpu --every 1 --motions 2858 --repeat 1"],
     "budgets.csv": [f"bench_budget {clouds} --name {name.replace(' ', '_')} --pose={pose} --repeat 400"
                     for name, clouds, pose in (("building near", MAN, NEAR_MAN), ("building far", MAN, FAR_MAN),
                                                ("rooms near", ROOMS, NEAR_ROOM), ("rooms far", ROOMS, FAR_ROOM),
