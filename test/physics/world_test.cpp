@@ -360,24 +360,51 @@ TEST(World, WhatIsMovedPushesBodiesAndWakesThem)
   EXPECT_NEAR(world.pose(body).translation().x(), 0.3, 0.02); // the hand comes to -0.3, and reaches 0.6 farther
 }
 
-/// Points on points, where both are scanned: it neither sinks nor flies.
+/// Points on points, where both are scanned.
+struct StoneOnTerrain {
+  StoneOnTerrain()
+  {
+    mass.mass = 100;
+    mass.inertia = Eigen::Vector3d(4.4, 4.4, 6.4).asDiagonal();
+  }
+
+  test::Random random{5};
+  const std::vector<float> ground = test::terrainPoints(random), stone = test::stonePoints(random);
+  const SphereHierarchy terrain{viewOf(ground.data(), ground.size() / 3)}, hull{viewOf(stone.data(), stone.size() / 3)};
+  const Collider terrain_collider{terrain}, stone_collider{hull};
+  MassProperties mass;
+};
+
+/// It neither sinks nor flies.
 TEST(World, AStoneRestsOnScannedTerrain)
 {
-  test::Random random(5);
-  const std::vector<float> ground = test::terrainPoints(random), stone = test::stonePoints(random);
-  const SphereHierarchy terrain(viewOf(ground.data(), ground.size() / 3)), hull(viewOf(stone.data(), stone.size() / 3));
-  const Collider terrain_collider(terrain), stone_collider(hull);
-  MassProperties mass;
-  mass.mass = 100;
-  mass.inertia = Eigen::Vector3d(4.4, 4.4, 6.4).asDiagonal();
+  const StoneOnTerrain things;
   World world;
-  world.addFixed(terrain_collider);
-  const BodyId body = world.add(stone_collider, at(0.2, 0.1, 0.6), mass);
+  world.addFixed(things.terrain_collider);
+  const BodyId body = world.add(things.stone_collider, at(0.2, 0.1, 0.6), things.mass);
   for (int i = 0; i < 2400; ++i) world.step(kStep);
   EXPECT_LT(world.velocity(body).norm(), 0.02);
   const Eigen::Vector3d there = world.pose(body).translation();
   EXPECT_GT(there.z(), -0.1 + 0.2);
   EXPECT_LT(there.z(), 0.1 + 0.5);
+}
+
+/// Nothing damps it, and nothing lets it sleep.
+TEST(World, AStoneAtRestDoesNotDrift)
+{
+  constexpr double size = 0.8;
+  const StoneOnTerrain things;
+  WorldOptions options;
+  options.sleeping = false;
+  World world(options);
+  world.addFixed(things.terrain_collider);
+  const BodyId body = world.add(things.stone_collider, at(0.5, 0.3, 0.6), things.mass);
+  for (int i = 0; i < 2400; ++i) world.step(kStep);
+  const Eigen::Isometry3d before = world.pose(body);
+  for (int i = 0; i < 10000; ++i) world.step(kStep);
+  EXPECT_LT((world.pose(body).translation() - before.translation()).norm(), 1e-6 * size);
+  const Eigen::AngleAxisd turned((before.linear().transpose() * world.pose(body).linear()).eval());
+  EXPECT_LT(turned.angle(), 2e-6);
 }
 
 TEST(World, RefusesWhatHasNoMeaning)
