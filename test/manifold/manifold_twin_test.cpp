@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace pcl_bsh {
 namespace {
@@ -258,6 +260,77 @@ TEST(ManifoldTwin, OfTerracesIsThatOfComparingAll)
     if (testing::Test::HasFailure()) return;
   }
   EXPECT_GT(contacts, 500u) << "cases are no test";
+}
+
+/// Ids as the specification has them: the pair of contacts that moved least is one, then that of those left. Where
+/// pairs moved equally, within rounding, any of them may be taken.
+void expectIdsAsTheTwin(const Manifold& before, const Manifold& now, double within)
+{
+  constexpr double equal = 1e-9;
+  const auto movedOf = [&](const Contact& old, const Contact& one) {
+    const auto moved = [](const Eigen::Isometry3d& from, const Eigen::Vector3d& old_place, const Eigen::Isometry3d& to,
+                          const Eigen::Vector3d& place) {
+      return (from.inverse() * old_place - to.inverse() * place).norm();
+    };
+    return std::min(moved(before.pose_a, old.place_a, now.pose_a, one.place_a),
+                    moved(before.pose_b, old.place_b, now.pose_b, one.place_b));
+  };
+  std::vector<Contact> old_left = before.contacts, left = now.contacts;
+  for (;;) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& old : old_left)
+      for (const Contact& one : left) least = std::min(least, movedOf(old, one));
+    if (!(least <= within)) break;
+    const auto isTaken = [&](const Contact& old, const Contact& one) {
+      return old.id == one.id && movedOf(old, one) <= least + equal;
+    };
+    bool found = false;
+    for (std::size_t i = 0; i < old_left.size() && !found; ++i)
+      for (std::size_t k = 0; k < left.size() && !found; ++k) {
+        if (!isTaken(old_left[i], left[k])) continue;
+        old_left.erase(old_left.begin() + static_cast<std::ptrdiff_t>(i));
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(k));
+        found = true;
+      }
+    ASSERT_TRUE(found) << "no contact lives on that moved by " << least;
+  }
+  std::uint32_t next = before.next_id;
+  for (const Contact& one : left) EXPECT_EQ(one.id, next++) << "is no new one";
+  EXPECT_EQ(now.next_id, next);
+}
+
+/// A stone wanders over a floor of points in small steps, turns and leaps now and then.
+TEST(ManifoldTwin, IdsOfTenThousandStepsAreThoseOfComparingAll)
+{
+  test::Random random(11);
+  std::vector<Point3> stone, floor;
+  for (int i = 0; i < 60; ++i) stone.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.1)});
+  for (int i = 0; i < 300; ++i) floor.push_back({random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(0, 0.1)});
+  const Thing a(stone), b(floor);
+  Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, 0.2));
+  Manifold before;
+  std::size_t living = 0, born = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double step = random.chance(0.01) ? 0.3 : 0.01;
+    pose.pretranslate(Eigen::Vector3d(random.uniform(-step, step), random.uniform(-step, step), 0));
+    pose.rotate(Eigen::AngleAxisd(random.uniform(-step, step), Eigen::Vector3d::UnitZ()));
+    pose.translation() = pose.translation().cwiseMax(-2.0).cwiseMin(2.0);
+    pose.translation().z() = random.uniform(0.15, 0.25);
+    ManifoldRequest request;
+    request.margin = 0.3;
+    request.thickness = 0.0;
+    request.same_within = 0.6; // several may be one
+    request.previous = i > 0 ? &before : nullptr;
+    const Manifold now = contactManifold({*a.collider, pose}, {*b.collider}, request);
+    if (i > 0) {
+      expectIdsAsTheTwin(before, now, *request.same_within);
+      ASSERT_FALSE(testing::Test::HasFailure()) << "step " << i;
+      for (const Contact& one : now.contacts) (one.id < before.next_id ? living : born) += 1;
+    }
+    before = now;
+  }
+  EXPECT_GT(living, 10000u);
+  EXPECT_GT(born, 300u);
 }
 
 TEST(ManifoldTwin, OfSurfacesIsThatOfComparingAll)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mover may meet on its way.
+// Collects the pairs that a mover may meet on its way.
 #include <pcl_bsh/hierarchy/storage.h>
 #include <pcl_bsh/query/pair_reach.h>
 #include <pcl_bsh/query/uncertain.h>

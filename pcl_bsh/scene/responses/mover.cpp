@@ -254,7 +254,7 @@ std::optional<double> Mover::contactOn(const RigidMotion& motion, const Encounte
                        end);
 }
 
-/// The same on a straight way. @param gone since the pair was collected
+/// When a pair meets on a straight way. @param gone since the pair was collected
 std::optional<double> Mover::contactOn(const RigidMotion& motion, const Eigen::Vector3d& way, const Encounter& e,
                                        const Eigen::Vector3d& gone, double end) const
 {
