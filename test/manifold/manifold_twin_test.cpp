@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// PCL_BSH_ATTACKS in the environment: how many cases of each kind.
 #include <pcl_bsh/manifold/contact_manifold.h>
 
 #include "manifold_twin.h"
+#include "support/attacks.h"
 
 #include <gtest/gtest.h>
 
@@ -202,8 +204,9 @@ std::unique_ptr<Thing> anyThing(test::Random& random, bool with_meshes)
   }
 }
 
-void expectManyAsTheTwin(std::uint64_t seeds, std::uint64_t from, bool with_meshes)
+void expectManyAsTheTwin(long cases, std::uint64_t from, bool with_meshes)
 {
+  const auto seeds = static_cast<std::uint64_t>(cases);
   std::size_t contacts = 0;
   for (std::uint64_t seed = from; seed < from + seeds; ++seed) {
     SCOPED_TRACE(seed);
@@ -230,7 +233,7 @@ void expectManyAsTheTwin(std::uint64_t seeds, std::uint64_t from, bool with_mesh
 
 TEST(ManifoldTwin, OfPointsAndBallsIsThatOfComparingAll)
 {
-  expectManyAsTheTwin(90000, 0, false);
+  expectManyAsTheTwin(test::attacks(90'000), 0, false);
 }
 
 /// Terraces above a floor, with nodes as flat as scans: what a patch holds is passed over by their slabs.
@@ -335,7 +338,7 @@ TEST(ManifoldTwin, IdsOfTenThousandStepsAreThoseOfComparingAll)
 
 TEST(ManifoldTwin, OfSurfacesIsThatOfComparingAll)
 {
-  expectManyAsTheTwin(12000, 1000000, true);
+  expectManyAsTheTwin(test::attacks(12'000), std::uint64_t{1} << 32, true);
 }
 
 } // namespace
