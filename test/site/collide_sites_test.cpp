@@ -620,7 +620,7 @@ TEST_F(SitePairProgram, RefusesInOneLine)
     EXPECT_THAT(outcome.err, HasSubstr(line)) << arguments;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   };
-  expectRefused("--clearance 0.1 --clashes c.txt", 1, "unknown extension");
+  expectRefused("--clearance 0.1 --clashes c.txt", 2, "unknown extension");
   expectRefused("--clearance 0.1 --report before/r.json", 2, "lies in the folder of OBSTACLE");
   expectRefused("--clearance 0.1 --obstacle-out before/found", 2, "lies in the folder of OBSTACLE");
   fs::create_directory(folder / "mine");
