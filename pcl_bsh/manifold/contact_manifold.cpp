@@ -254,7 +254,8 @@ std::optional<EdgeCrossing> crossingOf(const Channel& channel, PointPair edges)
   if (!(across > parallel * uu * vv)) return std::nullopt;
   const Eigen::Vector3d from = q - p;
   const double s = (vv * u.dot(from) - uv * v.dot(from)) / across, t = (uv * u.dot(from) - uu * v.dot(from)) / across;
-  if (!(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0)) return std::nullopt;
+  for (const double at : {s, t})
+    if (!(at > slack && at < 1.0 - slack)) return std::nullopt;
   const auto isOutside = [&](const SharpEdge& edge, const Placed& placed, const Eigen::Vector3d& way,
                              const Eigen::Vector3d& normal) {
     const Eigen::Vector3d n = placed.pose.linear() * edge.normals[0], m = placed.pose.linear() * edge.normals[1];

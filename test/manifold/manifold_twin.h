@@ -202,7 +202,7 @@ inline std::vector<TwinCandidate> candidatesOf(const Thing& a, const Eigen::Isom
       Eigen::Matrix<double, 3, 2> sides;
       sides << u, -v;
       const Eigen::Vector2d at = sides.colPivHouseholderQr().solve(q - p);
-      if (!(at.x() > 0 && at.x() < 1 && at.y() > 0 && at.y() < 1)) continue;
+      if (!(at.minCoeff() > 1e-9 && at.maxCoeff() < 1 - 1e-9)) continue;
       Eigen::Vector3d out = u.cross(v).normalized();
       const auto fits = [&] {
         const Eigen::Matrix3d ra = pose_a.linear(), rb = pose_b.linear();

@@ -336,6 +336,12 @@ TEST(ManifoldTwin, IdsOfTenThousandStepsAreThoseOfComparingAll)
   EXPECT_GT(born, 300u);
 }
 
+/// An edge that ends at another one does not cross it: a rounding said that it did.
+TEST(ManifoldTwin, OfEdgesThatEndAtEachOther)
+{
+  expectManyAsTheTwin(1, (std::uint64_t{1} << 32) + 13921, true);
+}
+
 TEST(ManifoldTwin, OfSurfacesIsThatOfComparingAll)
 {
   expectManyAsTheTwin(test::attacks(12'000), std::uint64_t{1} << 32, true);
