@@ -207,6 +207,9 @@ double ofQuestion(const Lattices& of, const Effort& effort)
 
 class Efforts : public testing::TestWithParam<Call> {
 protected:
+  /// Times that the caller is surely told: other threads may do all of the work before this one takes its share.
+  static int callsForCertain() { return GetParam().threads == 1 ? 2 : 1; }
+
   double ask(const std::function<bool(double)>& progress) const
   {
     const Lattices fresh; // voxels are built anew
@@ -221,9 +224,11 @@ TEST_P(Efforts, ReportHowFarTheyAre)
     told.push_back(done);
     return true;
   });
-  ASSERT_GE(told.size(), 2U);
+  ASSERT_GE(told.size(), static_cast<std::size_t>(callsForCertain()));
   EXPECT_GE(told.front(), 0.0);
-  EXPECT_LT(told.front(), 1.0) << "while there is still something to do";
+  if (told.size() > 1) {
+    EXPECT_LT(told.front(), 1.0) << "while there is still something to do";
+  }
   if (GetParam().threads == 1 && GetParam().accuracy.mode == Accuracy::Mode::exact) {
     EXPECT_GT(told[told.size() - 2], 0.5) << "before the end";
   }
@@ -234,7 +239,7 @@ TEST_P(Efforts, ReportHowFarTheyAre)
 
 TEST_P(Efforts, EndWhenTheyAreTold)
 {
-  for (const int last : {1, 2}) {
+  for (int last = 1; last <= callsForCertain(); ++last) {
     int calls = 0;
     EXPECT_THROW(ask([&](double) { return ++calls < last; }), Cancelled);
     EXPECT_EQ(calls, last) << "no call after the one that asked to stop";
