@@ -7,6 +7,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/geometry/triangle/triangle_distance.h>
 #include <pcl_bsh/hierarchy/triangles_view.h>
+#include <pcl_bsh/many_poses/collide_on_motions.h>
 
 #include <gmock/gmock.h>
 
@@ -299,6 +300,58 @@ TEST(RobotWorld, AttachesAndDetaches)
   EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::colliding);
   world.setObstacles({});
   EXPECT_EQ(world.checkMotion({0}, {3}).verdict, Verdict::free);
+}
+
+/// A robot of one link moves as a cloud of its balls does along a straight path of two poses.
+TEST(RobotWorld, AgreesWithAPathWhereOneLinkMoves)
+{
+  std::size_t free = 0, colliding = 0, alike = 0;
+  for (std::uint64_t seed = 140; seed < 540; ++seed) {
+    MadeScene scene(seed, 60, true);
+    Robot robot{"one", {{"base", {}, {}}, {"link", {}, Joint{"moves"}}}};
+    Joint& joint = *robot.links[1].joint;
+    const bool slides = seed % 2 == 0;
+    joint.kind = slides ? Joint::Kind::prismatic : Joint::Kind::continuous;
+    joint.origin = test::madePose(scene.random, 0.3);
+    joint.axis = test::madeVector(scene.random, 1.0).normalized();
+    joint.lower = -2.0, joint.upper = 2.0;
+    std::vector<double> centers;
+    std::vector<float> radii;
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector3d center = test::madeVector(scene.random, 0.4);
+      const auto radius = static_cast<float>(scene.random.uniform(0.02, 0.08));
+      robot.links[1].shapes.push_back({Sphere{radius}, Eigen::Isometry3d(Eigen::Translation3d(center))});
+      centers.insert(centers.end(), {center.x(), center.y(), center.z()});
+      radii.push_back(radius);
+    }
+    PointsView balls = viewOf(centers.data(), radii.size());
+    balls.radii = radii.data();
+    const RobotState from = {scene.random.uniform(-1.5, 1.5)}, to = {from[0] + scene.random.uniform(-0.5, 0.5)};
+    const double clearance = scene.random.uniform(0.0, 0.05), swept = 1e-4;
+    const RobotWorld world(robot, {scene.cloud.get()}, {clearance});
+    const Verdict verdict = world.checkMotion(from, to).verdict;
+    const std::vector<Eigen::Isometry3d> poses = {world.kinematics().linkPoses(from)[1],
+                                                  world.kinematics().linkPoses(to)[1]};
+    const auto along = [&](double within) {
+      MotionsRequest request;
+      request.clearance = within;
+      request.swept = swept;
+      return anyCollisionOnMotions({*scene.cloud}, SphereHierarchy(balls), poses, {{0, 1}}, request).flags[0];
+    };
+    const Verdict path = along(clearance);
+    if (path == Verdict::free) {
+      EXPECT_NE(verdict, Verdict::colliding) << seed;
+    }
+    if (clearance >= swept && along(clearance - swept) == Verdict::colliding) {
+      EXPECT_NE(verdict, Verdict::free) << seed;
+    }
+    free += path == Verdict::free ? 1 : 0;
+    colliding += path == Verdict::colliding ? 1 : 0;
+    alike += path == verdict ? 1 : 0;
+  }
+  EXPECT_GT(free, 40u);
+  EXPECT_GT(colliding, 40u);
+  EXPECT_GT(alike, 390u); // of 400: others are near the clearance
 }
 
 TEST(RobotWorld, HoldsMeshesAgainstAll)
