@@ -20,6 +20,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
+#include <pcl_bsh/traversal/world_slab-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -125,16 +126,10 @@ private:
     const double bound = goal.bound(nodes.middle, nodes.radius, nodes.slack, nodes.least_gap);
     if (bound == -kInfinity || !goal.hasEndedPatches() || !walk_.haveSlabs(nodes.lanes.a, nodes.lanes.b)) return bound;
     // A leaf of a flat face reaches as far across its patch as the patch is high, but hardly along the patch's normal.
-    const Lane& lane = nodes.lanes.a;
-    const Slabs& slabs = walk_.slabsOf(walk_.a, lane);
-    const Eigen::Vector3d normal =
-        walk_.a.pose.linear() * Eigen::Vector3d(slabs.x[lane.lane], slabs.y[lane.lane], slabs.z[lane.lane]);
-    const double h = slabs.h[lane.lane] * walk_.a.frame(lane.space).unit;
-    if (normal.isZero(0.0)) return bound;
-    const auto reach = [&](const Eigen::Vector3d& n) {
-      const double margin = static_cast<double>(kSlabMargin) * nodes.radius; // for normals that are not of length one
-      return std::abs(n.dot(normal)) * h + n.cross(normal).norm() * nodes.radius + margin + nodes.slack;
-    };
+    const WorldSlab slab = worldSlabOf(walk_, walk_.a, nodes.lanes.a, nodes.radius);
+    if (slab.normal.isZero(0.0)) return bound;
+    const double margin = static_cast<double>(kSlabMargin) * nodes.radius;
+    const auto reach = [&](const Eigen::Vector3d& n) { return slab.support(n) + margin + nodes.slack; };
     return goal.isTaken(nodes.middle, nodes.slack, reach) ? -kInfinity : bound;
   }
   static double boundOf(const PatchGoal& goal, const WaitingRecords& records)

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/pairs/reach_walk-inl.h>
+#include <pcl_bsh/traversal/world_slab-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {
@@ -53,8 +54,8 @@ public:
     const Eigen::Vector3d apart = place_a - place_b;
     is_beyond_ = leastOnWay(apart, way_) - rounding > near_ + radii;
     if (!is_beyond_ && walk.haveSlabs(lanes.a, lanes.b))
-      is_beyond_ = areSlabsBeyond(slabOf(walk, walk.a, lanes.a, of_a.radius),
-                                  slabOf(walk, walk.b, lanes.b, of_b.radius), apart, rounding);
+      is_beyond_ = areSlabsBeyond(worldSlabOf(walk, walk.a, lanes.a, of_a.radius),
+                                  worldSlabOf(walk, walk.b, lanes.b, of_b.radius), apart, rounding);
   }
 
   bool passesOver(const PairWalk&, const LanePair&) const { return is_beyond_; }
@@ -103,25 +104,6 @@ private:
     const double rounding = frame.slack(0) + frame.slack(1) + frame.slack(2);
     return {stored * frame.unit + Eigen::Vector3d(frame.origin[0], frame.origin[1], frame.origin[2]),
             (node.r[lane.lane] + rounding) * frame.unit * (1.0 + kPoseStretch)};
-  }
-
-  /// A sphere's points between two planes, in the world.
-  struct WorldSlab {
-    Eigen::Vector3d normal;
-    double h, radius;
-
-    /// How far from its centre it reaches along a unit vector.
-    double support(const Eigen::Vector3d& along) const
-    {
-      return std::abs(normal.dot(along)) * h + normal.cross(along).norm() * radius;
-    }
-  };
-
-  static WorldSlab slabOf(PairWalk& walk, const Spaces& side, const Lane& lane, double radius)
-  {
-    const Slabs& slabs = walk.slabsOf(side, lane);
-    const Eigen::Vector3d normal(slabs.x[lane.lane], slabs.y[lane.lane], slabs.z[lane.lane]);
-    return {side.pose.linear() * normal, slabs.h[lane.lane] * side.frame(lane.space).unit, radius};
   }
 
   /// The least size of from + t way, t from 0 to 1.

@@ -134,6 +134,14 @@ inline std::vector<LongPose> longPoses(const robots::Kinematics& kinematics, con
   return poses;
 }
 
+/// The middle of a link's shape, at these poses of the bodies.
+inline LongVector longCenter(const std::vector<LongPose>& poses, const robots::Kinematics& kinematics, std::size_t link,
+                             const robots::Shape& shape)
+{
+  return poses[kinematics.bodyOf(link)] *
+         LongVector((kinematics.inBody(link) * shape.pose).translation().cast<long double>());
+}
+
 /// The state at the fraction t of a motion; continuous joints go the shorter way.
 inline std::vector<long double> longValues(const robots::Robot& robot, const robots::RobotState& from,
                                            const robots::RobotState& to, long double t)

@@ -87,8 +87,7 @@ private:
     std::vector<LongVector> centers;
     for (std::size_t link = 0; link < robot_.links.size(); ++link)
       for (const Shape& shape : robot_.links[link].shapes)
-        centers.push_back(poses[kinematics.bodyOf(link)] *
-                          LongVector((kinematics.inBody(link) * shape.pose).translation().cast<long double>()));
+        centers.push_back(test::longCenter(poses, kinematics, link, shape));
     return centers;
   }
 

@@ -714,9 +714,7 @@ TEST(RobotWorld, HoldsMotionsInBalls)
         const std::vector<test::LongPose> poses = test::longPoses(world.kinematics(), values);
         for (std::size_t link = 0; link < scene.robot.links.size(); ++link)
           for (const Shape& shape : scene.robot.links[link].shapes) {
-            const LongVector at =
-                poses[world.kinematics().bodyOf(link)] *
-                LongVector((world.kinematics().inBody(link) * shape.pose).translation().cast<long double>());
+            const LongVector at = test::longCenter(poses, world.kinematics(), link, shape);
             const double radius = enclosingRadius(*solidOf(shape));
             const bool held = std::any_of(
                 balls.begin() + static_cast<std::ptrdiff_t>(part * shapes),
