@@ -5,6 +5,7 @@
 #include <pcl_bsh/base/invalid_input.h>
 #include <pcl_bsh/base/plain_text.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -136,7 +137,8 @@ AxisPlaces Axis::nearest(const Point3& point, const AxisReach& reach) const
     if (!(ahead >= 0.0) || !(last ? left_over <= 0.0 : left_over < 0.0)) return;
     const AxisPiece::Foot foot = parts.pieces[i].foot(x, y);
     if (!(std::abs(foot.left) <= reach.offset)) return;
-    Candidate candidate{parts.pieces[i].begin + parts.pieces[i].half + foot.t, -foot.left};
+    const double along = parts.pieces[i].begin + parts.pieces[i].half + foot.t; // rounded, also beyond an end
+    Candidate candidate{std::clamp(along, 0.0, parts.length), -foot.left};
     candidate.above = z - parts.heights(candidate.distance);
     if (!(candidate.above >= -reach.below && candidate.above <= reach.above)) return;
     if (candidate < best) {

@@ -64,6 +64,20 @@ TEST(AxisThrough, PointsKeepTheirChainages)
   EXPECT_NEAR(axis.fit().stretch, 1 / 19.0, 1e-12);
 }
 
+TEST(AxisThrough, NoPlaceIsBeyondItsEnds)
+{
+  test::Random random(7);
+  for (int i = 0; i < 2000; ++i) {
+    const auto across = [&] { return random.uniform(0, 1); };
+    const Axis axis = Axis::through({{0, {0, 0, 0}}, {10, {10, across(), 0}}, {20, {20, across(), 0}}});
+    for (const double end : {0.0, axis.length()}) {
+      const AxisPlaces found = axis.nearest(axis.frame(end).origin, {1, 1, 1});
+      EXPECT_GE(found.best.distance, 0.0);
+      EXPECT_LE(found.best.distance, axis.length()) << "the sum of its parts is rounded";
+    }
+  }
+}
+
 TEST(AxisThrough, RefusesWhatIsNoLine)
 {
   const auto refusal = [](const std::vector<AxisPoint>& points) -> std::string {
