@@ -22,8 +22,7 @@
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 class ClusterWalk : public PairVisitor {
@@ -188,8 +187,7 @@ DisjointSets clusterOnTarget(const SphereHierarchy& cloud, double distance, Prog
   return ClusterWalk(cloud, distance, progress).run(work);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -20,8 +20,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A space of b, as seen from a voxel of a.
 struct DistanceObstacle {
@@ -260,8 +259,7 @@ HWY_INLINE void boundsOfFlat(Tag d, hn::Vec<Tag> squared, hn::Vec<Tag> radius, f
   high = hn::Add(high, hn::Mul(radius, hn::Set(d, obstacle.most * (1.0f + 2 * kSphereMargin))));
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

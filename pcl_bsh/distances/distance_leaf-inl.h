@@ -22,8 +22,7 @@
 #include <optional>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class DistanceLeaf {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -256,8 +255,7 @@ private:
   GivenPairs given_ = {};
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

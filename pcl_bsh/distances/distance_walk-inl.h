@@ -19,8 +19,7 @@
 #include <pcl_bsh/query/progress.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class DistanceWalk : public ListVisitor<DistanceVisit> {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -380,8 +379,7 @@ private:
   WorkPulse pulse_{found.work};
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

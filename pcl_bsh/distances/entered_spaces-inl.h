@@ -15,8 +15,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Each space is an obstacle. The first one is above the voxels of b.
 class EnteredSpaces {
@@ -135,8 +134,7 @@ private:
   std::uint32_t voxel_ = kNoVoxel; ///< of a
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -16,8 +16,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A sphere of b, and a lower bound of the distances from a child of a visit to it.
 struct NearSphere {
@@ -128,8 +127,7 @@ private:
   std::vector<ObstacleSphere> sphere_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -16,8 +16,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// The record of b that is the nearest to a point of a.
 struct NearestFound {
@@ -112,8 +111,7 @@ struct MeasuredLeaf {
   alignas(64) double length[kLeafPoints]; ///< to what was found; NaN where it is not known
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

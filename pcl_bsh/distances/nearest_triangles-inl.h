@@ -16,8 +16,7 @@
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class NearestTriangles {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -262,8 +261,7 @@ private:
   Nearest nearest_[kLeafPoints];        ///< of points that several triangles may be the nearest to
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -21,8 +21,7 @@
 #include <pcl_bsh/distances/distance_walk-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 MeasuredVoxel measureVoxelOnTarget(const DistancesQuery& query, const StopRule& rule, std::uint32_t voxel,
                                    const DistanceSheet& sheet)
@@ -40,8 +39,7 @@ double farthestOfVoxelOnTarget(const DistancesQuery& query, const StopRule& rule
   return DistanceWalk(query, rule, sheet, *scratch).farthest(voxel);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

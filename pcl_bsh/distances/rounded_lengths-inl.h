@@ -14,8 +14,7 @@
 #include <Eigen/Geometry>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Pairs of points as they were given, axis by axis.
 struct GivenPairs {
@@ -98,8 +97,7 @@ HWY_INLINE void roundedLengths(const GivenPairs& pairs, std::size_t count, const
 #endif
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -18,8 +18,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Measures triangles of one voxel of a.
 class TriangleDescent {
@@ -232,8 +231,7 @@ private:
   CarriedTriangles carried_; ///< of a leaf of b, in the frame of a's voxel
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -14,8 +14,7 @@
 #include <pcl_bsh/traversal/beyond_reach.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Bits of a leaf's points that collide for certain, and that may collide; or of those that may turn out to do so.
 struct OpenPoints {
@@ -384,8 +383,7 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
   return hit;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -17,8 +17,7 @@
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Steps that a voxel, and each of its points, may cost before a tree is the better way.
@@ -344,8 +343,7 @@ inline bool flagRuns(const SphereHierarchy::Storage& a, std::uint32_t voxel,
       voxel, [&](const Voxel& listed) { return FlagRuns(listed, a.view, obstacles, query, writer, work).run(); });
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

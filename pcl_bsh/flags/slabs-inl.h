@@ -14,8 +14,7 @@
 #include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class FlagSlabs {
 public:
@@ -202,8 +201,7 @@ private:
   bool has_long_triangles_ = false; ///< a's voxel
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

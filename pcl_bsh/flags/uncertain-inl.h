@@ -14,8 +14,7 @@
 #include <pcl_bsh/traversal/uncertain_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// The reaches of a visit's children, in the obstacle voxel's frame.
 struct UncertainLanes {
@@ -236,8 +235,7 @@ private:
   UncertainLanes lanes_;                  ///< of the visit and its obstacle
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -19,8 +19,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A voxel of b, as seen from a voxel of a.
 struct ObstacleVoxel {
@@ -142,8 +141,7 @@ struct FlagScratch {
   }
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -18,8 +18,7 @@
 #include <pcl_bsh/traversal/separation-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class FlagWalk : public ListVisitor<FlagVisit> {
 public:
@@ -393,8 +392,7 @@ private:
   BeyondReach beyond_{pairs_, a_.storage, b_.storage};
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

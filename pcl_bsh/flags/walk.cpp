@@ -10,8 +10,7 @@
 #include <pcl_bsh/flags/walk-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// Appends the voxels below a node above a's voxels that may come near to anything of b, in their order.
@@ -51,8 +50,7 @@ FlaggedVoxel flagVoxelOnTarget(const FlagQuery& query, const StopRule& rule, std
   return walk.found;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

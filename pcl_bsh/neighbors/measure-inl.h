@@ -15,8 +15,7 @@
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Squared distances of `count` points: coordinate(axis, i) gives coordinates of the i-th and following in double,
 /// point(i) a point as it was given. Writes whole vectors.
@@ -109,8 +108,7 @@ HWY_INLINE std::uint32_t measureSome(const PointsView& view, const Point3& place
   return count;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

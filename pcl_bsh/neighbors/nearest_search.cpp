@@ -20,8 +20,7 @@
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 class NearestWalk {
@@ -377,8 +376,7 @@ void findNearestOnTarget(const SphereHierarchy::Storage& cloud, const Point3& qu
   NearestWalk(cloud, query, k, radius, scratch, work).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

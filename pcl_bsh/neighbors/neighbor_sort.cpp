@@ -14,8 +14,7 @@
 #include <pcl_bsh/simd/rank_sort-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 void sortFewOnTarget(NeighborScratch& scratch)
 {
@@ -33,8 +32,7 @@ void sortFewOnTarget(NeighborScratch& scratch)
   std::swap(scratch.records, scratch.sorted_records);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -17,8 +17,7 @@
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// Notes every point within the radius, and how far it is.
@@ -252,8 +251,7 @@ bool findAnyOnTarget(const SphereHierarchy::Storage& cloud, const Point3& query,
   return RadiusWalk<FindOne>(cloud, query, radius, receiver, work).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

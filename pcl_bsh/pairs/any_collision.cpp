@@ -15,8 +15,7 @@
 #include <pcl_bsh/pairs/any_search-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 namespace {
 
@@ -109,8 +108,7 @@ AnyResult anyCollisionInTimeOnTarget(const Placed& a, const Placed& b, const Any
   return AnySearch(a, b, request, Hurried(rule), MeantPlaces::measured, watch).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

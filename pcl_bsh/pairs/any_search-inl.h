@@ -18,8 +18,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// An observer that does nothing: its calls compile to nothing.
 struct NoObserver {
@@ -170,8 +169,7 @@ private:
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -87,8 +87,7 @@ private:
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const ClosestGoal& goal, unsigned threads,
                                    Progress& progress)
@@ -114,8 +113,7 @@ AnyResult searchWithinOnTarget(const Placed& a, const Placed& b, const ClosestGo
   return search.verdict(search.run());
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -18,8 +18,7 @@
 #include <pcl_bsh/pairs/reach_walk-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// All of them, until there are too many.
@@ -289,8 +288,7 @@ void pairsWithinOnTarget(const Placed& a, const Placed& b, const ContactsRequest
   result.work = ReachWalk(a, b, receiver, progress).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

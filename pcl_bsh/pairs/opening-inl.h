@@ -15,8 +15,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// The level of the node that opening a pair reads: 0 above the voxels and of two leaves, 1 the root of a voxel.
 inline std::uint64_t levelToOpen(const PairWalk& walk, const LanePair& pair)
@@ -56,8 +55,7 @@ inline std::size_t pointsToPrepare(const PairWalk& walk, const LanePair& pair, O
   return pointsOf(walk.a, in_a) + pointsOf(walk.b, in_b);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

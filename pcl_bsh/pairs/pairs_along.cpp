@@ -17,8 +17,7 @@
 #include <pcl_bsh/traversal/world_slab-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// Records of a on their ways. Records below a lane differ in their ways by what the turn makes of the lane's radius.
@@ -158,8 +157,7 @@ void pairsAlongOnTarget(const Placed& a, const StraightWays& ways, const Placed&
   result.work = ReachWalk(a, b, receiver, progress).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

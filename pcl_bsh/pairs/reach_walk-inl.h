@@ -20,8 +20,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Tells what a receiver did with a pair.
 enum class Added { kept, dropped, stop };
@@ -155,8 +154,7 @@ private:
   std::vector<LanePair>& stack_ = (*kept_stack_).pairs;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -15,8 +15,7 @@
 #include <pcl_bsh/pairs/any_search-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// The spheres of one cloud that a walk has met.
@@ -128,8 +127,7 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
   return trace;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -17,8 +17,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A node of the scan that is tested against the model, all of its children at once.
 struct NodeVisit : ListVisit<Siblings> {
@@ -59,8 +58,7 @@ struct NodeVisit : ListVisit<Siblings> {
   }
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

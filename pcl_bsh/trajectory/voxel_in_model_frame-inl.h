@@ -17,8 +17,7 @@
 #include <array>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// How points of the scan's voxel are seen by the model: y = m x + g.
 struct AffineMap {
@@ -319,8 +318,7 @@ private:
   double placing_ = 0.0; // error of places of points, stored as floats and carried in double
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

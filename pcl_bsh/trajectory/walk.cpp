@@ -19,8 +19,7 @@
 #include <pcl_bsh/trajectory/node_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 constexpr double kNodeStray = 0.03; // of a node's radius: an interval that strays farther is divided
@@ -356,8 +355,7 @@ VoxelResult walkVoxelOnTarget(const TrajectoryQuery& query, const StopRule& rule
   return TrajectoryWalk(query, rule, near.front().voxel, scratch).run(near);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -23,8 +23,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A leaf's triangles are compared with a node when the leaf's largest ball is more than this many times as large.
 inline constexpr double kLargeBall = 2.0;
@@ -218,8 +217,7 @@ HWY_NOINLINE LanesNear trianglesNear(const float* x, const float* y, const float
   return found;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -17,8 +17,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A leaf more than this many times as large as a node is compared by its points. They are far from each other for the
 /// node, so the leaf's sphere prunes nothing.
@@ -185,8 +184,7 @@ void eachPairMaybeNearest(const ComparedLeaves& leaves, bool have_radii, double 
                       [&](std::uint32_t i, std::uint32_t j, float) { return found(i, j); });
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -21,8 +21,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// x[i] y[j] - x[j] y[i]. The error leaves out the errors of both vectors.
 HWY_INLINE LongCoordinate longMoment(const LongVector& x, const LongVector& y, std::size_t i, std::size_t j)
@@ -206,8 +205,7 @@ private:
   std::vector<std::uint64_t> keys_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -11,8 +11,7 @@
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A sphere of b that matters to the points of some node of a: a child of `node`, in one of the spaces of b that the
 /// walk has numbered.
@@ -51,8 +50,7 @@ struct BoundingSphere {
   float radius;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -19,8 +19,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Children of one node that wait, each with the same lane of the other cloud.
 struct WaitingChildren {
@@ -162,8 +161,7 @@ private:
   std::vector<WaitingChildren>& waiting_ = (*scratch_).waiting; ///< some have no children left
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

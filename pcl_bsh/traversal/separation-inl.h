@@ -16,8 +16,7 @@
 #include <pcl_bsh/traversal/leaf_pair-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A node's children and a sphere of the other cloud, in the frame of b's space.
 struct ChildrenAndSphere {
@@ -234,8 +233,7 @@ private:
   Work& work_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

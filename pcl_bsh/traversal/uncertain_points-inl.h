@@ -12,8 +12,7 @@
 #include <pcl_bsh/traversal/uncertain_reach.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Margin for float sums of up to four roundings, relative to the sum of their terms: 4 u of its 8 u.
 inline constexpr float kSumMargin = kReachMargin;
@@ -51,8 +50,7 @@ inline const float* ownOf(const OwnUncertainties* own, const LeafRange& leaf)
   return own ? own->points.get() + leaf.begin : kNone;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -15,8 +15,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A visitor's answer: go on, leave the pair out, or end the walk.
 enum class Next : std::uint8_t { go_on, prune, stop };
@@ -82,8 +81,7 @@ void visitPairs(PairWalk& walk, std::vector<Pair>& stack, Visitor& visitor)
   }
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -15,8 +15,7 @@
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A sphere's points between two planes. A normal of 0 proves nothing.
 struct WorldSlab {
@@ -39,8 +38,7 @@ inline WorldSlab worldSlabOf(PairSides& sides, const Spaces& side, const Lane& l
   return {side.pose.linear() * normal, slabs.h[lane.lane] * side.frame(lane.space).unit, radius};
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -12,8 +12,7 @@
 #include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A point matters at many poses, with summaries at each at which it collides, and mostly near several points of the
 /// model. Its distance from its arc is bounded. So its distances on the arc, of many poses at once, prove that it
@@ -212,8 +211,7 @@ private:
   alignas(64) float nearest_[kLanes];
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -14,8 +14,7 @@
 #include <pcl_bsh/trajectory/leaf/swept_leaf-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 inline constexpr double kLeafStray = 0.01; ///< of a leaf's radius: an interval that strays farther is divided
 /// A smaller share where distances count: arcs do not tell apart pairs whose distances differ by less than their stray.
@@ -288,8 +287,7 @@ private:
   BoxesByDistance by_distance_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

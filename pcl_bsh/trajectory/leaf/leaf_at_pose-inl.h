@@ -15,8 +15,7 @@
 #include <pcl_bsh/traversal/uncertain_points-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class LeafAtPose {
 public:
@@ -244,8 +243,7 @@ private:
   std::vector<VoxelMet> met_; // per pose of a motion; empty until the first
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -11,8 +11,7 @@
 #include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A ball around a place in the scan's voxel, at a pose; its reach in the clouds' unit.
 struct ProbeSphere {
@@ -81,8 +80,7 @@ private:
   Work& work_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

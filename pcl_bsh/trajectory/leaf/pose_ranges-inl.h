@@ -16,8 +16,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// The poses at which each of a leaf's points has to be looked at: first..last, of all of them [begin, end).
 struct PoseRanges {
@@ -65,8 +64,7 @@ inline PoseRanges rangesAt(std::uint32_t lanes, const VoxelMotion& motion)
   return ranges;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -17,8 +17,7 @@
 #include <pcl_bsh/traversal/long_triangles-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A pair is looked at at a pose in the middle. The direction along which it is apart there bounds how near it is at
 /// the poses before and after. Ranges of poses that can matter are halved again. So a pair that passes takes a few
@@ -290,8 +289,7 @@ private:
   std::uint32_t asked_ = 0, asked_plane_ = 0; ///< bits of points of the leaf that it was asked about, and its number
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

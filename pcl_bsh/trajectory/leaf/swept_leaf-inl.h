@@ -19,8 +19,7 @@
 #include <tuple>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 class SweptLeaf {
 public:
@@ -163,8 +162,7 @@ private:
   Passages<kLeafPoints> passages_{}; // of one point
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle
