@@ -55,8 +55,7 @@ public:
   {
     const std::uint32_t alone = leavesAlone(visit, list);
     if (alone != 0) points_.gather(list);
-    for (std::uint32_t bits = alone; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(alone)) {
       begin(voxel, visit, lane);
       bounds_points_ = true;
       if (points_.findBelow(cut)) writePoints(visit, lane, cut);
@@ -184,8 +183,8 @@ private:
         within = reach;
         miss = obstacle.frame.band(std::isnan(reach) ? kInfinity : std::max(reach, 0.0)).miss;
       }
-      for (std::uint32_t bits = firstBits(other.count) & ~above(squared, miss); bits != 0; bits &= bits - 1)
-        best.consider({other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits))});
+      for (const std::uint32_t j : Bits(firstBits(other.count) & ~above(squared, miss)))
+        best.consider({other.voxel, other.begin + j});
     }
     return best.found();
   }

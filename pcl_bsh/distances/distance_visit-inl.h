@@ -77,8 +77,8 @@ struct DistanceVisit : ListVisit<NearSphere> {
   /// Whether one of these children is small beside a leaf of b.
   bool areSmall(std::uint32_t children, float radius) const
   {
-    for (; children != 0; children &= children - 1)
-      if (kLargeLeaf * node->r[std::countr_zero(children)] < radius) return true;
+    for (const std::uint32_t lane : Bits(children))
+      if (kLargeLeaf * node->r[lane] < radius) return true;
     return false;
   }
 };

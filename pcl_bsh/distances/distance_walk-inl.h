@@ -99,8 +99,7 @@ public:
     if (query_.reached) leaveNearer(visit);
     for (const DistanceRow& row : visit.rows) take(visit, row);
     for (const DistanceRow& row : visit.kept)
-      for (std::uint32_t bits = nearLanes(visit, row); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t lane : Bits(nearLanes(visit, row))) {
         visit.near[lane].push_back({row.sphere, orNone(row.lower[lane])});
       }
     return others;
@@ -162,8 +161,8 @@ private:
   std::uint32_t measureTriangles(const DistanceVisit& visit, const std::vector<NearSphere>& list, float cut)
   {
     if (!a_.storage.view.triangles || rule_.mayStop()) return 0;
-    for (std::uint32_t bits = visit.leaves; bits != 0; bits &= bits - 1)
-      leaf_.measureTriangles(*a_voxel_, visit, static_cast<std::uint32_t>(std::countr_zero(bits)), cut, list,
+    for (const std::uint32_t lane : Bits(visit.leaves))
+      leaf_.measureTriangles(*a_voxel_, visit, lane, cut, list,
                              [this](const ObstacleSphere& sphere) { return spaces_.childOf(sphere); });
     return visit.leaves;
   }
@@ -245,8 +244,7 @@ private:
   {
     const DistanceObstacle& obstacle = spaces_[row.sphere.obstacle];
     GivenSphere other;
-    for (std::uint32_t bits = row.lanes & notAbove(row.lower, visit.cut); bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(row.lanes & notAbove(row.lower, visit.cut))) {
       if (own.r[lane] > obstacle.blunt_radius) continue;
       ++found.work.exact_decisions;
       if (!other.isKnown()) other = givenSphereOf(b_.storage.view, *obstacle.voxel, *row.sphere.node, row.sphere.lane);
@@ -288,8 +286,7 @@ private:
     const DistanceObstacle& obstacle = spaces_[below.obstacle];
     const Node& node = *below.node;
     float cut = -std::numeric_limits<float>::infinity();
-    for (std::uint32_t bits = opening; bits != 0; bits &= bits - 1)
-      cut = std::max(cut, visit.cut[std::countr_zero(bits)]);
+    for (const std::uint32_t lane : Bits(opening)) cut = std::max(cut, visit.cut[lane]);
     const float reach = (own.radius + cut * obstacle.at_most_inside + obstacle.slack) * (1.0f + kReachMargin);
     alignas(32) float gap[kLanes];
     found.work.node_pairs += node.count;

@@ -122,8 +122,7 @@ private:
     const LaneTag d;
     for (std::uint32_t i = 0; i < gathered_.end(); i += static_cast<std::uint32_t>(hn::Lanes(d))) {
       const LaneVector reach = hn::Set(d, std::min(farthest(), std::numeric_limits<float>::max()));
-      for (std::uint32_t near = bitsOf(d, hn::Le(hn::LoadU(d, lower + i), reach)); near != 0; near &= near - 1)
-        take(i + static_cast<std::uint32_t>(std::countr_zero(near)));
+      for (const std::uint32_t lane : Bits(bitsOf(d, hn::Le(hn::LoadU(d, lower + i), reach)))) take(i + lane);
     }
   }
 

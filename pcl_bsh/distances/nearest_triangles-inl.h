@@ -150,8 +150,7 @@ private:
       for (std::size_t i = 0; i < leaf_.lanes; i += hn::Lanes(d))
         beyond |= bitsOf(d, isBeyond(hn::LoadU(d, entry.squared + i), hn::Load(d, reach + i), hn::Set(d, entry.error)))
                   << i;
-      for (std::uint32_t bits = ~beyond & firstBits(leaf_.range.count); bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t i : Bits(~beyond & firstBits(leaf_.range.count))) {
         const NearestFound found{leaf_.obstacles[obstacle].voxel, entry.point};
         if (leaf_.found[i].voxel) {
           Nearest& nearest = nearest_[i];

@@ -56,9 +56,9 @@ public:
       for (; k < list.size() && list[k].sphere.node == sphere.node; ++k) lanes |= 1u << list[k].sphere.lane;
       alignas(32) float lower[kLanes];
       bound(sphere, lanes, lower);
-      for (; lanes != 0; lanes &= lanes - 1) {
+      for (const std::uint32_t lane : Bits(lanes)) {
         ObstacleSphere one = sphere;
-        one.lane = static_cast<std::uint16_t>(std::countr_zero(lanes));
+        one.lane = static_cast<std::uint16_t>(lane);
         near_.push_back({one, lower[one.lane]});
       }
     }
@@ -153,10 +153,8 @@ private:
     if (leaf_.view_b.triangles && near != 0) near = nearTriangles(own, other, near);
     while (near != 0) { // the nearest first: few others remain
       std::uint32_t nearest = static_cast<std::uint32_t>(std::countr_zero(near));
-      for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-        const auto j = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t j : Bits(near))
         if (lower[j] < lower[nearest]) nearest = j;
-      }
       near &= ~(1u << nearest);
       if (lower[nearest] > limit_) break;
       best.consider({other.voxel, other.begin + nearest});
@@ -195,7 +193,7 @@ private:
 
   void lowerLimit(const float* upper, std::uint32_t lanes)
   {
-    for (; lanes != 0; lanes &= lanes - 1) limit_ = std::min(limit_, upper[std::countr_zero(lanes)]);
+    for (const std::uint32_t lane : Bits(lanes)) limit_ = std::min(limit_, upper[lane]);
   }
 
   /// The error of carried places and of the triangle together, in the unit of its voxel.

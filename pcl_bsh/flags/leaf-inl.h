@@ -28,8 +28,7 @@ inline OpenPoints hitUncertain(const ObstacleVoxel& obstacle, const LeafPoints& 
 {
   alignas(64) float squared[kLeafPoints][kLeafPoints];
   std::uint32_t near_surely[kLeafPoints], near[kLeafPoints], any = 0;
-  for (std::uint32_t lanes = open.surely | open.perhaps; lanes != 0; lanes &= lanes - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
+  for (const std::uint32_t i : Bits(open.surely | open.perhaps)) {
     leafSquaredDistances(other.x(), other.y(), other.z(), points.x[i], points.y[i], points.z[i], squared[i]);
     near_surely[i] = (open.surely >> i & 1) != 0 ? firstBits(other.count) & ~above(squared[i], obstacle.band.miss) : 0;
     near[i] = (open.perhaps >> i & 1) != 0 ? firstBits(other.count) & ~above(squared[i], obstacle.possible.miss)
@@ -37,14 +36,11 @@ inline OpenPoints hitUncertain(const ObstacleVoxel& obstacle, const LeafPoints& 
     if (near[i] != 0) query.pairs.ofPairs().prefetchOfA(recordOf(i));
     any |= near[i];
   }
-  for (; any != 0; any &= any - 1)
-    query.pairs.ofPairs().prefetchOfB(other.record(static_cast<std::uint32_t>(std::countr_zero(any))));
+  for (const std::uint32_t j : Bits(any)) query.pairs.ofPairs().prefetchOfB(other.record(j));
   OpenPoints hit;
-  for (std::uint32_t lanes = open.surely | open.perhaps; lanes != 0; lanes &= lanes - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
+  for (const std::uint32_t i : Bits(open.surely | open.perhaps)) {
     const std::uint32_t bit = 1u << i;
-    for (std::uint32_t others = near[i]; others != 0; others &= others - 1) {
-      const auto j = static_cast<std::uint32_t>(std::countr_zero(others));
+    for (const std::uint32_t j : Bits(near[i])) {
       const PointPair pair{recordOf(i), other.record(j)};
       if ((near_surely[i] >> j & 1) != 0 && query.certain->collide(obstacle.frame, squared[i][j], pair, work)) {
         hit.surely |= bit;
@@ -220,8 +216,7 @@ void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std
     if (open == 0) continue;
     ++work.leaf_pairs;
     const LeafRange other = candidate.leaf(*obstacle.voxel);
-    for (std::uint32_t facing = facingBalls(obstacle, visit, lane, other, within); facing != 0; facing &= facing - 1) {
-      const auto j = static_cast<std::uint32_t>(std::countr_zero(facing));
+    for (const std::uint32_t j : Bits(facingBalls(obstacle, visit, lane, other, within))) {
       squaredDistances(points, other.x()[j], other.y()[j], other.z()[j], squared);
       std::uint32_t near = open & ~hit;
       for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d))
@@ -251,9 +246,7 @@ std::uint32_t hitTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, std:
                      const auto bandOf = [&](double length) { return triangle.band(obstacle.frame, length); };
                      const auto decide = [&](const DistanceBand& band, const PointPairs& pairs, std::uint32_t among) {
                        std::uint32_t decided = among & atMost(squared, band.hit);
-                       for (std::uint32_t bits = among & ~decided & ~above(squared, band.miss); bits != 0;
-                            bits &= bits - 1) {
-                         const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+                       for (const std::uint32_t i : Bits(among & ~decided & ~above(squared, band.miss))) {
                          const PointPair at{leaf.record(i), record};
                          if (pairs.collide(at, work))
                            decided |= 1u << i;
@@ -297,8 +290,7 @@ std::uint32_t hitByTriangles(const ObstacleVoxel& obstacle, FlagVisit& visit, st
   std::size_t count = 0;
   const auto decide = [&] { // once floats have found what they can
     for (const Doubtful* pair = doubtful; pair != doubtful + count && hit != open; ++pair)
-      for (std::uint32_t bits = pair->near & ~hit; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t i : Bits(pair->near & ~hit)) {
         const PointPair at{leaf.record(i), pair->record};
         if (query.surePairs().collide(at, work))
           hit |= 1u << i;
@@ -377,8 +369,8 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
       compare(other);
       continue;
     }
-    for (std::uint32_t bits = facing; bits != 0 && hit != open; bits &= bits - 1)
-      compare({other.voxel, other.begin + static_cast<std::uint32_t>(std::countr_zero(bits)), 1});
+    for (const std::uint32_t j : Bits(facing))
+      if (hit != open) compare({other.voxel, other.begin + j, 1});
   }
   return hit;
 }

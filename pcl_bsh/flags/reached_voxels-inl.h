@@ -111,8 +111,7 @@ private:
     const SphereLanes tested{node.x, node.y, node.z, node.r, frame.stretch_b};
     work_.node_pairs += node.count;
     if ((spheresInside(tested, ball) & firstBits(node.count)) != 0) return false;
-    for (std::uint32_t near = spheresNear(tested, ball, nullptr) & firstBits(node.count); near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+    for (const std::uint32_t lane : Bits(spheresNear(tested, ball, nullptr) & firstBits(node.count))) {
       if (node.isLeaf(lane))
         numbers.push_back(node.begin[lane]);
       else if (!find(voxel, frame, b_.storage.top[node.child[lane]]))
@@ -134,8 +133,7 @@ private:
       slabs.fit(obstacle);
       near = slabs.nearSphere(obstacle, node, tested, center, radius, near);
     }
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+    for (const std::uint32_t lane : Bits(near)) {
       if (!node.isLeaf(lane)) {
         const Node& below = obstacle.voxel->nodes[node.child[lane]];
         if (hasTriangleNear(obstacle, below, center, radius, slabs, mayFit)) return true;

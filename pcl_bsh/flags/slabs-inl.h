@@ -172,8 +172,7 @@ private:
                                held, obstacle.reach);
     const bool by_own_points = obstacle.has_long_triangles && !a_.storage.view.triangles;
     if (!by_own_points && !isLeafOfPoints(candidate)) return near;
-    for (std::uint32_t bits = near & visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near & visit.leaves)) {
       ++work_.node_pairs;
       bool is_near = false;
       if (by_own_points) {

@@ -147,10 +147,10 @@ public:
     lanes_.set(reach, visit.r, ownOf(own_, static_cast<std::size_t>(visit.node - voxel_->nodes.data())));
     const UncertainPoint certain(obstacle, reach, true), possible(obstacle, reach, false);
     for (auto c = from; c != to && (visit.open & lanes_.may_be_sure) != 0; ++c) {
-      std::uint32_t settled =
+      const std::uint32_t settled =
           withPointsWithin(certain, visit, obstacle, *c, lanes_.sure, CandidateReach(obstacle, reach, *c).sure,
                            visit.open & lanes_.may_be_sure, work);
-      for (; settled != 0; settled &= settled - 1) settleChild(static_cast<std::uint32_t>(std::countr_zero(settled)));
+      for (const std::uint32_t lane : Bits(settled)) settleChild(lane);
     }
     const auto unknown = [&] { return visit.open & ~visit.known & lanes_.may_be_possible; };
     for (auto c = from; c != to && unknown() != 0; ++c)
@@ -179,8 +179,7 @@ public:
   /// Tells the writer which points may collide, of the open children that are done with.
   HWY_NOINLINE void report(const FlagVisit& visit, FlagWriter& writer) const
   {
-    for (std::uint32_t bits = visit.open; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(visit.open)) {
       const bool is_leaf = (visit.leaves >> lane & 1) != 0;
       std::uint32_t points = is_leaf ? visit.perhaps[lane] & visit.open_points[lane] : 0;
       const bool all = is_leaf ? points != 0 && visit.node->isCoincident(lane)
@@ -210,8 +209,7 @@ private:
     work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
     lanes &= spheresNearEach({visit.x, visit.y, visit.z, visit.r, 1.0f}, reaches, centerOf(candidate), more, nullptr);
     std::uint32_t within = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    for (const std::uint32_t lane : Bits(lanes)) {
       const QueryBall center{visit.x[lane], visit.y[lane], visit.z[lane], reaches[lane], 0.0f};
       if (hasPointWithin(finder, obstacle, candidate, center, work)) within |= 1u << lane;
     }
@@ -222,10 +220,7 @@ private:
   static void know(FlagVisit& visit, std::uint32_t lanes)
   {
     visit.known |= lanes;
-    for (std::uint32_t bits = lanes & visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-      visit.perhaps[lane] = visit.open_points[lane];
-    }
+    for (const std::uint32_t lane : Bits(lanes & visit.leaves)) visit.perhaps[lane] = visit.open_points[lane];
   }
 
   const FlagQuery& query_;

@@ -70,8 +70,7 @@ struct FlagVisit : ListVisit<ObstacleSphere> {
     known = may_collide ? open : 0;
     unsure = 0;
     around = entered.around;
-    for (std::uint32_t bits = leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(leaves)) {
       open_points[lane] = firstBits(node->comparedPoints(lane));
       perhaps[lane] = may_collide ? open_points[lane] : 0;
     }
@@ -86,7 +85,7 @@ inline void tellBits(FlagWriter& writer, Finding finding, std::uint32_t bits, co
 {
   if (bits == 0) return;
   std::uint32_t records[kLeafPoints], count = 0;
-  for (; bits != 0; bits &= bits - 1) records[count++] = recordOf(static_cast<std::uint32_t>(std::countr_zero(bits)));
+  for (const std::uint32_t i : Bits(bits)) records[count++] = recordOf(i);
   writer.tell(finding, records, records + count);
 }
 

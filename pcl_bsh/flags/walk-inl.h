@@ -128,18 +128,15 @@ private:
   /// Where the walk may stop early: tells which points of leaves met nothing of b, and which stay undecided.
   void clearLeaves(const FlagVisit& visit)
   {
-    for (std::uint32_t bits = visit.open & visit.leaves; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(visit.open & visit.leaves)) {
       const std::uint32_t begin = visit.node->begin[lane], end = visit.node->begin[lane + 1];
       const Finding finding = (visit.unsure >> lane & 1) != 0 ? Finding::left : Finding::free;
       if (visit.node->isCoincident(lane)) {
         if (visit.perhaps[lane] == 0) tell(finding, begin, end);
         continue;
       }
-      for (std::uint32_t points = visit.open_points[lane] & ~visit.perhaps[lane]; points != 0; points &= points - 1) {
-        const std::uint32_t i = begin + static_cast<std::uint32_t>(std::countr_zero(points));
-        tell(finding, i, i + 1);
-      }
+      for (const std::uint32_t i : Bits(visit.open_points[lane] & ~visit.perhaps[lane]))
+        tell(finding, begin + i, begin + i + 1);
     }
   }
 
@@ -208,8 +205,7 @@ private:
     found.work.node_pairs += leaf.count;
     const LanesNear lanes =
         reached_.nearTo(leaf, obstacle, visit.x, visit.y, visit.z, visit.r, near, obstacle.sure_reach);
-    for (std::uint32_t bits = lanes.inside; bits != 0; bits &= bits - 1)
-      settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
+    for (const std::uint32_t lane : Bits(lanes.inside)) settleChild(visit, lane);
     return lanes.near & visit.open;
   }
 
@@ -239,8 +235,7 @@ private:
     if ((near &= ~separated(visit, candidate, radius, near)) == 0) return;
     if (b_.storage.view.triangles && candidate.isLeaf() && (near = nearTriangles(visit, candidate, near)) == 0) return;
     if (ball.inside_reach > visit.smallest) {
-      for (std::uint32_t bits = spheresInside(spheres, ball) & near; bits != 0; bits &= bits - 1)
-        settleChild(visit, static_cast<std::uint32_t>(std::countr_zero(bits)));
+      for (const std::uint32_t lane : Bits(spheresInside(spheres, ball) & near)) settleChild(visit, lane);
       near &= visit.open;
     }
     const bool opens = !candidate.isLeaf() && candidate.level < rule_.deepest;
@@ -250,8 +245,7 @@ private:
       near &= ~opening;
       opening = 0;
     }
-    for (std::uint32_t bits = near & ~opening; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near & ~opening)) {
       if (opens && radius > visit.r[lane])
         opening |= 1u << lane;
       else
@@ -261,10 +255,9 @@ private:
     const Node& below = obstacle.voxel->nodes[node.child[k]];
     const SphereLanes children{below.x, below.y, below.z, below.r, obstacle.frame.stretch_b};
     found.work.node_pairs += below.count;
-    for (std::uint32_t bits = spheresNear(children, visit.ball, nullptr) & firstBits(below.count); bits != 0;
-         bits &= bits - 1) {
+    for (const std::uint32_t i : Bits(spheresNear(children, visit.ball, nullptr) & firstBits(below.count))) {
       if ((opening & visit.open) == 0) return;
-      take(visit, candidate.below(below, static_cast<std::uint32_t>(std::countr_zero(bits))), opening);
+      take(visit, candidate.below(below, i), opening);
     }
   }
 
@@ -280,8 +273,7 @@ private:
     const QueryBall ball{node.x[k], node.y[k], node.z[k], node.r[k] * obstacle.frame.stretch_b + obstacle.sure_reach,
                          0.0f};
     found.work.node_pairs += static_cast<std::uint64_t>(std::popcount(visit.open));
-    for (std::uint32_t bits = spheresNear(less_radius, ball, nullptr) & visit.open; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(spheresNear(less_radius, ball, nullptr) & visit.open)) {
       const float reach = obstacle.sure_reach - visit.r[lane] * (1.0f + kSphereMargin);
       const QueryBall center{visit.x[lane], visit.y[lane], visit.z[lane], reach, 0.0f};
       if (reach > 0.0f &&
@@ -293,8 +285,7 @@ private:
   /// Compares the points of the children that are leaves with the leaves they are near to, in this obstacle.
   void compareLeaves(FlagVisit& visit)
   {
-    for (std::uint32_t bits = visit.leaves & visit.open; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(visit.leaves & visit.open)) {
       if (visit.near[lane].empty()) continue;
       const LeafRange leaf = slabs_.leafOf(visit, lane);
       const std::uint32_t hit = collidingPoints(visit, lane, leaf, slabs_.carriedPoints(visit, lane));
@@ -343,10 +334,8 @@ private:
   HWY_NOINLINE std::uint32_t notBeyond(const FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t near)
   {
     const NodeChild other{reached_.numbers[visit.obstacle], *candidate.node, candidate.lane};
-    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near))
       if (beyond_.knows({voxel_, *visit.node, lane}, other)) near &= ~(1u << lane);
-    }
     return near;
   }
 

@@ -4,8 +4,6 @@
 #include <pcl_bsh/geometry/point_frame.h>
 #include <pcl_bsh/neighbors/neighbor_scratch.h>
 
-#include <bit>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pcl_bsh/neighbors/radius_search.cpp"
 #include <hwy/cache_control.h>
@@ -138,17 +136,14 @@ private:
   {
     const Node& node = cloud_.top[index];
     const Children children = test(node, ball);
-    for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
+    for (const std::uint32_t i : Bits(children.inside)) {
       if constexpr (!Receiver::kNeedsRecords) return true;
       for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
         receiver_.takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
     }
-    for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(children.near & ~children.inside))
       if (node.isLeaf(i) ? node.begin[i] != done_ && visitVoxel(node.begin[i]) : visitAbove(ball, node.child[i]))
         return true;
-    }
     return false;
   }
 
@@ -175,14 +170,10 @@ private:
     const Node& node = local.voxel.nodes[index];
     const Children children = test(node, local.ball);
     fetch(local.voxel, node, children.near);
-    for (std::uint32_t bits = children.inside; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
+    for (const std::uint32_t i : Bits(children.inside))
       if (receiver_.takeAll(local.voxel, node.begin[i], node.begin[i + 1])) return true;
-    }
-    for (std::uint32_t bits = children.near & ~children.inside; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(children.near & ~children.inside))
       if (node.isLeaf(i) ? compare(local, node, i) : visit(local, node.child[i])) return true;
-    }
     return false;
   }
 
@@ -190,9 +181,8 @@ private:
   static HWY_INLINE void fetch(const Voxel& voxel, const Node& node, std::uint32_t children)
   {
     if ((children & (children - 1)) == 0) return;
-    for (std::uint32_t bits = children; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
-      if (!node.isLeaf(static_cast<std::size_t>(i))) {
+    for (const std::uint32_t i : Bits(children)) {
+      if (!node.isLeaf(i)) {
         hwy::Prefetch(voxel.nodes[node.child[i]].x);
         hwy::Prefetch(voxel.nodes[node.child[i]].z);
         hwy::Prefetch(voxel.nodes[node.child[i]].begin);
@@ -218,9 +208,8 @@ private:
     std::uint32_t open = ~(hits | above(squared, local.band.miss)) & firstBits(count);
     if constexpr (!Receiver::kNeedsRecords)
       if (hits != 0) return true;
-    for (; open != 0; open &= open - 1) {
-      const int i = std::countr_zero(open);
-      const Point3 p = voxel.point(cloud_.view, begin + static_cast<std::uint32_t>(i));
+    for (const std::uint32_t i : Bits(open)) {
+      const Point3 p = voxel.point(cloud_.view, begin + i);
       if (isWithin(p, query_, radius_, work_)) hits |= 1u << i;
     }
     if (hits == 0) return false;

@@ -134,10 +134,7 @@ public:
     walk_.boundKeys(PairWalk::childOf(pair, opened, step, 0), step, keys_);
     std::uint32_t low = raiseLanes(keys_, pair.key, lowest_key_) & step.near;
     if (HWY_UNLIKELY(low != 0) && !pairs_.mayOverlap()) {
-      for (; low != 0; low &= low - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(low));
-        keys_[lane] = overlapOf(step, lane);
-      }
+      for (const std::uint32_t lane : Bits(low)) keys_[lane] = overlapOf(step, lane);
     }
     return Next::go_on;
   }
@@ -367,10 +364,8 @@ private:
       improving = lanesBelow(children.keys, limit) & step_.near;
       unsure = static_cast<double>(limit) == best_.to_beat ? step_.near & ~improving : 0;
     }
-    for (; HWY_UNLIKELY(unsure != 0); unsure &= unsure - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(unsure));
+    for (const std::uint32_t lane : Bits(unsure))
       if (canImprove(children.child(lane))) improving |= 1u << lane;
-    }
     return improving;
   }
 

@@ -14,7 +14,6 @@
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -105,9 +104,10 @@ public:
       const PointsWay way = receiver_.way(walk_.b, leaves.frame);
       const float miss = receiver_.miss(leaves.frame);
       for (std::uint32_t j = 0; j < b.count && going; ++j) {
-        std::uint32_t passing = leaves.near & pointsPassing(leaves.points, way, b.x()[j], b.y()[j], b.z()[j], miss);
-        for (; passing != 0 && going; passing &= passing - 1)
-          found(static_cast<std::uint32_t>(std::countr_zero(passing)), j, false);
+        const std::uint32_t passing =
+            leaves.near & pointsPassing(leaves.points, way, b.x()[j], b.y()[j], b.z()[j], miss);
+        for (const std::uint32_t i : Bits(passing))
+          if (going) found(i, j, false);
       }
     }
     else {

@@ -8,6 +8,7 @@
 #define PCL_BSH_SIMD_POINT_LANES_INL_H_
 #endif
 
+#include <pcl_bsh/simd/bits.h>
 #include <pcl_bsh/simd/slab_lanes-inl.h>
 
 #include <algorithm>
@@ -106,8 +107,7 @@ HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const f
     const LaneVector ax = hn::Load(d, points.x + i), ay = hn::Load(d, points.y + i), az = hn::Load(d, points.z + i);
     const LaneVector bx = hn::Load(d, points.x + k), by = hn::Load(d, points.y + k), bz = hn::Load(d, points.z + k);
     LaneVector best_a = hn::LoadU(d, nearest + i), best_b = hn::LoadU(d, nearest + k);
-    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
-      const int j = std::countr_zero(bits);
+    for (const std::uint32_t j : Bits(others)) {
       const LaneVector qx = hn::Set(d, x[j]), qy = hn::Set(d, y[j]), qz = hn::Set(d, z[j]);
       best_a = hn::Min(best_a, squaredNorm(hn::Sub(ax, qx), hn::Sub(ay, qy), hn::Sub(az, qz)));
       best_b = hn::Min(best_b, squaredNorm(hn::Sub(bx, qx), hn::Sub(by, qy), hn::Sub(bz, qz)));
@@ -176,8 +176,7 @@ HWY_INLINE void takeNearestTwo(const LeafPoints& points, std::uint32_t points_ne
     }
   };
   const auto each = [&](const auto& take) HWY_ATTR {
-    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
-      const int j = std::countr_zero(bits);
+    for (const std::uint32_t j : Bits(others)) {
       take(hn::Set(d, x[j]), hn::Set(d, y[j]), hn::Set(d, z[j]), kBalls ? hn::Set(d, radii[j] * scale) : hn::Zero(d),
            hn::Set(di, name + j));
     }
@@ -299,8 +298,7 @@ HWY_INLINE void nearestWithLengths(const LeafPoints& points, const float* x, con
   for (std::size_t i = 0; i < kLeafPoints; i += hn::Lanes(d)) {
     const LaneVector px = hn::Load(d, points.x + i), py = hn::Load(d, points.y + i), pz = hn::Load(d, points.z + i);
     LaneVector least = hn::Load(d, longer + i), most = hn::Load(d, shorter + i);
-    for (std::uint32_t bits = others; bits != 0; bits &= bits - 1) {
-      const int j = std::countr_zero(bits);
+    for (const std::uint32_t j : Bits(others)) {
       const LaneVector distance = hn::Sqrt(
           squaredNorm(hn::Sub(px, hn::Set(d, x[j])), hn::Sub(py, hn::Set(d, y[j])), hn::Sub(pz, hn::Set(d, z[j]))));
       const LaneVector length = hn::Set(d, lengths[j] * scale);

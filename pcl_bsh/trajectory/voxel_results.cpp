@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/trajectory/voxel_results.h>
 
+#include <pcl_bsh/simd/bits.h>
+
 #include <algorithm>
-#include <bit>
 
 namespace pcl_bsh {
 namespace {
@@ -16,8 +17,8 @@ void eachPoint(const Voxel& voxel, const std::vector<std::uint16_t>& bits_of, co
     const Node& node = voxel.nodes[n];
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
       if (!node.isLeaf(lane)) continue;
-      for (std::uint32_t bits = bits_of[n * kNodeChildren + lane]; bits != 0; bits &= bits - 1) {
-        const std::uint32_t i = node.begin[lane] + static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t bit : Bits(bits_of[n * kNodeChildren + lane])) {
+        const std::uint32_t i = node.begin[lane] + bit;
         visit(i, node.isCoincident(lane) ? node.begin[lane + 1] : i + 1);
       }
     }

@@ -232,8 +232,8 @@ private:
     alignas(64) float corner[kLanes];
     std::fill(corner, corner + kLanes, std::numeric_limits<float>::infinity());
     for (const Siblings& candidate : visit.candidates)
-      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
-        const BoxEnds box(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))]);
+      for (const std::uint32_t lane : Bits(candidate.lanes)) {
+        const BoxEnds box(candidate[lane]);
         lowerToFarthestCorner(visit.children.start, box.low, box.high, corner);
         results_.work.node_pairs += count;
       }
@@ -251,9 +251,9 @@ private:
     for (std::uint32_t lane = 0; lane < node.count; ++lane) smallest = std::min(smallest, visit.radius[lane]);
     if (!(settled_reach_ > smallest) && query_.of_pairs.isOne()) return;
     for (const Siblings& candidate : visit.candidates)
-      for (std::uint32_t bits = candidate.lanes; bits != 0; bits &= bits - 1) {
+      for (const std::uint32_t lane : Bits(candidate.lanes)) {
         pulse_.step();
-        settleBy(candidate[static_cast<std::uint32_t>(std::countr_zero(bits))], visit, index, motion);
+        settleBy(candidate[lane], visit, index, motion);
         if (open_lanes_[index] == 0) return;
       }
   }
@@ -264,9 +264,9 @@ private:
     ClippedSegments<kLanes> clipped;
     const BoxEnds box(candidate);
     results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(open_lanes_[index]));
-    std::uint32_t near = open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+    const std::uint32_t near =
+        open_lanes_[index] & segmentsInBox(visit.children, box.low, box.high, motion.steps, &clipped);
+    for (const std::uint32_t lane : Bits(near)) {
       ProbeSphere probe = probeOf(index, lane, visit.radius[lane]);
       if (!(probe.reach > 0.0f)) continue;
       const double middle = 0.5 * (std::max(clipped.from[lane], 0.0f) + std::min(clipped.to[lane], 1.0f));
@@ -301,8 +301,7 @@ private:
   {
     std::uint32_t kept[kLanes] = {};
     pulse_.step();
-    for (std::uint32_t boxes = candidate.lanes; boxes != 0; boxes &= boxes - 1) {
-      const auto k = static_cast<std::uint32_t>(std::countr_zero(boxes));
+    for (const std::uint32_t k : Bits(candidate.lanes)) {
       const ModelBox box = candidate[k];
       const BoxEnds ends(box);
       results_.work.node_pairs += static_cast<std::uint64_t>(std::popcount(lanes));
@@ -314,8 +313,7 @@ private:
       const bool opens = !box.isLeaf() && model_.mayOpen(box) && !model_.isBlunt(box, motion);
       const float size = box.size(query_.boxes.stretch);
       std::uint32_t opening = 0;
-      for (std::uint32_t bits = near_lanes; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t lane : Bits(near_lanes)) {
         if (opens && size > kBoxSize * visit.radius[lane])
           opening |= 1u << lane;
         else
@@ -323,10 +321,8 @@ private:
       }
       if (opening != 0) take(visit, model_.near(visit.around, model_.below(box), motion.steps), motion, opening);
     }
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(lanes))
       if (kept[lane] != 0) visit.near[lane].push_back(candidate.only(kept[lane]));
-    }
   }
 
   const TrajectoryQuery& query_;

@@ -168,8 +168,8 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
       squaredToTriangle(triangle.flat, leaves.points.x, leaves.points.y, leaves.points.z, kLeafPoints, squared);
       near &= ~above(squared, triangle.band(frame, within).miss);
     }
-    for (; near != 0; near &= near - 1)
-      if (found(static_cast<std::uint32_t>(std::countr_zero(near)), j)) return true;
+    for (const std::uint32_t i : Bits(near))
+      if (found(i, j)) return true;
   }
   return false;
 }

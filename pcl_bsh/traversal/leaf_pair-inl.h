@@ -90,10 +90,8 @@ bool eachPairNotBeyond(const LeafPoints& points, std::uint32_t lanes, const Leaf
   alignas(64) float squared[kLeafPoints];
   for (std::uint32_t j = 0; j < b.count && lanes != 0; ++j) {
     squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
-    for (std::uint32_t bits = lanes & ~above(squared, miss); bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(lanes & ~above(squared, miss)))
       if (found(i, j, squared[i])) return true;
-    }
   }
   return false;
 }
@@ -125,8 +123,7 @@ bool eachBallPairNear(const RelativeFrame& frame, const LeafPoints& points, std:
   alignas(64) float squared[kLeafPoints];
   for (std::uint32_t j = 0; j < b.count; ++j) {
     squaredDistances(points, b.x()[j], b.y()[j], b.z()[j], squared);
-    for (std::uint32_t bits = lanes & ~above(squared, farthest_of_all); bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(lanes & ~above(squared, farthest_of_all))) {
       bool surely = squared[i] <= surely_of_all;
       if (!surely) {
         if (squared[i] > farthest(a.radius(i), b.radius(j))) continue;

@@ -13,7 +13,6 @@
 #include <pcl_bsh/traversal/separation-inl.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -194,8 +193,7 @@ public:
   void boundKeys(const LanePair& pair, const Step& step, float* keys) const
   {
     const auto boundNear = [&](const auto& take) {
-      for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (const std::uint32_t lane : Bits(step.near)) {
         LanePair child = pair;
         (step.of_a ? child.a : child.b).lane = lane;
         keys[lane] = take(keys[lane], boundKey(child, step, lane));

@@ -92,10 +92,7 @@ public:
     for (std::uint32_t i = 0; i < a.storage.top[0].count; ++i) {
       const LanePair pair{0.0f, {kAboveVoxels, 0, i}, {kAboveVoxels, 0, 0}};
       testChildrenOfB<false>(pair.a, pair.b, reach, found);
-      for (std::uint32_t near = found.near; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-        push(childOf(pair, Opened::b, found, lane), found, lane);
-      }
+      for (const std::uint32_t lane : Bits(found.near)) push(childOf(pair, Opened::b, found, lane), found, lane);
     }
   }
 
@@ -195,10 +192,8 @@ private:
                            : node.isLeaf(lane) && radiusOf(lane) > kLeafBesideNode * out.radius;
     };
     std::uint32_t asked = 0;
-    for (std::uint32_t bits = out.near; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(out.near))
       if (isAsked(lane)) asked |= 1u << lane;
-    }
     if (asked == 0) return;
     const bool carries_slab = of_a == other_is_leaf; // the slab is a's; else the points are
     const Slabs& slabs = other_is_leaf ? slabsOf(own, out.entered) : slabsOf(others, other);
@@ -223,8 +218,7 @@ private:
       take(leaf = this->leaf(others, other));
     else
       slab = slabOfNode(other.lane, out.center, out.radius);
-    for (; asked != 0; asked &= asked - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(asked));
+    for (const std::uint32_t lane : Bits(asked)) {
       if (other_is_leaf)
         slab = slabOfNode(lane, {out.children.x[lane], out.children.y[lane], out.children.z[lane]}, radiusOf(lane));
       else
@@ -268,10 +262,7 @@ private:
       held.cross = carryPoint(m, kNowhere, held.cross);
       supportGaps(out.children, {slabs.x, slabs.y, slabs.z, slabs.h}, {cross.x, cross.y, cross.z, cross.h}, held, gaps);
     }
-    for (; far != 0; far &= far - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
-      raise(out, lane, gaps[lane]);
-    }
+    for (const std::uint32_t lane : Bits(far)) raise(out, lane, gaps[lane]);
   }
 
   /// Tests the first `count` children against a sphere of the other side, its radius stretched. Sets `near`.

@@ -61,8 +61,7 @@ public:
     centersSquared(compared.spheres, compared.center, squared);
     std::uint32_t apart = 0;
     GivenSphere other;
-    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near)) {
       const float radius = compared.radiusOf(lane);
       if (radius > compared.frame.bluntRadius() ||
           !compared.frame.isUndecided(squared[lane],
@@ -85,8 +84,7 @@ public:
   {
     const bool other_is_leaf = compared.otherIsLeaf();
     std::uint32_t apart = 0;
-    for (std::uint32_t bits = near; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near)) {
       const float radius = compared.radiusOf(lane);
       const Point center{compared.spheres.x[lane], compared.spheres.y[lane], compared.spheres.z[lane]};
       bool is_apart = false;
@@ -114,8 +112,7 @@ public:
                                           compared.other_lane, work_);
     const bool other_is_leaf = compared.otherIsLeaf();
     std::uint32_t apart = 0;
-    for (; far != 0; far &= far - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(far));
+    for (const std::uint32_t lane : Bits(far)) {
       const float radius = compared.radiusOf(lane);
       const NodeSupport own = nodeSupport(*compared.voxel, owners(compared).storage.view, compared.node, lane, work_);
       bool is_apart = areFarApart(compared, compared.of_a ? own : other, compared.of_a ? other : own);
@@ -144,8 +141,7 @@ public:
     if (!owners(compared).storage.view.triangles) return apart;
     alignas(32) float x[kLanes] = {compared.center.x}, y[kLanes] = {compared.center.y}, z[kLanes] = {compared.center.z},
                       r[kLanes] = {compared.radius};
-    for (std::uint32_t bits = near & ~apart; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near & ~apart)) {
       if (compared.isLeaf(lane) && apartFromTriangles(compared.leaf(lane), compared.of_a, compared.frame,
                                                       {x, y, z, r, 1.0f}, 1, compared.reach, flat) != 0)
         apart |= 1u << lane;
@@ -178,8 +174,7 @@ private:
     const float within = frame.pruneReach(reach);
     const auto most = static_cast<float>(leaf.largestRadius() / (kLargeBall * frame.unit()));
     alignas(32) float r[kLanes] = {};
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(lanes)) {
       r[lane] = spheres.r[lane] * spheres.stretch;
       if (!(r[lane] < most)) lanes &= ~(1u << lane);
     }
@@ -196,8 +191,7 @@ private:
     const float error = roundUp(carried.error);
     const std::uint32_t all = firstBits(leaf.count);
     std::uint32_t apart = 0;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(lanes)) {
       FlatTriangle<float> center; // of no size
       center.origin[0] = spheres.x[lane], center.origin[1] = spheres.y[lane], center.origin[2] = spheres.z[lane];
       if (compareWithTriangle(center, carried.leaf, all, r[lane] + within + error, -1.0f).apart == all)

@@ -52,8 +52,7 @@ Next expand(PairWalk& walk, const Pair& pair, PairWalk::Step& step, Visitor& vis
   if (!visitor.opens(pair, opened)) return Next::prune;
   walk.template step<Visitor::kBounds>(pair, opened, visitor.reach(), step);
   if (visitor.opened(pair, opened, step) == Next::stop) return Next::stop;
-  for (std::uint32_t near = step.near; near != 0; near &= near - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+  for (const std::uint32_t lane : Bits(step.near)) {
     Pair child = PairWalk::childOf(pair, opened, step, lane);
     if (visitor.keep(child, opened, step, lane)) add(child);
   }

@@ -86,10 +86,10 @@ public:
     order_.clear();
     into.clear();
     for (const Siblings& some : boxes)
-      for (std::uint32_t bits = some.lanes; bits != 0; bits &= bits - 1) {
-        const BoxEnds box(some[static_cast<std::uint32_t>(std::countr_zero(bits))]);
+      for (const std::uint32_t lane : Bits(some.lanes)) {
+        const BoxEnds box(some[lane]);
         order_.emplace_back(box.squaredDistance(from), static_cast<std::uint32_t>(sorted_.size()));
-        sorted_.push_back(some.only(bits & (~bits + 1)));
+        sorted_.push_back(some.only(1u << lane));
       }
     std::sort(order_.begin(), order_.end());
     for (const auto& [distance, i] : order_) into.push_back(sorted_[i]);
@@ -156,8 +156,7 @@ public:
                std::vector<Siblings>& into)
   {
     std::uint32_t kept = 0;
-    for (std::uint32_t bits = near(segment, boxes, motion.steps).lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(near(segment, boxes, motion.steps).lanes)) {
       const ModelBox box = boxes[lane];
       if (box.isLeaf() || box.size(tree_.stretch) < size || isBlunt(box, motion) || !mayOpen(box))
         kept |= 1u << lane;

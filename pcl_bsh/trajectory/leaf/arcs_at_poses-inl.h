@@ -52,8 +52,7 @@ public:
     const BoxEnds ends(box);
     const LaneTag d;
     const auto at_once = static_cast<std::uint32_t>(hn::Lanes(d));
-    for (std::uint32_t bits = ranges.lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(ranges.lanes)) {
       std::uint32_t end = ranges.last[i] - motion.interval->first + 1;
       if (!query_.everything())
         end = static_cast<std::uint32_t>(std::clamp(knownFrom(leaf, i), 0.0f, static_cast<float>(end)));
@@ -66,10 +65,7 @@ public:
         std::uint32_t near = bitsOf(d, hn::And(asked, hn::Le(nearest, limits)));
         if (near == 0) continue;
         hn::Store(nearest, d, nearest_);
-        for (; near != 0; near &= near - 1) {
-          const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-          note(leaf, i, k + lane, nearest_[lane], box, motion);
-        }
+        for (const std::uint32_t lane : Bits(near)) note(leaf, i, k + lane, nearest_[lane], box, motion);
       }
     }
   }

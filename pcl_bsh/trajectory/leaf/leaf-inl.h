@@ -112,10 +112,8 @@ public:
   {
     if (HWY_LIKELY(!hasPlane())) return 0;
     std::uint32_t beside = 0;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t lane : Bits(lanes))
       if (records_.areBeside(node.begin[lane], node.begin[lane + 1], motion)) beside |= 1u << lane;
-    }
     return beside;
   }
 
@@ -128,10 +126,8 @@ private:
   {
     std::uint32_t settled = results_.hit[leaf.slot];
     if (query_.request.pose_summaries) return;
-    for (std::uint32_t bits = query_.closest ? settled : 0; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(query_.closest ? settled : 0))
       if (!results_.best[leaf.points.begin + i].meets) settled &= ~(1u << i);
-    }
     results_.settled[leaf.slot] = static_cast<std::uint16_t>(settled);
   }
 
@@ -154,8 +150,7 @@ private:
   void push(const LeafVisit& leaf, const Siblings& boxes, std::uint32_t points, const VoxelMotion& motion)
   {
     if (!motion.at_rest) return stack_.push_back({boxes, points});
-    for (std::uint32_t bits = boxes.lanes; bits != 0; bits &= bits - 1)
-      stack_.push_back({boxes.only(bits & (~bits + 1)), leaf.open});
+    for (const std::uint32_t lane : Bits(boxes.lanes)) stack_.push_back({boxes.only(1u << lane), leaf.open});
   }
 
   /// All points at one pose against a box: opens it, or compares its points.
@@ -188,8 +183,8 @@ private:
     ClippedSegments<kLeafPoints> clipped;
     if (kLeafPoints / kLanes * static_cast<std::size_t>(std::popcount(boxes)) <
         static_cast<std::size_t>(std::popcount(points))) {
-      for (std::uint32_t bits = boxes; bits != 0; bits &= bits - 1) {
-        const ModelBox box = candidate.boxes[static_cast<std::uint32_t>(std::countr_zero(bits))];
+      for (const std::uint32_t lane : Bits(boxes)) {
+        const ModelBox box = candidate.boxes[lane];
         const BoxEnds ends(box);
         meet(leaf, points & segmentsInBox(leaf.segments, ends.low, ends.high, motion.steps, &clipped), clipped, box,
              motion);
@@ -197,17 +192,14 @@ private:
       return;
     }
     std::uint32_t near[kLanes] = {}, met = 0;
-    for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(points)) {
       const std::uint32_t its = boxes & boxesOnArc(leaf.segments, i, node.low, node.high, motion.steps, clips_[i]);
       met |= its;
-      for (std::uint32_t left = its; left != 0; left &= left - 1) near[std::countr_zero(left)] |= 1u << i;
+      for (const std::uint32_t k : Bits(its)) near[k] |= 1u << i;
     }
-    for (; met != 0; met &= met - 1) {
-      const auto k = static_cast<std::uint32_t>(std::countr_zero(met));
+    for (const std::uint32_t k : Bits(met)) {
       const bool ends_here = node.isLeaf(k) || model_.isBlunt(candidate.boxes[k], motion);
-      for (std::uint32_t bits = ends_here ? near[k] : 0; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t i : Bits(ends_here ? near[k] : 0)) {
         clipped.from[i] = clips_[i].from[k];
         clipped.to[i] = clips_[i].to[k];
       }
@@ -256,10 +248,8 @@ private:
       pulse_.step();
       std::uint32_t here = ranges.at(k, leaf.open);
       if (query_.first && !query_.everything())
-        for (std::uint32_t bits = here; bits != 0; bits &= bits - 1) {
-          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+        for (const std::uint32_t i : Bits(here))
           if (results_.first[leaf.points.begin + i] <= k) here &= ~(1u << i);
-        }
       if (here == 0) continue;
       if (box.isLeaf())
         at_pose_.compare(leaf, here, box, k, motion);

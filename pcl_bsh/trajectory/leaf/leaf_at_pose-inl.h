@@ -82,8 +82,7 @@ public:
                           });
     }
     else {
-      for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t i : Bits(lanes)) {
         for (std::uint32_t j = 0; j < other.count && (hit >> i & 1) == 0; ++j)
           if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
       }
@@ -103,8 +102,7 @@ public:
       met_[k - motion.interval->first] = {box.voxel, before | lanes};
       lanes &= ~before;
     }
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(lanes)) {
       NearestPoint* const best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
       PointMet met;
       const PointAtPose point{leaf.points.record(i), k, best, query_.request.pose_summaries};
@@ -147,8 +145,8 @@ public:
       std::uint16_t& at = pose_hits_[k - motion.interval->first];
       at = static_cast<std::uint16_t>(at | hit);
     }
-    for (std::uint32_t bits = query_.first ? hit : 0; bits != 0; bits &= bits - 1) {
-      double& first = results_.first[leaf.points.begin + static_cast<std::uint32_t>(std::countr_zero(bits))];
+    for (const std::uint32_t i : Bits(query_.first ? hit : 0)) {
+      double& first = results_.first[leaf.points.begin + i];
       first = std::min(first, static_cast<double>(k));
     }
   }
@@ -196,8 +194,7 @@ private:
   {
     noteHits(leaf, hit, k, motion);
     if (!query_.everything()) return;
-    for (std::uint32_t bits = hit; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(hit)) {
       // It collides at this pose: what is farther at this pose changes nothing.
       if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
       // Only what may be as near as the nearest in floats is worth an exact look.

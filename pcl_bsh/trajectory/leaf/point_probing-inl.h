@@ -62,10 +62,8 @@ public:
     }
     while (near != 0) {
       auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
-      for (std::uint32_t bits = near & (near - 1); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      for (const std::uint32_t lane : Bits(near & (near - 1)))
         if (distance[lane] < distance[nearest]) nearest = lane;
-      }
       if (hasPoint(children[nearest], probe, center, motion)) return true;
       if (model_.isBlunt(candidate, motion)) return false;
       near &= ~(1u << nearest);

@@ -11,7 +11,6 @@
 #include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -27,10 +26,8 @@ struct PoseRanges {
   std::uint32_t at(std::uint32_t k, std::uint32_t among) const
   {
     std::uint32_t here = 0;
-    for (std::uint32_t bits = among & lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(among & lanes))
       if (first[i] <= k && k <= last[i]) here |= 1u << i;
-    }
     return here;
   }
 };
@@ -40,8 +37,7 @@ inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoint
 {
   PoseRanges ranges;
   const double steps = motion.interval->last - motion.interval->first;
-  for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+  for (const std::uint32_t i : Bits(lanes)) {
     ranges.first[i] = motion.interval->first + static_cast<std::uint32_t>(std::ceil(steps * clipped.from[i]));
     ranges.last[i] = motion.interval->first + static_cast<std::uint32_t>(std::floor(steps * clipped.to[i]));
     if (ranges.first[i] > ranges.last[i]) continue;

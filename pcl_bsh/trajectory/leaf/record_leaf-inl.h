@@ -69,10 +69,9 @@ public:
     const BoxLeaf other = box.points(query_.boxes);
     for (std::uint32_t j = 0; j < other.count; ++j) {
       const MovingCorners model = restingAt(query_, other.record(j));
-      std::uint32_t bits = ranges.lanes & leaf.open;
-      if (other.is_part) bits = compared_.add(other.record(j), bits);
-      for (; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+      std::uint32_t points = ranges.lanes & leaf.open;
+      if (other.is_part) points = compared_.add(other.record(j), points);
+      for (const std::uint32_t i : Bits(points)) {
         if (HWY_UNLIKELY(hasPlane()) && isBeside(leaf, i, motion)) {
           leaf.open &= ~(1u << i); // for the time of this motion
           continue;
@@ -105,8 +104,7 @@ public:
     }
     const double radius = std::sqrt(half) * (1.0 + kFewDoubleRoundings);
     std::uint32_t met = points;
-    for (std::uint32_t bits = points; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(points)) {
       if (leaf.own[i] < radius) continue;
       const RecordCourse& course = courseOf(leaf, i, motion);
       const Separation apart = separationOf(course.arcs.at(0.5), Corners::of(middle));

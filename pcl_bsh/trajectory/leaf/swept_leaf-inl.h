@@ -42,8 +42,7 @@ public:
     ++results_.work.leaf_pairs;
     const BoxLeaf other = box.points(tree_);
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
-    for (std::uint32_t bits = lanes; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    for (const std::uint32_t i : Bits(lanes)) {
       if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
       if (other.is_part && compared_.add(other.record(0), 1u << i) == 0) continue;
       pass(leaf, i, other, box, motion);
