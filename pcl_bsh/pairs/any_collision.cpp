@@ -47,31 +47,11 @@ private:
 /// Stops where one of several threads is to pause.
 class Pausing : public NoObserver {
 public:
-  explicit Pausing(Pause& pause) : pause_(pause) {}
-
+  void allow(const Pause& pause) { pause_ = pause; }
   bool stops(const PairWalk&, const LanePair&) { return pause_.stops(); }
 
 private:
-  Pause& pause_;
-};
-
-/// The work of one of several threads.
-class AnyShare {
-public:
-  AnyShare(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places)
-  : search_(a, b, request, Pausing(pause_), places)
-  {
-  }
-
-  void operator()(SharedStack<LanePair>::Piece& piece)
-  {
-    pause_ = {kStepsOfPiece, &piece.dropped};
-    search_.visitPiece(piece);
-  }
-
-private:
   Pause pause_;
-  AnySearch<Pausing> search_;
 };
 
 /// By so many threads. A search that is soon over is that of one.
@@ -81,14 +61,13 @@ AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& reque
   std::optional<SharedStack<LanePair>> shared;
   Work alone;
   {
-    Pause pause;
-    AnySearch search(a, b, request, Pausing(pause), places, watch);
+    AnySearch search(a, b, request, Pausing(), places, watch);
     const AnyResult result = search.run();
     if (result.verdict != Verdict::undecided) return result;
     alone = result.work;
     shared.emplace(search.left());
   } // what it used is there for this thread's share
-  shared->visit(threads, [&] { return AnyShare(a, b, request, places); });
+  shared->visit(threads, [&] { return AnySearch(a, b, request, Pausing(), places); });
   return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
                   alone += shared->work());
 }

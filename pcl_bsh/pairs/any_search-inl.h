@@ -69,9 +69,11 @@ public:
     return resultOf(length_band_, witness, stopped_, walk_.work);
   }
 
-  /// Visits the pairs of a piece and what is below, until a witness is found or the observer stops.
-  void visitPiece(SharedStack<LanePair>::Piece& piece)
+  /// Visits the pairs of a piece and what is below, until a witness is found or the observer stops, which is allowed
+  /// some steps.
+  void operator()(SharedStack<LanePair>::Piece& piece)
   {
+    observer_.allow({kStepsOfPiece, &piece.dropped});
     stack_.assign(piece.pairs.begin(), piece.pairs.end());
     piece.found = search();
     piece.pairs.assign(stack_.begin(), stack_.end());
