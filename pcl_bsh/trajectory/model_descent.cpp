@@ -94,19 +94,18 @@ private:
 
 } // namespace
 
-PointMet meetVoxel(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel)
+PointMet meet(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel,
+              std::uint32_t node, std::uint32_t child)
 {
   Descent descent(query, results, point);
-  const Voxel& entered = query.model.storage().built(voxel, results.work);
-  descent.all(&entered, entered.nodes[0]);
-  return descent.met;
-}
-
-PointMet meetBelow(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t node,
-                   std::uint32_t child)
-{
-  Descent descent(query, results, point);
-  descent.open(nullptr, query.model.storage().top[node], child);
+  const SphereHierarchy::Storage& model = query.model.storage();
+  if (voxel == kAboveVoxels) {
+    descent.open(nullptr, model.top[node], child);
+  }
+  else {
+    const Voxel& entered = model.built(voxel, results.work);
+    descent.all(&entered, entered.nodes[0]);
+  }
   return descent.met;
 }
 

@@ -25,12 +25,9 @@ struct PointMet {
   double gap = std::numeric_limits<double>::infinity(); ///< where a nearest point is asked for: its distance, rounded
 };
 
-/// Compares a point with the points of one of the model's voxels; where no nearest one is asked for, up to the first
-/// that collides.
-PointMet meetVoxel(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel);
-
-/// Compares a point with the points below a child of a node above the voxels, as meetVoxel() does.
-PointMet meetBelow(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t node,
-                   std::uint32_t child);
+/// Compares a point with the points of one of the model's voxels; above the voxels, with those below a child of a node.
+/// Where no nearest one is asked for, up to the first that collides.
+PointMet meet(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel,
+              std::uint32_t node, std::uint32_t child);
 
 } // namespace pcl_bsh

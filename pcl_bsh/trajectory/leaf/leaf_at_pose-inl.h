@@ -104,12 +104,8 @@ public:
     }
     for (const std::uint32_t i : Bits(lanes)) {
       NearestPoint* const best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
-      PointMet met;
       const PointAtPose point{leaf.points.record(i), k, best, query_.request.pose_summaries};
-      if (in_voxel)
-        met = meetVoxel(query_, results_, point, box.voxel);
-      else
-        met = meetBelow(query_, results_, point, box.node, box.lane);
+      const PointMet met = meet(query_, results_, point, box.voxel, box.node, box.lane);
       if (!met.collides) continue;
       noteHits(leaf, 1u << i, k, motion);
       if (!query_.everything() || !query_.nearestDecides()) continue;
