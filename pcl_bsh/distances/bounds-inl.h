@@ -12,7 +12,7 @@
 #include <pcl_bsh/distances/bound_margin.h>
 #include <pcl_bsh/geometry/triangle/flat_triangle.h>
 #include <pcl_bsh/simd/crossed_lanes-inl.h>
-#include <pcl_bsh/traversal/obstacle_sphere-inl.h>
+#include <pcl_bsh/traversal/list_walk-inl.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #define PCL_BSH_DISTANCES_DISTANCE_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/distances/best_record-inl.h>
+#include <pcl_bsh/distances/measured_leaf-inl.h>
 #include <pcl_bsh/distances/nearest_points-inl.h>
 #include <pcl_bsh/distances/nearest_triangles-inl.h>
 #include <pcl_bsh/distances/rounded_lengths-inl.h>

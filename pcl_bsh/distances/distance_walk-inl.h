@@ -14,7 +14,6 @@
 #include <pcl_bsh/distances/difference_bound.h>
 #include <pcl_bsh/distances/distance_leaf-inl.h>
 #include <pcl_bsh/distances/entered_spaces-inl.h>
-#include <pcl_bsh/distances/voxel_bounds-inl.h>
 #include <pcl_bsh/hierarchy/build/crowded_cell.h>
 #include <pcl_bsh/query/progress.h>
 

@@ -9,7 +9,7 @@
 #define PCL_BSH_DISTANCES_TRIANGLE_DESCENT_INL_H_
 #endif
 
-#include <pcl_bsh/distances/best_record-inl.h>
+#include <pcl_bsh/distances/measured_leaf-inl.h>
 
 #include <algorithm>
 #include <bit>

@@ -9,7 +9,6 @@
 #endif
 
 #include <pcl_bsh/pairs/closest_goal.h>
-#include <pcl_bsh/pairs/nearest.h>
 #include <pcl_bsh/traversal/pair_walk-inl.h>
 #include <pcl_bsh/traversal/planes_between.h>
 #include <pcl_bsh/traversal/point_pairs.h>

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace pcl_bsh {
 
@@ -28,6 +29,14 @@ struct ClosestGoal {
   double max_distance; ///< no pair that is farther apart is looked for; inclusive
   /// All that is asked is whether the distance exceeds this.
   double clearance = std::numeric_limits<double>::infinity();
+};
+
+/// The nearest pair found so far.
+struct Nearest {
+  std::optional<PointPair> pair;
+  double low = std::numeric_limits<double>::infinity();     ///< at most the gap of the pair
+  double high = std::numeric_limits<double>::infinity();    ///< at least the gap of the pair
+  double to_beat = std::numeric_limits<double>::infinity(); ///< what is not nearer than this is passed over
 };
 
 /// Whether any pair is within the goal's clearance, as much about the distance as was learnt on the way, and the

@@ -10,7 +10,6 @@
 #endif
 
 #include <pcl_bsh/pairs/best_pair-inl.h>
-#include <pcl_bsh/pairs/opening-inl.h>
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/traversal/pair_queue-inl.h>
 #include <pcl_bsh/traversal/shared_stack.h>
@@ -114,7 +113,7 @@ public:
   bool opens(const LanePair& pair, Opened opened)
   {
     if (!goal_.rule.isTimed()) return true;
-    const std::size_t points = pointsToPrepare(walk_, pair, opened);
+    const std::size_t points = walk_.pointsToPrepare(pair, opened);
     if (points == 0 || goal_.rule.leavesTimeToBuild(points)) return true;
     left_over_ = std::min(left_over_, pair.key);
     considerOneOf(pair);
@@ -244,7 +243,7 @@ private:
   {
     if (!goal_.rule.mayStop()) return steps >= kStepsAlone;
     return settled_ || stop_check_.isOver() ||
-           (!dives_on && goal_.rule.deepest != StopRule::kNever && levelToOpen(walk_, next) > goal_.rule.deepest);
+           (!dives_on && goal_.rule.deepest != StopRule::kNever && walk_.levelToOpen(next) > goal_.rule.deepest);
   }
 
   static WaitingChildren alone(const LanePair& pair)

@@ -15,7 +15,6 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/trajectory/leaf/leaf-inl.h>
-#include <pcl_bsh/trajectory/leaf/point_probing-inl.h>
 #include <pcl_bsh/trajectory/node_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -45,7 +44,6 @@ public:
     walk_(rule, results_.work.node_pairs, scratch.visits),
     model_(query.boxes, rule, results_.work),
     leaves_(query, voxel_frame_, model_, walk_.stop_check, pulse_, results_, scratch.long_triangles),
-    probing_(query, voxel_frame_, model_, results_.work),
     settled_reach_(settledReach()),
     settling_(!query.everything() && !query.first && query.of_points && voxel_frame_.frame.unit == 1.0 &&
               settled_reach_ > 0.0f)
@@ -276,7 +274,9 @@ private:
       const AffineMap map = voxel_frame_.mapAt(query_.path.poses[probe.pose], {0, 0, 0}, 1.0);
       const Point center = carryPoint(map.m, map.g, probe.center);
       ++results_.work.volumes_carried;
-      if (box.squaredDistance(center) > reach * reach || !probing_.hasPoint(candidate, probe, center, motion)) continue;
+      if (box.squaredDistance(center) > reach * reach ||
+          !model_.hasPoint(voxel_frame_, candidate, probe, center, motion))
+        continue;
       settle(index, lane);
       close(index, lane);
     }
@@ -335,7 +335,6 @@ private:
   WorkPulse pulse_{results_.work};
   ModelBoxes model_;
   LeafWalk leaves_;
-  PointProbing probing_;
   const float settled_reach_;             // pairs nearer in floats collide; probeOf() has own uncertainties
   const bool settling_;                   // whether one pose and one point of the model answer the request
   const Voxel* voxel_ = nullptr;          // once it was entered

@@ -102,6 +102,43 @@ public:
     return ra > rb ? Opened::a : Opened::b;
   }
 
+  /// The level of the node that opening a pair reads: 0 above the voxels and of two leaves, 1 the root of a voxel.
+  std::uint64_t levelToOpen(const LanePair& pair) const
+  {
+    const Opened opened = choose(pair);
+    if (opened == Opened::neither) return 0;
+    const Spaces& side = opened == Opened::a ? a : b;
+    const Lane& lane = opened == Opened::a ? pair.a : pair.b;
+    if (lane.space == kAboveVoxels) return nodeOf(side, lane).isLeaf(lane.lane) ? 1 : 0;
+    const std::vector<Node>& nodes = side.storage.voxels[lane.space].nodes;
+    const std::uint32_t first = nodes[lane.node].begin[lane.lane];
+    std::uint64_t level = 2;
+    for (std::uint32_t node = 0; node != lane.node; ++level) {
+      std::uint32_t above = 0;
+      while (nodes[node].begin[above + 1] <= first) ++above;
+      node = nodes[node].child[above];
+    }
+    return level;
+  }
+
+  /// How many points a step that opens a pair would build trees of, or fit slabs to.
+  std::size_t pointsToPrepare(const LanePair& pair, Opened opened) const
+  {
+    const auto voxelIn = [](const Spaces& side, const Lane& lane, bool enters) {
+      const Node& node = side.node(lane.space, lane.node);
+      return enters && lane.space == kAboveVoxels && node.isLeaf(lane.lane) ? node.begin[lane.lane] : lane.space;
+    };
+    const std::uint32_t in_a = voxelIn(a, pair.a, opened == Opened::a), in_b = voxelIn(b, pair.b, opened == Opened::b);
+    const bool compares_slabs = in_a != kAboveVoxels && in_b != kAboveVoxels;
+    const auto pointsOf = [compares_slabs](const Spaces& side, std::uint32_t space) -> std::size_t {
+      if (space == kAboveVoxels) return 0;
+      const std::size_t points = side.storage.pointsToBuild(space);
+      const Voxel& voxel = side.storage.voxels[space];
+      return points == 0 && compares_slabs && !voxel.slabs.isFitted() ? voxel.count : points;
+    };
+    return pointsOf(a, in_a) + pointsOf(b, in_b);
+  }
+
   /// Whether slabs can be compared: both lanes are in voxels of one unit, and records are no balls.
   bool haveSlabs(const Lane& lane_a, const Lane& lane_b) const
   {

@@ -101,6 +101,15 @@ private:
   std::vector<Siblings> sorted_;
 };
 
+/// A ball around a place in the scan's voxel, at a pose; its reach in the clouds' unit.
+struct ProbeSphere {
+  Point center;
+  float reach;
+  std::uint32_t pose;
+  float scale = 0.0f;   ///< of points' own uncertainties, which make the reach longer, or shorter
+  float farther = 0.0f; ///< by this at most
+};
+
 /// Opens the model's boxes.
 class ModelBoxes {
 public:
@@ -164,6 +173,45 @@ public:
         collect(segment, motion, size, below(box), into);
     }
     if (kept != 0) into.push_back(boxes.only(kept));
+  }
+
+  /// Whether the model has a point in the probe, in a candidate: one look that may settle a whole node of the scan. The
+  /// nearest boxes are asked first. Where floats do not tell boxes apart during the motion, one of them alone is asked:
+  /// then the answer may be false although there is a point.
+  /// @param center of the probe, about where the model sees it.
+  bool hasPoint(const VoxelInModelFrame& voxel_frame, const ModelBox& candidate, const ProbeSphere& probe,
+                const Point& center, const VoxelMotion& motion)
+  {
+    if (candidate.isLeaf()) {
+      if (tree_.unit(candidate.voxel) != 1.0) return false;
+      const BoxLeaf leaf = candidate.points(tree_);
+      const AffineMap map = voxel_frame.mapAt(voxel_frame.path.poses[probe.pose], tree_.offset(candidate.voxel), 1.0);
+      for (const float g : map.g)
+        if (!(std::abs(g) <= voxel_frame.far)) return false;
+      const Point at = carryPoint(map.m, map.g, probe.center);
+      if (leaf.lengths)
+        return anyPointWithinEach(leaf.x(), leaf.y(), leaf.z(), leaf.lengths, probe.scale, leaf.count, at, probe.reach);
+      return anyPointWithin(leaf.x(), leaf.y(), leaf.z(), leaf.count, at.x, at.y, at.z, probe.reach);
+    }
+    if (!mayOpen(candidate)) return false;
+    const Siblings children = below(candidate);
+    work_.node_pairs += static_cast<std::uint64_t>(std::popcount(children.lanes));
+    float distance[kLanes];
+    const float reach = probe.reach + probe.farther;
+    std::uint32_t near = 0;
+    for (std::uint32_t lane = 0; lane < children.box().count; ++lane) {
+      distance[lane] = BoxEnds(children[lane]).squaredDistance(center);
+      if (distance[lane] <= reach * reach) near |= 1u << lane;
+    }
+    while (near != 0) {
+      auto nearest = static_cast<std::uint32_t>(std::countr_zero(near));
+      for (const std::uint32_t lane : Bits(near & (near - 1)))
+        if (distance[lane] < distance[nearest]) nearest = lane;
+      if (hasPoint(voxel_frame, children[nearest], probe, center, motion)) return true;
+      if (isBlunt(candidate, motion)) return false;
+      near &= ~(1u << nearest);
+    }
+    return false;
   }
 
 private:

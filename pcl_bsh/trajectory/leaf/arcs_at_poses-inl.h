@@ -9,7 +9,7 @@
 #endif
 
 #include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
-#include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
+#include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {

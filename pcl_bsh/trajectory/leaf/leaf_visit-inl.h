@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A leaf of the scan during an interval, as the model sees it.
+// A leaf of the scan during an interval, as the model sees it: its points on their arcs, the poses at which they are in
+// a box, and the records that they were compared with.
 
 #if defined(PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAJECTORY_LEAF_LEAF_VISIT_INL_H_
@@ -9,8 +10,12 @@
 #endif
 
 #include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
+#include <pcl_bsh/trajectory/voxel_in_model_frame-inl.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
@@ -65,6 +70,78 @@ private:
     carry(map.m, map.g, points.x(), points.y(), points.z(), points.count, at[0], at[1], at[2]);
     for (float* along : at) std::fill(along + points.count, along + kLeafPoints, 0.0f);
   }
+};
+
+/// The poses at which each of a leaf's points has to be looked at: first..last, of all of them [begin, end).
+struct PoseRanges {
+  std::uint32_t lanes = 0; ///< points that have such a pose
+  std::uint32_t first[kLeafPoints], last[kLeafPoints];
+  std::uint32_t begin = 0xffffffffu, end = 0;
+
+  std::uint32_t at(std::uint32_t k, std::uint32_t among) const
+  {
+    std::uint32_t here = 0;
+    for (const std::uint32_t i : Bits(among & lanes))
+      if (first[i] <= k && k <= last[i]) here |= 1u << i;
+    return here;
+  }
+};
+
+/// Returns the ranges of points in `lanes`.
+inline PoseRanges rangesOf(std::uint32_t lanes, const ClippedSegments<kLeafPoints>& clipped, const VoxelMotion& motion)
+{
+  PoseRanges ranges;
+  const double steps = motion.interval->last - motion.interval->first;
+  for (const std::uint32_t i : Bits(lanes)) {
+    ranges.first[i] = motion.interval->first + static_cast<std::uint32_t>(std::ceil(steps * clipped.from[i]));
+    ranges.last[i] = motion.interval->first + static_cast<std::uint32_t>(std::floor(steps * clipped.to[i]));
+    if (ranges.first[i] > ranges.last[i]) continue;
+    ranges.lanes |= 1u << i;
+    ranges.begin = std::min(ranges.begin, ranges.first[i]);
+    ranges.end = std::max(ranges.end, ranges.last[i] + 1);
+  }
+  return ranges;
+}
+
+/// Returns the ranges of points in `lanes` at one pose.
+inline PoseRanges rangesAt(std::uint32_t lanes, const VoxelMotion& motion)
+{
+  PoseRanges ranges;
+  ranges.lanes = lanes;
+  std::fill(ranges.first, ranges.first + kLeafPoints, motion.interval->first);
+  std::fill(ranges.last, ranges.last + kLeafPoints, motion.interval->first);
+  ranges.begin = motion.interval->first;
+  ranges.end = ranges.begin + 1;
+  return ranges;
+}
+
+/// Which points of a leaf were compared with which records of the model during a motion, as far as is remembered: parts
+/// of one triangle hold nothing new.
+class ComparedPairs {
+public:
+  void clear()
+  {
+    if (is_used_) *this = ComparedPairs();
+  }
+
+  /// @param points bits of them. @return those that were not compared with the record; from now on they are
+  std::uint32_t add(std::uint32_t record, std::uint32_t points)
+  {
+    is_used_ = true;
+    Entry& entry = entries_[record % entries_.size()];
+    if (entry.record != record || entry.points == 0) entry = {record, 0};
+    const std::uint32_t left = points & ~entry.points;
+    entry.points |= points;
+    return left;
+  }
+
+private:
+  struct Entry {
+    std::uint32_t record = 0, points = 0;
+  };
+
+  std::array<Entry, 64> entries_ = {};
+  bool is_used_ = false;
 };
 
 } // namespace pcl_bsh::HWY_NAMESPACE

@@ -9,10 +9,9 @@
 #define PCL_BSH_TRAJECTORY_LEAF_RECORD_LEAF_INL_H_
 #endif
 
-#include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_at_pose-inl.h>
+#include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/leaf/plane_beside.h>
-#include <pcl_bsh/trajectory/leaf/pose_ranges-inl.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
 #include <pcl_bsh/traversal/long_triangles-inl.h>
 

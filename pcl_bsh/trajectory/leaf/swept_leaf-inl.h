@@ -9,7 +9,6 @@
 #endif
 
 #include <pcl_bsh/trajectory/boxes/model_boxes-inl.h>
-#include <pcl_bsh/trajectory/leaf/compared_pairs.h>
 #include <pcl_bsh/trajectory/leaf/leaf_visit-inl.h>
 #include <pcl_bsh/trajectory/leaf/point_segment.h>
 #include <pcl_bsh/trajectory/leaf/record_course.h>
