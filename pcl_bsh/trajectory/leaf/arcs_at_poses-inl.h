@@ -24,7 +24,6 @@ public:
   ArcsAtPoses(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
               LeafAtPose& at_pose)
   : query_(query),
-    tree_(query.boxes),
     results_(results),
     at_pose_(at_pose),
     voxel_frame_(voxel_frame),
@@ -47,8 +46,8 @@ public:
   {
     if (ranges.lanes == 0) return;
     if (!is_begun_) begin(motion);
-    const BoxLeaf other = box.points(tree_);
-    const std::array<float, 3> shift = tree_.shift(box.voxel);
+    const BoxLeaf other = box.points(query_.boxes);
+    const std::array<float, 3> shift = query_.boxes.shift(box.voxel);
     const BoxEnds ends(box);
     const LaneTag d;
     const auto at_once = static_cast<std::uint32_t>(hn::Lanes(d));
@@ -191,7 +190,6 @@ private:
   }
 
   const TrajectoryQuery& query_;
-  const BoxTree& tree_;
   VoxelResults& results_;
   LeafAtPose& at_pose_;
   const VoxelInModelFrame& voxel_frame_;

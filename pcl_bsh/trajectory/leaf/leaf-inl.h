@@ -27,8 +27,6 @@ public:
   LeafWalk(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, ModelBoxes& model, StopCheck& stop_check,
            WorkPulse& pulse, VoxelResults& results, LongTriangles& long_triangles)
   : query_(query),
-    path_(query.path),
-    tree_(query.boxes),
     voxel_frame_(voxel_frame),
     model_(model),
     stop_check_(stop_check),
@@ -49,8 +47,8 @@ public:
     const std::uint32_t all = firstBits(points.count);
     if ((all & ~results_.settled[slot]) == 0 || results_.witness) return false;
     const double share = query_.everything() ? kMeasuredStray : kLeafStray;
-    const double limit = path_.is_swept ? path_.stray : share * node.r[lane] * voxel_frame_.frame.unit;
-    if (motion.interval->divided() && (path_.is_swept ? motion.line_stray : motion.stray) > limit) {
+    const double limit = query_.path.is_swept ? query_.path.stray : share * node.r[lane] * voxel_frame_.frame.unit;
+    if (motion.interval->divided() && (query_.path.is_swept ? motion.line_stray : motion.stray) > limit) {
       return compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->left), candidates, bound) &&
              compare(slot, points, node, lane, voxel_frame_.motionOf(motion.interval->right), candidates, bound);
     }
@@ -101,7 +99,7 @@ public:
   bool isWorthEachPose(const VoxelMotion& motion) const
   {
     const std::uint32_t steps = motion.interval->last - motion.interval->first;
-    return !path_.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses;
+    return !query_.path.is_swept && steps > 0 && static_cast<float>(steps) <= kFewPoses;
   }
 
   /// Whether there is a plane beside the model. Nothing strays across it at single poses.
@@ -219,7 +217,7 @@ private:
       if (model_.isBlunt(box, motion)) return eachPose(leaf, rangesOf(lanes, clipped, motion), box, motion);
       return push(leaf, model_.below(box), lanes, motion);
     }
-    if (path_.is_swept)
+    if (query_.path.is_swept)
       swept_.compare(leaf, lanes, clipped, box, motion);
     else
       comparePoses(leaf, lanes, clipped, box, motion);
@@ -236,7 +234,8 @@ private:
   {
     if (!query_.of_points) return records_.compare(leaf, rangesOf(lanes, clipped, motion), box, motion);
     const PoseRanges ranges = rangesOf(lanes, clipped, motion);
-    if (on_arcs_.areFor(motion) && tree_.unit(box.voxel) == 1.0) return on_arcs_.compare(leaf, ranges, box, motion);
+    if (on_arcs_.areFor(motion) && query_.boxes.unit(box.voxel) == 1.0)
+      return on_arcs_.compare(leaf, ranges, box, motion);
     eachPose(leaf, ranges, box, motion);
   }
 
@@ -259,8 +258,6 @@ private:
   }
 
   const TrajectoryQuery& query_;
-  const PosePath& path_;
-  const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   ModelBoxes& model_;
   StopCheck& stop_check_;

@@ -21,8 +21,6 @@ class LeafAtPose {
 public:
   LeafAtPose(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results)
   : query_(query),
-    path_(query.path),
-    tree_(query.boxes),
     voxel_frame_(voxel_frame),
     results_(results),
     reach_(voxel_frame.error, query.path.skew, 1.0, query.of_pairs.leastInCommon(), query.of_pairs.mostInCommon(),
@@ -52,9 +50,9 @@ public:
     if (!motion.at_rest) lanes &= nearBoxAt(leaf, box, k);
     if (lanes == 0) return;
     ++results_.work.leaf_pairs;
-    const BoxLeaf other = box.points(tree_);
-    const double unit = tree_.unit(box.voxel);
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], tree_.offset(box.voxel), unit);
+    const BoxLeaf other = box.points(query_.boxes);
+    const double unit = query_.boxes.unit(box.voxel);
+    const AffineMap map = voxel_frame_.mapAt(query_.path.poses[k], query_.boxes.offset(box.voxel), unit);
     bool certain = (!query_.everything() || query_.nearestDecides()) && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
@@ -171,7 +169,7 @@ private:
   std::uint32_t nearBoxAt(const LeafVisit& leaf, const ModelBox& box, std::uint32_t k) const
   {
     LeafPoints at;
-    const AffineMap map = voxel_frame_.mapAt(path_.poses[k], {0, 0, 0}, 1.0);
+    const AffineMap map = voxel_frame_.mapAt(query_.path.poses[k], {0, 0, 0}, 1.0);
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, at.x, at.y, at.z);
     return leaf.nearBox(at.x, at.y, at.z, box);
   }
@@ -221,8 +219,6 @@ private:
   }
 
   const TrajectoryQuery& query_;
-  const PosePath& path_;
-  const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
   const UncertainReach reach_;

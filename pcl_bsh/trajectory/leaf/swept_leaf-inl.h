@@ -25,7 +25,6 @@ public:
   SweptLeaf(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
             ComparedPairs& compared)
   : query_(query),
-    tree_(query.boxes),
     voxel_frame_(voxel_frame),
     results_(results),
     compared_(compared)
@@ -39,7 +38,7 @@ public:
                const VoxelMotion& motion)
   {
     ++results_.work.leaf_pairs;
-    const BoxLeaf other = box.points(tree_);
+    const BoxLeaf other = box.points(query_.boxes);
     const double begin = motion.interval->first, steps = motion.interval->last - motion.interval->first;
     for (const std::uint32_t i : Bits(lanes)) {
       if (isSettled(leaf, i, begin + steps * clipped.from[i])) continue;
@@ -93,11 +92,11 @@ private:
   void pass(const LeafVisit& leaf, std::uint32_t i, const BoxLeaf& other, const ModelBox& box,
             const VoxelMotion& motion)
   {
-    if (!query_.of_points || !motion.squares || tree_.unit(box.voxel) != 1.0) {
+    if (!query_.of_points || !motion.squares || query_.boxes.unit(box.voxel) != 1.0) {
       passages_ = {firstBits(other.count), {}, {}};
       return;
     }
-    passPoints(leaf.segments, i, other.x(), other.y(), other.z(), other.count, tree_.shift(box.voxel).data(),
+    passPoints(leaf.segments, i, other.x(), other.y(), other.z(), other.count, query_.boxes.shift(box.voxel).data(),
                roundUp(query_.reach) + astrayIn(motion), motion.smallest, motion.rounding, passages_);
   }
 
@@ -153,7 +152,6 @@ private:
   }
 
   const TrajectoryQuery& query_;
-  const BoxTree& tree_;
   const VoxelInModelFrame& voxel_frame_;
   VoxelResults& results_;
   ComparedPairs& compared_;
