@@ -11,7 +11,6 @@
 #include <pcl_bsh/query/record_distance.h>
 #include <pcl_bsh/query/uncertain.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace pcl_bsh::brute_force {

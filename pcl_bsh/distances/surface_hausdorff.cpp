@@ -9,8 +9,6 @@
 #include <pcl_bsh/distances/farthest_place.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace pcl_bsh {
 namespace {

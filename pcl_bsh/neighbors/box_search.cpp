@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace pcl_bsh {
 namespace {
@@ -77,47 +76,34 @@ public:
   {
     if (cloud_.size == 0) return;
     ++work_.volumes_carried;
-    visitAbove(LocalBox(cloud_.frame, box_), cloud_.top[0]);
+    visit(LocalBox(cloud_.frame, box_), nullptr, cloud_.top[0]);
   }
 
 private:
-  void visitAbove(const LocalBox& box, const Node& node)
+  /// @param voxel that the node is in; null above the voxels
+  void visit(const LocalBox& box, const Voxel* voxel, const Node& node)
   {
-    work_.node_pairs += node.count;
-    for (std::uint32_t i = 0; i < node.count; ++i) {
-      const std::array<double, 3> center = {node.x[i], node.y[i], node.z[i]};
-      const double radius = node.r[i];
-      if (box.misses(center, radius)) continue;
-      if (box.holds(center, radius)) {
-        for (std::uint32_t v = node.begin[i]; v < node.begin[i + 1]; ++v)
-          takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
-      }
-      else if (node.isLeaf(i)) {
-        const Voxel& voxel = cloud_.voxels[node.begin[i]];
-        ++work_.volumes_carried;
-        visit(LocalBox(voxel.frame, box_), cloud_.built(node.begin[i], work_), 0);
-      }
-      else {
-        visitAbove(box, cloud_.top[node.child[i]]);
-      }
-    }
-  }
-
-  void visit(const LocalBox& box, const Voxel& voxel, std::uint32_t index)
-  {
-    const Node& node = voxel.nodes[index];
     work_.node_pairs += node.count;
     for (std::uint32_t i = 0; i < node.count; ++i) {
       const std::array<double, 3> center = {node.x[i], node.y[i], node.z[i]};
       const double radius = node.r[i];
       if (box.misses(center, radius)) continue;
       if (box.holds(center, radius))
-        takeAll(voxel, node.begin[i], node.begin[i + 1]);
-      else if (node.isLeaf(i))
-        compare(voxel, node, i);
+        takeBelow(voxel, node, i);
+      else if (!node.isLeaf(i))
+        visit(box, voxel, voxel ? voxel->nodes[node.child[i]] : cloud_.top[node.child[i]]);
+      else if (voxel)
+        compare(*voxel, node, i);
       else
-        visit(box, voxel, node.child[i]);
+        enter(node.begin[i]);
     }
+  }
+
+  void enter(std::uint32_t index)
+  {
+    ++work_.volumes_carried;
+    const Voxel& voxel = cloud_.built(index, work_);
+    visit(LocalBox(voxel.frame, box_), &voxel, voxel.nodes[0]);
   }
 
   void compare(const Voxel& voxel, const Node& node, std::uint32_t child)
@@ -131,6 +117,13 @@ private:
     }
     for (std::uint32_t i = begin; i < node.begin[child + 1]; ++i)
       if (inside(i)) takeAll(voxel, i, i + 1);
+  }
+
+  void takeBelow(const Voxel* voxel, const Node& node, std::uint32_t child)
+  {
+    const std::uint32_t begin = node.begin[child], end = node.begin[child + 1];
+    if (voxel) return takeAll(*voxel, begin, end);
+    for (std::uint32_t v = begin; v < end; ++v) takeAll(cloud_.built(v, work_), 0, cloud_.voxels[v].count);
   }
 
   void takeAll(const Voxel& voxel, std::uint32_t begin, std::uint32_t end)

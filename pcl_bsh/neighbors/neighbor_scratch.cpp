@@ -6,7 +6,6 @@
 #include <pcl_bsh/geometry/exact_distance.h>
 
 #include <algorithm>
-#include <string>
 
 namespace pcl_bsh {
 namespace {

@@ -5,7 +5,6 @@
 #include <pcl_bsh/hierarchy/storage.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
