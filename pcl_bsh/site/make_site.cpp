@@ -103,10 +103,10 @@ private:
       }
       if (stream->size() > std::numeric_limits<std::uint32_t>::max())
         throw files::FileError(clouds_[i], "has more points than a number of 32 bits can count", "split the cloud");
-      if (const auto remarks = stream->remarks(); options_.remark && !remarks.empty())
-        options_.remark(clouds_[i], remarks);
+      const io::CloudFacts facts = stream->facts();
+      if (options_.remark && !facts.remarks.empty()) options_.remark(clouds_[i], facts.remarks);
       fields.push_back(packed(stream->header()));
-      const io::CoordinateSystem system = stream->coordinateSystem();
+      const io::CoordinateSystem& system = facts.coordinate_system;
       if (!system.name.empty() && first_named.second.name.empty()) first_named = {i, system};
       requireOneSystem(first_named, i, system);
       site_.sources.push_back({clouds_[i].string(), stream->size(), fields.back(), system.name});
@@ -126,14 +126,11 @@ private:
   void requireOneSystem(const std::pair<std::size_t, io::CoordinateSystem>& first, std::size_t cloud,
                         const io::CoordinateSystem& system) const
   {
-    try {
-      const auto warning = io::requireOneSystem(clouds_[first.first].string(), first.second, system,
-                                                "transform them (--to-crs), or make two sites");
-      if (warning && options_.remark) options_.remark(clouds_[cloud], {*warning});
-    }
-    catch (const io::FormatError& error) {
-      throw files::FileError(clouds_[cloud], error.what(), error.remedy());
-    }
+    const auto warning = io::naming(clouds_[cloud], [&] {
+      return io::requireOneSystem(clouds_[first.first].string(), first.second, system,
+                                  "transform them (--to-crs), or make two sites");
+    });
+    if (warning && options_.remark) options_.remark(clouds_[cloud], {*warning});
   }
 
   /// Calls use(source, record, its bytes, the point) for all records of all clouds from (first, record) on.

@@ -21,7 +21,7 @@ void readE57File(std::string_view file)
       return reader.readAll();
     };
     const auto parse_header = [&](std::string_view bytes) {
-      return io::E57Reader(std::make_unique<io::HeldBytes>(bytes), scan, scan.has_value()).cloudHeader();
+      return io::E57Reader(std::make_unique<io::HeldBytes>(bytes), scan, scan.has_value()).header();
     };
     fuzz::readAny(reinterpret_cast<const std::uint8_t*>(file.data()), file.size(), parse, parse_header, writeNothing,
                   growth);

@@ -20,17 +20,17 @@ inline void readLasFile(const std::uint8_t* data, std::size_t size, std::size_t 
 {
   const auto parse = [](std::string_view file) {
     io::LasReader reader = lasReaderOf(file);
-    for (const char c : io::coordinateSystemOf(reader.header()))
+    for (const char c : io::coordinateSystemOf(reader.lasHeader()))
       require(c >= ' ' && c <= '~', "a coordinate system's name that no report can show");
     io::remarksOn(reader.block(), file.size());
-    return io::readLas(reader);
+    return reader.readAll();
   };
-  const auto parse_header = [](std::string_view file) { return lasReaderOf(file).cloudHeader(); };
+  const auto parse_header = [](std::string_view file) { return lasReaderOf(file).header(); };
   const auto write = [&](std::ostream& out, const pcl::PCLPointCloud2& cloud) {
     const auto bare = written(
         cloud, [](std::ostream& bytes, const pcl::PCLPointCloud2& points) { io::writeLas(bytes, points, nullptr); });
     if (bare) require(lasReaderOf(*bare).size() == cloud.width, "other points when written without a header");
-    const io::LasHeader header = lasReaderOf({reinterpret_cast<const char*>(data), size}).header();
+    const io::LasHeader header = lasReaderOf({reinterpret_cast<const char*>(data), size}).lasHeader();
     io::writeLas(out, cloud, &header);
   };
   readAny(data, size, parse, parse_header, write, growth);

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/conversion.h>
 #include <pcl_bsh/io/clouds/coordinates.h>
-#include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/clouds/las/las.h>
-#include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/lines/scan_text.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
@@ -41,27 +39,8 @@ struct Contents {
   CloudFacts facts = {};
 };
 
-Contents readAll(LasReader reader)
+Contents readAll(CloudStream& reader)
 {
-  Contents contents = {readLas(reader)};
-  const auto header = std::make_shared<const LasHeader>(reader.header());
-  contents.facts.coordinate_system = systemOf(*header);
-  contents.facts.unit = unitOf(*header);
-  contents.facts.remarks = reader.remarks();
-  contents.facts.las = header;
-  return contents;
-}
-
-bool isReadByPlace(const std::string& extension)
-{
-  return isLasExtension(extension) || isE57Extension(extension);
-}
-
-Contents readByPlace(const std::string& extension, std::unique_ptr<ByteSource> file, const ReadSettings& settings,
-                     unsigned threads)
-{
-  if (!isE57Extension(extension)) return readAll(LasReader(std::move(file), threads));
-  E57Reader reader(std::move(file), settings.scan, settings.beams);
   return {reader.readAll(), reader.facts()};
 }
 
@@ -86,7 +65,8 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
                Faces* faces)
 {
   requireSettings(extension, settings);
-  if (isReadByPlace(extension)) return readByPlace(extension, std::make_unique<HeldBytes>(file), settings, threads);
+  if (isReadByPlace(extension))
+    return readAll(*readerByPlace(extension, std::make_unique<HeldBytes>(file), settings, threads));
   Contents contents;
   if (extension == ".pcd") {
     contents.cloud = parsePcd(file, contents.facts.viewpoint, &contents.facts.remarks);
@@ -117,16 +97,6 @@ Contents parse(const std::string& extension, std::string_view file, const ReadSe
     contents.cloud = parseColumns(file, settings.columns, &contents.facts.remarks);
   }
   return contents;
-}
-
-/// The number of points is known, too.
-template <typename Reader>
-pcl::PCLPointCloud2 sizedHeader(const Reader& reader)
-{
-  pcl::PCLPointCloud2 header = reader.cloudHeader();
-  requirePoints(reader.size());
-  header.width = static_cast<std::uint32_t>(reader.size());
-  return header;
 }
 
 pcl::PCLPointCloud2 parseHeader(const std::string& extension, std::string_view file, bool whole,
@@ -161,18 +131,6 @@ std::string extensionByContent(std::string_view file)
   for (const CloudFormat& format : cloud_formats)
     if (format.begins && format.begins(file)) return std::string(format.extension);
   return ".txt";
-}
-
-/// Returns the result of `read`; names the file when `read` throws.
-template <typename Read>
-auto naming(const std::filesystem::path& path, Read&& read)
-{
-  try {
-    return read();
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
 }
 
 /// The file's extension, of those that can be read; of a pipe, that which its name or `beginning` tells.
@@ -227,7 +185,7 @@ pcl::PCLPointCloud2 read(const std::filesystem::path& path, CloudFacts* facts, c
     return naming(path, [&] {
       const std::string extension = extensionOf(path);
       requireSettings(extension, settings);
-      return checked(readByPlace(extension, openBytes(path), settings, threads), settings, facts);
+      return checked(readAll(*readerByPlace(extension, openBytes(path), settings, threads)), settings, facts);
     });
   }
   const FileBytes file(path);
@@ -276,16 +234,11 @@ pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const Rea
     return naming(path, [&] {
       const std::string extension = extensionOf(path);
       requireSettings(extension, settings);
-      CloudFacts facts;
-      if (isE57Extension(extension)) {
-        const E57Reader reader(openBytes(path), settings.scan, settings.beams);
-        return checkedHeader(sizedHeader(reader), settings, reader.facts());
-      }
-      const LasReader reader(openBytes(path));
-      const LasHeader header = reader.header();
-      facts.unit = unitOf(header);
-      facts.coordinate_system = systemOf(header);
-      return checkedHeader(sizedHeader(reader), settings, facts);
+      const auto reader = readerByPlace(extension, openBytes(path), settings, 0);
+      requirePoints(reader->size());
+      pcl::PCLPointCloud2 header = reader->header();
+      header.width = static_cast<std::uint32_t>(reader->size());
+      return checkedHeader(std::move(header), settings, reader->facts());
     });
   }
   constexpr std::size_t usual = std::size_t{1} << 16;

@@ -6,19 +6,17 @@
 //   while (std::size_t points = scan->read(batch.data(), 1000)) use(batch, points);
 #pragma once
 
-#include <pcl_bsh/io/clouds/read_settings.h>
-
-#include <pcl/PCLPointCloud2.h>
+#include <pcl_bsh/io/clouds/cloud_file.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
+#include <string_view>
 
 namespace pcl_bsh::io {
+
+class ByteSource;
 
 class CloudStream {
 public:
@@ -31,20 +29,17 @@ public:
   virtual std::uint64_t size() const = 0;
 
   /// Reads the next points, `most` at most, into records for which there is room.
-  /// @return how many; 0 at the end. @throws files::FileError
+  /// @return how many; 0 at the end. @throws files::FileError; FormatError where the stream knows no file
   virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
 
-  /// Remarks for users about how the file is read, a line each, without its name.
-  virtual std::vector<std::string> remarks() const { return {}; }
+  /// What readCloud() tells, but for scanners, which stay where the file has them.
+  virtual CloudFacts facts() const { return {}; }
 
-  /// As CloudFacts::coordinate_system has it.
-  virtual CoordinateSystem coordinateSystem() const { return {}; }
-
-  /// As CloudFacts::unit has it.
-  virtual std::optional<LengthUnit> unit() const { return std::nullopt; }
-
-  /// Leaves out the next points. @throws files::FileError
+  /// Leaves out the next points. @throws as read() does
   virtual void skip(std::uint64_t points);
+
+  /// All points, when none has been read. @throws as read() does; FormatError beyond max_points
+  virtual pcl::PCLPointCloud2 readAll();
 };
 
 /// Opens any file that readCloud() reads. LAS, LAZ, E57 and binary PCD are read batch by batch, the other formats at
@@ -54,5 +49,12 @@ public:
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,
                                        const ReadSettings& settings = {}, unsigned threads = 0);
+
+/// Whether files with this extension are read from a ByteSource: .las, .laz, .e57.
+bool isReadByPlace(std::string_view extension);
+
+/// The reader of such a format. @throws FormatError for what a header can tell; what `file` throws
+std::unique_ptr<CloudStream> readerByPlace(std::string_view extension, std::unique_ptr<ByteSource> file,
+                                           const ReadSettings& settings, unsigned threads);
 
 } // namespace pcl_bsh::io

@@ -34,12 +34,7 @@ void readMasks(IgnoredPoints& ignored)
   for (IgnoredPoints::Term& term : ignored.terms) {
     if (term.kind != IgnoredPoints::Kind::mask) continue;
     const FileBytes file(term.field);
-    try {
-      term.mask = std::make_shared<const std::vector<std::uint8_t>>(parseMask(file.view()));
-    }
-    catch (const FormatError& error) {
-      throw files::FileError(term.field, error.what(), error.remedy());
-    }
+    naming(term.field, [&] { term.mask = std::make_shared<const std::vector<std::uint8_t>>(parseMask(file.view())); });
   }
 }
 

@@ -38,22 +38,6 @@ void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t hei
 /// Resizes a cloud whose records are all written afterwards: its present bytes stay.
 void resizeRecords(pcl::PCLPointCloud2& cloud, std::uint32_t width);
 
-/// Reads a cloud of `points` records of the header's layout. Memory is touched only for points that were read before.
-/// @param read(to, most) reads the next records. @throws FormatError beyond max_points; what `read` throws
-template <typename Read>
-pcl::PCLPointCloud2 allPoints(const pcl::PCLPointCloud2& header, std::uint64_t points, const Read& read)
-{
-  requirePoints(points);
-  constexpr std::size_t at_once = std::size_t{1} << 16;
-  pcl::PCLPointCloud2 cloud = header;
-  cloud.data.reserve(static_cast<std::size_t>(points) * cloud.point_step);
-  for (std::size_t done = 0; done < points;) {
-    resizeRecords(cloud, static_cast<std::uint32_t>(std::min<std::uint64_t>(done + at_once, points)));
-    done += read(cloud.data.data() + done * cloud.point_step, at_once);
-  }
-  return cloud;
-}
-
 /// Sets is_dense: no value of any floating-point field is NaN or infinite.
 void setDense(pcl::PCLPointCloud2& cloud);
 

@@ -108,15 +108,12 @@ std::vector<PlacePair> parsePairs(std::string_view text)
 PoseFit readPoseFit(const std::filesystem::path& path, const LengthScale& scale)
 {
   const FileBytes file(path);
-  try {
+  return naming(path, [&] {
     std::vector<PlacePair> pairs = parsePairs(file.view());
     for (PlacePair& pair : pairs)
       for (double& length : pair.body) length = scale(length);
     return fitPose(pairs);
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
+  });
 }
 
 } // namespace pcl_bsh::io

@@ -65,12 +65,7 @@ JointValues parseJointValues(const std::string& text)
 std::vector<JointValues> readJointStates(const std::filesystem::path& path)
 {
   const FileBytes bytes(path);
-  try {
-    return parseStates(bytes.view());
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
+  return naming(path, [&] { return parseStates(bytes.view()); });
 }
 
 } // namespace pcl_bsh::io

@@ -2,6 +2,9 @@
 // How reading a format fails.
 #pragma once
 
+#include <pcl_bsh/io/files/file_error.h>
+
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -24,5 +27,17 @@ public:
 private:
   std::string remedy_;
 };
+
+/// Returns the result of `read`. @throws files::FileError naming the file for its FormatError
+template <typename Read>
+auto naming(const std::filesystem::path& path, const Read& read)
+{
+  try {
+    return read();
+  }
+  catch (const FormatError& error) {
+    throw files::FileError(path, error.what(), error.remedy());
+  }
+}
 
 } // namespace pcl_bsh::io

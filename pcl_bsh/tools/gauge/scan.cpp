@@ -30,9 +30,7 @@ public:
     const std::unique_ptr<io::CloudStream> stream = streamOf(options);
     points_ = stream->size();
     whole_ = stream->header();
-    facts_.remarks = stream->remarks();
-    facts_.coordinate_system = stream->coordinateSystem();
-    facts_.unit = stream->unit();
+    facts_ = stream->facts();
   }
 
   void forEachBatch(const Use& use) override

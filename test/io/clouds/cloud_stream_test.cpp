@@ -131,8 +131,8 @@ TEST(CloudStream, LeavesOutByReading)
     double value = -1;
     ASSERT_EQ(numbers.read(reinterpret_cast<std::uint8_t*>(&value), 1), 1U);
     EXPECT_EQ(value, static_cast<double>(skipped));
-    EXPECT_TRUE(numbers.remarks().empty());
-    EXPECT_EQ(numbers.coordinateSystem().name, "");
+    EXPECT_TRUE(numbers.facts().remarks.empty());
+    EXPECT_EQ(numbers.facts().coordinate_system.name, "");
   }
   Numbers few(5);
   few.skip(1000000);
@@ -176,10 +176,10 @@ TEST(CloudStream, TellsWhatIsToBeKnown)
 {
   const TemporaryFolder folder;
   const std::string rows = "1 5 7 9\n2 6 8 0\n3 1 1 1\n";
-  EXPECT_THAT(openCloud(folder.write("a.xyz", rows), plenty)->remarks(),
+  EXPECT_THAT(openCloud(folder.write("a.xyz", rows), plenty)->facts().remarks,
               testing::ElementsAre(HasSubstr("its first column counts up by one")));
   const auto named = openCloud(folder / "a.xyz", plenty, {"_", "x", "y", "z"});
-  EXPECT_TRUE(named->remarks().empty());
+  EXPECT_TRUE(named->facts().remarks.empty());
   EXPECT_EQ(namesOf(named->header()), "x y z");
 }
 

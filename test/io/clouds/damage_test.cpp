@@ -32,7 +32,7 @@ pcl::PCLPointCloud2 parseAnyPly(std::string_view file)
 pcl::PCLPointCloud2 parseAnyLas(std::string_view file)
 {
   LasReader reader(std::make_unique<HeldBytes>(file));
-  return readLas(reader);
+  return reader.readAll();
 }
 
 pcl::PCLPointCloud2 parseAnyPtx(std::string_view file)

@@ -74,9 +74,9 @@ TEST_F(HeaderCounts, OfPcd)
   const std::string remark = "its header counts 2 of the 5 points there is room for: 3 are left out";
   EXPECT_EQ(saidOf("a.pcd", pcd("binary", places(5))), "remark: " + remark);
   EXPECT_EQ(saidOf("a.pcd", pcd("binary", places(2) + "no record")), "");
-  EXPECT_THAT(openCloud(folder.write("b.pcd", pcd("binary", places(5))), 1 << 20)->remarks(),
+  EXPECT_THAT(openCloud(folder.write("b.pcd", pcd("binary", places(5))), 1 << 20)->facts().remarks,
               testing::ElementsAre(remark));
-  EXPECT_TRUE(openCloud(folder.write("b.pcd", pcd("binary", places(2) + "\n")), 1 << 20)->remarks().empty());
+  EXPECT_TRUE(openCloud(folder.write("b.pcd", pcd("binary", places(2) + "\n")), 1 << 20)->facts().remarks.empty());
 
   writeCloud(folder / "c.pcd", randomCloud<float>(20, 1, {}));
   const std::string packed = contentOf(folder / "c.pcd");

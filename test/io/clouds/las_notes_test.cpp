@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 std::string systemOf(const LasSample& sample)
 {
-  return coordinateSystemOf(LasReader(std::make_unique<HeldBytes>(sample.text())).header());
+  return coordinateSystemOf(LasReader(std::make_unique<HeldBytes>(sample.text())).lasHeader());
 }
 
 /// A directory of GeoTIFF's keys: key, place of its value, count, value.
@@ -97,7 +97,7 @@ TEST(LasNotes, RecordsThatTheHeaderDoesNotCount)
     const fs::path path = folder.write("a.las", file);
     CloudFacts facts;
     readCloud(path, &facts);
-    EXPECT_EQ(openCloud(path, 1 << 20)->remarks(), facts.remarks);
+    EXPECT_EQ(openCloud(path, 1 << 20)->facts().remarks, facts.remarks);
     return facts.remarks;
   };
   LasSample sample(2, 1);
@@ -167,7 +167,7 @@ TEST(LasNotes, HeadersMayEndTooEarly)
                      LasSample::extendedRecord("LASF_Projection", 2112, wkt)};
   sample.addPoints(2);
   const std::string file = sample.text();
-  const LasHeader sound = LasReader(std::make_unique<HeldBytes>(file)).header();
+  const LasHeader sound = LasReader(std::make_unique<HeldBytes>(file)).lasHeader();
   ASSERT_EQ(coordinateSystemOf(sound), "NAD83 / UTM zone 15N + NAVD88");
   LasHeader header = sound;
   for (std::size_t left = 0; left < sound.behind_points.size(); left += 3) {

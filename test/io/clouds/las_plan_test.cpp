@@ -16,7 +16,7 @@ LasHeader headerOf(double scale, double offset)
   sample.scale.fill(scale);
   sample.offset.fill(offset);
   sample.addPoints(1);
-  return LasReader(std::make_unique<HeldBytes>(sample.text())).header();
+  return LasReader(std::make_unique<HeldBytes>(sample.text())).lasHeader();
 }
 
 pcl::PCLPointCloud2 alongX(const std::vector<double>& places)
@@ -36,7 +36,7 @@ void expectExact(const LasHeader& header, const std::vector<double>& places)
   writeLas(out, alongX(places), &header);
   const std::string file = out.str();
   LasReader reader(std::make_unique<HeldBytes>(file));
-  const pcl::PCLPointCloud2 read = readLas(reader);
+  const pcl::PCLPointCloud2 read = reader.readAll();
   ASSERT_EQ(read.width, places.size());
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(valueOf(read, i, "x"), places[i]) << i;
   EXPECT_EQ(reader.block().scale, header.block.scale);
@@ -84,7 +84,7 @@ TEST(LasPlan, PointsTooFarApartForTheirScaleGetAnother)
   writeLas(out, alongX(places), &header);
   const std::string file = out.str();
   LasReader reader(std::make_unique<HeldBytes>(file));
-  const pcl::PCLPointCloud2 read = readLas(reader);
+  const pcl::PCLPointCloud2 read = reader.readAll();
   EXPECT_EQ(reader.block().scale[0], 10) << "the least power of ten";
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(valueOf(read, i, "x"), places[i], 5) << i;
 }
@@ -106,7 +106,7 @@ TEST(LasPlan, PointsAsFarApartAsNumbersAreRefused)
   writeLas(nearer, alongX(places), nullptr);
   const std::string file = nearer.str();
   LasReader reader(std::make_unique<HeldBytes>(file));
-  const pcl::PCLPointCloud2 read = readLas(reader);
+  const pcl::PCLPointCloud2 read = reader.readAll();
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(valueOf(read, i, "x"), places[i], 1e298) << i;
 }
 

@@ -75,7 +75,7 @@ TEST(Laz, TellsPointsThatItsHeaderDoesNotCount)
     const auto file = folder.write("a.laz", laz);
     CloudFacts facts;
     readCloud(file, &facts);
-    EXPECT_EQ(openCloud(file, 1 << 20)->remarks(), facts.remarks);
+    EXPECT_EQ(openCloud(file, 1 << 20)->facts().remarks, facts.remarks);
     return facts.remarks;
   };
   LasSample sample(2, 1);

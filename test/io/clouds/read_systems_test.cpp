@@ -120,9 +120,9 @@ TEST_F(ReadSystems, AreOfAllFormatsAndStreams)
     EXPECT_THAT(facts.remarks, Contains(HasSubstr("the grid scale of its middle is ")));
     EXPECT_EQ(readCloudHeader(file, settings).point_step, cloud.point_step);
     const auto stream = openCloud(file, std::uint64_t{1} << 30, settings);
-    EXPECT_EQ(stream->unit(), LengthUnit::m);
-    EXPECT_EQ(stream->coordinateSystem().definition, "EPSG:25832");
-    EXPECT_EQ(stream->remarks(), facts.remarks);
+    EXPECT_EQ(stream->facts().unit, LengthUnit::m);
+    EXPECT_EQ(stream->facts().coordinate_system.definition, "EPSG:25832");
+    EXPECT_EQ(stream->facts().remarks, facts.remarks);
     EXPECT_EQ(stream->header().point_step, cloud.point_step);
     std::vector<std::uint8_t> records(cloud.data.size());
     std::size_t read = 0;
@@ -210,7 +210,7 @@ TEST_F(ReadSystems, TheSettingsCountAndAreTold)
   EXPECT_EQ(facts.coordinate_system.definition, "EPSG:25832");
   EXPECT_THAT(facts.remarks, testing::ElementsAre("its coordinate system is 'ETRS89 / UTM zone 33N': it is read as "
                                                   "'ETRS89 / UTM zone 32N (EPSG:25832)', as was given"));
-  EXPECT_EQ(openCloud(las, 1 << 20, systemsOf("EPSG:25832", ""))->remarks(), facts.remarks);
+  EXPECT_EQ(openCloud(las, 1 << 20, systemsOf("EPSG:25832", ""))->facts().remarks, facts.remarks);
   EXPECT_EQ(readCloud(las, &facts, systemsOf(no_system, "EPSG:25832")).data, readCloud(las).data);
   EXPECT_EQ(facts.coordinate_system.name, "") << "it is of none";
   EXPECT_TRUE(facts.remarks.empty());
@@ -267,7 +267,7 @@ std::string keysOf(const std::vector<std::pair<int, int>>& codes)
 TEST(LasDefinition, IsOfTheRecordThatCounts)
 {
   const auto of = [](const std::string& record) {
-    return systemOf(LasReader(std::make_unique<HeldBytes>(lasOfZone33(record).text())).header()).definition;
+    return systemOf(LasReader(std::make_unique<HeldBytes>(lasOfZone33(record).text())).lasHeader()).definition;
   };
   EXPECT_EQ(of(wktRecord(std::string(utm_33_wkt) + '\0')), utm_33_wkt);
   EXPECT_EQ(of(keysOf({{3072, 25833}})), "EPSG:25833");

@@ -132,9 +132,9 @@ TEST(ReadUnits, AreOfAllFormats)
         EXPECT_TRUE(std::isnan(length) || viewOf(scaled).point(i)[k] == length / 1000) << length;
       }
     const auto stream = openCloud(file, std::uint64_t{1} << 30, mm_to_m);
-    EXPECT_EQ(stream->unit(), LengthUnit::m);
+    EXPECT_EQ(stream->facts().unit, LengthUnit::m);
     EXPECT_EQ(stream->header().point_step, scaled.point_step);
-    EXPECT_THAT(stream->remarks(), testing::Contains("its lengths are converted from mm to m"));
+    EXPECT_THAT(stream->facts().remarks, testing::Contains("its lengths are converted from mm to m"));
     std::vector<std::uint8_t> records(scaled.data.size());
     std::size_t read = 0;
     while (const std::size_t points = stream->read(records.data() + read * scaled.point_step, 2)) read += points;
@@ -190,7 +190,7 @@ TEST(ReadUnits, OfLas)
   const TemporaryFolder folder;
   LasSample sample(4, 6);
   sample.addPoints(3);
-  const auto unitOfSample = [&] { return unitOf(LasReader(std::make_unique<HeldBytes>(sample.text())).header()); };
+  const auto unitOfSample = [&] { return unitOf(LasReader(std::make_unique<HeldBytes>(sample.text())).lasHeader()); };
   EXPECT_FALSE(unitOfSample());
   for (const auto& [code, unit] : {std::pair{9001, LengthUnit::m}, {9002, LengthUnit::ft}, {9003, LengthUnit::us_ft}}) {
     const std::array<std::uint16_t, 4> model = {1024, 0, 1, 1}, system = {3072, 0, 1, 2229},

@@ -19,9 +19,6 @@ public:
   /// Logical bytes of all pages.
   std::uint64_t size() const noexcept { return file_bytes_ / page_ * payload(); }
 
-  /// Bytes of the file.
-  std::uint64_t fileSize() const noexcept { return file_bytes_; }
-
   /// @throws FormatError for an offset behind the file, or within a checksum
   std::uint64_t logical(std::uint64_t physical) const;
 

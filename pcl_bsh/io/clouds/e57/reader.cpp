@@ -3,6 +3,7 @@
 #include <pcl_bsh/io/clouds/e57/reader.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
+#include <pcl_bsh/search/find_field.h>
 
 #include <cmath>
 #include <limits>
@@ -196,12 +197,8 @@ void E57Reader::beginScan()
   streams_.emplace(pages_, scan.section_at, scan.values.size());
   fields_.clear();
   absent_.clear();
-  for (const E57Value& value : scan.values) {
-    const auto same = [&](const Field& field) { return field.name == value.field; };
-    const auto found = std::find_if(cloud_.fields.begin(), cloud_.fields.end(), same);
-    const bool is_read = found != cloud_.fields.end() && value.kind != Kind::unread;
-    fields_.push_back(is_read ? &*found : nullptr);
-  }
+  for (const E57Value& value : scan.values)
+    fields_.push_back(value.kind == Kind::unread ? nullptr : findField(cloud_, value.field));
   for (std::size_t f = 3; f < cloud_.fields.size(); ++f)
     if (std::find(fields_.begin(), fields_.end(), &cloud_.fields[f]) == fields_.end() &&
         !isBeamField(cloud_.fields[f].name))
@@ -307,11 +304,6 @@ std::size_t E57Reader::read(std::uint8_t* records, std::size_t most)
     next_ += points;
   }
   return done;
-}
-
-pcl::PCLPointCloud2 E57Reader::readAll()
-{
-  return allPoints(cloud_, size_, [&](std::uint8_t* records, std::size_t most) { return read(records, most); });
 }
 
 } // namespace pcl_bsh::io

@@ -2,11 +2,9 @@
 // E57 files read in batches of points, so that memory does not grow with the file.
 #pragma once
 
-#include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/e57/contents.h>
 #include <pcl_bsh/io/clouds/e57/streams.h>
-
-#include <string_view>
 
 namespace pcl_bsh::io {
 
@@ -24,7 +22,7 @@ namespace pcl_bsh::io {
 /// All other values have the file's names, an extension's with its prefix as `ext_name`. Integers have the least type
 /// that holds their limits, scaled integers are float64. A scan that lacks a value has NaN, or 0 where it is an
 /// integer. Texts are left out.
-class E57Reader {
+class E57Reader : public CloudStream {
 public:
   /// @param scan only that one, from 0. @param beams whether directions without a range are read
   /// @throws FormatError for what pages and XML can tell; what `file` throws
@@ -33,19 +31,14 @@ public:
   E57Reader(const E57Reader&) = delete; // its streams read its pages
   E57Reader& operator=(const E57Reader&) = delete;
 
-  std::uint64_t size() const noexcept { return size_; }
-  const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }
+  const pcl::PCLPointCloud2& header() const override { return cloud_; }
+  std::uint64_t size() const override { return size_; }
 
   /// Facts about all scans that are read; the viewpoint is that of the first. There are no scanners where one scan has
   /// points but neither a pose nor spherical coordinates: it may be merged of several.
-  CloudFacts facts() const;
+  CloudFacts facts() const override;
 
-  /// Reads the next points, `most` at most, into records of cloudHeader()'s layout, for which there is room.
-  /// @return how many; 0 at the end. @throws FormatError
-  std::size_t read(std::uint8_t* records, std::size_t most);
-
-  /// All points, when none has been read. @throws FormatError beyond max_points, too
-  pcl::PCLPointCloud2 readAll();
+  std::size_t read(std::uint8_t* records, std::size_t most) override;
 
 private:
   void layOut(bool beams);
@@ -65,11 +58,5 @@ private:
   std::vector<const pcl::PCLPointField*> fields_, absent_; ///< of each stream, or null; those that no stream has
   std::array<std::vector<double>, static_cast<std::size_t>(E57Column::none)> columns_;
 };
-
-/// Whether files with this extension are read by E57Reader.
-inline bool isE57Extension(std::string_view extension)
-{
-  return extension == ".e57";
-}
 
 } // namespace pcl_bsh::io

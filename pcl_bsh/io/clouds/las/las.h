@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LAS as whole clouds.
+// Clouds written as LAS.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/reader.h>
 
 #include <pcl/PCLPointCloud2.h>
 
-#include <memory>
 #include <ostream>
-#include <string_view>
 
 namespace pcl_bsh::io {
-
-/// All points, as LasReader reads them. @throws FormatError, beyond max_points too
-pcl::PCLPointCloud2 readLas(LasReader& reader);
 
 /// Writes a cloud as LAS.
 ///

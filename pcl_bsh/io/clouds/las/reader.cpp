@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/counted.h>
-#include <pcl_bsh/io/clouds/las/las.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
+#include <pcl_bsh/io/clouds/las/reader.h>
 #include <pcl_bsh/io/clouds/las/unpacked_laz.h>
 #include <pcl_bsh/io/clouds/records.h>
 
@@ -47,13 +47,19 @@ LasReader::LasReader(std::unique_ptr<ByteSource> file, unsigned threads)
   cloud_.height = 1;
 }
 
-std::vector<std::string> LasReader::remarks() const
+CloudFacts LasReader::facts() const
 {
-  std::vector<std::string> remarks = remarksOn(block_, file_->size());
+  const auto header = std::make_shared<const LasHeader>(lasHeader());
+  CloudFacts facts;
+  facts.las = header;
+  facts.coordinate_system = systemOf(*header);
+  facts.unit = unitOf(*header);
+  facts.remarks = remarksOn(block_, file_->size());
   if (left_out_ > 0)
-    remarks.push_back("its header counts " + std::to_string(block_.points) + " of at least " +
-                      counted(block_.points + left_out_, "point") + " that its chunks have: the others are left out");
-  return remarks;
+    facts.remarks.push_back("its header counts " + std::to_string(block_.points) + " of at least " +
+                            counted(block_.points + left_out_, "point") +
+                            " that its chunks have: the others are left out");
+  return facts;
 }
 
 void LasReader::findDescriptors()
@@ -72,7 +78,7 @@ void LasReader::findDescriptors()
   }
 }
 
-LasHeader LasReader::header() const
+LasHeader LasReader::lasHeader() const
 {
   LasHeader header = header_;
   const std::uint64_t end = block_.endOfPoints();
@@ -116,23 +122,10 @@ std::size_t LasReader::read(std::uint8_t* records, std::size_t most)
   return wanted;
 }
 
-std::size_t LasReader::read(pcl::PCLPointCloud2& batch, std::size_t most)
-{
-  if (batch.point_step != cloud_.point_step || batch.fields.size() != cloud_.fields.size()) batch = cloud_;
-  const auto points = static_cast<std::uint32_t>(std::min<std::uint64_t>({most, block_.points - next_, max_points}));
-  batch.width = points;
-  batch.row_step = points * batch.point_step;
-  batch.data.resize(std::size_t{points} * batch.point_step);
-  read(batch.data.data(), points);
-  setDense(batch);
-  return points;
-}
-
 pcl::PCLPointCloud2 LasReader::readAll()
 {
   colour_shift_ = 0; // no look at all points before: colours are packed anew where that is wrong
-  pcl::PCLPointCloud2 cloud =
-      allPoints(cloud_, size(), [&](std::uint8_t* records, std::size_t most) { return read(records, most); });
+  pcl::PCLPointCloud2 cloud = CloudStream::readAll();
   const std::size_t step = cloud.point_step;
   const auto colour = std::find_if(fields_.begin(), fields_.end(),
                                    [](const LasField& field) { return field.kind == LasField::Kind::colour; });
@@ -145,11 +138,6 @@ pcl::PCLPointCloud2 LasReader::readAll()
     decodeLas(channels, records, step, cloud.width, cloud.data.data() + offsets_[position], step, 8);
   }
   return cloud;
-}
-
-pcl::PCLPointCloud2 readLas(LasReader& reader)
-{
-  return reader.readAll();
 }
 
 } // namespace pcl_bsh::io

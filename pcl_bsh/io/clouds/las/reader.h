@@ -2,9 +2,11 @@
 // LAS files read in batches of points, so that memory does not grow with the file.
 //
 //   LasReader reader(openBytes("site.las"));
-//   for (pcl::PCLPointCloud2 batch; reader.read(batch, 1 << 16) > 0;) use(batch);
+//   std::vector<std::uint8_t> batch(1000 * reader.header().point_step);
+//   while (std::size_t points = reader.read(batch.data(), 1000)) use(batch, points);
 #pragma once
 
+#include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/las/fields.h>
 #include <pcl_bsh/io/clouds/las/header.h>
 
@@ -23,38 +25,27 @@ namespace pcl_bsh::io {
 /// in the header are checked against the file's size before anything is read there. Counts of records that have no room
 /// before the points are taken for what has room, and bounds are not looked at; the points themselves must all be
 /// there.
-class LasReader {
+class LasReader : public CloudStream {
 public:
   /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
   /// @throws FormatError for what a header can tell; what `file` throws
   explicit LasReader(std::unique_ptr<ByteSource> file, unsigned threads = 0);
 
-  /// Points of the file.
-  std::uint64_t size() const noexcept { return block_.points; }
-
   const LasBlock& block() const noexcept { return block_; }
 
-  /// The fields of the clouds that read() gives (lasFields(), addExtraBytes()), without points.
-  const pcl::PCLPointCloud2& cloudHeader() const noexcept { return cloud_; }
-
   /// Everything beside the points. Takes as much memory as that does in the file.
-  LasHeader header() const;
+  LasHeader lasHeader() const;
 
-  /// Remarks for users: points or records that the header does not count, a line each.
-  std::vector<std::string> remarks() const;
+  /// The fields of lasFields() and addExtraBytes().
+  const pcl::PCLPointCloud2& header() const override { return cloud_; }
+  std::uint64_t size() const override { return block_.points; }
 
-  /// Leaves out the next points.
-  void skip(std::uint64_t points) noexcept { next_ += std::min(points, block_.points - next_); }
+  /// With remarks on points or records that the header does not count.
+  CloudFacts facts() const override;
 
-  /// Reads the next points, `most` at most, into a cloud of one row. Its memory is used again.
-  /// @return how many; 0 at the end
-  std::size_t read(pcl::PCLPointCloud2& batch, std::size_t most);
-
-  /// Reads into records of cloudHeader()'s layout; @param records has room for `most`.
-  std::size_t read(std::uint8_t* records, std::size_t most);
-
-  /// All points, when none has been read. @throws FormatError beyond max_points
-  pcl::PCLPointCloud2 readAll();
+  void skip(std::uint64_t points) override { next_ += std::min(points, block_.points - next_); }
+  std::size_t read(std::uint8_t* records, std::size_t most) override;
+  pcl::PCLPointCloud2 readAll() override;
 
 private:
   void findDescriptors();

@@ -111,14 +111,11 @@ MeshParts readMeshParts(const std::filesystem::path& file)
   if (extension != ".obj" && extension != ".stl")
     throw files::FileError(file, "has no parts with names", "give an .obj, an .stl that is text, or leave out `parts`");
   const FileBytes bytes(file);
-  try {
+  return naming(file, [&] {
     MeshParts parts = (extension == ".obj" ? partsOfObj : partsOfStl)(bytes.view()).finished();
     parts.file = file;
     return parts;
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(file, error.what(), error.remedy());
-  }
+  });
 }
 
 std::string MeshParts::nameOf(std::size_t part, const std::string& whole) const
