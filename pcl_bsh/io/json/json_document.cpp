@@ -61,6 +61,11 @@ Json orNull(double number)
   return std::isfinite(number) ? Json(number) : Json();
 }
 
+Json orNull(const std::string& text)
+{
+  return text.empty() ? Json() : Json(text);
+}
+
 std::string printed(const Json& json)
 {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -23,8 +23,9 @@ std::string shown(const Json& value);
 /// The text with U+FFFD in place of bytes that are not UTF-8.
 std::string validUtf8(std::string_view text);
 
-/// A finite number, or null: NaN and infinity have no place in JSON.
+/// A finite number, or null: NaN and infinity have no place in JSON. A text, or null where it is empty.
 Json orNull(double number);
+Json orNull(const std::string& text);
 
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
 std::string printed(const Json& json);

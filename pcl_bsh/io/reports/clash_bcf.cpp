@@ -25,7 +25,7 @@ constexpr auto bcf_author = "pcl_bsh", open_topic = "Open", closed_topic = "Clos
 /// As XML can hold it: UTF-8 without control characters.
 std::string xmlText(const std::string& text)
 {
-  std::string plain = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+  std::string plain = validUtf8(text);
   for (char& c : plain)
     if (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') c = '?';
   return plain;

@@ -85,8 +85,8 @@ ClashDrawings::ClashDrawings(const ClashLists& lists)
 std::string ClashDrawings::colorOf(double distance) const
 {
   const double share = clearance_ > 0 ? std::clamp(distance / clearance_, 0.0, 1.0) : 0.0;
-  const auto mix = [&](int from, int to) { return std::to_string(static_cast<int>(from + share * (to - from))); };
-  return "rgb(" + mix(150, 245) + ',' + mix(10, 190) + ',' + mix(40, 66) + ')';
+  constexpr std::array<std::array<double, 3>, 2> ends = {{{150, 10, 40}, {245, 190, 66}}};
+  return colorBetween(ends, share);
 }
 
 double ClashDrawings::shareOf(double distance) const

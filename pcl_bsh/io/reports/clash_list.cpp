@@ -205,13 +205,8 @@ ListText readListText(const std::filesystem::path& path)
 {
   const FileBytes file(path);
   if (!isBcfExtension(extensionOf(path))) return {std::string(file.view()), path.string()};
-  try {
-    BcfContents contents = parseBcf(file.view());
-    return {std::move(contents.list), path.string() + ": " + bcf_list_file, std::move(contents.topics)};
-  }
-  catch (const FormatError& error) {
-    throw files::FileError(path, error.what(), error.remedy());
-  }
+  BcfContents contents = naming(path, [&] { return parseBcf(file.view()); });
+  return {std::move(contents.list), path.string() + ": " + bcf_list_file, std::move(contents.topics)};
 }
 
 std::vector<ClashList> listsOf(const ListText& text)
@@ -264,28 +259,6 @@ const ClashList* findList(const std::vector<ClashList>& lists, const std::string
                                                       std::filesystem::path(question.obstacle).filename();
   });
   return found == lists.end() ? nullptr : &*found;
-}
-
-namespace {
-
-ClashList onlyOf(std::vector<ClashList> lists, const std::filesystem::path& path)
-{
-  if (!lists.front().name.empty())
-    throw files::FileError(path, "lists clashes of " + counted(lists.size(), "obstacle") + " with names",
-                           "compare with a list of one obstacle");
-  return std::move(lists.front());
-}
-
-} // namespace
-
-ClashList readClashes(const std::filesystem::path& path)
-{
-  return onlyOf(readClashLists(path), path);
-}
-
-ClashList parseClashes(std::string_view text, const std::string& name)
-{
-  return onlyOf(parseClashLists(text, name), name);
 }
 
 namespace {

@@ -82,11 +82,6 @@ std::vector<ClashList> parseClashLists(std::string_view text, const std::string&
 /// there was no such obstacle.
 const ClashList* findList(const std::vector<ClashList>& lists, const std::string& name, const ClashQuestion& question);
 
-/// The list of an earlier run about one obstacle.
-/// @throws as readClashLists(); files::FileError for a file about several obstacles
-ClashList readClashes(const std::filesystem::path& path);
-ClashList parseClashes(std::string_view text, const std::string& name);
-
 /// Whether the earlier list, read from `path`, can tell what is new now.
 /// @return warnings, a line each: names of other clouds, except of inputs that differ in numbers, months or weekdays
 ///   alone, as from week to week; motion between poses tested in one run only, a list of an earlier version

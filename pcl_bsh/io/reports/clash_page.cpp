@@ -4,7 +4,6 @@
 #include <pcl_bsh/io/reports/clash_drawings.h>
 #include <pcl_bsh/io/reports/clash_report.h>
 #include <pcl_bsh/io/reports/clash_values.h>
-#include <pcl_bsh/io/reports/obstacle_table.h>
 #include <pcl_bsh/io/reports/page_text.h>
 
 #include "clash_page.html.h"
@@ -23,6 +22,55 @@ double longestSide(const Clash& clash)
   double size = 0;
   for (std::size_t k = 0; k < 3; ++k) size = std::max(size, clash.high[k] - clash.low[k]);
   return size;
+}
+
+std::string distanceOf(const DistanceResult& closest)
+{
+  return closest.pair ? distanceText(closest.distance) : std::string();
+}
+
+std::string poseText(std::int32_t pose)
+{
+  return pose < 0 ? std::string() : std::to_string(pose);
+}
+
+/// The tables of a page about several obstacles: a row for each, then one for each two that were compared with each
+/// other; false where there is one obstacle without a name.
+Data obstacleTable(const ClashLists& lists)
+{
+  if (!lists.haveNames()) return false;
+  List rows, between;
+  bool has_areas = false, have_paths = false;
+  for (const ClashReport& report : lists.obstacles) {
+    const ObstacleAnswer& found = *report.answer;
+    const bool has_place = found.closest.pair && !report.kept;
+    rows.push_back(Object{{"name", plain(report.name)},
+                          {"file", plain(report.question.obstacle)},
+                          {"state", nameOfState(found)},
+                          {"clearance", number(*report.question.clearance)},
+                          {"clashes", std::to_string(report.present())},
+                          {"points", std::to_string(found.colliding)},
+                          {"distance", distanceOf(found.closest)},
+                          {"place", has_place ? coordinates(report.scan.point(found.closest.pair->a)) : std::string()},
+                          {"pose", poseText(found.closest_pose)}});
+  }
+  for (const BetweenObstacles& two : lists.between) {
+    has_areas = has_areas || two.pair.first_within || two.pair.second_within;
+    have_paths = have_paths || two.pair.closest_pose >= 0;
+    between.push_back(Object{{"first", plain(two.first)},
+                             {"second", plain(two.second)},
+                             {"state", nameOfState(two.pair.verdict)},
+                             {"clearance", number(two.pair.clearance)},
+                             {"distance", distanceOf(two.pair.closest)},
+                             {"pose", poseText(two.pair.closest_pose)},
+                             {"first_pose", poseText(two.pair.first_pose)},
+                             {"first_within", areaText(two.pair.first_within)},
+                             {"second_within", areaText(two.pair.second_within)}});
+  }
+  const Data pairs = between.empty()
+                         ? Data(false)
+                         : Data(Object{{"rows", between}, {"areas", Data(has_areas)}, {"paths", Data(have_paths)}});
+  return Object{{"rows", rows}, {"between", pairs}};
 }
 
 class ClashPage {
@@ -249,10 +297,9 @@ private:
 
   Data card(const ClashReport& report, const Clash& clash) const
   {
-    const Eigen::Vector3d p = report.scanPoint(clash);
     Object card = factsOf(report, clash);
     card["scan_point"] = nameOfPart(report.source_of, clash.scan_point, clash.scan_point);
-    card["scan_place"] = coordinate(p.x()) + ", " + coordinate(p.y()) + ", " + coordinate(p.z());
+    card["scan_place"] = coordinates(report.scanPoint(clash));
     card["model_part"] =
         report.partName() + (' ' + nameOfPart(report.model_source_of, clash.model_point, clash.model_point));
     card["model_name"] = report.name.empty() ? std::string("the obstacle") : plain(report.name);

@@ -32,11 +32,6 @@ Json intervalOf(const Clash& clash)
   return {clash.interval.lower, clash.interval.upper};
 }
 
-Json textOrNull(const std::string& text)
-{
-  return text.empty() ? Json() : Json(text);
-}
-
 Json toJson(const ClashReport& report, const Clash& clash)
 {
   Json json = {{"id", report.idOf(clash)}};
@@ -93,17 +88,17 @@ Json closestJson(const DistanceResult& closest)
   return closest.pair ? Json(closest.distance) : Json();
 }
 
-Json pairJson(const DistanceResult& closest)
-{
-  return closest.pair ? Json{closest.pair->a, closest.pair->b} : Json();
-}
-
 std::string formatOf(const std::filesystem::path& path)
 {
   return io::formatOf(path, {".json", ".csv", ".html", ".bcf", ".bcfzip"});
 }
 
 } // namespace
+
+Json pairJson(const std::optional<PointPair>& pair)
+{
+  return pair ? Json{pair->a, pair->b} : Json();
+}
 
 const char* certaintyOf(const Clash& clash)
 {
@@ -207,7 +202,7 @@ Json obstacleJson(const std::string& name, const ClashQuestion& question, Json s
                {"unseen", found.unseen},
                {"distance", closestJson(found.closest)},
                {"closest_pose", found.closest_pose < 0 ? Json() : Json(found.closest_pose)},
-               {"closest_pair", pairJson(found.closest)}});
+               {"closest_pair", pairJson(found.closest.pair)}});
   if (nearest && found.closest.pair) json["closest_pair"][0] = sourceJson(*nearest);
   return json;
 }
@@ -219,7 +214,7 @@ Json betweenJson(const BetweenObstacles& two)
                {"clearance", two.pair.clearance},
                {"state", nameOfState(two.pair.verdict)},
                {"distance", closestJson(two.pair.closest)},
-               {"closest_pair", pairJson(two.pair.closest)}};
+               {"closest_pair", pairJson(two.pair.closest.pair)}};
   for (const auto& [name, pose] :
        {std::pair{"first_pose", two.pair.first_pose}, {"closest_pose", two.pair.closest_pose}})
     if (pose >= 0) json[name] = pose;
@@ -243,7 +238,7 @@ std::string clashJson(const ClashLists& lists)
   const ClashQuestion& question = first.question;
   Json json = {{"program", reportProgram()}, {"date", reportDate()}, {"input", question.input}};
   if (!lists.haveNames()) json["obstacle"] = question.obstacle;
-  json.update({{"unit", textOrNull(first.unit)}, {"coordinate_system", textOrNull(first.coordinate_system)}});
+  json.update({{"unit", orNull(first.unit)}, {"coordinate_system", orNull(first.coordinate_system)}});
   if (!lists.haveNames()) json.update(askedJson(question, surfaceOf(first)));
   json.update({{"accuracy", question.accuracy.text()},
                {"cluster_distance", first.cluster_distance},
@@ -265,7 +260,7 @@ std::string clashJson(const ClashLists& lists)
   }
   json["clashes"] = Json::array();
   for (const auto& [report, clash] : lists.bySeverity()) json["clashes"].push_back(toJson(*report, *clash));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return printed(json);
 }
 
 std::string clashCounts(const ClashLists& lists)

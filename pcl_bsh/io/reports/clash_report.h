@@ -126,6 +126,9 @@ private:
   std::size_t sum(std::size_t (ClashReport::*of)() const) const;
 };
 
+/// Both records of a pair, or null.
+Json pairJson(const std::optional<PointPair>& pair);
+
 /// certain, perhaps or unseen.
 const char* certaintyOf(const Clash& clash);
 

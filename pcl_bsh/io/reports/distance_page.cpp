@@ -150,14 +150,7 @@ private:
   {
     constexpr std::array<std::array<double, 3>, 4> stops = {
         {{176, 190, 205}, {244, 196, 80}, {224, 98, 36}, {140, 8, 38}}};
-    const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1.0);
-    const auto from = std::min(static_cast<std::size_t>(at), stops.size() - 2);
-    std::string color;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double mixed = std::lerp(stops[from][k], stops[from + 1][k], at - static_cast<double>(from));
-      color += (k == 0 ? "rgb(" : ",") + std::to_string(static_cast<int>(mixed));
-    }
-    return color + ')';
+    return colorBetween(stops, std::clamp(share, 0.0, 1.0));
   }
 
   std::string colorOf(double distance) const { return shade(distance / scale_); }
@@ -245,7 +238,7 @@ private:
       for (std::size_t k = 0; k < 3; ++k) size = std::max(size, place.high[k] - place.low[k]);
       const bool known = place.closest_point != kNothing;
       rows.push_back(Object{{"rank", std::to_string(i + 1)},
-                            {"at", coordinate(at.x()) + ", " + coordinate(at.y()) + ", " + coordinate(at.z())},
+                            {"at", coordinates(at)},
                             {"distance", distanceText(place.distance)},
                             {"points", std::to_string(place.records.size())},
                             {"size", number(size, 3)},

@@ -11,12 +11,6 @@
 namespace pcl_bsh::io {
 namespace {
 
-/// A point of the input, and a point or a triangle of the obstacle.
-Json pairJson(const std::optional<PointPair>& pair)
-{
-  return pair ? Json{pair->a, pair->b} : Json();
-}
-
 DistanceSide sideOf(const std::string& name, const Placed& cloud, const PointDistances& found,
                     const std::optional<double>& beyond)
 {
@@ -104,9 +98,9 @@ Json distanceJson(const DistanceReport& report)
           {"date", reportDate()},
           {"input", question.input},
           {"obstacle", question.obstacle},
-          {"coordinate_system", question.coordinate_system.empty() ? Json() : Json(question.coordinate_system)},
+          {"coordinate_system", orNull(question.coordinate_system)},
           {"surface", question.surfaceToTell()},
-          {"unit", question.unit.empty() ? Json() : Json(question.unit)},
+          {"unit", orNull(question.unit)},
           {"max_distance", orNull(question.request.max_distance)},
           {"accuracy", question.request.accuracy.text()},
           {"input_to_obstacle", toJson(report.input, true)},

@@ -41,6 +41,18 @@ std::string lineOf(double x1, double y1, double x2, double y2, const std::string
          more + "/>\n";
 }
 
+std::string frameOf(double x, double y, double width, double height)
+{
+  return "<rect" +
+         attributesOf({{"x", placeText(x)},
+                       {"y", placeText(y)},
+                       {"width", placeText(width)},
+                       {"height", placeText(height)},
+                       {"fill", "none"},
+                       {"stroke", "#dde3ea"}}) +
+         "/>\n";
+}
+
 std::string textOfDrawing(double x, double y, const std::string& anchor, const std::string& content,
                           const std::string& fill = "#667484")
 {
@@ -70,13 +82,7 @@ std::string clearanceColor(double clearance, double limit, double range)
   if (!std::isfinite(clearance)) return "#e6eaef";
   if (clearance <= limit) return "#b0122b";
   constexpr std::array<std::array<double, 3>, 3> stops = {{{240, 140, 40}, {236, 214, 90}, {60, 150, 95}}};
-  const double share = std::clamp((clearance - limit) / range, 0.0, 1.0) * 2.0;
-  const std::size_t from = share < 1.0 ? 0 : 1;
-  std::string color = "rgb(";
-  for (std::size_t k = 0; k < 3; ++k)
-    color += (k == 0 ? "" : ",") + std::to_string(static_cast<int>(std::lerp(stops[from][k], stops[from + 1][k],
-                                                                             share - static_cast<double>(from))));
-  return color + ')';
+  return colorBetween(stops, std::clamp((clearance - limit) / range, 0.0, 1.0));
 }
 
 /// Where a drawing by chainage has its columns, and its axis below.
@@ -213,14 +219,7 @@ std::string sectionDrawing(const GaugeReport& report, const GaugeSection& sectio
                                      section.name + (report.named() ? ", track " + track.name : "") + ", chainage " +
                                          lengthText(report, chainage),
                                      "#1c2530");
-  inside += "<rect" +
-            attributesOf({{"x", placeText(view.left)},
-                          {"y", placeText(view.top)},
-                          {"width", placeText(view.width)},
-                          {"height", placeText(view.height)},
-                          {"fill", "none"},
-                          {"stroke", "#dde3ea"}}) +
-            "/>\n";
+  inside += frameOf(view.left, view.top, view.width, view.height);
   if (view.holds({0, view.high - 0.01}))
     inside += lineOf(view.x(0), view.top, view.x(0), view.top + view.height, "#dde3ea");
   if (view.holds({view.middle_offset, 0}))
@@ -344,14 +343,7 @@ std::string clearanceChart(const GaugeReport& report, std::size_t track, std::si
     inside +=
         textOfDrawing(along.left - 8, y(value) + 4, "end", number(std::abs(value) < 1e-9 * step ? 0.0 : value, 3));
   }
-  inside += "<rect" +
-            attributesOf({{"x", placeText(along.left)},
-                          {"y", placeText(top)},
-                          {"width", placeText(along.width)},
-                          {"height", placeText(height)},
-                          {"fill", "none"},
-                          {"stroke", "#dde3ea"}}) +
-            "/>\n";
+  inside += frameOf(along.left, top, along.width, height);
   for (std::size_t s = 0; s < drawn.size(); ++s) {
     std::string path;
     bool goes_on = false;

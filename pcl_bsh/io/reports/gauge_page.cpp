@@ -20,21 +20,20 @@ Data rowsOf(const GaugeReport& report)
   for (const ListedInfringement& listed : report.listed) {
     if (rows.size() == most_rows) break;
     const Clash& clash = listed.clash;
-    rows.push_back(Object{
-        {"rank", isPresent(clash.status) ? std::to_string(rows.size() + 1) : ""},
-        {"id", plain(clash.id)},
-        {"class", nameOf(clash.status)},
-        {"status", inWords(clash.status)},
-        {"track", textOrNone(listed.track)},
-        {"envelope", plain(listed.envelope)},
-        {"chainage", coordinate(listed.chainage)},
-        {"from", coordinate(listed.chainage_from)},
-        {"to", coordinate(listed.chainage_to)},
-        {"clearance", coordinate(clash.distance)},
-        {"offset", coordinate(listed.offset)},
-        {"height", coordinate(listed.height)},
-        {"points", std::to_string(clash.points)},
-        {"at", coordinate(clash.place[0]) + ", " + coordinate(clash.place[1]) + ", " + coordinate(clash.place[2])}});
+    rows.push_back(Object{{"rank", isPresent(clash.status) ? std::to_string(rows.size() + 1) : ""},
+                          {"id", plain(clash.id)},
+                          {"class", nameOf(clash.status)},
+                          {"status", inWords(clash.status)},
+                          {"track", textOrNone(listed.track)},
+                          {"envelope", plain(listed.envelope)},
+                          {"chainage", coordinate(listed.chainage)},
+                          {"from", coordinate(listed.chainage_from)},
+                          {"to", coordinate(listed.chainage_to)},
+                          {"clearance", coordinate(clash.distance)},
+                          {"offset", coordinate(listed.offset)},
+                          {"height", coordinate(listed.height)},
+                          {"points", std::to_string(clash.points)},
+                          {"at", coordinates(clash.place)}});
   }
   const std::size_t more = report.listed.size() - rows.size();
   return Object{{"list", rows}, {"more", more > 0 ? Data(std::to_string(more)) : Data(false)}};

@@ -21,11 +21,6 @@ std::string cellOf(double clearance)
   return std::isfinite(clearance) ? numberText(clearance) : "";
 }
 
-Json jsonOf(double clearance)
-{
-  return std::isfinite(clearance) ? Json(clearance) : Json();
-}
-
 /// A part of a track, and an envelope that counts there.
 struct TablePart {
   const Track& track;
@@ -197,7 +192,7 @@ Json gaugeJson(const GaugeReport& report)
        {"coordinate_system", report.coordinate_system},
        {"limit", report.limit},
        {"cluster_distance", report.cluster_distance},
-       {"previous", report.previous.empty() ? Json() : Json(report.previous)},
+       {"previous", orNull(report.previous)},
        {"reach", {{"offset", report.reach.offset}, {"below", report.reach.below}, {"above", report.reach.above}}},
        {"points",
         {{"at_one_place", report.counts[0]},
@@ -233,13 +228,13 @@ Json gaugeJson(const GaugeReport& report)
                 {"envelope", part.envelopeName()},
                 {"state", textOf(part.state)},
                 {"points", part.table.points(part.part)},
-                {"smallest", jsonOf(part.smallest())}});
-    for (const auto& [sector, name] : table_sectors) row[name] = jsonOf(part.smallest(sector));
+                {"smallest", orNull(part.smallest())}});
+    for (const auto& [sector, name] : table_sectors) row[name] = orNull(part.smallest(sector));
     if (part.seen) {
       Json& seen = row["seen"] = Json::object();
-      seen["all"] = jsonOf(part.seen->share(part.part, part.envelope));
+      seen["all"] = orNull(part.seen->share(part.part, part.envelope));
       for (const auto& [sector, name] : table_sectors)
-        seen[name] = jsonOf(part.seen->share(part.part, part.envelope, sector));
+        seen[name] = orNull(part.seen->share(part.part, part.envelope, sector));
     }
     table.push_back(std::move(row));
   });

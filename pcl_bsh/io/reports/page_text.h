@@ -13,7 +13,9 @@
 #include <kainjow/mustache.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -52,6 +54,27 @@ inline std::string distanceText(double distance, int digits = 4)
 inline std::string coordinate(double value)
 {
   return numberText(value, std::chars_format::fixed, 3);
+}
+
+/// The three coordinates of a place.
+template <typename Place>
+std::string coordinates(const Place& place)
+{
+  return coordinate(place[0]) + ", " + coordinate(place[1]) + ", " + coordinate(place[2]);
+}
+
+/// A colour between stops, which lie evenly apart. @param share from 0 to 1
+template <std::size_t stop_count>
+std::string colorBetween(const std::array<std::array<double, 3>, stop_count>& stops, double share)
+{
+  const double at = share * (stop_count - 1.0);
+  const auto from = std::min(static_cast<std::size_t>(at), stop_count - 2);
+  std::string color;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double mixed = std::lerp(stops[from][k], stops[from + 1][k], at - static_cast<double>(from));
+    color += (k == 0 ? "rgb(" : ",") + std::to_string(static_cast<int>(mixed));
+  }
+  return color + ')';
 }
 
 /// The greatest of 1, 2 and 5 times a power of ten that is not above the wish. @param wish > 0

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "one_list.h"
 #include "support/bcf_reader.h"
 #include "support/temporary_folder.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "one_list.h"
+
 #include <pcl_bsh/io/files/file_error.h>
 #include <pcl_bsh/io/json/json_reader.h>
 #include <pcl_bsh/io/reports/clash_list.h>

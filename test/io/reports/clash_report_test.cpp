@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/clouds/samples.h"
+#include "one_list.h"
 #include "support/verdicts.h"
 
 #include <pcl_bsh/io/json/json_reader.h>
