@@ -61,6 +61,7 @@ pcl::PCLPointCloud2 laidOut(const pcl::PCLPointCloud2& cloud, const std::vector<
   pcl::PCLPointCloud2 plain;
   plain.header = cloud.header;
   plain.is_bigendian = cloud.is_bigendian;
+  plain.is_dense = cloud.is_dense;
   for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
     const pcl::PCLPointField& field = cloud.fields[f];
     addField(plain, field.name, chosen[f] ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,

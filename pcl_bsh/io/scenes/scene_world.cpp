@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a scene file to the scene: clouds are read, hierarchies made, objects placed.
 #include <pcl_bsh/io/clouds/cloud_file.h>
+#include <pcl_bsh/io/clouds/coordinates.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
 #include <pcl_bsh/io/json/json_reader.h>
@@ -44,44 +45,6 @@ bool fitsFloat(const Point3& p)
   return fits(p[0]) && fits(p[1]) && fits(p[2]);
 }
 
-/// The cloud with x, y and z as float64; bytes between its fields are left out.
-pcl::PCLPointCloud2 withWideCoordinates(const pcl::PCLPointCloud2& cloud)
-{
-  pcl::PCLPointCloud2 wide;
-  wide.header = cloud.header;
-  wide.is_dense = cloud.is_dense;
-  std::vector<pcl::PCLPointField> fields = cloud.fields;
-  fields.erase(std::remove_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "_"; }),
-               fields.end());
-  const auto is_coordinate = [](const pcl::PCLPointField& field) {
-    return field.name == "x" || field.name == "y" || field.name == "z";
-  };
-  for (const pcl::PCLPointField& field : fields) {
-    addField(wide, field.name, is_coordinate(field) ? std::uint8_t{pcl::PCLPointField::FLOAT64} : field.datatype,
-             field.count == 0 ? 1 : field.count);
-  }
-  allocate(wide, cloud.width, cloud.height);
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    const std::uint8_t* from = cloud.data.data() + fields[f].offset;
-    std::uint8_t* to = wide.data.data() + wide.fields[f].offset;
-    const std::size_t bytes = sizeOf(fields[f]);
-    for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i) {
-      float narrow;
-      if (is_coordinate(fields[f])) {
-        std::memcpy(&narrow, from, sizeof narrow);
-        const double coordinate = narrow;
-        std::memcpy(to, &coordinate, sizeof coordinate);
-      }
-      else {
-        std::memcpy(to, from, bytes);
-      }
-      from += cloud.point_step;
-      to += wide.point_step;
-    }
-  }
-  return wide;
-}
-
 void write(pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t i, const Point3& p)
 {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -110,7 +73,7 @@ void scaleAndShift(pcl::PCLPointCloud2& cloud, const CloudSource& source, const 
     fits = fits && fitsFloat(at);
   }
   if (view.scalar == Scalar::float32 && !fits) {
-    cloud = withWideCoordinates(cloud);
+    makeCoordinatesDouble(cloud);
     view = viewOf(cloud);
   }
   for (std::uint32_t i = 0; i < view.count; ++i) write(cloud, view, i, placed(view.point(i), source));

@@ -7,7 +7,6 @@
 #include <pcl_bsh/io/clouds/cloud_stream.h>
 #include <pcl_bsh/io/clouds/las/notes.h>
 #include <pcl_bsh/io/clouds/las/reader.h>
-#include <pcl_bsh/io/clouds/las/wkt_unit.h>
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/search/cloud_view.h>
 

@@ -7,7 +7,6 @@
 
 #include <pcl_bsh/io/text/length_unit.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,10 +18,6 @@ namespace pcl_bsh::io {
 /// the header's global encoding chooses between where both are there. In ASCII, with '?' for other letters. Empty where
 /// it is missing or damaged.
 std::string coordinateSystemOf(const LasHeader& header);
-inline std::string coordinateSystemOf(const std::shared_ptr<const LasHeader>& header) ///< null: empty
-{
-  return header ? coordinateSystemOf(*header) : std::string();
-}
 
 /// The system with its name and as PROJ reads it: the WKT, or EPSG's codes of the keys. It has no definition where the
 /// keys give a system without a code, and the file has no WKT. A code of heights counts in metres, which alone is sure.
@@ -30,6 +25,10 @@ CoordinateSystem systemOf(const LasHeader& header);
 
 /// The name of the whole system in WKT, in ASCII, too; or empty.
 std::string nameOfWkt(std::string_view text);
+
+/// The unit of x, y and z by a coordinate system as well-known text, of either version. None for angles, for a unit
+/// that has no name here, and where heights have another one than places.
+std::optional<LengthUnit> unitOfWkt(std::string_view text);
 
 /// The unit of its x, y and z: of that same record. Not known without such a record, for angles, for a unit
 /// without a name in length_unit.h, and where heights have another one than places.

@@ -2,18 +2,54 @@
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/lines/text_clouds.h>
 #include <pcl_bsh/io/clouds/lines/text_rows.h>
-#include <pcl_bsh/io/clouds/meshes/colour_scan.h>
 #include <pcl_bsh/io/clouds/meshes/mesh_faces.h>
 #include <pcl_bsh/io/clouds/meshes/off_header.h>
 #include <pcl_bsh/io/text/header_count.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace pcl_bsh::io {
 
 namespace {
+
+/// The colours that the vertices have, seen over all of them before the first is stored.
+/// Three or four numbers of a vertex line: whole ones from 0 to 255, or shares of 1.
+class ColourScan {
+public:
+  /// How the numbers are stored: a byte each, given as such; a byte each, given as a share of 1; as they are.
+  enum class Kind : std::uint8_t { bytes, shares, as_given };
+
+  /// @param words of a vertex line, less its coordinates; no colour unless they are three or four
+  void see(std::span<const std::string_view> words)
+  {
+    if (words.size() < 3 || words.size() > 4) return;
+    channels_ = std::max(channels_, words.size());
+    for (const std::string_view word : words) {
+      const double value = numberOf<double>(word).value_or(-1); // no number: is refused when it is read
+      if (!numberOf<std::uint8_t>(word)) bytes_ = false;
+      constexpr double three_digits = 0.15; // how far a 255th written with three digits is from a whole one
+      if (!(value >= 0 && value <= 1 && std::abs(value * 255 - std::round(value * 255)) <= three_digits))
+        shares_ = false;
+    }
+  }
+
+  std::size_t channels() const { return channels_; } ///< 0: no vertex has a colour
+
+  Kind kind() const
+  {
+    if (shares_) return Kind::shares;
+    return bytes_ ? Kind::bytes : Kind::as_given;
+  }
+
+private:
+  std::size_t channels_ = 0;
+  bool bytes_ = true;
+  bool shares_ = true;
+};
 
 /// Vertices of a mesh file, with what the format has beside coordinates.
 class Vertices {
