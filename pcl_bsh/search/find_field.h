@@ -6,15 +6,22 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace pcl_bsh {
 
-/// The first field of that name; null when the cloud has none.
+/// The first of the fields with that name; null where there is none.
+inline const pcl::PCLPointField* findField(const std::vector<pcl::PCLPointField>& fields, const std::string& name)
+{
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const pcl::PCLPointField& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+/// The first field of a cloud with that name.
 inline const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name)
 {
-  const auto found = std::find_if(cloud.fields.begin(), cloud.fields.end(),
-                                  [&](const pcl::PCLPointField& field) { return field.name == name; });
-  return found == cloud.fields.end() ? nullptr : &*found;
+  return findField(cloud.fields, name);
 }
 
 } // namespace pcl_bsh

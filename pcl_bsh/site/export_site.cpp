@@ -94,11 +94,6 @@ private:
   std::vector<std::uint8_t> window_;
 };
 
-bool has(const Fields& fields, const std::string& name)
-{
-  return std::any_of(fields.begin(), fields.end(), [&](const auto& field) { return field.name == name; });
-}
-
 } // namespace
 
 void exportCloud(const Site& site, const fs::path& file, const ExportOptions& options)
@@ -110,7 +105,7 @@ void exportSource(const Site& site, std::size_t source, const fs::path& file, co
 {
   Fields fields = site.sources[source].fields;
   for (const auto& field : site.fields) {
-    const auto had = [&](const Source& other) { return has(other.fields, field.name); };
+    const auto had = [&](const Source& other) { return findField(other.fields, field.name) != nullptr; };
     if (field.name == source_field_name || field.name == record_field_name) continue;
     if (std::none_of(site.sources.begin(), site.sources.end(), had)) fields.push_back(field);
   }

@@ -68,8 +68,7 @@ std::string describe(const std::string& type, const std::string& name, std::uint
 
 std::string describePoints(const Fields& fields)
 {
-  const auto x = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "x"; });
-  return describe(vtkTypeOf(x->datatype), "Points", 3);
+  return describe(vtkTypeOf(findField(fields, "x")->datatype), "Points", 3);
 }
 
 std::string describe(const pcl::PCLPointField& field)
@@ -104,7 +103,7 @@ public:
                  "header_type=\"UInt64\">\n  <PolyData>\n    <Piece NumberOfPoints=\"" +
                  count + "\" NumberOfVerts=\"" + (points_.empty() ? "0" : "1") +
                  "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n      <Points>\n");
-    writeArray(describePoints(cloud_.fields), valuesOf({axis(0), axis(1), axis(2)}));
+    writeArray(describePoints(cloud_.fields), valuesOf({axis("x"), axis("y"), axis("z")}));
     file_.append("      </Points>\n      <PointData>\n");
     for (const auto& field : cloud_.fields)
       if (!isAxis(field.name)) writeArray(describe(field), valuesOf({field}));
@@ -118,11 +117,7 @@ public:
   }
 
 private:
-  const pcl::PCLPointField& axis(std::size_t k) const
-  {
-    const std::string name(1, "xyz"[k]);
-    return *std::find_if(cloud_.fields.begin(), cloud_.fields.end(), [&](const auto& f) { return f.name == name; });
-  }
+  const pcl::PCLPointField& axis(const char* name) const { return *findField(cloud_, name); }
 
   /// In base64, with its size before it. Raw bytes behind the document would be a quarter less, but expat refuses them
   /// since its mends of 2024.

@@ -39,30 +39,25 @@ void eraseNamed(const std::vector<std::string>& names, Fields& fields)
 }
 
 /// The fields of a site with those of its results, and without those of other questions.
-Fields withResults(const Site& site, const std::vector<ResultField>& results)
+pcl::PCLPointCloud2 layoutWithResults(const Site& site, const std::vector<ResultField>& results)
 {
   Fields fields = site.fields;
   eraseNamed(staleFields(site, results), fields);
+  pcl::PCLPointCloud2 layout = layoutOf(fields);
   for (const ResultField& result : results) {
-    const auto same = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == result.name; });
-    if (same == fields.end()) {
-      pcl::PCLPointField field;
-      field.name = result.name;
-      field.datatype = result.datatype;
-      field.count = 1;
-      fields.push_back(field);
-    }
-    else if (same->datatype != result.datatype || same->count != 1) {
+    const pcl::PCLPointField* const same = findField(layout, result.name);
+    if (same == nullptr)
+      io::addField(layout, result.name, result.datatype);
+    else if (same->datatype != result.datatype || same->count != 1)
       throw files::FileError(site.folder, "its field '" + result.name + "' has another type than the results",
                              "rename the field in the clouds, and make the site again");
-    }
   }
-  return layoutOf(fields).fields;
+  return layout;
 }
 
 std::uint64_t bytesOf(const Site& site, const std::vector<ResultField>& results)
 {
-  return diskSpaceOf(layoutOf(withResults(site, results)).fields, site.points, site.tiles.size(),
+  return diskSpaceOf(layoutWithResults(site, results).fields, site.points, site.tiles.size(),
                      std::min(overview_points, site.points));
 }
 
@@ -74,7 +69,7 @@ public:
          const Continuation& continuation)
   : site_(site),
     folder_(folder),
-    layout_(layoutOf(withResults(site, results))),
+    layout_(layoutWithResults(site, results)),
     copy_(site.fields, layout_),
     names_(layout_),
     record_(layout_.point_step)
@@ -343,14 +338,11 @@ std::vector<std::string> staleFields(const Site& site, const std::vector<ResultF
 {
   constexpr std::array results = {collision_field_name, distance_field_name, first_pose_field_name,
                                   closest_pose_field_name};
-  const auto has_field = [](const Source& source, const char* name) {
-    return std::any_of(source.fields.begin(), source.fields.end(), [&](const auto& f) { return f.name == name; });
-  };
   std::vector<std::string> stale;
   for (const char* name : results) {
     const bool is_answered = std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
     const auto had_answers = [&](const Source& source) {
-      return has_field(source, collision_field_name) && has_field(source, name);
+      return findField(source.fields, collision_field_name) && findField(source.fields, name);
     };
     if (!is_answered && std::any_of(site.sources.begin(), site.sources.end(), had_answers)) stale.emplace_back(name);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
+#include <pcl_bsh/search/find_field.h>
 
 #include <algorithm>
 
@@ -12,9 +13,7 @@ bool isBeamField(const std::string& name)
 
 ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)
 {
-  const bool several = std::any_of(cloud.fields.begin(), cloud.fields.end(),
-                                   [](const pcl::PCLPointField& field) { return field.name == scan_field_name; });
-  if (!several) {
+  if (findField(cloud, scan_field_name) == nullptr) {
     if (facts.scanners.size() == 1) {
       const Viewpoint& pose = facts.scanners.front();
       return ScanOrigins::of({pose[0], pose[1], pose[2]});

@@ -14,12 +14,6 @@ namespace {
 
 using Field = pcl::PCLPointField;
 
-const Field* find(const Fields& fields, const std::string& name)
-{
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
-}
-
 bool isOwn(const std::string& name)
 {
   return name == source_field_name || name == record_field_name;
@@ -91,14 +85,9 @@ Fields united(const std::vector<Fields>& sources, const std::vector<std::filesys
     }
   }
   static_assert(int{Field::FLOAT32} < int{Field::FLOAT64});
-  for (const char* own : {source_field_name, record_field_name}) {
-    Field field;
-    field.name = own;
-    field.datatype = Field::UINT32;
-    field.count = 1;
-    all.push_back(field);
-  }
-  return layoutOf(all).fields;
+  pcl::PCLPointCloud2 layout = layoutOf(all);
+  for (const char* own : {source_field_name, record_field_name}) io::addField(layout, own, Field::UINT32);
+  return layout.fields;
 }
 
 void requireSiteFields(const io::JsonReader& json, const Fields& fields)
@@ -109,7 +98,7 @@ void requireSiteFields(const io::JsonReader& json, const Fields& fields)
       json.fail("'" + field.name + "' is there twice", "make the site again");
   }
   for (const char* own : {source_field_name, record_field_name}) {
-    const Field* const field = find(fields, own);
+    const Field* const field = findField(fields, own);
     if (field == nullptr || field->datatype != Field::UINT32 || field->count != 1)
       json.fail(std::string("there is no field '") + own + "' of type uint32", "make the site again");
   }
@@ -124,7 +113,7 @@ void requireSiteFields(const io::JsonReader& json, const Fields& fields)
 RecordCopy::RecordCopy(const Fields& from, const pcl::PCLPointCloud2& to) : blank_(blankRecord(to))
 {
   for (const Field& target : to.fields) {
-    const Field* const origin = find(from, target.name);
+    const Field* const origin = findField(from, target.name);
     if (origin == nullptr) continue;
     if (origin->datatype != target.datatype) {
       numbers_.push_back({origin->offset, target.offset, origin->datatype == Field::FLOAT32});
@@ -168,7 +157,7 @@ PointsView viewOfRecords(const pcl::PCLPointCloud2& layout, const std::uint8_t* 
   view.count = count;
   view.stride = layout.point_step;
   view.offset = {offsetOf(layout, "x"), offsetOf(layout, "y"), offsetOf(layout, "z")};
-  view.scalar = find(layout.fields, "x")->datatype == Field::FLOAT32 ? Scalar::float32 : Scalar::float64;
+  view.scalar = findField(layout, "x")->datatype == Field::FLOAT32 ? Scalar::float32 : Scalar::float64;
   return view;
 }
 
