@@ -215,7 +215,6 @@ TEST(PathBoxes, MissNothingAtPosesAndBetween)
     PathReach reach;
     reach.distance = random.uniform(0, 0.5);
     reach.moves = i % 2 == 0;
-    reach.pivot = anywhere(random, 1.0);
     const PathBoxes path(model, poses, reach);
     std::vector<Eigen::Vector3d> places;
     const auto add = [&](const Eigen::Isometry3d& pose) {
@@ -224,7 +223,7 @@ TEST(PathBoxes, MissNothingAtPosesAndBetween)
     for (std::size_t k = 0; k < poses.size(); ++k) {
       add(poses[k]);
       for (int step = 1; step < 16 && reach.moves && k + 1 < poses.size(); ++step)
-        add(poseBetween(poses[k], poses[k + 1], step / 16.0, reach.pivot));
+        add(poseBetween(poses[k], poses[k + 1], step / 16.0, Point3{}));
     }
     for (int box = 0; box < 20; ++box) {
       const Point3 at = anywhere(random, 5.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shared_counter.h"
-
 #include <pcl_bsh/site/tiles/tile_visitor.h>
+
+#include <mpi.h>
 
 #include <stdexcept> // which DIY does not include
 #include <vtk_diy2.h>
@@ -70,6 +70,54 @@ diy::mpi::communicator world()
   beginMpi();
   return {};
 }
+
+/// Numbers that are dealt to the ranks of an MPI job, to each when it asks: those that are slow get fewer.
+class SharedCounter {
+public:
+  /// To be called by all ranks, as the destructor.
+  SharedCounter() : is_alone_(ranks() == 1)
+  {
+    if (is_alone_) return;
+    // Memory that MPI allocates is shared within a machine, so that the first rank need not stop to answer. DIY's
+    // window is of memory of its own: there the others wait until the first rank has done its tile.
+    const bool has_counter = rankHere() == 0;
+    MPI_Win_allocate(has_counter ? sizeof(std::uint64_t) : 0, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
+                     &counter_, &window_);
+    if (has_counter) *counter_ = 0;
+    MPI_Barrier(MPI_COMM_WORLD);
+    MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
+  }
+  ~SharedCounter()
+  {
+    if (is_alone_) return;
+    MPI_Win_unlock_all(window_);
+    MPI_Win_free(&window_);
+  }
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+
+  /// Each number once, from 0, to whichever rank asks.
+  std::uint64_t next() { return taken(1); }
+
+  /// Lets no rank have any of so many numbers that is not dealt yet.
+  void end(std::uint64_t numbers) { taken(numbers); }
+
+private:
+  std::uint64_t taken(std::uint64_t count)
+  {
+    std::uint64_t before = own_counter_;
+    own_counter_ += count;
+    if (is_alone_) return before;
+    MPI_Fetch_and_op(&count, &before, MPI_UINT64_T, 0, 0, MPI_SUM, window_);
+    MPI_Win_flush(0, window_);
+    return before;
+  }
+
+  bool is_alone_;
+  std::uint64_t* counter_ = nullptr; ///< on the first rank
+  MPI_Win window_ = MPI_WIN_NULL;
+  std::uint64_t own_counter_ = 0; ///< where there is one rank
+};
 
 /// DIY's block of a tile. Its points are in memory only while it is visited, so DIY need not put blocks away.
 struct Block {

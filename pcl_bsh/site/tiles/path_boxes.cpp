@@ -14,8 +14,7 @@ PathBoxes::PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3
   if (model.empty() || poses.empty()) return;
   Point3 arm;
   for (std::size_t k = 0; k < 3; ++k)
-    arm[k] =
-        std::max(std::abs(model.whole().low[k] - reach.pivot[k]), std::abs(model.whole().high[k] - reach.pivot[k]));
+    arm[k] = std::max(std::abs(model.whole().low[k]), std::abs(model.whole().high[k]));
   arm_ = std::hypot(arm[0], arm[1], arm[2]) * (1.0 + 1e-5); // poses are rigid within 1e-6
   levels_.emplace_back();
   const std::size_t steps = reach.moves ? std::max(poses.size() - 1, std::size_t{1}) : poses.size();
@@ -30,7 +29,7 @@ PathBoxes::PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3
 }
 
 /// Returns how far the model's points may leave the straight lines between their places at both ends of a step. A point
-/// turns about the pivot by an angle at a constant speed; linear interpolation of a function errs by an eighth of its
+/// turns about the origin by an angle at a constant speed; linear interpolation of a function errs by an eighth of its
 /// second derivative, which here is the arm times the angle squared. Poses are rigid within 1e-6 only; this error
 /// changes during the step.
 double PathBoxes::shiftOf(std::size_t step) const

@@ -12,9 +12,8 @@ namespace pcl_bsh::site {
 
 /// The space about a model's points that counts, too.
 struct PathReach {
-  double distance = 0.0;    ///< places within this distance count
-  bool moves = false;       ///< the motion between poses counts, too
-  Point3 pivot = {0, 0, 0}; ///< of that motion, in the model's frame
+  double distance = 0.0; ///< places within this distance count
+  bool moves = false;    ///< the motion between poses counts, too, about the origin of the model's frame
 };
 
 /// Boxes about a model with its reach at each pose, or on its way from each pose to the next, and about those of pairs,
@@ -37,7 +36,7 @@ private:
   const CloudBoxes& model_;
   const std::vector<Eigen::Isometry3d>& poses_;
   PathReach reach_;
-  double arm_ = 0.0;                        ///< no part of the model is farther from the pivot
+  double arm_ = 0.0;                        ///< no part of the model is farther from its origin
   std::vector<std::vector<Bounds>> levels_; ///< steps of the path, then pairs of what is below; empty: nothing to reach
 };
 
