@@ -29,10 +29,7 @@ void require(double length, const char* name, bool above_zero)
 
 void requirePose(const Eigen::Isometry3d& pose, const std::string& name)
 {
-  const Eigen::Matrix3d r = pose.linear();
-  const bool rigid = pose.matrix().allFinite() && r.determinant() > 0.0 &&
-                     (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= kRigid;
-  if (!rigid) throw InvalidInput(Input::pose, name, "is not rigid within 1e-12", "normalise its rotation");
+  if (!isRigid(pose)) throw InvalidInput(Input::pose, name, "is not rigid within 1e-12", "normalise its rotation");
 }
 
 WorldOptions checked(const WorldOptions& options)

@@ -21,10 +21,7 @@ constexpr double kUnit = 0x1p-53;
 
 void requireRigid(const Eigen::Isometry3d& pose, const std::string& subject)
 {
-  const Eigen::Matrix3d r = pose.linear();
-  const bool rigid = pose.matrix().allFinite() && (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() <= kRigid &&
-                     r.determinant() > 0.0;
-  if (!rigid) refuse(subject, "has a pose that is not rigid", "give a rotation and a finite translation");
+  if (!isRigid(pose)) refuse(subject, "has a pose that is not rigid", "give a rotation and a finite translation");
 }
 
 void requireShapes(const Link& link)
@@ -180,12 +177,8 @@ std::vector<Eigen::Isometry3d> Kinematics::linkPoses(const RobotState& state) co
   std::vector<Pose> of_bodies;
   poses(state, {}, bodies_.size(), of_bodies);
   std::vector<Eigen::Isometry3d> of_links;
-  for (std::size_t i = 0; i < body_of_link_.size(); ++i) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = of_bodies[body_of_link_[i]].rotation;
-    pose.translation() = of_bodies[body_of_link_[i]].translation;
-    of_links.push_back(pose * T_body_link_[i]);
-  }
+  for (std::size_t i = 0; i < body_of_link_.size(); ++i)
+    of_links.push_back(of_bodies[body_of_link_[i]].isometry() * T_body_link_[i]);
   return of_links;
 }
 

@@ -139,14 +139,9 @@ ClearanceResult clearanceOf(const Gaps& gaps, const RobotState& state, double li
 
 } // namespace
 
-class RobotWorld::Inside {
+class RobotWorld::Inside : public Gaps {
 public:
-  Inside(const Robot& robot, std::vector<Obstacle> obstacles, const WorldOptions& options)
-  : gaps(robot, std::move(obstacles), options)
-  {
-  }
-
-  Gaps gaps;
+  using Gaps::Gaps;
 };
 
 RobotWorld::RobotWorld(const Robot& robot, const std::vector<const SphereHierarchy*>& obstacles,
@@ -161,40 +156,40 @@ RobotWorld& RobotWorld::operator=(RobotWorld&&) noexcept = default;
 
 const Robot& RobotWorld::robot() const noexcept
 {
-  return inside_->gaps.robot;
+  return inside_->robot;
 }
 
 const Kinematics& RobotWorld::kinematics() const noexcept
 {
-  return inside_->gaps.kinematics;
+  return inside_->kinematics;
 }
 
 const WorldOptions& RobotWorld::options() const noexcept
 {
-  return inside_->gaps.options;
+  return inside_->options;
 }
 
 void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacles)
 {
-  inside_->gaps.setObstacles(obstaclesOf(obstacles));
+  inside_->setObstacles(obstaclesOf(obstacles));
 }
 
 void RobotWorld::setObstacles(const std::vector<const SphereHierarchy*>& obstacles,
                               const std::vector<Eigen::Isometry3d>& T_world_obstacle)
 {
-  inside_->gaps.setObstacles(obstaclesOf(obstacles), T_world_obstacle);
+  inside_->setObstacles(obstaclesOf(obstacles), T_world_obstacle);
 }
 
 void RobotWorld::setObstaclePoses(const std::vector<Eigen::Isometry3d>& T_world_obstacle)
 {
-  inside_->gaps.setObstacles(inside_->gaps.obstacles(), T_world_obstacle);
+  inside_->setObstacles(inside_->obstacles(), T_world_obstacle);
 }
 
 void RobotWorld::setBase(const Eigen::Isometry3d& T_world_root)
 {
   WorldOptions options = this->options();
   options.base = T_world_root;
-  inside_ = std::make_unique<Inside>(robot(), inside_->gaps.obstacles(), options);
+  inside_ = std::make_unique<Inside>(robot(), inside_->obstacles(), options);
 }
 
 void RobotWorld::attach(const std::string& name, std::size_t link, std::vector<Shape> shapes,
@@ -212,7 +207,7 @@ void RobotWorld::attach(const std::string& name, std::size_t link, std::vector<S
   joint.parent = link;
   for (const std::size_t other : ignored) robot.disabled_pairs.push_back({robot.links.size(), other});
   robot.links.push_back({name, std::move(shapes), joint});
-  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles(), options());
+  inside_ = std::make_unique<Inside>(robot, inside_->obstacles(), options());
 }
 
 void RobotWorld::detach(const std::string& name)
@@ -230,39 +225,39 @@ void RobotWorld::detach(const std::string& name)
   std::erase_if(robot.disabled_pairs, [&](const auto& pair) { return pair[0] == link || pair[1] == link; });
   for (auto& pair : robot.disabled_pairs)
     for (std::size_t& of : pair) of -= of > link ? 1 : 0;
-  inside_ = std::make_unique<Inside>(robot, inside_->gaps.obstacles(), options());
+  inside_ = std::make_unique<Inside>(robot, inside_->obstacles(), options());
 }
 
 StateCheck RobotWorld::checkState(const RobotState& state) const
 {
   const DefaultFloatEnvironment environment;
-  inside_->gaps.requireState(state);
-  return checkOf(inside_->gaps, state);
+  inside_->requireState(state);
+  return checkOf(*inside_, state);
 }
 
 MotionCheck RobotWorld::checkMotion(const RobotState& from, const RobotState& to, bool with_last_valid) const
 {
   const DefaultFloatEnvironment environment;
-  inside_->gaps.requireState(from);
-  inside_->gaps.requireState(to);
-  return checkOf(inside_->gaps, from, to, with_last_valid);
+  inside_->requireState(from);
+  inside_->requireState(to);
+  return checkOf(*inside_, from, to, with_last_valid);
 }
 
 ClearanceResult RobotWorld::clearance(const RobotState& state, double limit) const
 {
   const DefaultFloatEnvironment environment;
-  inside_->gaps.requireState(state);
+  inside_->requireState(state);
   requireLimit(limit);
-  return clearanceOf(inside_->gaps, state, limit);
+  return clearanceOf(*inside_, state, limit);
 }
 
 std::vector<SweptBall> RobotWorld::sweptBalls(const RobotState& from, const RobotState& to, std::size_t parts) const
 {
   const DefaultFloatEnvironment environment;
-  inside_->gaps.requireState(from);
-  inside_->gaps.requireState(to);
+  inside_->requireState(from);
+  inside_->requireState(to);
   const ScratchLease<MotionScratch> scratch;
-  MotionSearch search(inside_->gaps, from, to, *scratch);
+  MotionSearch search(*inside_, from, to, *scratch);
   std::vector<SweptBall> balls;
   const double h = 0.5 / static_cast<double>(parts);
   for (std::size_t i = 0; i < parts; ++i) search.addSwept((2.0 * static_cast<double>(i) + 1.0) * h, h, balls);
@@ -272,8 +267,8 @@ std::vector<SweptBall> RobotWorld::sweptBalls(const RobotState& from, const Robo
 std::vector<StateCheck> RobotWorld::checkStates(const std::vector<RobotState>& states, const Effort& effort) const
 {
   const DefaultFloatEnvironment environment;
-  requireStates(inside_->gaps, states, effort);
-  return answerAll(states.size(), effort, [&](std::size_t i) { return checkOf(inside_->gaps, states[i]); });
+  requireStates(*inside_, states, effort);
+  return answerAll(states.size(), effort, [&](std::size_t i) { return checkOf(*inside_, states[i]); });
 }
 
 std::vector<MotionCheck> RobotWorld::checkMotions(const std::vector<Motion>& motions, bool with_last_valid,
@@ -282,21 +277,20 @@ std::vector<MotionCheck> RobotWorld::checkMotions(const std::vector<Motion>& mot
   const DefaultFloatEnvironment environment;
   checkExact(effort);
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    inside_->gaps.requireState(motions[i].from, "motion", i);
-    inside_->gaps.requireState(motions[i].to, "motion", i);
+    inside_->requireState(motions[i].from, "motion", i);
+    inside_->requireState(motions[i].to, "motion", i);
   }
-  return answerAll(motions.size(), effort, [&](std::size_t i) {
-    return checkOf(inside_->gaps, motions[i].from, motions[i].to, with_last_valid);
-  });
+  return answerAll(motions.size(), effort,
+                   [&](std::size_t i) { return checkOf(*inside_, motions[i].from, motions[i].to, with_last_valid); });
 }
 
 std::vector<ClearanceResult> RobotWorld::clearances(const std::vector<RobotState>& states, double limit,
                                                     const Effort& effort) const
 {
   const DefaultFloatEnvironment environment;
-  requireStates(inside_->gaps, states, effort);
+  requireStates(*inside_, states, effort);
   requireLimit(limit);
-  return answerAll(states.size(), effort, [&](std::size_t i) { return clearanceOf(inside_->gaps, states[i], limit); });
+  return answerAll(states.size(), effort, [&](std::size_t i) { return clearanceOf(*inside_, states[i], limit); });
 }
 
 } // namespace pcl_bsh::robots
