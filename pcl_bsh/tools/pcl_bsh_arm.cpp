@@ -175,10 +175,7 @@ template <class Ask>
 auto answered(const std::string& doing, const std::string& all, const Options& options, const Ask& ask)
 {
   cli::Step step(doing + ' ' + all);
-  auto answers = ask(Effort(options.threads, [&](double done) {
-    step.share(done);
-    return true;
-  }));
+  auto answers = ask(Effort(options.threads, [&](double done) { return step.share(done); }));
   step.done(all);
   return answers;
 }
@@ -328,9 +325,7 @@ int main(int argc, char** argv)
                    "pose of the robot's root among the obstacles:\nx,y,z,roll,pitch,yaw or a file")
         ->type_name("POSE");
     options.robot.addPackagesTo(app);
-    app.add_option("--threads", options.threads, "0: all of the machine's; any number gives the same result")
-        ->type_name("N")
-        ->transform(cli::number<unsigned>(cli::give_threads))
+    cli::addThreads(app, options.threads, "0: all of the machine's; any number gives the same result")
         ->capture_default_str();
     app.add_option("--report", options.report, "JSON file for the results; - is standard output")->type_name("FILE");
     app.add_option("--table", options.table, "CSV file: a line for each state and motion; - is standard output")

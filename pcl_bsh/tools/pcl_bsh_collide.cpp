@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a cloud collide with an obstacle, at a pose or along a path? From two files to a third, with reports.
+#include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/obstacle.h>
 #include <pcl_bsh/tools/cli/program.h>
 #include <pcl_bsh/tools/cli/question_options.h>
 #include <pcl_bsh/tools/cli/step.h>
 #include <pcl_bsh/tools/collide/collide_options.h>
 #include <pcl_bsh/tools/collide/collide_report.h>
-#include <pcl_bsh/tools/collide/listing.h>
 #include <pcl_bsh/tools/collide/loading.h>
-#include <pcl_bsh/tools/collide/summary.h>
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/filters/collision_field.h>
@@ -101,10 +100,7 @@ template <typename Ask, typename Done>
 auto askInStep(const std::string& what, Question question, double& seconds, const Ask& ask, const Done& done)
 {
   cli::Step step(what);
-  question.progress = [&](double fraction) {
-    step.share(fraction);
-    return true;
-  };
+  question.progress = [&](double fraction) { return step.share(fraction); };
   auto answer = ask(question);
   seconds += step.done(done(answer));
   return answer;
@@ -179,6 +175,40 @@ void check(const Options& options, const Question& question)
   files::requireWritable(*options.distance_page);
 }
 
+/// With the list of --previous. @param warnings gets those of the comparison
+/// @throws as io::ClashListing::readEarlier() does
+io::ClashListing listingOf(const Options& options, const Question& question, std::vector<std::string>& warnings)
+{
+  io::ClashListing listing = {options.input.string()};
+  if (options.cluster_distance > 0) listing.cluster_distance = options.cluster_distance;
+  listing.previous = options.previous;
+  std::vector<io::ComparedObstacle> obstacles;
+  const auto add = [&](const std::string& name, const fs::path& file, const Question& asked) {
+    obstacles.push_back({name, file.string()});
+    obstacles.back().question = asked;
+    return &obstacles.back();
+  };
+  if (options.obstacles.empty()) add("", options.obstacle, question);
+  for (const cli::ObstacleChoice& one : options.obstacles)
+    add(one.name, one.file, questionOf(question, one.placed(Shape())))->asked = one.asked;
+  listing.readEarlier(obstacles, warnings);
+  return listing;
+}
+
+/// Writes all files of --clashes, as a step of the program. @param hierarchies of the report's obstacles
+/// @return how many clashes there are, in words
+std::string listClashes(const Options& options, const SphereHierarchy& a,
+                        const std::vector<const SphereHierarchy*>& hierarchies, io::ClashListing& listing,
+                        cli::CollisionReport& report)
+{
+  cli::Step step("Listing clashes");
+  listing.between = report.between;
+  const io::ClashLists lists = listOf(listing, a, hierarchies, report.obstacles, report.answer, report.warnings);
+  options.write(lists, report.warnings);
+  report.seconds.clashes = step.done(io::clashCounts(lists));
+  return io::clashCounts(lists);
+}
+
 /// From the input and its obstacles to all that is told of them.
 int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListing& listing,
          cli::CollisionReport& report)
@@ -240,11 +270,11 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
     cli::writeFlags(*options.obstacle_out, all[0].loaded, report.answer.obstacle_flags, all[0].facts);
     report.seconds.write += step.done(counted(all[0].loaded.view().count, all[0].loaded.partName()));
   }
-  const std::string clashes = options.clashes.empty() ? "" : cli::listClashes(options, a, hierarchies, listing, report);
+  const std::string clashes = options.clashes.empty() ? "" : listClashes(options, a, hierarchies, listing, report);
   const std::optional<io::DistanceReport> measured =
       several ? std::nullopt : reportDistances(options, a, *hierarchies[0], report);
   if (measured) report.distances = io::distanceJson(*measured);
-  if (options.report) cli::writeReport(*options.report, report);
+  if (options.report) cli::writeJson(*options.report, toJson(report));
   summarise(options, report, clashes, measured);
   return 0;
 }
@@ -273,7 +303,7 @@ int collide(Options options)
   Question& question = report.question = options.question;
   if (!options.trajectory.empty()) question.path = io::readPoses(options.trajectory, &report.warnings);
   check(options, question);
-  io::ClashListing listing = cli::listingOf(options, question, report.warnings);
+  io::ClashListing listing = listingOf(options, question, report.warnings);
 
   const Scan input = loadInput(options, report.seconds.load);
   report.coordinate_system = input.facts.coordinate_system.name;
@@ -315,8 +345,5 @@ int collide(Options options)
 
 int main(int argc, char** argv)
 {
-  return cli::runProgram(program, [&] {
-    const std::optional<Options> options = cli::parseCollideOptions(argc, argv);
-    return options ? collide(*options) : 0;
-  });
+  return cli::runProgram(program, cli::parseCollideOptions, collide, argc, argv);
 }

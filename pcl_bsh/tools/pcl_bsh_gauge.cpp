@@ -274,8 +274,5 @@ int runGauge(const Options& options)
 
 int main(int argc, char** argv)
 {
-  return cli::runProgram(program, [&] {
-    const std::optional<Options> options = cli::parseGaugeOptions(argc, argv);
-    return options ? runGauge(*options) : 0;
-  });
+  return cli::runProgram(program, cli::parseGaugeOptions, runGauge, argc, argv);
 }

@@ -309,11 +309,10 @@ int main(int argc, char** argv)
 {
   return cli::runProgram(program, [&] {
     Options options;
-    std::string scene, out;
     CLI::App app("Moves the objects of a scene and computes the effects that it lists.", program);
     app.footer(footer);
-    app.add_option("SCENE", scene, "scene file (JSON, comments allowed)")->type_name("")->required();
-    app.add_option("--out", out, "folder for the results")->type_name("DIR");
+    app.add_option("SCENE", options.scene, "scene file (JSON, comments allowed)")->type_name("")->required();
+    app.add_option("--out", options.out, "folder for the results")->type_name("DIR");
     app.add_flag("--validate", options.validate, "only check the scene file");
     app.add_flag("--explain", options.explain,
                  "only print which effects are on, what each makes the program build, and why");
@@ -321,8 +320,6 @@ int main(int argc, char** argv)
     app.add_flag("--json", options.json, "print what is found as JSON, for programs");
     if (!cli::understood(app, program, argc, argv)) return 0;
     options.requireConsistent();
-    options.scene = scene;
-    options.out = out;
     run(options);
     return 0;
   });

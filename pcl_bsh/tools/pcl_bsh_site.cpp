@@ -181,10 +181,7 @@ site::Site checkedSite(const Options& options)
 {
   site::Site site = site::readSite(options.site);
   cli::Step step("Checking tiles");
-  site::checkSite(site, [&](std::uint64_t done, std::uint64_t all) {
-    step.share(shareOf(done, all));
-    return true;
-  });
+  site::checkSite(site, [&](std::uint64_t done, std::uint64_t all) { return step.share(shareOf(done, all)); });
   step.done(counted(site.tiles.size(), "tile"));
   return site;
 }
@@ -228,10 +225,7 @@ int writePieces(const site::Site& site, const fs::path& file)
 {
   requireNew(file);
   cli::Step step("Writing " + file.string());
-  site::exportPieces(site, file, [&](std::uint64_t done, std::uint64_t all) {
-    step.share(shareOf(done, all));
-    return true;
-  });
+  site::exportPieces(site, file, [&](std::uint64_t done, std::uint64_t all) { return step.share(shareOf(done, all)); });
   step.done(std::to_string(site.tiles.size()) + " pieces");
   std::cout << "wrote " << file.string() << " in " << site.tiles.size() << " pieces\n";
   return 0;
@@ -253,10 +247,7 @@ int write(const Options& options)
     cli::Step step("Writing " + names[i].string());
     site::ExportOptions wanted;
     wanted.memory = options.memory;
-    wanted.progress = [&](std::uint64_t done, std::uint64_t all) {
-      step.share(shareOf(done, all));
-      return true;
-    };
+    wanted.progress = [&](std::uint64_t done, std::uint64_t all) { return step.share(shareOf(done, all)); };
     if (one_cloud)
       site::exportCloud(site, names[i], wanted);
     else
@@ -288,8 +279,5 @@ int run(const Options& options)
 
 int main(int argc, char** argv)
 {
-  return cli::runProgram(cli::site_program, [&] {
-    const std::optional<Options> options = cli::parseSiteOptions(argc, argv);
-    return options ? run(*options) : 0;
-  });
+  return cli::runProgram(cli::site_program, cli::parseSiteOptions, run, argc, argv);
 }

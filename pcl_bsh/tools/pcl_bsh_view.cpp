@@ -45,8 +45,5 @@ int show(const viewer::Options& options)
 
 int main(int argc, char** argv)
 {
-  return cli::runProgram(viewer::program, [&] {
-    const std::optional<viewer::Options> options = viewer::parseOptions(argc, argv);
-    return options ? show(*options) : 0;
-  });
+  return cli::runProgram(viewer::program, viewer::parseOptions, show, argc, argv);
 }

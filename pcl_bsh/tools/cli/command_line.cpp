@@ -82,6 +82,13 @@ template CLI::Validator number(std::string, std::function<bool(int)>);
 template CLI::Validator number(std::string, std::function<bool(unsigned)>);
 template CLI::Validator number(std::string, std::function<bool(std::uint64_t)>);
 
+CLI::Option* addThreads(CLI::App& app, unsigned& threads, const std::string& help)
+{
+  return app.add_option("--threads", threads, help)
+      ->type_name("N")
+      ->transform(number<unsigned>("give a number of threads, 0 for all"));
+}
+
 CLI::Validator numberOfName(std::vector<std::pair<std::string, int>> names)
 {
   return {[names = std::move(names)](std::string& text) -> std::string {

@@ -38,7 +38,9 @@ extern template CLI::Validator number(std::string, std::function<bool(std::uint6
 CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy);
 
 inline constexpr auto give_length = "give a length in the clouds' unit";
-inline constexpr auto give_threads = "give a number of threads, 0 for all";
+
+/// Adds --threads, 0 for all of the machine's.
+CLI::Option* addThreads(CLI::App& app, unsigned& threads, const std::string& help);
 
 /// For transform(): replaces a name by its number, from which CLI11 makes an enumerator; refuses other names.
 CLI::Validator numberOfName(std::vector<std::pair<std::string, int>> names);

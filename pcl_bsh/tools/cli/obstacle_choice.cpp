@@ -6,6 +6,7 @@
 
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/question/options.h>
+#include <pcl_bsh/question/text_numbers.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -13,18 +14,6 @@
 
 namespace pcl_bsh::cli {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char between)
-{
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = text.find(between); end != text.npos; end = text.find(between, begin)) {
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  parts.push_back(text.substr(begin));
-  return parts;
-}
 
 /// An option of the question, by the name that it has of one obstacle.
 void set(ObstacleChoice& choice, const std::string& option, const std::string& value, const std::string& label,
@@ -72,7 +61,8 @@ ObstacleChoice parseObstacle(const std::string& text, std::vector<std::string>& 
     choice.file = text;
   }
   else {
-    const std::vector<std::string> words = split(text, ';');
+    const std::vector<std::string_view> parts = partsOf(text, ';');
+    const std::vector<std::string> words(parts.begin(), parts.end());
     const std::size_t equals = words.front().find('=');
     if (equals != text.npos) choice.name = words.front().substr(0, equals);
     choice.file = equals == text.npos ? words.front() : words.front().substr(equals + 1);

@@ -26,4 +26,15 @@ void warnOfFile(const char* name, const std::filesystem::path& file, const std::
 /// it fails; 2 for a UsageError.
 int runProgram(const char* name, const std::function<int()>& body);
 
+/// Runs a program that parses its command line first.
+/// @param parse gives its options; none when only help was asked for
+template <class Parse, class Run>
+int runProgram(const char* name, const Parse& parse, const Run& run, int argc, char** argv)
+{
+  return runProgram(name, [&] {
+    const auto options = parse(argc, argv);
+    return options ? run(*options) : 0;
+  });
+}
+
 } // namespace pcl_bsh::cli

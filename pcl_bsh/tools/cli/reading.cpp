@@ -12,16 +12,17 @@ namespace pcl_bsh::cli {
 
 void ReadOptions::addTo(CLI::App& app)
 {
-  app.add_option("--columns", given_,
+  app.add_option("--columns", columns_,
                  "names of the columns of .xyz, .txt and .csv, as x,y,z,_,intensity (_ is\n"
                  "not read), in place of what they say; FILE=NAMES: of that file alone;\n"
                  "may be given more than once")
       ->type_name("NAMES")
       ->allow_extra_args(false);
-  app.add_flag("--allow-scale", allow_scale_,
+  app.add_flag("--allow-scale", choice_.allow_scale,
                "transforms of .ptx files may scale uniformly; they are refused\notherwise, and whatever else is no "
                "rigid motion always");
-  app.add_option("--scan", scan_, "of a .ptx or .e57 file only that scan, from 0; all otherwise")->type_name("N");
+  app.add_option("--scan", choice_.scan, "of a .ptx or .e57 file only that scan, from 0; all otherwise")
+      ->type_name("N");
 }
 
 io::ReadSettings ReadChoice::of(const std::filesystem::path& file) const
@@ -47,10 +48,10 @@ void addUnit(CLI::App& app, const std::string& option, std::optional<io::LengthU
 
 void ReadOptions::addUnitsTo(CLI::App& app)
 {
-  addUnit(app, "--input-unit", input_unit_,
+  addUnit(app, "--input-unit", choice_.input_unit,
           "of INPUT's lengths, and so of all that are given and told: mm, cm, m,\nft or us-ft (default: as a .las "
           "names it)");
-  addUnit(app, "--obstacle-unit", obstacle_unit_,
+  addUnit(app, "--obstacle-unit", choice_.obstacle_unit,
           "of OBSTACLE's lengths, which are converted to INPUT's, the fields of\nits uncertainties, too (default: as "
           "a .las names it; with neither of\nboth options nothing is converted)");
 }
@@ -73,31 +74,31 @@ void ReadOptions::addSystemsTo(CLI::App& app, bool has_obstacle, const std::stri
            doc)
         ->type_name("CRS");
   };
-  add("--to-crs", to_crs_,
+  add("--to-crs", choice_.to_crs,
       "transform " + input + (has_obstacle ? " and OBSTACLE" : "") +
           " to this projected coordinate\nsystem, as EPSG:25832 or WKT, by PROJ");
   const std::string as_named = " (default: as a\n.las or .e57 names it)";
-  add("--input-crs", input_crs_, "the coordinate system of " + input + as_named);
+  add("--input-crs", choice_.input_crs, "the coordinate system of " + input + as_named);
   if (has_obstacle)
-    add("--obstacle-crs", obstacle_crs_,
+    add("--obstacle-crs", choice_.obstacle_crs,
         "the coordinate system of OBSTACLE" + as_named + "; none: it has a\nframe of its own, from which poses lead");
 }
 
 ReadChoice ReadOptions::read(const std::vector<std::filesystem::path>& files) const
 {
-  io::ColumnChoice choice;
+  ReadChoice choice = choice_;
   std::string text;
   try {
-    for (const std::string& given : given_) choice.add(text = given);
-    choice.requireUsed(files);
+    for (const std::string& given : columns_) choice.columns.add(text = given);
+    choice.columns.requireUsed(files);
   }
   catch (const io::FormatError& error) {
     throw UsageError("--columns: " + text + ": " + error.what() + ": " + error.remedy());
   }
   const auto may = [](const std::filesystem::path& file) { return io::mayHaveScans(io::extensionOf(file)); };
-  if (scan_ && std::none_of(files.begin(), files.end(), may))
+  if (choice.scan && std::none_of(files.begin(), files.end(), may))
     throw UsageError("--scan: none of the clouds is a .ptx or .e57 file, which may have several scans: leave it out");
-  return {choice, allow_scale_, scan_, input_unit_, obstacle_unit_, input_crs_, obstacle_crs_, to_crs_};
+  return choice;
 }
 
 io::ReadSettings ReadChoice::ofInput(const std::filesystem::path& file) const

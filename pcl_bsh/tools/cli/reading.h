@@ -59,11 +59,8 @@ public:
   ReadChoice read(const std::vector<std::filesystem::path>& files) const;
 
 private:
-  std::vector<std::string> given_;
-  std::optional<io::LengthUnit> input_unit_, obstacle_unit_;
-  std::string input_crs_, obstacle_crs_, to_crs_;
-  bool allow_scale_ = false;
-  std::optional<std::size_t> scan_;
+  std::vector<std::string> columns_; ///< as given
+  ReadChoice choice_;                ///< all else
 };
 
 } // namespace pcl_bsh::cli

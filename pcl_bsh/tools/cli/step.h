@@ -21,8 +21,12 @@ public:
   Step& operator=(const Step&) = delete;
 
   /// How much of the step is done, from 0 to 1, where that is known; from any thread. The time left is estimated from
-  /// it.
-  void share(double done) { share_ = done; }
+  /// it. @return true, as a query's progress goes on
+  bool share(double done)
+  {
+    share_ = done;
+    return true;
+  }
 
   /// Ends the step. @return seconds that it took
   double done(const std::string& result);

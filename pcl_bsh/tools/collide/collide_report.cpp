@@ -111,9 +111,4 @@ nlohmann::ordered_json toJson(const CollisionReport& report)
   return json;
 }
 
-void writeReport(const std::filesystem::path& path, const CollisionReport& report)
-{
-  writeJson(path, toJson(report));
-}
-
 } // namespace pcl_bsh::cli

@@ -2,14 +2,16 @@
 // The results of a comparison of two clouds, and what they cost, for people and for programs.
 #pragma once
 
+#include "collide_options.h"
+
 #include <pcl_bsh/io/clouds/meshes/obstacle.h>
 #include <pcl_bsh/io/reports/compared_obstacles.h>
+#include <pcl_bsh/io/reports/distance_report.h>
 
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,7 +60,9 @@ struct CollisionReport {
 /// `distance_interval` along a path, and each of its ends where it is not known.
 nlohmann::ordered_json toJson(const CollisionReport& report);
 
-/// As JSON. @throws files::FileError
-void writeReport(const std::filesystem::path& path, const CollisionReport& report);
+/// Tells people in a sentence what was found, after the warnings.
+/// @param clashes how many there are, as io::clashCounts() tells it; empty where none were asked for
+void summarise(const CollideOptions& options, const CollisionReport& report, const std::string& clashes,
+               const std::optional<io::DistanceReport>& distances);
 
 } // namespace pcl_bsh::cli

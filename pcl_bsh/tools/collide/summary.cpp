@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "summary.h"
+#include "collide_report.h"
 
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/tools/cli/program.h>

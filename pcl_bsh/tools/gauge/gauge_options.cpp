@@ -168,136 +168,86 @@ std::optional<GaugeOptions> parseGaugeOptions(int argc, char** argv)
   std::vector<std::string> axes, alignments, tracks, ranges, widenings, vehicles;
   io::AxisSettings settings;
   bool in_place = false;
-  const auto positive = [] {
-    return number<double>("give a finite length > 0", [](double d) { return d > 0 && std::isfinite(d); });
-  };
   const auto finite = [] { return number<double>("give a finite number", [](double d) { return std::isfinite(d); }); };
   CLI::App app("Tables by chainage how far a scan is from profiles along an axis, and where it infringes them.",
                gauge_program);
   app.footer(gauge_footer);
-  app.add_option("INPUT", options.input, "the scan: a file, or a site of pcl_bsh_site, dealt to the ranks of mpirun")
-      ->type_name("");
-  app.add_option("OUTPUT", options.output,
-                 "INPUT's points with all their fields, and chainage, offset, height,\n"
-                 "clearance, envelope (its number, -1: none) and place (0 at one place of\n"
-                 "the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite);\n"
-                 "of tracks with names also track (its number, -1: none)")
-      ->type_name("");
-  app.add_option("--axis", axes,
-                 "points as .csv, an alignment of LandXML as .xml, or elements as text; may\n"
-                 "be given again, with a name for each track")
-      ->type_name("[TRACK=]FILE")
-      ->allow_extra_args(false)
+  const auto named = [&](const char* name, const char* form, auto& value, const char* help) {
+    return app.add_option(name, value, help)->type_name(form);
+  };
+  const auto listed = [&](const char* name, const char* form, auto& values, const char* help) {
+    return named(name, form, values, help)->allow_extra_args(false);
+  };
+  const auto length = [&](const char* name, auto& value, const char* help) {
+    named(name, "L", value, help)->transform(number<double>("give a finite length > 0", [](double d) {
+      return d > 0 && std::isfinite(d);
+    }));
+  };
+  named("INPUT", "", options.input, "the scan: a file, or a site of pcl_bsh_site, dealt to the ranks of mpirun");
+  named("OUTPUT", "", options.output,
+        "INPUT's points with all their fields, and chainage, offset, height,\n"
+        "clearance, envelope (its number, -1: none) and place (0 at one place of\n"
+        "the axis, 1 at two, 2 before it, 3 behind it, 4 too far, 5 not finite);\n"
+        "of tracks with names also track (its number, -1: none)");
+  listed("--axis", "[TRACK=]FILE", axes,
+         "points as .csv, an alignment of LandXML as .xml, or elements as text; may\n"
+         "be given again, with a name for each track")
       ->required();
-  app.add_option("--alignment", alignments, "name of the alignment, where a LandXML holds several")
-      ->type_name("[TRACK=]NAME")
-      ->allow_extra_args(false);
-  app.add_option("--fit", settings.fit,
-                 "of an axis of measured points: as few arcs as come so near to them\n"
-                 "(default: arcs through each point)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--cant-unit", settings.cant_unit,
-                 "cant is in so many of the clouds' units (default: 0.001 in LandXML, else 1)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--gauge", settings.gauge,
-                 "between the rails' heads, whose heights cant tells (default: the file's, or 1.5)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option(
-         "--pivot", settings.pivot,
-         "what cant turns about: low_rail, whose height is the axis', or centre\n(default: the file's, or low_rail)")
-      ->type_name("WHICH")
+  listed("--alignment", "[TRACK=]NAME", alignments, "name of the alignment, where a LandXML holds several");
+  length("--fit", settings.fit,
+         "of an axis of measured points: as few arcs as come so near to them\n"
+         "(default: arcs through each point)");
+  length("--cant-unit", settings.cant_unit,
+         "cant is in so many of the clouds' units (default: 0.001 in LandXML, else 1)");
+  length("--gauge", settings.gauge, "between the rails' heads, whose heights cant tells (default: the file's, or 1.5)");
+  named("--pivot", "WHICH", settings.pivot,
+        "what cant turns about: low_rail, whose height is the axis', or centre\n(default: the file's, or low_rail)")
       ->transform(choice(io::cant_pivots));
-  app.add_option("--profile", profiles,
-                 "outline that must be free, as .csv (offset, height) or .dxf; its name is\n"
-                 "the file's, without extension; may be given more than once")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  app.add_option("--profile-unit", options.profile_unit,
-                 "profiles are in so many of the clouds' units (default: as a .dxf says, or 1)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--track", tracks,
-                 "a profile counts on this track alone (default: on all); may be given more\nthan once")
-      ->type_name("[NAME=]TRACK")
-      ->allow_extra_args(false);
-  app.add_option("--range", ranges, "chainages where a profile counts; may be given more than once")
-      ->type_name("[NAME=]FROM:TO")
-      ->allow_extra_args(false);
-  app.add_option("--widening", widenings, "how a profile widens: a table of chainage, left, right")
-      ->type_name("[NAME=]FILE.csv")
-      ->allow_extra_args(false);
-  app.add_option("--vehicle", vehicles,
-                 "a profile widens by the overthrow of a vehicle with pivots P apart, and\n"
-                 "an overhang O beyond them, by the axis' radius")
-      ->type_name("[NAME=]P,O")
-      ->allow_extra_args(false);
-  app.add_option("--limit", options.limit, "clearances up to this infringe (default: 0)")
-      ->type_name("D")
-      ->transform(finite());
-  app.add_option("--step", options.step, "length of a part of the table, and between poses (default: 1)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--reach", options.reach.offset, "how far beside the axis points belong to it (default: 10)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--below", options.reach.below, "how far below it (default: 5)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--above", options.reach.above, "how far above it (default: 15)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--cluster-distance", options.cluster_distance,
-                 "infringing points no farther apart are one infringement (default: 0.5)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--table", options.written.table, "smallest clearances of each part of the axis")
-      ->type_name("FILE.csv");
-  app.add_option("--infringements", options.written.infringements, "the infringements, the worst first")
-      ->type_name("FILE.csv");
-  app.add_option("--report", options.written.report, "both, and the counts, as JSON; - is standard output")
-      ->type_name("FILE");
-  app.add_option("--previous", options.previous,
-                 "--report of an earlier run: infringements are new, persisting, resolved, or\n"
-                 "not visited by the axis or not scanned any more; --report may replace it")
-      ->type_name("FILE");
-  app.add_option("--origin-path", options.origin_path,
-                 "where the scanner was, in columns time, x, y, z: tells how much of the\n"
-                 "profiles' outlines its beams crossed, and where none did")
-      ->type_name("FILE.csv");
-  app.add_option("--time-field", options.time_field,
-                 "field of the points' times (default: gps_time, time, timestamp, timeStamp or t)")
-      ->type_name("NAME");
-  app.add_option("--seen-spacing", options.seen_spacing,
-                 "an outline is seen in cells with such edges, where a beam crosses them\n(default: 0.1)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--page", options.written.page, "page for browsers: infringements, charts, maps, sections")
-      ->type_name("FILE.html");
-  app.add_option("--sections", options.sections, "folder for drawings of sections: those of --at, and the worst places")
-      ->type_name("FOLDER");
+  listed("--profile", "FILE", profiles,
+         "outline that must be free, as .csv (offset, height) or .dxf; its name is\n"
+         "the file's, without extension; may be given more than once");
+  length("--profile-unit", options.profile_unit,
+         "profiles are in so many of the clouds' units (default: as a .dxf says, or 1)");
+  listed("--track", "[NAME=]TRACK", tracks,
+         "a profile counts on this track alone (default: on all); may be given more\nthan once");
+  listed("--range", "[NAME=]FROM:TO", ranges, "chainages where a profile counts; may be given more than once");
+  listed("--widening", "[NAME=]FILE.csv", widenings, "how a profile widens: a table of chainage, left, right");
+  listed("--vehicle", "[NAME=]P,O", vehicles,
+         "a profile widens by the overthrow of a vehicle with pivots P apart, and\n"
+         "an overhang O beyond them, by the axis' radius");
+  named("--limit", "D", options.limit, "clearances up to this infringe (default: 0)")->transform(finite());
+  length("--step", options.step, "length of a part of the table, and between poses (default: 1)");
+  length("--reach", options.reach.offset, "how far beside the axis points belong to it (default: 10)");
+  length("--below", options.reach.below, "how far below it (default: 5)");
+  length("--above", options.reach.above, "how far above it (default: 15)");
+  length("--cluster-distance", options.cluster_distance,
+         "infringing points no farther apart are one infringement (default: 0.5)");
+  named("--table", "FILE.csv", options.written.table, "smallest clearances of each part of the axis");
+  named("--infringements", "FILE.csv", options.written.infringements, "the infringements, the worst first");
+  named("--report", "FILE", options.written.report, "both, and the counts, as JSON; - is standard output");
+  named("--previous", "FILE", options.previous,
+        "--report of an earlier run: infringements are new, persisting, resolved, or\n"
+        "not visited by the axis or not scanned any more; --report may replace it");
+  named("--origin-path", "FILE.csv", options.origin_path,
+        "where the scanner was, in columns time, x, y, z: tells how much of the\n"
+        "profiles' outlines its beams crossed, and where none did");
+  named("--time-field", "NAME", options.time_field,
+        "field of the points' times (default: gps_time, time, timestamp, timeStamp or t)");
+  length("--seen-spacing", options.seen_spacing,
+         "an outline is seen in cells with such edges, where a beam crosses them\n(default: 0.1)");
+  named("--page", "FILE.html", options.written.page, "page for browsers: infringements, charts, maps, sections");
+  named("--sections", "FOLDER", options.sections,
+        "folder for drawings of sections: those of --at, and the worst places");
   app.add_flag("--png", options.pictures,
                "a .png beside each drawing of --sections, where this was built with librsvg");
-  app.add_option("--at", options.at, "chainage of a section to draw; may be given more than once")
-      ->type_name("C")
-      ->allow_extra_args(false)
-      ->transform(finite());
-  app.add_option("--thickness", options.thickness, "of sections, along the axis (default: 0.1)")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--pivots", options.pivots, "distance of a vehicle's two pivots, which both stand on the axis")
-      ->type_name("L")
-      ->transform(positive());
-  app.add_option("--poses-out", options.poses,
-                 "the vehicle's poses along the axis, for pcl_bsh_collide --trajectory; its\n"
-                 "own frame is midway between the pivots, x ahead, y to the left, z up")
-      ->type_name("FILE");
-  app.add_option("--unit", options.unit, "name of the clouds' unit, for reports")->type_name("NAME");
-  app.add_option("--threads", options.threads, "threads, 0: all of the machine's (default)")
-      ->type_name("N")
-      ->transform(number<unsigned>(give_threads));
+  listed("--at", "C", options.at, "chainage of a section to draw; may be given more than once")->transform(finite());
+  length("--thickness", options.thickness, "of sections, along the axis (default: 0.1)");
+  length("--pivots", options.pivots, "distance of a vehicle's two pivots, which both stand on the axis");
+  named("--poses-out", "FILE", options.poses,
+        "the vehicle's poses along the axis, for pcl_bsh_collide --trajectory; its\n"
+        "own frame is midway between the pivots, x ahead, y to the left, z up");
+  named("--unit", "NAME", options.unit, "name of the clouds' unit, for reports");
+  addThreads(app, options.threads, "threads, 0: all of the machine's (default)");
   ReadOptions reading;
   reading.addTo(app);
   reading.addSystemsTo(app, false);

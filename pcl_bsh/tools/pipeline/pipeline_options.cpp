@@ -56,10 +56,8 @@ std::optional<PipelineOptions> parsePipelineOptions(int argc, char** argv)
   app.add_option("--metadata", options.metadata,
                  "JSON file for what ran and what it took; itself a pipeline, to run it again;\n- is standard output")
       ->type_name("FILE");
-  app.add_option("--threads", options.threads,
-                 "stages at a time, and readers of a .laz; 0: as many as the machine has threads (default)")
-      ->type_name("N")
-      ->transform(number<unsigned>(give_threads));
+  addThreads(app, options.threads,
+             "stages at a time, and readers of a .laz; 0: as many as the machine has threads (default)");
   app.add_flag("--progress", options.progress, "a line for each stage that is done");
   app.add_flag("--print-schema", schema, "write the JSON schema of pipelines, and end");
   app.add_flag("--print-stages", stages, "write the table of stages and their options, and end");

@@ -156,10 +156,7 @@ void SceneClashList::finish()
   Shape scan = shapeOf(scan_);
   std::vector<const SphereHierarchy*> hierarchies;
   const ObstaclesAnswer found = inScene(file_, [&] {
-    question_.progress = [&](double done) {
-      step.share(done);
-      return true;
-    };
+    question_.progress = [&](double done) { return step.share(done); };
     ObstaclesAnswer answer = io::askAbout(question_, scan, placed_, obstacles_);
     if (file_.clashes->between) compareOthers();
     question_.progress = nullptr;

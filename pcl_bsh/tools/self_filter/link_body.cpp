@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <variant>
 
@@ -15,13 +16,54 @@ namespace pcl_bsh::self_filter {
 
 namespace {
 
+/// A cylinder about an axis of the solid's frame, centred, that encloses it. A sphere has the length 0: all of it is
+/// within the radius of the centre.
+struct Rod {
+  int axis = 2;
+  double radius = 0.0, half_length = 0.0; ///< m
+};
+
+Rod rodAround(const Box& box)
+{
+  Rod rod;
+  rod.half_length = 0.5 * box.size.maxCoeff(&rod.axis);
+  rod.radius = 0.5 * std::hypot(box.size[(rod.axis + 1) % 3], box.size[(rod.axis + 2) % 3]);
+  return rod;
+}
+
+Rod rodAround(const Cylinder& tube)
+{
+  return {2, tube.radius, tube.length / 2};
+}
+
+Rod rodAround(const Sphere& ball)
+{
+  return {2, ball.radius, 0.0};
+}
+
+Rod rodAround(const Capsule& pill)
+{
+  return {2, pill.radius, enclosingRadius(pill)};
+}
+
+/// @throws std::runtime_error for a size that is not finite, not above 0, or beyond what a float holds
+void requireSize(const Solid& solid)
+{
+  constexpr double most = 1e30;
+  constexpr const char* names[] = {"a box", "a cylinder", "a sphere", "a capsule"};
+  for (const double size : sizesOf(solid))
+    if (!(size > 0.0 && size <= most))
+      throw std::runtime_error(std::string(names[solid.index()]) + " of size " + std::to_string(size) +
+                               ": give one above 0" + (size > most ? ", and at most 1e30 m" : ""));
+}
+
 void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_link_solid)
 {
   requireSize(solid);
   body.solids.push_back({solid, T_link_solid.inverse()});
   // Balls along a rod, about as long as they are wide: one ball about all of a slender solid would hold much else.
   constexpr double most = 64;
-  const Rod rod = rodAround(solid);
+  const Rod rod = std::visit([](const auto& form) { return rodAround(form); }, solid);
   const double count = std::clamp(std::ceil(rod.half_length / rod.radius), 1.0, most);
   constexpr double roundings = 0x1p-40; // of the centres
   const double radius = std::hypot(rod.radius, rod.half_length / count) +

@@ -27,18 +27,6 @@ using robots::Shape;
 using robots::Solid;
 using robots::Sphere;
 
-/// A cylinder about an axis of the solid's frame, centred, that encloses a box or a cylinder. For a sphere, the length
-/// is 0: all of it is within the radius of the centre.
-struct Rod {
-  int axis = 2;
-  double radius = 0.0, half_length = 0.0; ///< m
-};
-
-Rod rodAround(const Solid& solid);
-
-/// @throws std::runtime_error for a size that is not finite, not above 0, or beyond what a float holds
-void requireSize(const Solid& solid);
-
 /// Centres and radii, m.
 struct Balls {
   std::vector<Point3> centers;

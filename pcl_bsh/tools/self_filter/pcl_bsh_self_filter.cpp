@@ -236,9 +236,7 @@ int main(int argc, char** argv)
     app.add_flag("--flag", options.flag,
                  "keep all points, with a field 'collision' that is 1 where the robot or no return is");
     options.robot.addPackagesTo(app);
-    app.add_option("--threads", options.settings.threads, "0: all of the machine's; any number gives the same result")
-        ->type_name("N")
-        ->transform(cli::number<unsigned>(cli::give_threads))
+    cli::addThreads(app, options.settings.threads, "0: all of the machine's; any number gives the same result")
         ->capture_default_str();
     app.add_option("--report", options.report, "JSON file for the results and what they cost;\n- is standard output")
         ->type_name("FILE");

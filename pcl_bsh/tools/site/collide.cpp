@@ -236,10 +236,7 @@ int answer(SiteOptions options, bool& keeps)
   std::optional<Step> shown;
   if (tells) {
     shown.emplace("Asking about tiles");
-    question.progress = [&shown](double done) {
-      shown->share(done);
-      return true;
-    };
+    question.progress = [&shown](double done) { return shown->share(done); };
   }
   const auto ask = [&] {
     return compared->ask({.memory = options.memory, .answers = output.answers(), .receiver = output.receiver()},

@@ -255,9 +255,7 @@ std::optional<SiteOptions> parseSiteOptions(int argc, char** argv)
       ->type_name("N")
       ->transform(amount(1000, 1, "give 1 or more"));
   addQuestionOptions(*make, options.question, {"vertices_only"});
-  make->add_option("--threads", options.make_threads, "that read .laz; 0: all of the machine's (default)")
-      ->type_name("N")
-      ->transform(number<unsigned>(give_threads));
+  addThreads(*make, options.make_threads, "that read .laz; 0: all of the machine's (default)");
   for (CLI::App* const told :
        {command("info", "print what a site holds", SiteCommand::info),
         command("validate", "read all tiles and check that each point is there once, and where it should be",

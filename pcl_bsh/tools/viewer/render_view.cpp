@@ -182,14 +182,11 @@ std::vector<LegendEntry> RenderView::legend() const
     if (all_measured_) continue; // the bar says it all
     if (by_value || coloring_ == Coloring::collision)
       add(viewed.legend + (collisions_.known ? ", free" : ""), scan_color);
-    if (collisions_.known && (!by_value || content_.options().range))
-      add(viewed.legend + ", colliding", colliding_color);
-    if (collisions_.undecided > 0 && (!by_value || content_.options().range))
-      add(viewed.legend + ", undecided", undecided_color);
-    if (collisions_.sparse > 0 && (!by_value || content_.options().range))
-      add(viewed.legend + ", not scanned densely enough", sparse_color);
-    if (collisions_.unseen > 0 && (!by_value || content_.options().range))
-      add(viewed.legend + ", unseen", unseen_color);
+    if (by_value && !content_.options().range) continue;
+    if (collisions_.known) add(viewed.legend + ", colliding", colliding_color);
+    if (collisions_.undecided > 0) add(viewed.legend + ", undecided", undecided_color);
+    if (collisions_.sparse > 0) add(viewed.legend + ", not scanned densely enough", sparse_color);
+    if (collisions_.unseen > 0) add(viewed.legend + ", unseen", unseen_color);
   }
   for (std::size_t i = 0; i < content_.viewedClouds().size(); ++i) {
     const ViewedCloud& viewed = content_.viewedClouds()[i];

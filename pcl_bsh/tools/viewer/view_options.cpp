@@ -239,22 +239,21 @@ std::optional<Options> parseOptions(int argc, char** argv)
   std::string pose, cut, size = "1280x960", camera = "slanted";
   CLI::App app("Shows clouds, where they collide, and the spheres that find it.", program);
   app.footer(io::withFormats(footer));
-  app.add_option("CLOUD", options.clouds,
-                 "the cloud or surface that is tested, then obstacles in the same\nframe; or a site, alone")
-      ->type_name("");
-  app.add_option("--scene", options.scene, "a scene file in place of clouds: objects, their motions and responses")
-      ->type_name("SCENE.json");
-  app.add_option("--model", options.model, "an obstacle that has poses")->type_name("CLOUD");
+  const auto named = [&](const char* name, const char* form, auto& value, const char* help) {
+    return app.add_option(name, value, help)->type_name(form);
+  };
+  named("CLOUD", "", options.clouds,
+        "the cloud or surface that is tested, then obstacles in the same\nframe; or a site, alone");
+  named("--scene", "SCENE.json", options.scene,
+        "a scene file in place of clouds: objects, their motions and responses");
+  named("--model", "CLOUD", options.model, "an obstacle that has poses");
   options.addObstaclesTo(app);
-  app.add_option("--pose", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)")
-      ->type_name("POSE");
-  app.add_option("--trajectory", options.trajectory,
-                 "poses of the model or of all --obstacle, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty "
-                 "tz qx qy qz qw")
-      ->type_name("FILE");
-  app.add_option("--step", options.step,
-                 "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
-      ->type_name("N")
+  named("--pose", "POSE", pose, "of the model: x,y,z,roll,pitch,yaw (radians), or a file of a\nmatrix (default: none)");
+  named("--trajectory", "FILE", options.trajectory,
+        "poses of the model or of all --obstacle, one a line: 12 or 16 numbers of its matrix, or\ntime tx ty "
+        "tz qx qy qz qw");
+  named("--step", "N", options.step,
+        "the pose of the trajectory, or the step of the scene, to begin\nwith, from 0 (default: 0)")
       ->transform(cli::number<unsigned>("give the number of a pose or step, from 0"));
   options.question.threads = 0;
   cli::addQuestionOptions(
@@ -263,56 +262,47 @@ std::optional<Options> parseOptions(int argc, char** argv)
   cli::ReadOptions reading;
   reading.addTo(app);
   reading.addUnitsTo(app);
-  app.add_option("--color", options.color,
-                 "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
-                 "--clearance is of all points,\nwith a histogram")
-      ->type_name("BY")
+  named("--color", "BY", options.color,
+        "collision (default where known), distance, first_pose, height,\nrgb or intensity; distance without "
+        "--clearance is of all points,\nwith a histogram")
       ->transform(cli::choice<Coloring>({{"collision", Coloring::collision},
                                          {"distance", Coloring::distance},
                                          {"first_pose", Coloring::first_pose},
                                          {"height", Coloring::height},
                                          {"rgb", Coloring::rgb},
                                          {"intensity", Coloring::intensity}}));
-  app.add_option("--range", options.range,
-                 "with --color distance: colours end at this distance; with\n--clearance, what collides is orange "
-                 "(default: the clearance;\nwithout one, what 99 of 100 points are within)")
-      ->type_name("D")
+  named("--range", "D", options.range,
+        "with --color distance: colours end at this distance; with\n--clearance, what collides is orange "
+        "(default: the clearance;\nwithout one, what 99 of 100 points are within)")
       ->transform(cli::number<double>(cli::give_length));
-  app.add_option("--cut", cut,
-                 "a plane x,y,z,nx,ny,nz: the first cloud is not drawn on the side\nthat nx,ny,nz points to")
-      ->type_name("PLANE");
-  app.add_option("--level", options.level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")
-      ->type_name("L")
+  named("--cut", "PLANE", cut,
+        "a plane x,y,z,nx,ny,nz: the first cloud is not drawn on the side\nthat nx,ny,nz points to");
+  named("--level", "L", options.level, "draw the hierarchies' spheres: 0 the voxels', 1, 2 ... finer")
       ->transform(cli::number<unsigned>("give 0 or more"));
   CLI::Option* const budget =
-      app.add_option(
-             "--budget", options.budget,
-             "of a site: points that are drawn at once, as 500K or 20M, the overview\nincluded; each takes some "
-             "100 bytes of memory (default: 10M)")
-          ->type_name("N")
+      named("--budget", "N", options.budget,
+            "of a site: points that are drawn at once, as 500K or 20M, the overview\nincluded; each takes some "
+            "100 bytes of memory (default: 10M)")
           ->transform(cli::amount(1000, 1, "give 1 or more"));
   app.add_flag("--voxels", options.voxels, "draw the voxels");
   app.add_flag("--cells", options.cells, "draw boxes around the octree cells of the level");
   app.add_flag("--trace", options.trace, "draw what the query for any collision tested and pruned");
   app.add_flag("--open-edges", options.open_edges, "draw the edges of surfaces that no other triangle closes, in red");
-  app.add_option("--beams", options.beams,
-                 "draw so many beams of the first cloud's scanner, evenly picked: from\nwhere it stood, as --origin or "
-                 "the file says, to the points")
-      ->type_name("N")
+  named("--beams", "N", options.beams,
+        "draw so many beams of the first cloud's scanner, evenly picked: from\nwhere it stood, as --origin or "
+        "the file says, to the points")
       ->transform(cli::number<unsigned>("give the number of beams"));
   app.add_flag("--closest", options.closest, "draw the closest pair and its distance");
-  app.add_option("--title", options.title, "a first line above the counts")->type_name("TEXT");
-  app.add_option("--unit", options.unit, "name of the clouds' unit, for titles")->type_name("NAME");
-  app.add_option("--screenshot", options.screenshot, "write a picture instead of opening a window; needs no display")
-      ->type_name("FILE.png");
-  app.add_option("--size", size, "of the picture or window (default: 1280x960)")->type_name("WxH");
-  app.add_option("--camera", camera,
-                 "slanted (default), top, front, side, colliding (close to what\ncollides, from where it is seen), or "
-                 "eye x,y,z,\nfocus x,y,z"
-                 "[, up x,y,z]")
-      ->type_name("HOW");
-  app.add_option("--export", options.export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView")
-      ->type_name("FILE");
+  named("--title", "TEXT", options.title, "a first line above the counts");
+  named("--unit", "NAME", options.unit, "name of the clouds' unit, for titles");
+  named("--screenshot", "FILE.png", options.screenshot,
+        "write a picture instead of opening a window; needs no display");
+  named("--size", "WxH", size, "of the picture or window (default: 1280x960)");
+  named("--camera", "HOW", camera,
+        "slanted (default), top, front, side, colliding (close to what\ncollides, from where it is seen), or "
+        "eye x,y,z,\nfocus x,y,z"
+        "[, up x,y,z]");
+  named("--export", "FILE", options.export_to, "write the cloud (.vtp) or everything (.vtm) for ParaView");
   if (!cli::understood(app, program, argc, argv)) return std::nullopt;
   cli::requireAccepted(options.question);
 
