@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Does every bounding sphere of a cloud's hierarchy hold its points, and how much larger is it than it need be?
 // The program is under GPL-3.0-or-later once compiled: see pcl_bsh/certify/LICENSE.
-#include <pcl_bsh/tools/certify/certify_report.h>
 #include <pcl_bsh/tools/cli/command_line.h>
 #include <pcl_bsh/tools/cli/json_output.h>
 #include <pcl_bsh/tools/cli/reading.h>
@@ -9,14 +8,18 @@
 #include <pcl_bsh/tools/cli/used_files.h>
 
 #include <pcl_bsh/base/counted.h>
+#include <pcl_bsh/certify/certify.h>
 #include <pcl_bsh/io/clouds/cloud_file.h>
 #include <pcl_bsh/io/clouds/formats.h>
 #include <pcl_bsh/io/files/replace_file.h>
 #include <pcl_bsh/search/cloud_view.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <iomanip>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +53,97 @@ struct Options {
   cli::ReadChoice reading;
   cli::CommandFiles files;
 };
+
+Json toJson(const RadiusRatios& ratios)
+{
+  Json json = {{"measured", ratios.measured}, {"one_place", ratios.one_place}};
+  json["mean"] = nullptr;
+  json["worst"] = nullptr;
+  if (ratios.measured > 0) {
+    json["mean"] = ratios.mean();
+    json["worst"] = ratios.worst;
+  }
+  json["histogram"] = {{"below", RadiusRatios::edges}, {"spheres", ratios.histogram}}; // the last: all others
+  return json;
+}
+
+Json toJson(const LevelCertificate& level, const std::string& name)
+{
+  return {{"level", name},          {"spheres", level.spheres},
+          {"checks", level.checks}, {"exact_checks", level.exact_checks},
+          {"leaks", level.leaks},   {"radius_ratio", toJson(level.ratio)}};
+}
+
+void printRow(std::ostream& out, const std::string& fit, const std::string& name, const LevelCertificate& level)
+{
+  std::ostringstream row;
+  row << std::fixed << std::setprecision(4) << std::left << std::setw(9) << fit << std::setw(9) << name << std::right
+      << std::setw(9) << level.spheres << std::setw(11) << level.checks << std::setw(7) << level.leaks << std::setw(9)
+      << level.ratio.measured;
+  if (level.ratio.measured > 0)
+    row << std::setw(9) << level.ratio.mean() << std::setw(9) << level.ratio.worst;
+  else
+    row << std::setw(9) << '-' << std::setw(9) << '-';
+  for (const std::size_t count : level.ratio.histogram) row << std::setw(8) << count;
+  out << row.str() << '\n';
+}
+
+/// "cloud 2", "voxel" or "node 3".
+std::string nameOf(const SphereLevel& level)
+{
+  switch (level.kind) {
+  case SphereLevel::above_voxels:
+    return "cloud " + std::to_string(level.depth);
+  case SphereLevel::voxel:
+    return "voxel";
+  case SphereLevel::in_voxel:
+    break;
+  }
+  return "node " + std::to_string(level.depth);
+}
+
+Json toJson(const Certificate& certificate)
+{
+  Json json;
+  json["holds"] = certificate.holds();
+  json["missing_points"] = certificate.missing;
+  json["total"] = toJson(certificate.total, "all");
+  json["levels"] = Json::array();
+  for (const LevelCertificate& level : certificate.levels) json["levels"].push_back(toJson(level, nameOf(level.level)));
+  json["leaks"] = Json::array(); // the first hundred
+  for (const Leak& leak : certificate.leaks) {
+    json["leaks"].push_back({{"level", nameOf(leak.level)},
+                             {"voxel", leak.voxel},
+                             {"node", leak.node},
+                             {"child", leak.child},
+                             {"point", leak.record},
+                             {"excess", leak.excess}});
+  }
+  return json;
+}
+
+void printTableHead(std::ostream& out)
+{
+  std::ostringstream head;
+  head << "Ratio: stored radius / smallest radius. Checks: points looked at, all exact. Other columns: spheres.\n";
+  head << std::left << std::setw(9) << "fit" << std::setw(9) << "level" << std::right << std::setw(9) << "spheres"
+       << std::setw(11) << "checks" << std::setw(7) << "leaks" << std::setw(9) << "measured" << std::setw(9) << "mean"
+       << std::setw(9) << "worst";
+  for (const double edge : RadiusRatios::edges) {
+    std::ostringstream below;
+    below << '<' << edge;
+    head << std::setw(8) << below.str();
+  }
+  head << std::setw(8) << "more" << '\n';
+  out << head.str();
+}
+
+/// A row for each level, and one for all.
+void printRows(std::ostream& out, const std::string& fit, const Certificate& certificate)
+{
+  for (const LevelCertificate& level : certificate.levels) printRow(out, fit, nameOf(level.level), level);
+  printRow(out, fit, "all", certificate.total);
+}
 
 void check(const Options& options)
 {
@@ -102,7 +196,7 @@ void complain(const Options& options, const std::string& name, const Certificate
     const Leak& first = certificate.leaks.front();
     std::cerr << counted(certificate.total.leaks, "point sticks", "points stick")
               << " out of their spheres, first point " << first.record << ", by " << first.excess << ", out of child "
-              << first.child << " of node " << first.node << " on level " << cli::nameOf(first.level) << " of voxel "
+              << first.child << " of node " << first.node << " on level " << nameOf(first.level) << " of voxel "
               << first.voxel;
   }
   std::cerr << ": report this cloud as a defect of pcl_bsh\n";
@@ -122,13 +216,13 @@ int run(const Options& options)
     const SphereHierarchy hierarchy = build(view, fit, options, name);
     double seconds = 0.0;
     const Certificate certificate = certifyTold(hierarchy, options.certify, name, seconds);
-    if (report["fits"].empty()) cli::printTableHead(options.files.summary());
-    cli::printRows(options.files.summary(), name, certificate);
+    if (report["fits"].empty()) printTableHead(options.files.summary());
+    printRows(options.files.summary(), name, certificate);
     if (!certificate.holds()) complain(options, name, certificate);
     holds = holds && certificate.holds();
 
     Json of_fit = {{"fit", name}, {"finite", hierarchy.size()}, {"seconds", seconds}};
-    of_fit.update(cli::toJson(certificate));
+    of_fit.update(toJson(certificate));
     report["fits"].push_back(std::move(of_fit));
   }
   report["holds"] = holds;

@@ -2,8 +2,7 @@
 // The results of a scene's step, line by line: CSV for tables, JSON lines for programs.
 #pragma once
 
-#include "body_report.h"
-
+#include <pcl_bsh/physics/scene_bodies.h>
 #include <pcl_bsh/scene/scene.h>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +13,16 @@
 #include <vector>
 
 namespace pcl_bsh::cli {
+
+/// Counts of bodies.
+struct BodyCost {
+  std::size_t steps = 0; ///< of the solver
+  WorldStep solved;
+  double seconds = 0.0;
+
+  void add(const BodiesStep& step);
+  nlohmann::ordered_json json() const;
+};
 
 /// Sums over the steps of a run.
 struct SceneTotals {
