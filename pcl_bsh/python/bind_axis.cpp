@@ -4,7 +4,6 @@
 #include <pcl_bsh/io/tracks/axis_file.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/path_of.h>
 #include <pcl_bsh/python/python_question.h>
 #include <pcl_bsh/track/axis.h>
 

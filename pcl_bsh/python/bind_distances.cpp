@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace pcl_bsh::python {
 namespace {
@@ -101,10 +102,12 @@ Examples
 (2.0, (0, 1))
 )";
 
-SymmetricDistances distancesOf(PythonQuestion&& asked, bool both_ways, std::optional<double> max_distance,
-                               const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
-                               const py::kwargs& options)
+template <bool both_ways>
+auto distancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance, const PoseLike& pose_a,
+                 const PoseLike& pose_b, const AccuracyLike& accuracy, unsigned threads, const ProgressLike& progress,
+                 const py::kwargs& options)
 {
+  PythonQuestion asked(a, pose_a, b, pose_b);
   Question& question = asked.question;
   question.max_distance = max_distance;
   question.accuracy = accuracyOf(accuracy);
@@ -113,21 +116,11 @@ SymmetricDistances distancesOf(PythonQuestion&& asked, bool both_ways, std::opti
   question.progress = progressOf(progress);
   question.wanted.distances = question.wanted.intervals = true;
   question.wanted.both_ways = both_ways;
-  return asked.answer().distances;
-}
-
-PointDistances pointDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
-                                const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
-                                unsigned threads, const ProgressLike& progress, const py::kwargs& options)
-{
-  return distancesOf({a, pose_a, b, pose_b}, false, max_distance, accuracy, threads, progress, options).a;
-}
-
-SymmetricDistances symmetricDistancesOf(const Cloud& a, const Cloud& b, std::optional<double> max_distance,
-                                        const PoseLike& pose_a, const PoseLike& pose_b, const AccuracyLike& accuracy,
-                                        unsigned threads, const ProgressLike& progress, const py::kwargs& options)
-{
-  return distancesOf({a, pose_a, b, pose_b}, true, max_distance, accuracy, threads, progress, options);
+  SymmetricDistances found = asked.answer().distances;
+  if constexpr (both_ways)
+    return found;
+  else
+    return std::move(found.a);
 }
 
 HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const PoseLike& pose_a, const PoseLike& pose_b,
@@ -209,8 +202,8 @@ void bindDistances(py::module_& module)
                "pose_a"_a = py::none(), "pose_b"_a = py::none(), "accuracy"_a = py::none(), "threads"_a = 1,
                "progress"_a = py::none());
   };
-  define("point_distances", &pointDistancesOf, kPointDistances);
-  define("symmetric_distances", &symmetricDistancesOf, kSymmetricDistances);
+  define("point_distances", &distancesOf<false>, kPointDistances);
+  define("symmetric_distances", &distancesOf<true>, kSymmetricDistances);
 }
 
 } // namespace pcl_bsh::python

@@ -5,7 +5,6 @@
 #include <pcl_bsh/python/arrays/array_input.h>
 #include <pcl_bsh/python/arrays/record_array.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/path_of.h>
 #include <pcl_bsh/python/python_question.h>
 
 #include <pybind11/stl.h>
@@ -28,7 +27,9 @@ path : str or path-like
 columns : sequence of str, optional
     Names of all columns of .csv, .xyz and .txt, in place of those in the file, ``["x", "y", "z", "_"]``; "_" is not
     read.
-threads : int, default 0
+)";
+
+constexpr auto kReadArguments = R"(threads : int, default 0
     Threads that unpack LAZ; 0: all of the machine's. Any number gives the same result.
 allow_scale : bool, default False
     Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
@@ -42,7 +43,9 @@ crs : str, optional
     Coordinate system of the file, as "EPSG:25832" or WKT; "none": of no system. Default: as a LAS or E57 file names it.
 to_crs : str, optional
     Projected system that PROJ transforms coordinates to, as float64. Default: they stay as they are.
+)";
 
+constexpr auto kReadResult = R"(
 Returns
 -------
 ndarray, (n,), of an organised cloud (height, width)
@@ -108,21 +111,9 @@ Parameters
 path : str or path-like
     .obj, .off, .ply or .stl; polygons are cut into triangles. Other formats have no triangles. Lines, edges and
     free-form surfaces are warned of; a file of these without faces is refused: `read` gives its vertices.
-threads : int, default 0
-    Threads that unpack LAZ; 0: all of the machine's. Any number gives the same result.
-allow_scale : bool, default False
-    Transforms of a .ptx may scale uniformly; else they are refused, and whatever else is no rigid motion always.
-unit : str, optional
-    Unit of the file's lengths: mm, cm, m, ft or us-ft. Default: that of a LAS file's coordinate system.
-to_unit : str, optional
-    Unit that lengths are converted to, as float64. Default: they stay as they are.
-length_fields : sequence of str, optional
-    With `to_unit`: more fields that are lengths, such as sigmas.
-crs : str, optional
-    Coordinate system of the file, as "EPSG:25832" or WKT; "none": of no system. Default: as a LAS or E57 file names it.
-to_crs : str, optional
-    Projected system that PROJ transforms coordinates to, as float64. Default: they stay as they are.
+)";
 
+constexpr auto kReadMeshResult = R"(
 Returns
 -------
 vertices : ndarray
@@ -169,15 +160,15 @@ Examples
 )";
 
 using FileHeader = io::CloudFacts;
+using Text = std::optional<std::string>;
+using Texts = std::optional<std::vector<std::string>>;
 
 /// How a file is read, by the arguments that readers share.
-io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, bool allow_scale,
-                              const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
-                              const std::optional<std::vector<std::string>>& length_fields,
-                              const std::optional<std::string>& crs, const std::optional<std::string>& to_crs)
+io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, bool allow_scale, const Text& unit,
+                              const Text& to_unit, const Texts& length_fields, const Text& crs, const Text& to_crs)
 {
   io::ReadSettings settings(columns.value_or(io::ColumnNames()), allow_scale);
-  const auto unitOf = [](const char* argument, const std::optional<std::string>& name) {
+  const auto unitOf = [](const char* argument, const Text& name) {
     try {
       return name ? std::optional(io::lengthUnitOf(*name)) : std::nullopt;
     }
@@ -188,7 +179,7 @@ io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, boo
   settings.unit = unitOf("unit", unit);
   settings.to_unit = unitOf("to_unit", to_unit);
   settings.length_fields = length_fields.value_or(std::vector<std::string>());
-  const auto systemOf = [](const char* argument, const std::optional<std::string>& text) {
+  const auto systemOf = [](const char* argument, const Text& text) {
     try {
       io::requireSystem(text.value_or(""));
     }
@@ -202,11 +193,9 @@ io::ReadSettings readSettings(const std::optional<io::ColumnNames>& columns, boo
   return settings;
 }
 
-std::pair<Records, FileHeader>
-readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale,
-               const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
-               const std::optional<std::vector<std::string>>& length_fields, const std::optional<std::string>& crs,
-               const std::optional<std::string>& to_crs)
+std::pair<Records, FileHeader> readWithHeader(const PathLike& path, const std::optional<io::ColumnNames>& columns,
+                                              unsigned threads, bool allow_scale, const Text& unit, const Text& to_unit,
+                                              const Texts& length_fields, const Text& crs, const Text& to_crs)
 {
   const std::string file = pathOf(path);
   FileHeader header;
@@ -234,10 +223,10 @@ std::pair<Records, py::array_t<std::uint32_t>> arraysOfMesh(io::Mesh&& mesh)
   return {recordsFrom(std::move(mesh.vertices)), triangles};
 }
 
-std::pair<Records, py::array_t<std::uint32_t>>
-readMeshOf(const PathLike& path, unsigned threads, bool allow_scale, const std::optional<std::string>& unit,
-           const std::optional<std::string>& to_unit, const std::optional<std::vector<std::string>>& length_fields,
-           const std::optional<std::string>& crs, const std::optional<std::string>& to_crs)
+std::pair<Records, py::array_t<std::uint32_t>> readMeshOf(const PathLike& path, unsigned threads, bool allow_scale,
+                                                          const Text& unit, const Text& to_unit,
+                                                          const Texts& length_fields, const Text& crs,
+                                                          const Text& to_crs)
 {
   const std::string file = pathOf(path);
   FileHeader header;
@@ -247,8 +236,8 @@ readMeshOf(const PathLike& path, unsigned threads, bool allow_scale, const std::
   return arraysOfMesh(std::move(mesh));
 }
 
-As<"Dict[str, Tuple[npt.NDArray[Any], npt.NDArray[np.uint32]]]">
-readMeshPartsOf(const PathLike& path, const std::optional<std::string>& unit, const std::optional<std::string>& to_unit)
+As<"Dict[str, Tuple[npt.NDArray[Any], npt.NDArray[np.uint32]]]"> readMeshPartsOf(const PathLike& path, const Text& unit,
+                                                                                 const Text& to_unit)
 {
   const std::string file = pathOf(path);
   FileHeader header;
@@ -283,30 +272,24 @@ void bindFiles(py::module_& module)
           "coordinate_system", [](const FileHeader& header) { return header.coordinate_system.name; },
           "As a LAS or E57 file names it, or as it was given; empty where nobody tells.")
       .def_property_readonly(
-          "unit",
-          [](const FileHeader& header) -> std::optional<std::string> {
-            return header.unit ? std::optional<std::string>(io::nameOf(*header.unit)) : std::nullopt;
-          },
+          "unit", [](const FileHeader& header) { return header.unit ? Text(io::nameOf(*header.unit)) : std::nullopt; },
           "The unit of lengths, as was given or by the coordinate system; None where nobody tells.")
       .def_property_readonly("is_las", [](const FileHeader& header) { return header.las != nullptr; })
       .def("__repr__", [](const FileHeader& header) { return header.las ? "FileHeader(las)" : "FileHeader()"; });
-  module.def(
+  const auto define = [&](const char* name, auto function, const std::string& text, const auto&... first) {
+    module.def(name, function, text.c_str(), "path"_a, first..., "threads"_a = 0, "allow_scale"_a = false,
+               "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none(), "crs"_a = py::none(),
+               "to_crs"_a = py::none());
+  };
+  define(
       "read",
       [](const PathLike& path, const std::optional<io::ColumnNames>& columns, unsigned threads, bool allow_scale,
-         const std::optional<std::string>& unit, const std::optional<std::string>& to_unit,
-         const std::optional<std::vector<std::string>>& length_fields, const std::optional<std::string>& crs,
-         const std::optional<std::string>& to_crs) {
+         const Text& unit, const Text& to_unit, const Texts& length_fields, const Text& crs, const Text& to_crs) {
         return readWithHeader(path, columns, threads, allow_scale, unit, to_unit, length_fields, crs, to_crs).first;
       },
-      kRead, "path"_a, "columns"_a = py::none(), py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
-      "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none(), "crs"_a = py::none(),
-      "to_crs"_a = py::none());
-  module.def("read_with_header", &readWithHeader, kReadWithHeader, "path"_a, "columns"_a = py::none(), py::kw_only(),
-             "threads"_a = 0, "allow_scale"_a = false, "unit"_a = py::none(), "to_unit"_a = py::none(),
-             "length_fields"_a = py::none(), "crs"_a = py::none(), "to_crs"_a = py::none());
-  module.def("read_mesh", &readMeshOf, kReadMesh, "path"_a, py::kw_only(), "threads"_a = 0, "allow_scale"_a = false,
-             "unit"_a = py::none(), "to_unit"_a = py::none(), "length_fields"_a = py::none(), "crs"_a = py::none(),
-             "to_crs"_a = py::none());
+      std::string(kRead) + kReadArguments + kReadResult, "columns"_a = py::none(), py::kw_only());
+  define("read_with_header", &readWithHeader, kReadWithHeader, "columns"_a = py::none(), py::kw_only());
+  define("read_mesh", &readMeshOf, std::string(kReadMesh) + kReadArguments + kReadMeshResult, py::kw_only());
   module.def("read_mesh_parts", &readMeshPartsOf, kReadMeshParts, "path"_a, py::kw_only(), "unit"_a = py::none(),
              "to_unit"_a = py::none());
   module.def("write", &writeRecords, kWrite, "path"_a, "records"_a, "header"_a = py::none());

@@ -210,17 +210,13 @@ void bindObstacles(py::module_& module)
 {
   py::class_<NamedAnswer>(module, "ObstacleAnswer", "How an obstacle of several stands to the input.")
       .def_readonly("name", &NamedAnswer::name)
-      .def_property_readonly(
-          "asked", [](const NamedAnswer& one) { return one.asked; },
-          "False where it ignores the input: the rest says nothing.")
+      .def_readonly("asked", &NamedAnswer::asked, "False where it ignores the input: the rest says nothing.")
       .def_property_readonly("verdict", [](const NamedAnswer& one) { return verdictOf(one.verdict); })
-      .def_property_readonly(
-          "colliding", [](const NamedAnswer& one) { return one.colliding; }, "Rows of the input.")
-      .def_property_readonly("undecided", [](const NamedAnswer& one) { return one.undecided; })
-      .def_property_readonly("sparse", [](const NamedAnswer& one) { return one.sparse; })
-      .def_property_readonly(
-          "closest", [](const NamedAnswer& one) { return one.closest; },
-          "The smallest distance and its rows: of the input and of the obstacle.")
+      .def_readonly("colliding", &NamedAnswer::colliding, "Rows of the input.")
+      .def_readonly("undecided", &NamedAnswer::undecided)
+      .def_readonly("sparse", &NamedAnswer::sparse)
+      .def_readonly("closest", &NamedAnswer::closest,
+                    "The smallest distance and its rows: of the input and of the obstacle.")
       .def("__repr__", [](const NamedAnswer& one) {
         return "ObstacleAnswer('" + one.name + "', " + counted(one.colliding, "point") + ", distance " +
                numberText(one.closest.distance) + ")";
@@ -228,10 +224,9 @@ void bindObstacles(py::module_& module)
   py::class_<NamedPair>(module, "ObstaclePair", "How two obstacles stand to each other.")
       .def_readonly("first", &NamedPair::first_name)
       .def_readonly("second", &NamedPair::second_name)
-      .def_property_readonly(
-          "clearance", [](const NamedPair& pair) { return pair.clearance; }, "The greater of theirs.")
+      .def_readonly("clearance", &NamedPair::clearance, "The greater of theirs.")
       .def_property_readonly("verdict", [](const NamedPair& pair) { return verdictOf(pair.verdict); })
-      .def_property_readonly("closest", [](const NamedPair& pair) { return pair.closest; })
+      .def_readonly("closest", &NamedPair::closest)
       .def_property_readonly(
           "first_within", [](const NamedPair& pair) { return endsOf(pair.first_within); },
           "With `overlap`, the area of the first's surface inside the second, a solid: an interval that holds it.")

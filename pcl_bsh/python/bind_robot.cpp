@@ -3,7 +3,6 @@
 #include <pcl_bsh/io/robots/ros_packages.h>
 #include <pcl_bsh/python/arrays/array_output.h>
 #include <pcl_bsh/python/bindings.h>
-#include <pcl_bsh/python/path_of.h>
 #include <pcl_bsh/python/robot_model.h>
 #include <pcl_bsh/python/threads/callback.h>
 

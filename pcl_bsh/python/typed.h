@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 namespace pcl_bsh::python {
 
@@ -42,6 +43,12 @@ using AccuracyLike = As<"Union[None, str, Accuracy]">;
 using ProgressLike = As<"Optional[Callable[[float], Any]]">;
 using PathLike = As<"Union[str, os.PathLike[str]]">;
 using Records = As<"npt.NDArray[np.void]">;
+
+/// A text, or what os.fspath() takes.
+inline std::string pathOf(const PathLike& path)
+{
+  return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
+}
 
 } // namespace pcl_bsh::python
 
