@@ -20,7 +20,6 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
-#include <pcl_bsh/traversal/world_slab-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh {

@@ -14,7 +14,6 @@
 #include <hwy/highway.h>
 
 #include <pcl_bsh/pairs/reach_walk-inl.h>
-#include <pcl_bsh/traversal/world_slab-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
