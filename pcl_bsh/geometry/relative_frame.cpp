@@ -61,8 +61,7 @@ double cornerOf(const LocalFrame& frame)
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 namespace {
@@ -166,8 +165,7 @@ void axesOnTarget(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const Lo
   }
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

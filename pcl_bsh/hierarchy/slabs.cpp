@@ -115,8 +115,7 @@ Eigen::Vector3f principalAxis(const Eigen::Matrix3d& covariance, SlabAxis axis)
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// Largest |n . (x - c)|, in float arithmetic: it errs by less than 8 u |x - c|, half of kRadiusMargin. Reads whole
@@ -167,8 +166,7 @@ std::uint64_t fitSlabsOnTarget(const Voxel& voxel, const PointsView& view, SlabA
   return found;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

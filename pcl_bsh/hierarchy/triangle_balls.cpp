@@ -11,8 +11,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void findEightBallsOnTarget(EightBalls& balls, bool to_float)
@@ -78,8 +77,7 @@ void findEightBallsOnTarget(EightBalls& balls, bool to_float)
   balls.largest = hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -22,8 +22,7 @@
 #include <pcl_bsh/traversal/visit_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -349,8 +348,7 @@ void searchOnTarget(const std::vector<Channel>& channels, double most_gap, doubl
   choose(search);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

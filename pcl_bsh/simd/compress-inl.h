@@ -13,8 +13,7 @@
 #include <array>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// [bits]: the numbers of the bits set, in ascending order; then zeros. (Highway's own CompressStore copies its table
@@ -65,8 +64,7 @@ private:
   decltype(hn::IndicesFromVec(LaneTag(), hn::Zero(Unsigned()))) from_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -17,8 +17,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// At least the squares of the lengths of ways to what lies in two slabs. @param dx, dy, dz from their centre
@@ -130,8 +129,7 @@ HWY_INLINE std::uint32_t crossedSlabsApart(const SphereLanes& spheres, const Sla
   return apart;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

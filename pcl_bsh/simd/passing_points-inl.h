@@ -13,8 +13,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 // A rounded place at an instant: beside the above, 3 u of twice the largest coordinate and of four times the bow. A
 // point's shift and the gap to it have 3 u.
@@ -165,8 +164,7 @@ HWY_INLINE void passPoints(const Segments<Count>& segments, std::uint32_t i, con
   }
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -14,8 +14,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Writes the values in ascending order, equal ones in the order given, and the records that go with them. Quadratic.
@@ -40,8 +39,7 @@ HWY_INLINE void rankSort(float* values, const std::uint32_t* records, std::size_
   }
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -15,8 +15,7 @@
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Arcs from start to end: at t from 0 to 1 on the parabola start + t motion + 4 t (1 - t) bow. Each is tested against
@@ -255,8 +254,7 @@ HWY_INLINE void lowerToFarthestCorner(const float (*places)[kLanes], const float
     hn::Store(hn::Min(hn::Load(d, least + i), squaredNorm(away(0, i), away(1, i), away(2, i))), d, least + i);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

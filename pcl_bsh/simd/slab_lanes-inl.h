@@ -15,8 +15,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A sphere's points between two planes: |normal . (p - center)| <= h.
 struct Slab {
@@ -211,8 +210,7 @@ HWY_INLINE void supportGaps(const SphereLanes& spheres, const SlabLanes& slabs, 
   }
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

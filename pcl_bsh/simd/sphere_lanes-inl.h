@@ -20,8 +20,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 inline constexpr std::size_t kLanes = 8; ///< children of a node
@@ -315,8 +314,7 @@ HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
   return static_cast<std::uint32_t>(std::countr_zero(smallestLanes(values, among)));
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

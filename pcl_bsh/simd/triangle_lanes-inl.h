@@ -17,8 +17,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // One number, as vectors of them.
@@ -146,8 +145,7 @@ HWY_INLINE void squaredToTriangle(const FlatTriangle<float>& triangle, const flo
                squared + i);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -16,8 +16,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Corners of sixteen triangles in one frame; those past the leaf's count hold anything.
@@ -162,8 +161,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
   return found;
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -13,8 +13,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A straight way of points, from where they are.
 struct PointsWay {
@@ -44,8 +43,7 @@ HWY_INLINE std::uint32_t pointsPassing(const LeafPoints& points, const PointsWay
   return ~far & firstBits(kLeafPoints);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -16,8 +16,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Numbers the cells of a box along a space-filling order: each bit of a code halves the axis along which cells are
@@ -95,8 +94,7 @@ private:
   std::array<std::array<std::uint16_t, 1u << kMostAxisBits>, 3> spread_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -16,8 +16,7 @@
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// The cell of a point as one number: 21 bits per axis, counted from a base below the cloud. The number need only be
 /// the same whenever it is computed: a point that rounding puts into the neighbouring voxel belongs to that
@@ -74,8 +73,7 @@ private:
   GivenPoint<T> inverse_, base_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

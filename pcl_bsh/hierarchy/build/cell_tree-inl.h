@@ -23,8 +23,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 constexpr unsigned kFinerBits = 4;       // spent at most on cells that hold nothing
 constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how many those are
@@ -369,8 +368,7 @@ private:
   bool moved_ = false;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -12,8 +12,7 @@
 #include <pcl_bsh/hierarchy/storage.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Points of a cloud as a frame has them. All that it gives are finite and within the frame's reach, so that a cloud
 /// which was changed without a word makes answers wrong, but touches no memory of others.
@@ -136,8 +135,7 @@ inline void readPoints(const Voxel& voxel, const PointsView& view)
   view.scalar == Scalar::float32 ? readPointsOf<float>(voxel, view) : readPointsOf<double>(voxel, view);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

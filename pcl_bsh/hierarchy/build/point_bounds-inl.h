@@ -14,8 +14,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Bounds of some points. The fourth lane holds nothing.
 struct PointBounds {
@@ -58,8 +57,7 @@ inline void merge(PointBounds& bounds, const PointBounds& other)
   max(Quad::load(bounds.high), Quad::load(other.high)).store(bounds.high);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -19,8 +19,7 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// A point of a float64 cloud, with the operations that Quad has for float32.
 struct Triple {
@@ -115,8 +114,7 @@ private:
   std::uint32_t whole_ = 0;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

@@ -14,8 +14,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 
 /// Points of the same voxel, as one chunk of the cloud has them; a line of the caches.
 template <class T>
@@ -94,8 +93,7 @@ private:
   std::vector<std::uint32_t> slots_;
 };
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif // toggle

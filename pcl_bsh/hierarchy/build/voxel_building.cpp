@@ -23,8 +23,7 @@
 #include <pcl_bsh/simd/point_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
@@ -228,8 +227,7 @@ void refitVoxelOnTarget(Voxel& voxel, const PointRecord* points, const PointsVie
   VoxelBuilder(voxel, view, fit, *scratch).refit(points);
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

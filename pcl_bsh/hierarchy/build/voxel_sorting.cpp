@@ -24,8 +24,7 @@
 #include <pcl_bsh/hierarchy/build/voxel_bins-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pcl_bsh {
-namespace HWY_NAMESPACE {
+namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
 /// The point at which a chunk asks first: each chunk does, so that many of them ask often enough, except the first, so
@@ -377,8 +376,7 @@ VoxelSorting sortDoubles(const PointsView& view, const HierarchyOptions& options
   return VoxelSorter<double>(view, options).run();
 }
 
-} // namespace HWY_NAMESPACE
-} // namespace pcl_bsh
+} // namespace pcl_bsh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

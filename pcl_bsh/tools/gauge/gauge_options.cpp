@@ -3,6 +3,7 @@
 
 #include <pcl_bsh/tools/cli/command_line.h>
 
+#include <pcl_bsh/io/reports/picture.h>
 #include <pcl_bsh/io/text/format_error.h>
 #include <pcl_bsh/io/text/parse_number.h>
 
