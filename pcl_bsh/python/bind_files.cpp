@@ -23,9 +23,9 @@ constexpr auto kRead = R"(The points of a file as a structured array, every fiel
 Parameters
 ----------
 path : str or path-like
-    .pcd, .ply, .las, .laz, .e57, .pts, .ptx, .csv, .xyz, .txt, .obj, .off or .stl.
+    .pcd, .ply, .las, .laz, .e57, .pts, .ptx, .csv, .xyz, .asc, .txt, .obj, .off or .stl.
 columns : sequence of str, optional
-    Names of all columns of .csv, .xyz and .txt, in place of those in the file, ``["x", "y", "z", "_"]``; "_" is not
+    Names of all columns of .csv, .xyz, .asc and .txt, in place of those in the file, ``["x", "y", "z", "_"]``; "_" is not
     read.
 )";
 
@@ -82,7 +82,7 @@ constexpr auto kWrite = R"(Writes a cloud; the file appears complete or not at a
 Parameters
 ----------
 path : str or path-like
-    .pcd, .ply, .las, .csv, .xyz, .txt or .obj.
+    .pcd, .ply, .las, .csv, .xyz, .asc, .txt or .obj.
 records : ndarray
     Structured with fields x, y, z: (n,), or (height, width) for an organised cloud. Or (n, 3).
 header : FileHeader, optional

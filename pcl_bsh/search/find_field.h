@@ -10,7 +10,7 @@
 
 namespace pcl_bsh {
 
-/// The first of the fields with that name; null where there is none.
+/// The first of the fields with that name; null where none has it.
 inline const pcl::PCLPointField* findField(const std::vector<pcl::PCLPointField>& fields, const std::string& name)
 {
   const auto found =

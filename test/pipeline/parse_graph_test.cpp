@@ -145,11 +145,12 @@ TEST(ParseGraph, RefusesUnknownTypes)
   EXPECT_EQ(refusal(around(R"({"type": 4})")), "p.json: /pipeline/1/type: is 4: give the name of a stage");
   EXPECT_EQ(refusal(around(R"({"leaf_size": 4})")), "p.json: /pipeline/1/type: is missing: give the type of the stage");
   EXPECT_EQ(refusal(around(R"({"filename": 4})")), "p.json: /pipeline/1/filename: is 4: give the name of a file");
-  EXPECT_EQ(refusal(R"(["a.rcp", "b.pcd"])"), "p.json: /0: \"a.rcp\" has none of the extensions that can be read: give "
-                                              ".pcd .ply .obj .off .stl .las .laz .e57 .pts .ptx .txt .xyz .csv, or a "
-                                              "type");
+  EXPECT_EQ(refusal(R"(["a.rcp", "b.pcd"])"),
+            "p.json: /0: \"a.rcp\" has none of the extensions that can be read: give "
+            ".pcd .ply .obj .off .stl .las .laz .e57 .pts .ptx .txt .xyz .asc .csv, or a "
+            "type");
   EXPECT_THAT(refusal(R"(["a.pcd", "b.off"])"),
-              HasSubstr("can be written: give .pcd .ply .las .laz .pts .ptx .obj .txt .xyz .csv, or a type"));
+              HasSubstr("can be written: give .pcd .ply .las .laz .pts .ptx .obj .txt .xyz .asc .csv, or a type"));
 }
 
 TEST(ParseGraph, RefusesUnknownKeysAndWrongValues)

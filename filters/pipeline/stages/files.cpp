@@ -318,7 +318,7 @@ std::deque<StageType> fileReaders()
                              "Leica's PTX: all scans in their common frame, the scanner's pose as viewpoint, NaN where "
                              "it saw nothing. One scan "
                              "is an organised cloud; several are one row of points with a field `scan`."),
-          ofFiles<TextReader>("readers.text", {".txt", ".xyz", ".csv"},
+          ofFiles<TextReader>("readers.text", {".txt", ".xyz", ".asc", ".csv"},
                               "A point per line, as float64: x y z and more columns, named by the first line or "
                               "column_4, ...; E N H and the "
                               "like are x y z; columns r g b of whole numbers up to 255 are packed as rgb, nx ny nz "
@@ -349,7 +349,7 @@ std::deque<StageType> fileWriters()
                             "return, a field `scan` parts several scans. A warning names lost fields."),
       ofFiles<NarrowWriter>("writers.obj", {".obj"},
                             "Wavefront OBJ: vertices with their colours and normals; a warning names lost fields."),
-      ofFiles<FileWriter>("writers.text", {".txt", ".xyz", ".csv"},
+      ofFiles<FileWriter>("writers.text", {".txt", ".xyz", ".asc", ".csv"},
                           "A line that names the fields, then a point per line; colours are columns r g b. A .csv "
                           "has commas between values, others blanks.")};
 }

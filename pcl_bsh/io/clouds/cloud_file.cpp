@@ -51,7 +51,7 @@ void requireSettings(const std::string& extension, const ReadSettings& settings)
                       "give a scan of .ptx and .e57 files alone");
   if (settings.columns.empty() || isColumnText(extension)) return;
   throw FormatError("is a " + extension + ", which names its fields itself",
-                    "give names of columns for .xyz, .txt and .csv files alone");
+                    "give names of columns for .xyz, .asc, .txt and .csv files alone");
 }
 
 /// The faces of a file, as it has them.

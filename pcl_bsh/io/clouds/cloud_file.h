@@ -61,8 +61,8 @@ struct CloudFacts {
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .e57        ASTM E2807 (e57/reader.h): all scans in their common frame, Cartesian or spherical, every value but
-/// texts .xyz .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first line
-/// says.
+/// texts .xyz .asc .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first
+/// line says.
 ///             Columns: x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a
 ///             comment before it names them (column_names.h). Lines that start with // are comments, and text after a #
 ///             that begins a line or stands behind a blank. Columns that float64 does not hold are whole numbers of 64
@@ -81,7 +81,7 @@ struct CloudFacts {
 /// In another coordinate system (ReadSettings::to_crs) the same holds. PROJ transforms each point; remarks tell both
 /// systems, the accuracy and the grid scale. Directions (normals, the scanners' rotations) are not turned.
 /// @param facts if not null, set to what the file says beside its points
-/// @param settings columns of .xyz, .txt and .csv, whether transforms may scale, one of several scans, units,
+/// @param settings columns of .xyz, .asc, .txt and .csv, whether transforms may scale, one of several scans, units,
 ///   coordinate systems
 ///   (read_settings.h)
 /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has
@@ -122,11 +122,11 @@ Mesh readMeshOrCorners(const std::filesystem::path& path, CloudFacts* facts = nu
 pcl::PCLPointCloud2 readCloudHeader(const std::filesystem::path& path, const ReadSettings& settings = {});
 
 /// Writes .pcd (binary_compressed; binary from 2 GiB), .ply (binary), .las (las.h), .obj (vertices), .pts or .ptx
-/// (scan_text.h), and named columns as .xyz, .txt and .csv. Fields have the names that readers of the format expect: nx
-/// ny nz, and a number per channel of a colour. An rgb has no opacity: its fourth byte is kept by PCD alone. `-` is
-/// standard output, as PCD. The file appears complete or not at all; what `path` held before is replaced only then.
-/// PCD, PLY and PTX hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a packed
-/// colour and normals. LAS and PTS have no place for points without finite coordinates, and leave them out.
+/// (scan_text.h), and named columns as .xyz, .asc, .txt and .csv. Fields have the names that readers of the format
+/// expect: nx ny nz, and a number per channel of a colour. An rgb has no opacity: its fourth byte is kept by PCD alone.
+/// `-` is standard output, as PCD. The file appears complete or not at all; what `path` held before is replaced only
+/// then. PCD, PLY and PTX hold a viewpoint. PLY holds no 64-bit integers, text no field with a count, OBJ x y z, a
+/// packed colour and normals. LAS and PTS have no place for points without finite coordinates, and leave them out.
 /// @param las as CloudFacts has it: kept in a .las
 /// @throws files::FileError when the extension is unknown, a field cannot be held, or the disk says no
 void writeCloud(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,

@@ -32,7 +32,7 @@ public:
   /// @return how many; 0 at the end. @throws files::FileError; FormatError where the stream knows no file
   virtual std::size_t read(std::uint8_t* records, std::size_t most) = 0;
 
-  /// What readCloud() tells, but for scanners, which stay where the file has them.
+  /// As readCloud() tells them. Scanners stay where the file has them.
   virtual CloudFacts facts() const { return {}; }
 
   /// Leaves out the next points. @throws as read() does

@@ -37,6 +37,7 @@ inline constexpr CloudFormat cloud_formats[] = {
     {".ptx"},
     {".csv"},
     {".xyz"},
+    {".asc"},
     {".txt"}};
 
 /// Null of any other extension.

@@ -26,7 +26,7 @@ struct ReadSettings {
   }
   ReadSettings(std::initializer_list<const char*> names) : columns(names.begin(), names.end()) {}
 
-  ColumnNames columns;                  ///< of .xyz, .txt and .csv; empty: as the file says
+  ColumnNames columns;                  ///< of .xyz, .asc, .txt and .csv; empty: as the file says
   bool allow_scale = false;             ///< transforms of a .ptx may scale uniformly (rigid_pose.h)
   std::optional<std::size_t> scan = {}; ///< of a .ptx or .e57 only that one, from 0; of a .ptx as an organised cloud
   bool beams = false; ///< directions of an .e57's beams without a return are read, to beam_field_names

@@ -63,7 +63,7 @@ ColumnNames withAxes(ColumnNames names)
 
 bool isColumnText(std::string_view extension)
 {
-  return extension == ".xyz" || extension == ".txt" || extension == ".csv";
+  return extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
 }
 
 void ColumnChoice::add(const std::string& text)
@@ -95,7 +95,7 @@ void ColumnChoice::requireUsed(const std::vector<std::filesystem::path>& files) 
     return isColumnText(extensionOf(file)) || isPipe(file);
   };
   if (all_ && std::none_of(files.begin(), files.end(), is_text))
-    throw FormatError("names columns, and no .xyz, .txt or .csv file is read", "leave it out");
+    throw FormatError("names columns, and no .xyz, .asc, .txt or .csv file is read", "leave it out");
 }
 
 } // namespace pcl_bsh::io

@@ -13,7 +13,7 @@ namespace pcl_bsh::cli {
 void ReadOptions::addTo(CLI::App& app)
 {
   app.add_option("--columns", columns_,
-                 "names of the columns of .xyz, .txt and .csv, as x,y,z,_,intensity (_ is\n"
+                 "names of the columns of .xyz, .asc, .txt and .csv, as x,y,z,_,intensity (_ is\n"
                  "not read), in place of what they say; FILE=NAMES: of that file alone;\n"
                  "may be given more than once")
       ->type_name("NAMES")

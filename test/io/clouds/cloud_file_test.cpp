@@ -164,7 +164,7 @@ TEST(CloudFile, SaysWhatCannotBeRead)
   EXPECT_EQ(failureOf("/dev/null"), "is neither a file nor a pipe: save the cloud to a file first");
   EXPECT_EQ(failureOf(folder.write("a.pcd", "")), "is empty: export or copy the file again");
   const std::string readable =
-      "give a .pcd, .ply, .las, .laz, .e57, .obj, .off, .stl, .pts, .ptx, .csv, .xyz or .txt file";
+      "give a .pcd, .ply, .las, .laz, .e57, .obj, .off, .stl, .pts, .ptx, .csv, .xyz, .asc or .txt file";
   EXPECT_EQ(failureOf(folder.write("a.rcp", "x")), "unknown extension '.rcp': " + readable);
   EXPECT_EQ(failureOf(folder.write("a", "x")), "has no extension: " + readable);
   EXPECT_EQ(failureOf(folder.write("a.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n")),
@@ -312,7 +312,7 @@ TEST(CloudFile, NamesOfColumnsAreForFilesOfColumnsAlone)
   for (const char* name : {"a.pcd", "a.las"}) {
     const std::string wrong =
         std::string(name) + ": is a " + fs::path(name).extension().string() +
-        ", which names its fields itself: give names of columns for .xyz, .txt and .csv files alone";
+        ", which names its fields itself: give names of columns for .xyz, .asc, .txt and .csv files alone";
     EXPECT_THAT(
         [&] {
           readCloud(folder / name, nullptr, {"x", "y", "z"});
@@ -324,7 +324,7 @@ TEST(CloudFile, NamesOfColumnsAreForFilesOfColumnsAlone)
         },
         testing::ThrowsMessage<files::FileError>(testing::HasSubstr(wrong)));
   }
-  for (const char* name : {"b.xyz", "b.txt", "b.csv"}) {
+  for (const char* name : {"b.xyz", "b.asc", "b.txt", "b.csv"}) {
     folder.write(name, "1 2 3\n");
     EXPECT_EQ(valueOf(readCloud(folder / name, nullptr, {"z", "y", "x"}), 0, "x"), 3) << name;
     EXPECT_EQ(namesOf(readCloudHeader(folder / name, {"z", "y", "x"})), "z y x") << name;

@@ -63,10 +63,10 @@ TEST(CloudFormats, AreReadAndWrittenAsTheTableSays)
 TEST(CloudFormats, AreListedInHelp)
 {
   EXPECT_EQ(withFormats("Reads {read}, not {unwritten}."),
-            std::string("Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .txt, not ") +
+            std::string("Reads .pcd .ply .las .laz .e57 .obj .off .stl .pts .ptx .csv .xyz .asc .txt, not ") +
                 (writesLaz() ? ".e57 .off .stl." : ".laz .e57 .off .stl."));
-  EXPECT_EQ(extensionsOf(isWritten, ", ", " or "),
-            std::string(".pcd, .ply, .las, ") + (writesLaz() ? ".laz, " : "") + ".obj, .pts, .ptx, .csv, .xyz or .txt");
+  EXPECT_EQ(extensionsOf(isWritten, ", ", " or "), std::string(".pcd, .ply, .las, ") + (writesLaz() ? ".laz, " : "") +
+                                                       ".obj, .pts, .ptx, .csv, .xyz, .asc or .txt");
 }
 
 TEST(CloudFormats, OnlyOneBeginsSo)

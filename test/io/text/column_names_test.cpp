@@ -47,12 +47,15 @@ TEST(ColumnChoice, OneForAllAndOneForAFile)
   EXPECT_THAT(defectOf([&] { choice.add("a=b.csv=x,y,z"); }), HasSubstr("given twice for a=b.csv"));
   ColumnChoice all;
   all.add("x,y,z");
-  EXPECT_THAT(defectOf([&] { all.requireUsed({"a.las", "b.ply"}); }), HasSubstr("no .xyz, .txt or .csv file is read"));
+  EXPECT_THAT(defectOf([&] {
+                all.requireUsed({"a.las", "b.ply"});
+              }),
+              HasSubstr("no .xyz, .asc, .txt or .csv file is read"));
 }
 
-TEST(ColumnNames, AreOfThreeKindsOfFiles)
+TEST(ColumnNames, AreOfFourKindsOfFiles)
 {
-  for (const char* extension : {".xyz", ".txt", ".csv"}) {
+  for (const char* extension : {".xyz", ".asc", ".txt", ".csv"}) {
     EXPECT_TRUE(isColumnText(extension)) << extension;
     ColumnChoice all;
     all.add("x,y,z");

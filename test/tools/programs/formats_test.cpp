@@ -49,7 +49,7 @@ protected:
     pcl::PCLPointCloud2 cloud;
     pcl::toPCLPointCloud2(corners, cloud);
     io::writeMesh(folder / "mesh.ply", cloud, io::readMesh(folder / "c.off").triangles);
-    for (const char* name : {"c.pcd", "c.ply", "c.las", "c.pts", "c.ptx", "c.csv", "c.xyz", "c.txt"})
+    for (const char* name : {"c.pcd", "c.ply", "c.las", "c.pts", "c.ptx", "c.csv", "c.xyz", "c.asc", "c.txt"})
       io::writeCloud(folder / name, cloud);
     std::vector<std::vector<double>> axes(3);
     for (const pcl::PointXYZ& corner : corners)
@@ -77,7 +77,7 @@ protected:
 };
 
 const std::vector<std::string> EveryFormat::names = {"c.pcd", "c.ply", "mesh.ply", "c.las", "c.e57", "c.pts", "c.ptx",
-                                                     "c.csv", "c.xyz", "c.txt",    "c.off", "c.obj", "c.stl"};
+                                                     "c.csv", "c.xyz", "c.asc",    "c.txt", "c.off", "c.obj", "c.stl"};
 
 TEST_F(EveryFormat, IsTakenByCollide)
 {

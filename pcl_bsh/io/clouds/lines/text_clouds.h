@@ -13,11 +13,11 @@
 
 namespace pcl_bsh::io {
 
-/// .xyz, .txt, .csv: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first line
-/// that has values says. The line, or a comment before it (// or #) with as many words, may name the columns: x, y and
-/// z are among them, or what withAxes() takes for them. Then colours of a byte per channel are packed, and normals get
-/// PCL's names (pcl_names.h). Without a row, a file that names x, y and z is an empty cloud. A line of one whole number
-/// before the first row counts the points, as CloudCompare writes it: fewer are an error, more a remark.
+/// .xyz, .asc, .txt, .csv: a point per line. Values are separated by semicolons, commas, tabs or blanks, as the first
+/// line that has values says. The line, or a comment before it (// or #) with as many words, may name the columns: x, y
+/// and z are among them, or what withAxes() takes for them. Then colours of a byte per channel are packed, and normals
+/// get PCL's names (pcl_names.h). Without a row, a file that names x, y and z is an empty cloud. A line of one whole
+/// number before the first row counts the points, as CloudCompare writes it: fewer are an error, more a remark.
 ///
 /// Columns without names may be a colour or a normal. Columns 4 to 6 are a colour if in all rows they are whole numbers
 /// from 0 to 255, and each exceeds 31 in some row, as no return and no class of LAS does. The last three of nine or
