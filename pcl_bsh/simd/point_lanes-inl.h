@@ -177,7 +177,7 @@ HWY_INLINE void takeNearestTwo(const LeafPoints& points, std::uint32_t points_ne
   const auto each = [&](const auto& take) HWY_ATTR {
     for (const std::uint32_t j : Bits(others)) {
       take(hn::Set(d, x[j]), hn::Set(d, y[j]), hn::Set(d, z[j]), kBalls ? hn::Set(d, radii[j] * scale) : hn::Zero(d),
-           hn::Set(di, name + j));
+           hn::Set(di, name + static_cast<std::int32_t>(j)));
     }
   };
   constexpr std::size_t step = hn::MaxLanes(LaneTag());
