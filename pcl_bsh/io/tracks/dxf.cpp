@@ -111,7 +111,7 @@ private:
       }
       const bool old_header = kind == "POLYLINE"; // its 10 and 20 are no vertex
       const bool is_outline = kind == "LINE" || kind == "LWPOLYLINE" || kind == "VERTEX";
-      if ((kind == "LWPOLYLINE" || old_header) && code_ == 70) closed = (static_cast<int>(number()) & 1) != 0;
+      if ((kind == "LWPOLYLINE" || old_header) && code_ == 70) closed = std::fmod(std::trunc(number()), 2.0) != 0.0;
       if (!is_outline) continue;
       if (code_ == 10 || (kind == "LINE" && code_ == 11)) line.push_back({number(), 0.0});
       if ((code_ == 20 || (kind == "LINE" && code_ == 21)) && !line.empty()) line.back().height = number();
