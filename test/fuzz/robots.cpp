@@ -37,10 +37,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   fuzz::mayRefuse([&] {
     robots::Robot robot;
     for (const char* name : {"base", "arm", "hand"}) robot.links.push_back({name, {}, {}});
-    for (const std::size_t link : {1, 2})
+    for (const std::size_t link : {std::size_t{1}, std::size_t{2}})
       robot.links[link].joint = robots::Joint{link == 1 ? "joint" : "wrist", robots::Joint::Kind::continuous, link - 1};
-    for (const auto& [name, values] : io::readGroups(file, robot).states)
-      fuzz::mayRefuse([&] { robot.requireValues(values); });
+    const io::RobotGroups groups = io::readGroups(file, robot);
+    for (const auto& state : groups.states) fuzz::mayRefuse([&] { robot.requireValues(state.second); });
     for (const auto& pair : robot.disabled_pairs)
       fuzz::require(pair[0] < robot.links.size() && pair[1] < robot.links.size(), "a pair of no link");
   });
