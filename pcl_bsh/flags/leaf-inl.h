@@ -369,8 +369,10 @@ inline std::uint32_t hitBalls(const ObstacleVoxel& obstacle, FlagVisit& visit, s
       compare(other);
       continue;
     }
-    for (const std::uint32_t j : Bits(facing))
-      if (hit != open) compare({other.voxel, other.begin + j, 1});
+    for (const std::uint32_t j : Bits(facing)) {
+      if (hit == open) break;
+      compare({other.voxel, other.begin + j, 1});
+    }
   }
   return hit;
 }

@@ -106,8 +106,10 @@ public:
       for (std::uint32_t j = 0; j < b.count && going; ++j) {
         const std::uint32_t passing =
             leaves.near & pointsPassing(leaves.points, way, b.x()[j], b.y()[j], b.z()[j], miss);
-        for (const std::uint32_t i : Bits(passing))
-          if (going) found(i, j, false);
+        for (const std::uint32_t i : Bits(passing)) {
+          if (!going) break;
+          found(i, j, false);
+        }
       }
     }
     else {

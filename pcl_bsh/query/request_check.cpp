@@ -54,10 +54,10 @@ void checkExact(const Effort& effort)
       .withValue(effort.accuracy.value);
 }
 
-bool isRigid(const Eigen::Isometry3d& pose)
+bool isRigid(const Eigen::Isometry3d& pose, double tolerance)
 {
   return pose.matrix().allFinite() && pose.matrix().row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) &&
-         deviationFromRigid(pose.linear()) <= rigidity_tolerance && pose.linear().determinant() >= 0.0;
+         deviationFromRigid(pose.linear()) <= tolerance && pose.linear().determinant() >= 0.0;
 }
 
 void checkPose(const std::string& name, const Eigen::Isometry3d& pose, const std::optional<std::size_t>& index)

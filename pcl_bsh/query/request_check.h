@@ -30,8 +30,8 @@ PCL_BSH_EXPORT_INTERNAL void checkAccuracy(const Accuracy& accuracy);
 /// Refuses an accuracy other than exact, for a query that knows no other.
 PCL_BSH_EXPORT_INTERNAL void checkExact(const Effort& effort);
 
-/// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= rigidity_tolerance.
-PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose);
+/// Whether a pose is finite, has the last row 0 0 0 1, does not mirror, and has |R'R - I| <= tolerance.
+PCL_BSH_EXPORT_INTERNAL bool isRigid(const Eigen::Isometry3d& pose, double tolerance = rigidity_tolerance);
 
 /// Refuses a pose that is not rigid, called `name` in the message. @param index which of several it is
 PCL_BSH_EXPORT_INTERNAL void checkPose(const std::string& name, const Eigen::Isometry3d& pose,

@@ -6,6 +6,7 @@
 #include <pcl_bsh/pairs/any_at_places.h>
 #include <pcl_bsh/pairs/closest_pair.h>
 #include <pcl_bsh/query/record_distance.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/robot/convex_distance.h>
 #include <pcl_bsh/robot/gaps.h>
 #include <pcl_bsh/robot/outward.h>
@@ -29,7 +30,8 @@ void require(double length, const char* name, bool above_zero)
 
 void requirePose(const Eigen::Isometry3d& pose, const std::string& name)
 {
-  if (!isRigid(pose)) throw InvalidInput(Input::pose, name, "is not rigid within 1e-12", "normalise its rotation");
+  if (!isRigid(pose, kRigid))
+    throw InvalidInput(Input::pose, name, "is not rigid within 1e-12", "normalise its rotation");
 }
 
 WorldOptions checked(const WorldOptions& options)

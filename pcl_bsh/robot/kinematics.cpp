@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/invalid_input.h>
+#include <pcl_bsh/query/request_check.h>
 #include <pcl_bsh/robot/kinematics.h>
 #include <pcl_bsh/robot/outward.h>
 #include <pcl_bsh/robot/shapes/shape.h>
@@ -21,7 +22,8 @@ constexpr double kUnit = 0x1p-53;
 
 void requireRigid(const Eigen::Isometry3d& pose, const std::string& subject)
 {
-  if (!isRigid(pose)) refuse(subject, "has a pose that is not rigid", "give a rotation and a finite translation");
+  if (!isRigid(pose, kRigid))
+    refuse(subject, "has a pose that is not rigid", "give a rotation and a finite translation");
 }
 
 void requireShapes(const Link& link)

@@ -14,11 +14,6 @@ namespace {
 
 using namespace pcl_bsh;
 
-bool isFinite(const Point3& vector)
-{
-  return std::isfinite(vector[0]) && std::isfinite(vector[1]) && std::isfinite(vector[2]);
-}
-
 double planDistance(const Point3& a, const Point3& b)
 {
   return std::hypot(a[0] - b[0], a[1] - b[1]);

@@ -61,8 +61,9 @@ struct CloudFacts {
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .e57        ASTM E2807 (e57/reader.h): all scans in their common frame, Cartesian or spherical, every value but
-/// texts .xyz .asc .txt .csv  a point per line, its values separated by semicolons, commas, tabs or blanks as the first
-/// line says.
+///             texts
+/// .xyz .asc .txt .csv
+///             a point per line, its values separated by semicolons, commas, tabs or blanks as the first line says.
 ///             Columns: x y z and then column_4, column_5, ... as float64, unless `columns`, the first line or a
 ///             comment before it names them (column_names.h). Lines that start with // are comments, and text after a #
 ///             that begins a line or stands behind a blank. Columns that float64 does not hold are whole numbers of 64
