@@ -40,12 +40,12 @@ if(PCL_BSH_BUILD_PIPELINES OR PCL_BSH_BUILD_SITES)
   find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED) # its CMake package asks for programs of other Debian packages
   find_library(LIBZIP_LIBRARY zip REQUIRED)
   mark_as_advanced(LIBZIP_INCLUDE_DIR LIBZIP_LIBRARY)
-  list(APPEND pcl_components io features segmentation)
+  list(APPEND pcl_components features segmentation)
 endif()
 if(PCL_BSH_BUILD_TESTS OR PCL_BSH_BUILD_TOOLS) # algorithms that are given our search class
   list(APPEND pcl_components io features segmentation keypoints registration surface)
 endif()
-# Reading and writing clouds needs nothing of what pcl_io would drag in for cameras and windows.
+# Tests read and write clouds by pcl_io, and need nothing of what it would drag in for cameras and windows.
 set(unwanted VTK OpenNI OpenNI2 libusb)
 foreach(package IN LISTS unwanted)
   set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)

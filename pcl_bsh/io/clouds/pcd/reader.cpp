@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pcl_bsh/base/counted.h>
 #include <pcl_bsh/io/clouds/lines/field_text.h>
+#include <pcl_bsh/io/clouds/pcd/lzf.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/text/header_count.h>
 
 #include <pcl/common/io.h>
-#include <pcl/io/lzf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,9 +188,7 @@ std::vector<std::uint8_t> decompress(std::string_view body, std::uint64_t wanted
                       std::to_string(wanted));
   }
   std::vector<std::uint8_t> columns(raw);
-  if (pcl::lzfDecompress(body.data() + sizes, compressed, columns.data(), raw) != raw) {
-    throw FormatError("its compressed points are damaged");
-  }
+  if (!readLzf(body.substr(sizes, compressed), columns)) throw FormatError("its compressed points are damaged");
   return columns;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <pcl_bsh/io/clouds/pcd/lzf.h>
 #include <pcl_bsh/io/clouds/pcd/pcd.h>
 #include <pcl_bsh/io/clouds/pcl_names.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/text/number_text.h>
 
 #include <pcl/common/io.h>
-#include <pcl/io/lzf.h>
 
 #include <sstream>
 
@@ -58,16 +58,12 @@ std::vector<std::uint8_t> columnsOf(const pcl::PCLPointCloud2& cloud, const Fiel
 
 void writeCompressed(std::ostream& out, const std::vector<std::uint8_t>& columns)
 {
-  const auto raw = static_cast<std::uint32_t>(columns.size());
-  // LZF makes a stream that does not compress at most a 32nd longer.
-  std::vector<char> compressed(columns.size() + columns.size() / 16 + 64);
-  const std::uint32_t size = raw == 0 ? 0
-                                      : pcl::lzfCompress(columns.data(), raw, compressed.data(),
-                                                         static_cast<std::uint32_t>(compressed.size()));
-  if (size == 0 && raw != 0) throw FormatError("the points could not be compressed", "write a .ply instead");
-  out.write(reinterpret_cast<const char*>(&size), sizeof size);
-  out.write(reinterpret_cast<const char*>(&raw), sizeof raw);
-  out.write(compressed.data(), size);
+  const std::string compressed = lzfOf(columns);
+  for (const std::size_t size : {compressed.size(), columns.size()}) {
+    const auto stored = static_cast<std::uint32_t>(size);
+    out.write(reinterpret_cast<const char*>(&stored), sizeof stored);
+  }
+  out << compressed;
 }
 
 } // namespace
