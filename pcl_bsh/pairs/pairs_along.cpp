@@ -44,7 +44,7 @@ public:
     const Sphere of_a = sphereOf(walk, walk.a, lanes.a), of_b = sphereOf(walk, walk.b, lanes.b);
     way_ = end_ * ways_.way(of_a.center);
     near_ = beside_ + turn_size_ * of_a.radius;
-    reach_ = near_ + way_.norm() * kUp;
+    reach_ = near_ + way_.norm() * kUp + kVanishing;
     const Eigen::Vector3d place_a = walk.a.pose * of_a.center, place_b = walk.b.pose * of_b.center;
     const double radii = of_a.radius + of_b.radius;
     const double rounding = kDoubleMargin * (of_a.center.lpNorm<1>() + of_b.center.lpNorm<1>() + place_a.lpNorm<1>() +
@@ -69,11 +69,11 @@ public:
     return {way.x(), way.y(), way.z(), square > kLeastSquare ? 1.0f / square : 0.0f};
   }
 
-  /// Beside the way. Rounding takes less of a point's way and of its distance than the last term, and a way that is
-  /// taken for rest is shorter than it.
+  /// Beside the way. Rounding changes a point's way and its distance by less than the second term. A way that is taken
+  /// for rest is shorter than the third.
   float miss(const RelativeFrame& frame) const
   {
-    return frame.band(near_ + 0x1p-20 * reach_ + 0x1p-19 * frame.unit() * std::sqrt(double{kLeastSquare})).miss;
+    return frame.band(near_ + 0x1p-20 * reach_ + 2.0 * frame.unit() * std::sqrt(double{kLeastSquare})).miss;
   }
 
   Added add(PointPair pair, bool, Work&)
@@ -88,6 +88,7 @@ public:
 private:
   static constexpr double kUp = 1.0 + kDoubleMargin;
   static constexpr float kLeastSquare = 0x1p-100f; ///< of a way, in a frame's units
+  static constexpr double kVanishing = 0x1p-450;   ///< a length below it may have a square that vanishes
 
   struct Sphere {
     Eigen::Vector3d center; ///< in the cloud's frame

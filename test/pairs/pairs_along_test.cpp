@@ -86,6 +86,22 @@ TEST(PairsAlong, AreThoseOfAllPairs)
   EXPECT_GT(within, 5000u);
 }
 
+/// Ways that are too short for floats, down to those whose squares vanish, lead to a point exactly.
+TEST(PairsAlong, FindTheEndsOfTheShortestWays)
+{
+  for (int power = -1070; power <= 0; ++power) {
+    SCOPED_TRACE(power);
+    const double length = std::ldexp(1.0, power);
+    const Cloud a({{0, 0, 0}}, {Scalar::float64, 0, 0}), b({{length, 0, 0}}, {Scalar::float64, 0, 0});
+    StraightWays ways;
+    ways.shift = {length, 0, 0};
+    EXPECT_EQ(
+        pairsAlong(SphereHierarchy(a.view()), ways, {SphereHierarchy(b.view()), Eigen::Isometry3d::Identity()}, {0.0})
+            .pairs.size(),
+        1u);
+  }
+}
+
 /// A crate's face beside a floor: on its way along the floor, few points come near those of the floor.
 TEST(PairsAlong, PassOverWhatIsBesideTheWay)
 {
