@@ -6,11 +6,14 @@
 #include "support/made_scans.h"
 #include "support/temporary_folder.h"
 
+#include <pcl_bsh/filters/collision_field.h>
+
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -139,9 +142,48 @@ TEST_F(SeenStages, KnowWhereASingleScanIsFrom)
   one->scanners = {stood};
   auto merged = std::make_shared<StageCloud>(*outputOf(one, merge, cloudOf({1, 0, 0}, elsewhere)));
   EXPECT_EQ(merged->scanners, (std::vector<io::Viewpoint>{stood, elsewhere}));
-  merged->scanners.clear(); // of a file that numbers its scans and does not say where they are from
-  merged->viewpoint = elsewhere;
-  EXPECT_EQ(outputOf(merged, merge, merged)->scanners, (std::vector<io::Viewpoint>{elsewhere, elsewhere}));
+}
+
+/// A file may number its scans and not say where they are from. A viewpoint at the origin is what a file without one
+/// has.
+TEST_F(SeenStages, KnowNoMergedScanWhereOneIsNotKnown)
+{
+  const std::string merge = R"({"type": "filters.merge", "inputs": ["in", "other"], "number_scans": true})";
+  const StageCloudPtr one = cloudOf({0, 0, 0}, at_scanner), nowhere = cloudOf({1, 0, 0}, io::no_viewpoint);
+  const auto two = std::make_shared<StageCloud>(*outputOf(one, merge, one));
+  two->scanners.clear();
+  two->viewpoint = at_scanner;
+  const auto numbersOf = [](const StageCloudPtr& cloud) {
+    std::vector<double> numbers;
+    for (std::uint32_t i = 0; i < cloud->cloud.width; ++i) numbers.push_back(io::valueOf(cloud->cloud, i, "scan"));
+    return numbers;
+  };
+  const StageCloudPtr merged = outputOf(two, merge, two);
+  EXPECT_EQ(merged->scanners, std::vector<io::Viewpoint>());
+  EXPECT_EQ(numbersOf(merged), (std::vector<double>{0, 1, 2, 3}));
+  for (const StageCloudPtr& part : {outputOf(one, merge, nowhere), outputOf(nowhere, merge, one)}) {
+    EXPECT_EQ(part->scanners, std::vector<io::Viewpoint>());
+    EXPECT_EQ(numbersOf(part), (std::vector<double>{0, 1}));
+    EXPECT_THAT(errorOf([&] { runStage(part, flag + "}", machine); }), HasSubstr("origin"));
+  }
+}
+
+TEST_F(SeenStages, RefuseScanNumbersThatTheFieldDoesNotHold)
+{
+  const auto merged = [&](const auto& numbers) {
+    auto cloud = std::make_shared<StageCloud>(*cloudOf({0, 0, 0}, at_scanner));
+    cloud->cloud = withFields(cloud->cloud, {{"scan", &numbers}});
+    return outputOf(cloud, R"({"type": "filters.merge", "inputs": ["in", "other"], "number_scans": true})", cloud);
+  };
+  const auto refused = [&](const auto& numbers) { return errorOf([&] { merged(numbers); }); };
+  EXPECT_EQ(io::valueOf(merged(std::vector<std::uint8_t>{127})->cloud, 1, "scan"), 255.0);
+  EXPECT_THAT(
+      refused(std::vector<std::uint8_t>{128}),
+      HasSubstr(
+          "has scan number 128, and 129 scans are before it: the field `scan` takes whole numbers from 0 to 255"));
+  for (const float number : {-1.0f, 0.5f, NAN, 1e8f})
+    EXPECT_THAT(refused(std::vector<float>{number}),
+                HasSubstr("the field `scan` takes whole numbers from 0 to 16777216"));
 }
 
 } // namespace

@@ -5,8 +5,11 @@
 #include <pcl_bsh/io/clouds/field_type.h>
 #include <pcl_bsh/io/clouds/records.h>
 #include <pcl_bsh/io/clouds/scan_origins_of.h>
+#include <pcl_bsh/io/text/number_text.h>
+#include <pcl_bsh/search/find_field.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -47,48 +50,67 @@ struct Merge : Stage {
     const auto output = emptyLike(*inputs[0]);
     pcl::PCLPointCloud2& merged = output->cloud;
     output->scanners.clear();
+    std::uint64_t scans = 0;
     if (number_scans && !hasScans(merged)) io::addField(merged, io::scan_field_name, pcl::PCLPointField::UINT32);
     io::allocate(merged, static_cast<std::uint32_t>(points));
     std::uint8_t* next = merged.data.data();
     for (const StageCloudPtr& input : inputs) requireOneSystem(*inputs[0], *input, "inputs", *this);
-    for (StageCloudPtr& input : inputs) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      StageCloudPtr& input = inputs[i];
       std::uint8_t* const begin = next;
       next = append(input->cloud, merged, next);
-      if (number_scans) numberScans(*input, *output, begin, next);
+      if (number_scans) {
+        const std::uint64_t count = numberScans(*input, i, scans, merged, begin, next);
+        addScanners(*input, count, output->scanners);
+        scans += count;
+      }
       if (input->cloud.is_dense == 0) merged.is_dense = 0;
       if (input->viewpoint != output->viewpoint) output->viewpoint = io::no_viewpoint; // it would be that of some
       input.reset();
     }
+    if (output->scanners.size() != scans)
+      output->scanners.clear(); // some are not known, and others' numbers would be theirs
     return output;
   }
 
 private:
-  static bool hasScans(const pcl::PCLPointCloud2& cloud)
-  {
-    return std::any_of(cloud.fields.begin(), cloud.fields.end(),
-                       [](const pcl::PCLPointField& field) { return field.name == io::scan_field_name; });
-  }
+  static bool hasScans(const pcl::PCLPointCloud2& cloud) { return findField(cloud, io::scan_field_name) != nullptr; }
 
-  /// The records of an input count as the next scans: its own, where it numbers them, or one.
-  static void numberScans(const StageCloud& input, StageCloud& output, std::uint8_t* record, const std::uint8_t* end)
+  /// Adds `first` to the numbers of an input's scans: its own, where it has them, or 0. Returns how many scans it has.
+  static std::uint64_t numberScans(const StageCloud& input, std::size_t index, std::uint64_t first,
+                                   const pcl::PCLPointCloud2& merged, std::uint8_t* record, const std::uint8_t* end)
   {
-    pcl::PCLPointCloud2& merged = output.cloud;
     const bool several = hasScans(input.cloud);
-    const auto field = std::find_if(merged.fields.begin(), merged.fields.end(),
-                                    [](const pcl::PCLPointField& one) { return one.name == io::scan_field_name; });
-    const std::size_t first = output.scanners.size();
+    std::uint64_t count = several ? input.scanners.size() : 1;
+    const pcl::PCLPointField* const field = findField(merged.fields, io::scan_field_name);
     io::withFieldType(field->datatype, [&](auto number) {
+      using Number = decltype(number);
+      constexpr double most = std::min(static_cast<double>(std::numeric_limits<Number>::max()), 0x1p24); // a float, too
       for (; record != end; record += merged.point_step) {
         if (several) std::memcpy(&number, record + field->offset, sizeof number);
-        number = static_cast<decltype(number)>(first + static_cast<std::size_t>(number));
+        const double own = several ? static_cast<double>(number) : 0.0, sum = own + static_cast<double>(first);
+        if (!(own >= 0.0 && own == std::floor(own) && sum <= most))
+          throw OptionError("inputs/" + std::to_string(index),
+                            "has scan number " + io::numberText(own) + ", and " + std::to_string(first) +
+                                " scans are before it: the field `scan` takes whole numbers from 0 to " +
+                                io::numberText(most));
+        count = std::max(count, static_cast<std::uint64_t>(own) + 1);
+        number = static_cast<Number>(sum);
         std::memcpy(record + field->offset, &number, sizeof number);
-        number = {};
       }
     });
-    if (!several || input.scanners.empty())
-      output.scanners.push_back(input.scanners.empty() ? input.viewpoint : input.scanners.front());
-    else
-      output.scanners.insert(output.scanners.end(), input.scanners.begin(), input.scanners.end());
+    return count;
+  }
+
+  /// Appends where the scanners of an input's scans stood, where that is known: a viewpoint stands for one scan, and at
+  /// the origin for none.
+  static void addScanners(const StageCloud& input, std::uint64_t count, std::vector<io::Viewpoint>& scanners)
+  {
+    if (input.scanners.size() == count)
+      scanners.insert(scanners.end(), input.scanners.begin(), input.scanners.end());
+    else if (input.scanners.empty() && count == 1 &&
+             !std::equal(input.viewpoint.begin(), input.viewpoint.begin() + 3, io::no_viewpoint.begin()))
+      scanners.push_back(input.viewpoint);
   }
 
   static void requireFields(const CloudHeader& needed, const CloudHeader& cloud, std::size_t input)
