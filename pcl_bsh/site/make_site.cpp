@@ -77,12 +77,16 @@ public:
   }
 
 private:
+  io::ColumnNames columnsOf(const fs::path& file) const
+  {
+    return options_.columns ? options_.columns(file) : io::ColumnNames();
+  }
+
   std::unique_ptr<io::CloudStream> open(std::size_t cloud) const
   {
     const fs::path& file = clouds_[cloud];
     const bool may_have_scans = io::mayHaveScans(io::extensionOf(file));
-    io::ReadSettings reading(options_.columns ? options_.columns(file) : io::ColumnNames(), options_.allow_scale,
-                             may_have_scans ? options_.scan : std::nullopt);
+    io::ReadSettings reading(columnsOf(file), options_.allow_scale, may_have_scans ? options_.scan : std::nullopt);
     if (!options_.unit.empty()) reading.unit = io::lengthUnitOf(options_.unit);
     if (!options_.to_unit.empty()) reading.to_unit = io::lengthUnitOf(options_.to_unit);
     reading.crs = options_.crs;
@@ -193,13 +197,16 @@ private:
   /// Returns the clouds and options that the site is made of. A run that is continued must have equal ones.
   io::Json question() const
   {
-    io::Json question = {{"version", 2},
+    io::Json question = {{"version", 3},
                          {"tile_points", options_.tile_points},
                          {"overview_points", options_.overview_points},
+                         {"units", {options_.unit, options_.to_unit}},
+                         {"systems", {options_.crs, options_.to_crs}},
+                         {"scan", options_.scan ? io::Json(*options_.scan) : io::Json()},
                          {"clouds", io::Json::array()}};
     for (const fs::path& cloud : clouds_) {
-      question["clouds"].push_back(
-          {cloud.string(), fs::file_size(cloud), fs::last_write_time(cloud).time_since_epoch().count()});
+      question["clouds"].push_back({cloud.string(), fs::file_size(cloud),
+                                    fs::last_write_time(cloud).time_since_epoch().count(), columnsOf(cloud)});
     }
     return question;
   }

@@ -36,7 +36,7 @@ struct MakeOptions {
   bool allow_scale = false;             ///< transforms of .ptx files may scale uniformly; else they are refused
   unsigned threads = 0;                 ///< that unpack LAZ; 0: all of the machine's
   std::optional<std::size_t> scan = {}; ///< of .ptx and .e57 files only that one, from 0
-  /// Names of a cloud's columns, as readCloud() takes them; null: as the files say. A run that goes on needs the same.
+  /// Names of a cloud's columns, as readCloud() takes them; null: as the files say.
   std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
 
   /// The clouds' lengths, and then the site's, are in these: mm, cm, m, ft or us-ft. Empty: as files say, and as they

@@ -25,6 +25,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <thread>
 
@@ -526,6 +527,22 @@ TEST_F(SitesContinued, IsRefusedForAnotherQuestionOrDamage)
   refuse("of other clouds or options");
   EXPECT_TRUE(contentsOf(folder / "site") == left);
   ++options.tile_points;
+  std::vector<std::function<void()>> changes = {
+      [&] { options.unit = "ft"; },
+      [&] { options.unit = "mm", options.to_unit = "m"; },
+      [&] { options.columns = [](const fs::path&) {
+              return io::ColumnNames{"y", "x", "z"};
+            }; },
+      [&] { options.scan = 0; },
+  };
+  if (io::hasProj()) changes.emplace_back([&] { options.crs = "EPSG:25832"; });
+  for (const auto& change : changes) {
+    const MakeOptions before = options;
+    change();
+    refuse("of other clouds or options");
+    options = before;
+    EXPECT_TRUE(contentsOf(folder / "site") == left);
+  }
   const auto written = fs::last_write_time(folder / "scan.xyz");
   fs::last_write_time(folder / "scan.xyz", written + std::chrono::seconds(1));
   refuse("of other clouds or options");
