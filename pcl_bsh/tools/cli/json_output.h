@@ -5,8 +5,8 @@
 #include <pcl_bsh/io/json/json_document.h>
 #include <pcl_bsh/query/work.h>
 
+#include <exception>
 #include <iostream>
-#include <stdexcept>
 
 namespace pcl_bsh::cli {
 
@@ -32,7 +32,7 @@ auto checkTold(bool json, nlohmann::ordered_json failure, const Check& check)
   try {
     return check();
   }
-  catch (const std::runtime_error& error) {
+  catch (const std::exception& error) {
     failure["error"] = error.what();
     if (json) writeJson(std::cout, failure);
     throw;

@@ -315,12 +315,24 @@ TEST(SceneProgram, TellsProgramsTheSameAsPeople)
   EXPECT_EQ(summary["colliding_steps"], 0);
   EXPECT_EQ(summary["moves"]["touched"], 3);
 
+  folder.write("arm.urdf", R"(<robot name="arm"><link name="foot"><collision><geometry><box size="1 1 1"/></geometry>
+    </collision></link></robot>)");
+  folder.write("states.csv", "elbow\n1\n");
   const std::string wrong = folder.write("wrong.json", crashWith(R"("ani": true)")).string();
-  const Outcome refused = run("pcl_bsh_scene", wrong + " --validate --json");
-  EXPECT_EQ(refused.exit_code, 1);
-  const Json told = Json::parse(refused.out);
-  EXPECT_EQ(told["valid"], false);
-  EXPECT_EQ("pcl_bsh_scene: " + told["error"].get<std::string>() + "\n", refused.err);
+  const std::string states = R"({"urdf": "arm.urdf", "states": "states.csv", "interval": 1})";
+  const std::string no_such_joint =
+      folder
+          .write("robot.json",
+                 R"({"clouds": {}, "effects": {"any": true}, "objects": [{"name": "arm", "robot": )" + states + "}]}")
+          .string();
+  for (const std::string& scene : {wrong, no_such_joint}) {
+    const Outcome refused = run("pcl_bsh_scene", scene + " --validate --json");
+    EXPECT_EQ(refused.exit_code, 1);
+    ASSERT_NE(refused.out, "") << refused.err;
+    const Json told = Json::parse(refused.out);
+    EXPECT_EQ(told["valid"], false);
+    EXPECT_EQ("pcl_bsh_scene: " + told["error"].get<std::string>() + "\n", refused.err);
+  }
 }
 
 constexpr auto fall = R"({
