@@ -26,7 +26,7 @@ io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSe
 
 namespace {
 
-/// One file, or its parts. The first of these has the remarks about the file.
+/// One file, or its parts. Remarks about a file of parts are in `facts` alone.
 std::vector<io::Obstacle> load(const ObstacleChoice& choice, const Question& question, const Loading& loading,
                                io::CloudFacts& facts, double& seconds)
 {
@@ -42,7 +42,6 @@ std::vector<io::Obstacle> load(const ObstacleChoice& choice, const Question& que
   if (loading.shows) step.emplace("Loading " + choice.file.string());
   const io::Mesh whole = io::readMesh(choice.file, &facts, settings, question.threads);
   std::vector<io::Obstacle> loaded = obstaclesOf(*choice.parts, whole.vertices, whole.triangles, surface);
-  loaded.front().addRemarks(facts.remarks);
   if (step) seconds += step->done(counted(loaded.size(), "part") + ", " + counted(whole.triangles.size(), "triangle"));
   return loaded;
 }
@@ -64,6 +63,7 @@ std::vector<LoadedObstacle> loadObstacles(const std::vector<ObstacleChoice>& cho
     }
     if (loaded.empty()) {
       loaded = load(one, question, loading, facts = {}, seconds);
+      if (one.parts) loaded[one.part].addRemarks(facts.remarks); // the first part that is asked about tells them
       if (told) told(one, facts);
     }
     all.push_back({loaded[one.part], facts});

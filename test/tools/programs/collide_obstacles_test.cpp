@@ -353,6 +353,17 @@ TEST_F(CollideObstacles, AreThePartsOfAFile)
               HasSubstr("two obstacles have the name 'box_1': give each its own"));
 }
 
+TEST_F(CollideObstacles, TellRemarksOfTheirFileWhicheverPartIsAsked)
+{
+  folder.write("plant.obj", boxesInMillimetres(3) + "o empty\n");
+  const std::string parts = "--obstacle \"plant.obj;parts=true\" --clashes ", remark = "1 part without faces, 'empty'";
+  EXPECT_THAT(collide(parts + "list.json").err, HasSubstr(remark));
+  const Outcome one = collide(parts + "next.json --previous list.json --only box_1");
+  EXPECT_EQ(one.exit_code, 0);
+  EXPECT_THAT(one.err, HasSubstr(remark));
+  EXPECT_EQ(one.err.find(remark), one.err.rfind(remark));
+}
+
 TEST_F(CollideObstacles, RefuseWhatIsNoObstacle)
 {
   EXPECT_THAT(refused("--obstacle a=crate.off --obstacle a=copy.off"),
