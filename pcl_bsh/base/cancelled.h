@@ -9,8 +9,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Ends work that its caller has asked to stop. Every object is as it was before, or asked again gives the right
-/// answer.
+/// Thrown by work that its caller has asked to stop. Every object is as it was before, or gives the right answer when
+/// it is asked again.
 class Cancelled : public std::runtime_error {
 public:
   Cancelled() : std::runtime_error("stopped on request: no result") {}

@@ -11,8 +11,8 @@ namespace pcl_bsh {
 /// While it lives, its thread computes in the default floating-point environment: round to nearest, denormals kept. The
 /// caller's rounding mode, flush-to-zero and exception flags come back at the end. Our bounds and exact sums need that.
 #if defined(__x86_64__)
-/// One register holds all of that here, and nearly always what it should: a query of a few hundred nanoseconds must not
-/// pay for saving the whole environment.
+/// Here one register holds all of that, and it nearly always holds the default already. A query of a few hundred
+/// nanoseconds must not pay for saving the whole environment.
 class DefaultFloatEnvironment {
 public:
   DefaultFloatEnvironment() noexcept : callers_(_mm_getcsr())

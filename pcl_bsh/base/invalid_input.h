@@ -42,7 +42,7 @@ enum class Input : std::uint8_t {
   scene,        ///< its options, objects, parts or rules
   max_distance, ///< of points' distances
   surface,      ///< its triangles, or the tolerance of its cover
-  beyond,       ///< which distance points are far
+  beyond,       ///< the distance beyond which points count as far
   seen,         ///< scans, their origins, the angle of their beams
 };
 
@@ -50,7 +50,7 @@ enum class Input : std::uint8_t {
 /// what() reads `subject: what is wrong: what to do`; the last part is absent where the first two say it.
 class InvalidInput : public std::invalid_argument {
 public:
-  /// `remedy` may be empty, where the other two say it.
+  /// `remedy` may be empty where `subject` and `wrong` already say what to do.
   InvalidInput(Input input, const std::string& subject, std::string wrong, std::string remedy = {})
   : std::invalid_argument(subject + ": " + wrong + (remedy.empty() ? "" : ": " + remedy)),
     input_(input),

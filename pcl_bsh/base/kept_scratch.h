@@ -12,11 +12,11 @@ namespace pcl_bsh {
 struct KeptScratch {
   virtual ~KeptScratch() = default;
 
-  std::size_t bytes = 0;       ///< of it, as counted among the retained memory
-  KeptScratch* next = nullptr; ///< in a list of those to be deleted
+  std::size_t bytes = 0;       ///< its size, as counted among the retained memory
+  KeptScratch* next = nullptr; ///< the next in a list of scratch to be deleted
 };
 
-/// Where a thread leaves its scratch of one kind between two uses, and where other threads find it to give it back.
+/// Holds a thread's scratch of one kind between two uses. Other threads may take it from here to free it.
 class ScratchSlot {
 public:
   ScratchSlot() noexcept;
@@ -27,8 +27,9 @@ public:
   /// Takes the scratch that lies here, null without one; the slot's own thread calls it.
   KeptScratch* take() noexcept { return idle_.exchange(nullptr, std::memory_order_acquire); }
 
-  /// Leaves the scratch here, which now holds `bytes`, or deletes it: where that is much, more than the limit, or where
-  /// there is one already. In a steady state, nothing that threads share is written.
+  /// Keeps the scratch, which now holds `bytes`, for the next take(). Deletes it where it holds more than 16 MB, where
+  /// the limit of retained memory would be exceeded, or where the slot has one already. While its size stays the same,
+  /// nothing that threads share is written.
   void give(KeptScratch* scratch, std::size_t bytes) noexcept
   {
     if (bytes != scratch->bytes || isOverLimit() || idle_.load(std::memory_order_relaxed))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A list for many small things, which is not written before it is used. Large ones have huge pages, and are kept for
-// other uses when they end (large_buffer.h).
+// A growing array of small elements that leaves new elements uninitialised. Large arrays have huge pages, and their
+// memory is kept for other uses when they end (large_buffer.h).
 #pragma once
 
 #include <pcl_bsh/base/large_buffer.h>
@@ -49,7 +49,7 @@ public:
   /// @pre reserveMore() was called
   void push(const T& item) noexcept { items_[size_++] = item; }
 
-  /// @return so many items behind the last one, uninitialised. @throws std::bad_alloc
+  /// Appends `count` uninitialised items. @return the first of them. @throws std::bad_alloc
   T* append(std::size_t count)
   {
     reserve(size_ + count);
@@ -57,7 +57,7 @@ public:
     return end() - count;
   }
 
-  /// Gives back the room beyond so many items. @throws std::bad_alloc
+  /// Reduces the room to `capacity` items, but not below size(). @throws std::bad_alloc
   void shrink(std::size_t capacity)
   {
     if (capacity_ > capacity) move(std::max(capacity, size_));

@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytes = std::numeric_limits<std::ptrdiff_t>::max() - 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 constexpr bool kKeeps = true;
 #else
-constexpr bool kKeeps = false; // without a word to the system, or where use after free is to be found
+constexpr bool kKeeps = false; // pages cannot be offered to the system, or AddressSanitizer looks for uses after free
 #endif
 
 bool hasHugePages(std::size_t bytes)
@@ -43,7 +43,7 @@ std::align_val_t alignmentOf(std::size_t bytes)
 AllocatedBuffer allocateBuffer(std::size_t bytes)
 {
   if (bytes > kMostBytes) throw std::bad_alloc();
-  const bool huge = hasHugePages(bytes + kVector); // some less than it would be rounded up to a large one
+  const bool huge = hasHugePages(bytes + kVector); // a size just below the limit would be rounded up to it
   const std::size_t alignment = huge ? kHugePage : kVector;
   const std::size_t size = std::max(alignment, (bytes + alignment - 1) / alignment * alignment);
   if (isKept(size))

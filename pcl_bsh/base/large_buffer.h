@@ -25,7 +25,7 @@ struct AllocatedBuffer {
   std::size_t size; ///< at least what was asked for
 };
 
-/// A kept one, or one of operator new. @throws std::bad_alloc
+/// Returns a kept buffer, or a new one from operator new. @throws std::bad_alloc
 AllocatedBuffer allocateBuffer(std::size_t bytes);
 
 /// Gives it back to the system.
@@ -35,8 +35,8 @@ void freeBuffer(const AllocatedBuffer& buffer) noexcept;
 /// where no buffer fits.
 AllocatedBuffer takeKeptBuffer(std::size_t size) noexcept;
 
-/// Keeps a buffer within the limit of retained_memory.h: frees the oldest ones for it, or the buffer itself where it
-/// exceeds the limit alone.
+/// Keeps a buffer within the limit of retained_memory.h: frees the oldest buffers to make room for it. Frees the buffer
+/// itself where that makes too little room.
 void keepBuffer(const AllocatedBuffer& buffer) noexcept;
 
 /// @throws std::bad_alloc

@@ -22,8 +22,8 @@ public:
   /// Null where it was not made yet.
   const Element* get() const noexcept { return made_.load(std::memory_order_acquire); }
 
-  /// Keeps `made` where nothing is kept yet, and returns the element that is kept. Any number of threads may call it at
-  /// once: one of them keeps what it gives, and all that give something make the same. @param kept set where it is this
+  /// Keeps `made` where nothing is kept yet, else deletes it, and returns the element that is kept. Any number of
+  /// threads may call it at once, all with equal objects. @param kept becomes whether `made` is the one kept
   const Element* keep(Owner made, bool& kept) noexcept
   {
     Element* known = nullptr;

@@ -17,7 +17,8 @@
 
 namespace pcl_bsh {
 
-/// @param requested 0: all of the machine's. More than the machine has would only wait for each other.
+/// The number of threads to use: at most as many as the machine has, since more would only wait for each other.
+/// @param requested 0: all of the machine's
 inline unsigned threadCount(unsigned requested) noexcept
 {
   if (requested == 1) return 1; // the system is not asked: that takes longer than a small query

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every loop that can last asks now and then whether it shall go on, without knowing whom.
+// Every loop that can last asks its thread's watcher now and then whether it shall go on.
 //
 //   const Watched watched(&watcher); // a query, or a share of one on another thread
 //   Pulse pulse;                     // of a loop, wherever that is
@@ -15,26 +15,27 @@
 
 namespace pcl_bsh {
 
-/// Who may end what is computed.
+/// May stop a computation, by an exception.
 class Watcher {
 public:
-  /// From any thread that works for it. @throws what ends the work
+  /// Called by any thread that works for this watcher. @throws an exception that ends the work
   virtual void ask() = 0;
 
 protected:
   ~Watcher() = default;
 };
 
-/// The one that this thread works for; null: nobody.
+/// The watcher that this thread works for, or null.
 PCL_BSH_EXPORT_INTERNAL Watcher* watcherOfThread() noexcept;
 
-/// Asks the one that this thread works for. @throws what ends the work
+/// Asks this thread's watcher, if it has one. @throws the watcher's exception, which ends the work
 inline void askWatcher()
 {
   if (Watcher* const watcher = watcherOfThread()) watcher->ask();
 }
 
-/// While it lives, its thread works for this watcher. To be ended in the reverse order of their beginning.
+/// While it lives, its thread works for this watcher. Objects of one thread must end in the reverse order of their
+/// beginning.
 class PCL_BSH_EXPORT_INTERNAL Watched {
 public:
   explicit Watched(Watcher* watcher) noexcept;
@@ -42,21 +43,21 @@ public:
   Watched(const Watched&) = delete;
   Watched& operator=(const Watched&) = delete;
 
-  /// The one that the thread works for otherwise.
+  /// The watcher that the thread worked for before.
   Watcher* before() const noexcept { return before_; }
 
 private:
   Watcher* const before_;
 };
 
-/// Pairs of nodes between two questions, or what takes as long: 16 ms where each takes a microsecond, as pairs of
-/// triangles do.
+/// Pairs of nodes, or work that takes as long, between two questions to the watcher. They take 16 ms where a pair takes
+/// a microsecond, as pairs of triangles do.
 inline constexpr std::uint64_t kPairsOfPulse = std::uint64_t{1} << 14;
 
-/// Counts what a loop does, and asks after so much of it.
+/// Counts the work of a loop, and asks the watcher each time kPairsOfPulse are reached.
 class Pulse {
 public:
-  /// Before or after so many pairs of nodes, or what takes as long. @throws what ends the work
+  /// Adds work, before or after it is done. @param pairs of nodes, or work that takes as long. @throws as askWatcher()
   void count(std::uint64_t pairs)
   {
     if ((pairs_ += pairs) < kPairsOfPulse) return;
@@ -68,7 +69,8 @@ private:
   std::uint64_t pairs_ = 0;
 };
 
-/// Waits until it is notified, or for a moment after which it asks. @param lock held, but not while it asks
+/// Waits until `changed` is notified. With a watcher it waits for 10 ms at most, and then asks it. @param lock held,
+/// but released while it asks
 inline void waitAsking(std::condition_variable& changed, std::unique_lock<std::mutex>& lock)
 {
   if (!watcherOfThread()) return changed.wait(lock);

@@ -15,8 +15,8 @@
 
 namespace pcl_bsh {
 
-/// Never allocates, for it is needed where memory has run out; never destroyed, for threads and buffers may outlive
-/// whatever this file could order.
+/// It never allocates, because it is needed where memory has run out. It is never destroyed, because threads and
+/// buffers may outlive static objects.
 class RetainedMemory {
 public:
   constexpr RetainedMemory() = default;
@@ -72,7 +72,7 @@ public:
     deleteAll(left);
   }
 
-  /// Scratch that has come to hold `bytes`. @return whether it may be kept
+  /// Counts scratch, which now holds `bytes`, as retained if it may be kept. @return whether it may be kept
   bool keeps(KeptScratch& scratch, std::size_t bytes) noexcept
   {
     constexpr std::size_t kMostScratch = std::size_t{16} << 20; // beyond, a few allocations more are not noticed
@@ -95,7 +95,7 @@ public:
     }
     deleteAll(left);
     const std::lock_guard<std::mutex> lock(mutex_);
-    dropBuffers(most, kMostBuffers); // those that the scratch consisted of
+    dropBuffers(most, kMostBuffers); // the buffers that the deleted scratch has given back
   }
 
   void setLimit(std::size_t bytes) noexcept
@@ -119,7 +119,8 @@ private:
     buffer_count_ -= dropped;
   }
 
-  /// Takes a slot's scratch, to be deleted once the mutex is free: its large buffers come back here.
+  /// Moves a slot's scratch to the front of a list. The list must be deleted after the mutex is unlocked, because the
+  /// scratch gives its large buffers to this object.
   void collect(ScratchSlot& slot, KeptScratch*& list) noexcept
   {
     KeptScratch* const scratch = slot.take();
