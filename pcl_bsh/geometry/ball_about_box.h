@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ball that holds a box, for what knows balls and no boxes.
+// A ball that holds a box, for algorithms that take balls only.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>

@@ -7,7 +7,7 @@
 
 namespace pcl_bsh {
 
-/// The distance of neighbouring float32 numbers where coordinates are as large as this.
+/// The spacing of float32 numbers at a coordinate: from the largest one that is not above it to the next one towards 0.
 /// @param largest >= 0
 inline double float32Spacing(double largest)
 {

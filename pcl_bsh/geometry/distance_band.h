@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Between which squared float distances the float answer is no proof.
+// The band of squared float distances in which a float comparison proves nothing.
 #pragma once
 
 #include <pcl_bsh/geometry/rounding.h>
@@ -10,8 +10,8 @@
 
 namespace pcl_bsh {
 
-/// The conclusions that float tests between two local frames allow about a distance and the reach (a clearance, a
-/// radius).
+/// Limits of squared float distances between points of two local frames. Outside of the band, they prove on which side
+/// of the reach (a clearance, a radius) a distance is.
 struct DistanceBand {
   float hit = -1.0f; ///< squared float distance <= hit: within the reach
   float miss = 0.0f; ///< squared float distance > miss: beyond it; anything between, NaN too, is undecided
@@ -23,9 +23,9 @@ inline bool inFloatRange(double value) noexcept
   return std::abs(value) <= 0x1p60;
 }
 
-/// The band where a vector is known within `error`: a hit needs a length of at most low_d, a miss one above high_d.
-/// Squared float distances err by kSquaredDistanceError, whose room for double arithmetic pays for that here. All in
-/// the frame's units; error is finite and >= 0.
+/// The band for a vector that is known within `error`: a hit proves a length of at most low_d, a miss one above high_d.
+/// Squared float distances err by kSquaredDistanceError. Its room for double arithmetic covers the arithmetic here. All
+/// in the frame's units; error is finite and >= 0.
 inline DistanceBand distanceBand(double low_d, double high_d, double error) noexcept
 {
   DistanceBand band;

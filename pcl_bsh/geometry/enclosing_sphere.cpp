@@ -40,8 +40,8 @@ std::size_t farthestFrom(const PointArrays& points, const Vector3d& from)
   return farthest;
 }
 
-/// The smallest ball through 1 to 4 support points, its centre in their affine hull. Dependent points leave it as it
-/// was without the last of them.
+/// The smallest ball through 1 to 4 support points, its centre in their affine hull. Returns `without_last` where the
+/// points are affinely dependent.
 Ball ballThrough(const std::array<Vector3d, 4>& support, std::size_t count, const Ball& without_last)
 {
   if (count == 0) return {};

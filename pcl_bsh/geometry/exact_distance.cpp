@@ -76,7 +76,7 @@ ExactDistance::ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isome
 
 int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, double radius_p, double radius_q) const
 {
-  // Two sums, rounded relative to what they add up, which may be of either sign.
+  // Two additions. Their rounding is relative to the absolute values of the terms, which may be of either sign.
   const double reach = clearance + radius_p + radius_q;
   const double rounding = kFewDoubleRoundings * (std::abs(clearance) + std::abs(radius_p) + std::abs(radius_q));
   const auto side = [reach, rounding](const Enclosure& distance) {
@@ -97,7 +97,7 @@ int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, d
 
 int ExactDistance::compare(const Point3& p, const Point3& q, const Sum& reach) const
 {
-  // Seven sums, rounded relative to what they add up, which may be of either sign.
+  // Seven additions. Their rounding is relative to the absolute values of the terms, which may be of either sign.
   double sum = 0.0, magnitude = 0.0;
   for (const double term : reach) {
     sum += term;
@@ -124,7 +124,7 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
   const double slack = kFewDoubleRoundings * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
-  // Scans have points twice, and then ties everywhere.
+  // Scans have points twice, so ties are common.
   if (this == &other && first.p == second.p && first.q == second.q && first.radius_p == second.radius_p &&
       first.radius_q == second.radius_q)
     return 0;
@@ -161,8 +161,8 @@ ExactDistance::Enclosure ExactDistance::enclose(const Point3& p, const Point3& q
 }
 
 /// Double arithmetic with its error. A coordinate sums eight terms, each rounded at most five times, so it errs by less
-/// than 5.01 v of their absolute sum. All terms of all coordinates together are also >= the distance; kTermsError of
-/// them pays for that, for the squares, the root, their own summation and the last subtraction; kUnderflow for
+/// than 5.01 v of their absolute sum. The absolute sum of all coordinates' terms is also >= the distance. kTermsError
+/// of it covers the coordinates, the squares, the root, its own summation and the last subtraction. kUnderflow covers
 /// underflow.
 ExactDistance::Difference ExactDistance::approximate(const Point3& p, const Point3& q) const
 {
@@ -181,8 +181,8 @@ ExactDistance::Difference ExactDistance::approximate(const Point3& p, const Poin
 }
 
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
-/// told apart wherever they lie. Twice the errors pay for their own summation. The norm of the sums is rounded by 2.5 v
-/// of itself, the last subtraction by one more.
+/// told apart wherever they lie. Twice the sum of the errors covers the rounding of that sum. The norm of the sums is
+/// rounded by 2.5 v of itself, the last subtraction by one more.
 ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, const Point3& q) const
 {
   Difference z;
@@ -198,8 +198,9 @@ ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, 
   return z;
 }
 
-/// Sums with their rounding errors: for places whose points double arithmetic cannot tell apart from afar. A coordinate
-/// errs by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v more.
+/// Compensated sums, for points that plain double arithmetic cannot tell apart because they are far from the origin. A
+/// coordinate errs by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v
+/// more.
 ExactDistance::Enclosure ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;
@@ -221,7 +222,7 @@ ExactDistance::Enclosure ExactDistance::encloseClosely(const Point3& p, const Po
   return {distance - error, distance + error};
 }
 
-/// T_a p - T_b q with its rounding errors: translated as in encloseTranslated(), posed as in encloseClosely().
+/// T_a p - T_b q with its rounding errors: translated as in approximateTranslated(), posed as in encloseClosely().
 std::array<LongCoordinate, 3> ExactDistance::difference(const Point3& p, const Point3& q) const
 {
   std::array<LongCoordinate, 3> vector;
@@ -242,7 +243,8 @@ std::array<LongCoordinate, 3> ExactDistance::difference(const Point3& p, const P
       sum.addProduct(a_[k][j], p[j]);
       sum.addProduct(-b_[k][j], q[j]);
     }
-    // The terms cancel, and their errors do not: a tail as large as that would leave roundedLength() in doubt.
+    // Where terms cancel, the errors may be as large as the sum. So the two are normalised: a large tail would leave
+    // roundedLength() in doubt.
     const WithError normal = twoSum(sum.sum, sum.errors);
     c = {normal.value, normal.error, CompensatedSum::kError * sum.absolute + kUnderflow};
   }

@@ -45,7 +45,7 @@ GivenSphere sphereAround(std::size_t count, const PointAt& point, const BallAt& 
   return sphere;
 }
 
-/// Above what a pose that is rigid within 1e-6 stretches a radius by.
+/// More than the share of a radius by which a pose that is rigid within 1e-6 lengthens it.
 inline constexpr double kPoseStretch = 0x1p-20;
 
 /// Whether no point in one sphere collides with any in the other, in exact arithmetic.

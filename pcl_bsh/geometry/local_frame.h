@@ -8,7 +8,8 @@
 
 namespace pcl_bsh {
 
-/// The error of a stored coordinate: the cast; relativeError()'s room for double arithmetic pays for the subtraction.
+/// The relative error of a stored coordinate: that of the cast. The room of relativeError() for double arithmetic
+/// covers the subtraction.
 inline constexpr double kStoringError = relativeError(1);
 
 /// A point p of a cloud is stored as the float x nearest to (p - origin) / unit.

@@ -13,7 +13,7 @@ namespace pcl_bsh {
 /// Three coordinates in double: exact for float32 and float64 input alike.
 using Point3 = std::array<double, 3>;
 
-/// Whether a query takes part of it: no coordinate is NaN or infinite.
+/// Whether queries count the point: no coordinate is NaN or infinite.
 inline bool isFinite(const Point3& p) noexcept
 {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);

@@ -8,11 +8,11 @@
 
 namespace pcl_bsh {
 
-/// A point q as the float nearest to (q - origin) / unit, and how far that may lead astray.
+/// A point q as the float nearest to (q - origin) / unit, and a bound for the error of distances from it.
 ///
 /// For every given point p of the frame, stored as x: | |p - q| / unit - |x - (stored q)| | <= error. Per axis, x errs
-/// by the frame's slack, or not at all in a lossless one, and q by kStoringError of itself; a sum of absolute values is
-/// at least the norm.
+/// by the frame's slack, or not at all in a lossless one, and q by kStoringError of itself. The error is the sum over
+/// the axes, which is at least the norm.
 class PointFrame {
 public:
   PointFrame(const LocalFrame& frame, const Point3& q) noexcept : unit(frame.unit)
@@ -54,7 +54,8 @@ public:
     return reach > kSmallestLength ? static_cast<float>(reach) * (1.0f - kReachMargin) : -1.0f;
   }
 
-  /// Whether no point of the frame is within `length` units, whatever they are: its box is farther away.
+  /// Whether the box of the frame is farther than `length` units from the point, so that no point of the frame is
+  /// within them.
   bool separates(const LocalFrame& frame, double length) const noexcept
   {
     double squared = 0.0;

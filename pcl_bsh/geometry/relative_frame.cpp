@@ -44,12 +44,12 @@ std::array<double, 9> gram(const Eigen::Matrix3d& m)
 /// Inputs for a frame's three axes, side by side; the fourth lane is unused.
 struct FrameAxes {
   alignas(32) double shift[4];      ///< g
-  alignas(32) double error[4];      ///< of floats
-  alignas(32) double moved[4];      ///< how far points of a reach from its carried origin
+  alignas(32) double error[4];      ///< bound of the error of float coordinates
+  alignas(32) double moved[4];      ///< largest distance of carried points of a from a's carried origin
   alignas(32) double entries[3][4]; ///< columns of M
 };
 
-/// How far a frame's box reaches. Its squares are in range.
+/// The distance of a frame's farthest corner from its origin, in units. The squares are in the range of double.
 double cornerOf(const LocalFrame& frame)
 {
   const auto& [x, y, z] = frame.reach;
@@ -133,7 +133,7 @@ void axesOnTarget(const LocalFrame& a, const Eigen::Isometry3d& pose_a, const Lo
   }
 
   const double scale = a.unit / b.unit;
-  double misturned = 0.0; // error of M x: twice, for what follows from it is of second order
+  double misturned = 0.0; // error of M x, doubled to cover effects of second order
   for (std::size_t j = 0; j < 3; ++j) misturned += 2 * kRotationError * scale * a.reach[j];
   const double skewed = rotation.skew * (b.reach[0] + b.reach[1] + b.reach[2]);
   alignas(32) const double slack_of_b[4] = {b.slack(0), b.slack(1), b.slack(2), 0.0};
@@ -208,14 +208,15 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     for (unsigned j = 0; j < 3; ++j) {
       const double entry = axes.entries[j][i];
       m[3 * i + j] = roundToFloat(entry);
-      overflows = overflows || !(std::abs(entry) < kLargestCarried); // however short what it is multiplied with
+      overflows =
+          overflows || !(std::abs(entry) < kLargestCarried); // even where it is multiplied with small coordinates
     }
     squared += axes.error[i] * axes.error[i];
     in_range = in_range && inFloatRange(axes.shift[i]) && inFloatRange(axes.moved[i]) && inFloatRange(b.reach[i]);
     overflows = overflows || !(std::abs(axes.shift[i]) + axes.moved[i] < kLargestCarried);
   }
   float_error_ = std::sqrt(squared) * (1.0 + 2 * kFewDoubleRoundings) + kSmallestLength;
-  if (!(float_error_ < kInfinity)) { // NaN where a zero met an overflown bound: then nothing is known, and all is near
+  if (!(float_error_ < kInfinity)) { // NaN from 0 times infinity: nothing is known, all counts as near
     float_error_ = kInfinity;
     in_range = false;
     g.fill(0.0f);

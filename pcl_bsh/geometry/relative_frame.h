@@ -11,14 +11,14 @@
 
 namespace pcl_bsh {
 
-/// The rotation that all frames of two poses share.
+/// The rotation between two poses, which all frames under these poses share.
 struct RelativeRotation {
   RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
   Eigen::Matrix3d matrix;                 ///< R_b' R_a
-  std::array<double, 12> columns = {};    ///< the same, a column after another, each with a zero behind it
-  std::array<double, 12> back_turns = {}; ///< of R_b', in the same order
-  double stretch = 1.0;                   ///< at least its spectral norm
+  std::array<double, 12> columns = {};    ///< `matrix` by columns, each followed by a 0
+  std::array<double, 12> back_turns = {}; ///< R_b' in the same order
+  double stretch = 1.0;                   ///< at least the spectral norm of `matrix`
   double skew = 0.0;                      ///< at least ||R_b'R_b - I||
 };
 
@@ -84,8 +84,9 @@ public:
   bool separates(double clearance) const noexcept;
 
 private:
-  double span_ = 0.0;        // of both frames' points around their origins, in b's units
-  double float_error_ = 0.0; // `error` before it is given up for values out of range: good in double arithmetic
+  double span_ = 0.0; // of both frames' points around their origins, in b's units
+  double float_error_ =
+      0.0; // as `error`, but finite, too, where values leave the range of float: good in double arithmetic
   double prune_error_ = 0.0; // the error for spheres, not for points: infinite where carried points may overflow
   double unit_b_ = 1.0;
   double skew_ = 0.0; ///< bounds ||E||

@@ -97,8 +97,8 @@ Eigen::Vector3d turnNearestTo(const Eigen::Vector3d& asked, const Eigen::Matrix3
   // The motion's drift covers the rounding of long turns.
   constexpr double kSame = 1e-6;
   if (shorterTurn(rotationBy(asked) * from, to).norm() <= kSame) return asked;
-  // Something else turned the body as well. Other turns that arrive differ by full turns about the axis of the shorter
-  // one, which is noise where that is next to nothing.
+  // The turn asked for does not lead to `to`. All turns that do differ by full turns about the axis of the shorter one.
+  // Where the shorter turn is almost 0, its axis is noise.
   constexpr double full = 2.0 * std::numbers::pi, kNone = 1e-9;
   const double angle = shorter.norm();
   if (angle <= kNone) return full * std::round(length / full) * (asked / length);

@@ -28,9 +28,9 @@ struct PointMotion {
 ///
 ///   pose(s) p = (1 - s) from pivot + s to pivot + R(s) (p - pivot),   R(s) = exp(s turn) (R_from + s drift),
 ///
-/// where drift = exp(-turn) R_to - R_from is what the turn leaves of the last pose's linear part: rounding, and what
-/// poses lack to rigid ones (1e-6 at most). So the motion begins and ends at the very poses given and has no jump.
-/// Lengths are in the poses' unit, angles in radians.
+/// where drift = exp(-turn) R_to - R_from is the part of the last pose's linear part that the turn does not reach:
+/// rounding, and the deviation of poses from rigid ones (1e-6 at most). So the motion begins and ends at the very poses
+/// given and has no jump. Lengths are in the poses' unit, angles in radians.
 class RigidMotion {
 public:
   /// @param pivot in the frame that the poses place
@@ -56,11 +56,11 @@ public:
   /// s.
   double turningSpeed(double radius) const;
 
-  /// Within any interval of s of this length it gets no farther from where it was than the pivot does, plus this;
-  /// however often it turns.
+  /// Within any interval of s of length `length`, a point no farther than `radius` from the pivot moves at most this
+  /// much farther than the pivot. This holds however often the body turns.
   double turningReach(double radius, double length) const;
 
-  /// No pose of the motion lengthens the distance of two points of the body by a larger factor.
+  /// An upper bound of the factor by which a pose of the motion lengthens the distance of two points of the body.
   double stretch() const { return stretch_; }
 
 private:

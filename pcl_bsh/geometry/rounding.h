@@ -18,7 +18,7 @@ inline constexpr double kDoubleUnit = 0x1p-53; ///< v: unit roundoff of double
 
 /// Relative room for a handful of roundings in double where nothing is gained by counting them: 8192 v.
 inline constexpr double kDoubleMargin = 0x1p-40;
-/// At most seven roundings in double, counted where this is used, and the one of what it is multiplied with: 8 v.
+/// Covers at most seven roundings in double, counted where this is used, and the rounding of its own product: 8 v.
 inline constexpr double kFewDoubleRoundings = 8 * kDoubleUnit;
 
 /// The float nearest to x. Keeps the rounding: g++ may drop it from a plain cast to float and back when it vectorises
@@ -34,7 +34,8 @@ inline float roundToFloat(double x) noexcept
   return rounded;
 }
 
-/// The float that is so many floats farther from 0 than x, or nearer. @pre there is one of the same sign
+/// The float that is `steps` floats farther from 0 than x, or nearer where `steps` < 0. @pre there is one of the same
+/// sign
 inline float stepAwayFromZero(float x, std::int32_t steps) noexcept
 {
   std::int32_t bits;
@@ -48,7 +49,8 @@ inline float stepAwayFromZero(float x, std::int32_t steps) noexcept
 inline float roundUp(double x) noexcept
 {
   const float rounded = roundToFloat(x);
-  const std::int32_t is_below = static_cast<double>(rounded) < x; // half of all are: no branch, and no nextafter()
+  const std::int32_t is_below =
+      static_cast<double>(rounded) < x; // true for half of all x: so no branch, and no nextafter()
   return stepAwayFromZero(rounded, std::signbit(rounded) ? -is_below : is_below);
 }
 

@@ -7,7 +7,8 @@
 
 namespace pcl_bsh {
 
-/// At least the length whose square float arithmetic found to be `squared`, less what underflows (kSmallestLength).
+/// An upper bound, except for underflow (kSmallestLength), of a length whose square float arithmetic found to be
+/// `squared`.
 inline double lengthOver(float squared) noexcept
 {
   return std::sqrt(static_cast<double>(squared)) * (1.0 + kLengthError);

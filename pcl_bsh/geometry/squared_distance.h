@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Squared distances of two points as floats, rounded once: never out of the order of the exact ones.
+// Squared distances of two points as floats, rounded once: they keep the order of the exact ones.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
@@ -7,8 +7,8 @@
 
 namespace pcl_bsh {
 
-/// The float nearest to `approximate`, where that settles what the exact squared distance of p and q rounds to; else
-/// found in exact arithmetic. @param approximate |p - q|^2 in double, straight from the coordinates.
+/// The float nearest to |p - q|^2 (ties to even), in exact arithmetic. @param approximate |p - q|^2 in double, straight
+/// from the coordinates: the search begins there
 float settleSquaredDistance(const Point3& p, const Point3& q, double approximate);
 
 /// The float nearest to |p - q|^2 (ties to even; infinity beyond the largest). A larger distance never gives a smaller

@@ -89,7 +89,7 @@ public:
   }
 
 private:
-  /// Combines the integers, once they have one exponent: of the two numbers the lesser.
+  /// Brings both numbers to the lesser of their exponents, and combines their integers.
   template <class Operation>
   Dyadic& combine(const Dyadic& other, const Operation& operation)
   {

@@ -14,7 +14,7 @@
 
 namespace pcl_bsh {
 
-/// The plane through a place across an exact normal, which may have any length but 0.
+/// The plane through a place with an exact normal, which may have any length except 0.
 class ExactPlane {
 public:
   ExactPlane(const Point3& at, const Vector3<Dyadic>& normal) : at_(at), normal_(normal)
@@ -37,11 +37,11 @@ public:
     length_ = std::sqrt(rough_[0] * rough_[0] + rough_[1] * rough_[1] + rough_[2] * rough_[2]);
   }
 
-  /// Heights are in this unit: 2^exponent() of the normal's own length is length().
+  /// A height is a distance from the plane times length(). The given normal has the length 2^exponent() length().
   int exponent() const { return exponent_; }
   double length() const { return length_; }
 
-  /// No less than how far a finite place is beyond the plane, by double arithmetic; NaN where it cannot tell.
+  /// At least the height of a finite place beyond the plane, by double arithmetic; NaN where that cannot tell.
   double heightAtMost(const Point3& place) const
   {
     double sum = 0.0, terms = 0.0;
@@ -53,7 +53,7 @@ public:
     return sum + kFewDoubleRoundings * terms + 0x1p-900;
   }
 
-  /// How far it is beyond.
+  /// The height of a place beyond the plane, negative on the other side, with its error.
   LongNumber height(const Point3& place) const
   {
     LongNumber sum;
@@ -85,7 +85,7 @@ private:
   Point3 at_;
   Vector3<Dyadic> normal_;
   int exponent_ = 0;
-  Point3 rough_;               ///< the normal over 2^exponent_; NaN where that is out of range beside it
+  Point3 rough_;               ///< the normal over 2^exponent_; NaN where that is out of range
   Vector3<LongNumber> longer_; ///< the same, with more digits
   double length_ = 0.0;        ///< of rough_
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An exact order of lines in space, each given by a span of it between two places: spans of one line are equal.
+// An exact order of lines in space, each given by a span between two of its places. Spans of one line compare equal.
 #pragma once
 
 #include <pcl_bsh/geometry/exact/dyadic.h>
@@ -15,8 +15,7 @@
 
 namespace pcl_bsh {
 
-/// The part of a line between two finite places. @pre low < high, coordinate by coordinate, of which the first that
-/// differs decides
+/// The part of a line between two finite places. @pre low < high in lexicographic order
 struct LineSpan {
   Point3 low, high;
 };
@@ -59,7 +58,7 @@ inline std::size_t axisOf(const LineSpan& span)
 
 } // namespace line_order
 
-/// By their slopes: negative, 0 where they are parallel, or positive. A strict weak order.
+/// Compares lines by their slopes: negative, 0 where they are parallel, or positive. A strict weak order.
 /// @pre the default floating-point environment
 inline int compareDirections(const LineSpan& a, const LineSpan& b)
 {
@@ -70,9 +69,9 @@ inline int compareDirections(const LineSpan& a, const LineSpan& b)
   return 0;
 }
 
-/// Beside the first coordinate, how fast the second one grows along a line, as doubles have it.
+/// The growth of the second coordinate per unit of the first one along a line, in double arithmetic.
 struct RoughSlope {
-  double value; ///< NaN where it is far from 1
+  double value; ///< NaN unless its absolute value is between 2^-900 and 2^900
 
   explicit RoughSlope(const LineSpan& span) : value((span.high[1] - span.low[1]) / (span.high[0] - span.low[0]))
   {
@@ -87,7 +86,7 @@ struct RoughSlope {
   }
 };
 
-/// By their directions, and parallel ones by how far they are aside: 0 where the spans are of one line.
+/// Compares lines by their directions, and parallel lines by their offset: 0 where the spans are of one line.
 /// @pre as compareDirections()
 inline int compareLines(const LineSpan& a, const LineSpan& b)
 {

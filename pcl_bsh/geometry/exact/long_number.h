@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers of about twice a double's digits that know how far off they may be: what rounds to nothing is exact.
+// Numbers of about twice a double's digits, with a bound of their error. Results that need no rounding are exact.
 #pragma once
 
 #include <pcl_bsh/geometry/rounding.h>
@@ -8,8 +8,8 @@
 
 namespace pcl_bsh {
 
-/// value + tail, within `error`: sums and products add up the terms that they drop, so that small integers and their
-/// kind stay exact, with an error of 0. Needs round-to-nearest. Overflow makes the sign unknown.
+/// value + tail, within `error`. Sums and products add the terms that they drop to the error, so small integers and
+/// their like stay exact, with an error of 0. Needs round-to-nearest. Overflow makes the sign unknown.
 ///
 /// Error bound: a sum drops two terms that it knows. A product drops the product of the tails and rounds four terms of
 /// low order, each by v of their absolute sum at most; kDoubleMargin pays for the arithmetic of errors. Underflow costs

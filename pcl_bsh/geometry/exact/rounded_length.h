@@ -10,8 +10,8 @@
 
 namespace pcl_bsh {
 
-/// roundedLengths(): what is of low order is below this share of the square, else nothing is known; and what the length
-/// may then be off by, relative. Proved in test/proof/rounded_lengths.g.
+/// Limits of roundedRoot(). Where the low-order part of a square is below kMostLowOrder of it, the length errs by at
+/// most kLengthDoubt of itself. Else nothing is known. Proved in test/proof/rounded_lengths.g.
 inline constexpr double kMostLowOrder = 0x1p-50;
 inline constexpr double kLengthDoubt = 0x1p-100;
 
@@ -20,9 +20,9 @@ struct LongCoordinate {
   double value = 0.0, tail = 0.0, error = 0.0;
 };
 
-/// The double nearest to sqrt(square) - radii, where square is high + low within `error`, and low is below
-/// kMostLowOrder of high, so that no doubt is left which that is; else NaN. (Ziv's test: what the last rounding leaves
-/// over, with its error on either side, must not change the sum.)
+/// The double nearest to sqrt(square) - radii, where square is high + low within `error`. NaN where low is not below
+/// kMostLowOrder of high, or where the error leaves in doubt which double that is. (Ziv's test: the rest of the last
+/// rounding, with its error on either side, must not change the sum.)
 ///
 /// The root of high + low is r + (high - r^2 + low) / 2 r within (low / high)^2 r. This is below 2^-100 r where |low|
 /// <= 2^-50 high. high - r^2 is a double. Sizes are checked, so that nothing overflows, and what underflows is below
@@ -46,7 +46,7 @@ inline double roundedRoot(double high, double low, double error, double radius_p
   return sure ? rounded.value : none;
 }
 
-/// The double nearest to |vector| - radii, where its error leaves no doubt which that is; else NaN.
+/// The double nearest to |vector| - radii, or NaN where its error leaves in doubt which double that is.
 ///
 /// A square is value^2, as two doubles, and 2 value tail + tail^2, which errs by four roundings of itself at most and
 /// by 2 (|value| + |tail|) error. The sum of the squares is kept as two doubles; all that is of low order is added up

@@ -23,8 +23,9 @@ const Point3& cornerOf(const Triangle3& triangle, std::size_t i)
   return triangle[i % 3];
 }
 
-/// Across the nearest parts of two that do not meet. @param edge_a, edge_b the sides, called with their first corner's
-/// number @param between a place on the one and one on the other
+/// A vector along the way between the nearest features of two that do not meet, of any length.
+/// @param edge_a, edge_b called with a corner's number: the edge from it to the next corner.
+/// @param between from a place on one feature to one on the other
 template <class EdgeA, class EdgeB>
 Vector3<Dyadic> normalAcross(const Features& features, const EdgeA& edge_a, const EdgeB& edge_b,
                              const Vector3<Dyadic>& between)
@@ -50,7 +51,7 @@ Vector3<Dyadic> normalAcross(const Features& features, const EdgeA& edge_a, cons
   return cross(edge_a(0), edge_a(1));
 }
 
-/// Its direction, rounded: the largest part is in [1, 2).
+/// A vector of the same direction in doubles: its largest component is in [1, 2).
 Point3 ofLengthOne(const Vector3<Dyadic>& v)
 {
   const Dyadic::Scaled parts[3] = {v[0].scaled(), v[1].scaled(), v[2].scaled()};

@@ -16,7 +16,7 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 /// such by less than 11 v. Their difference and the quotient err by 4 v of a gap of up to 2 sqrt(3) of it.
 constexpr double kPlaceError = 32 * kDoubleUnit;
 
-/// The least and the most of three corners along a direction.
+/// The range of corners along a direction.
 struct Span {
   double low, high;
 };
@@ -32,7 +32,7 @@ Span spanOf(const Point3 (&corners)[Count], const Point3& direction)
   return span;
 }
 
-/// At most the distance of what these corners span, within kPlaceError; -infinity where nothing is known.
+/// A lower bound, within kPlaceError, of the distance of the corners' convex hulls; -infinity where nothing is known.
 template <std::size_t Count>
 double gapAlong(const Point3 (&a)[Count], const Point3 (&b)[Count], const Point3& direction)
 {
@@ -42,8 +42,9 @@ double gapAlong(const Point3 (&a)[Count], const Point3 (&b)[Count], const Point3
   return std::max(along_b.low - along_a.high, along_a.low - along_b.high) / std::sqrt(square);
 }
 
-/// At most the distance of both, within three times kPlaceError: from the gap along the normal of a and, across it, the
-/// gap of the circles about both. It tells surfaces apart that face each other from far away, unless they are opposite.
+/// A lower bound, within three times kPlaceError, of the distance of both. It combines the gap along the normal of a
+/// with the gap, across this normal, of the circles about both. It separates triangles of surfaces that face each other
+/// from far away, unless the triangles are opposite.
 double gapAboutNormal(const Point3 (&a)[3], const Point3 (&b)[3])
 {
   const Point3 normal = cross(a[1] - a[0], a[2] - a[0]);
@@ -94,8 +95,8 @@ Point3 normalOf(const FlatTriangle<double>& triangle)
   return {triangle.rows[6], triangle.rows[7], triangle.rows[8]};
 }
 
-/// The least distance of a place on the edges of one triangle, where they pass through the plane of the other, from
-/// that one, within its error; infinite where no edge passes through it.
+/// The least distance from the other triangle to places where edges of one pass through the other's plane, plus its
+/// error. Infinite where no edge passes through the plane.
 double leastWherePierced(const Triangle3& edges, const FlatTriangle<double>& flat)
 {
   const Point3 origin = {flat.origin[0], flat.origin[1], flat.origin[2]};

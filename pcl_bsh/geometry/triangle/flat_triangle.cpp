@@ -19,7 +19,8 @@ Number rounded(double x)
     return x;
 }
 
-/// One over it, and 0 where Number cannot have it with its products. Sides that are left out add up to kShortSide.
+/// The inverse of a square; 0 where it and its products may leave the range of Number. A side left out like this is at
+/// most kShortSide long.
 template <class Number>
 Number inverse(double square)
 {
@@ -31,8 +32,7 @@ inline constexpr double kShortSide = std::is_same_v<Number, float> ? 0x1p-60 : 0
 template <class Number>
 inline constexpr double kFlatRange = std::is_same_v<Number, float> ? 0x1p60 : 0x1p400;
 
-/// The rest of y without its part along x, made of length 1. @pre |x| = 1, and |y| is not small beside that part's
-/// error
+/// The part of y across x, scaled to length 1. @pre |x| = 1, and |y| is not small beside the error of its part along x
 Point3 squareTo(const Point3& x, const Point3& y)
 {
   const Point3 rest = y - dot(y, x) * x;
@@ -80,7 +80,7 @@ FlatTriangle<Number> flatten(const Triangle3& corners, double slack)
     flat.apex_y = std::max(rounded<Number>(dot(far, y)), Number{0});
   }
 
-  // Where the rows, as they are now, carry the corners.
+  // How far from their stored places the rounded rows carry the corners.
   const Point3 stored[3] = {{0, 0, 0}, {double{flat.length}, 0, 0}, {double{flat.apex_x}, double{flat.apex_y}, 0}};
   const Point3 origin = {double{flat.origin[0]}, double{flat.origin[1]}, double{flat.origin[2]}};
   double apart = 0.0;

@@ -14,7 +14,7 @@
 namespace pcl_bsh {
 
 template <class Number>
-inline constexpr double kFlatUnit = kFloatUnit; ///< of the arithmetic
+inline constexpr double kFlatUnit = kFloatUnit; ///< unit roundoff of the arithmetic
 template <>
 inline constexpr double kFlatUnit<double> = kDoubleUnit;
 
@@ -38,18 +38,18 @@ inline constexpr float kFlatMargin = 0x1p-19f;
 /// the given triangle, and s what squaredToTriangle() says, within kSquaredDistanceError of s.
 ///
 /// Error bound: double arithmetic measures how far the rows carry each corner from where it is stored. It errs by less
-/// than 16 v of the longest side. A triangle goes where its corners go. The kernel adds kFlatTriangleUnits of the
-/// longest side. Sides too short for the inverse of their square count as points.
-/// @param corners finite. @param slack how far they may be off. The error is infinite where coordinates are out of the
-/// kernel's range.
+/// than 16 v of the longest side. No place of a triangle moves farther than its corners. The kernel adds
+/// kFlatTriangleUnits of the longest side. Sides too short for the inverse of their square count as points.
+/// @param corners finite. @param slack how far the corners may be off. The error is infinite where coordinates are out
+/// of the kernel's range.
 template <class Number>
 FlatTriangle<Number> flatten(const Triangle3& corners, double slack = 0.0);
 
 /// Lays a triangle flat in a local frame. Its corners lie within the frame's reach.
 FlatTriangle<float> flatten(const LocalFrame& frame, const Triangle3& corners);
 
-/// Lengths of which one is the distance from the given triangle: what a squared distance in float tells, within the
-/// error of a frame and skew (RelativeFrame, PointFrame). All in the frame's unit.
+/// Bounds of the distance from the given triangle. They follow from a squared distance in float, and from the error and
+/// skew of a frame (RelativeFrame, PointFrame). All in the frame's unit.
 struct DistanceBounds {
   double low, high;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Squared distances of triangles as fractions, by which of their features are nearest: in RoughNumber and LongNumber,
-// which may be unsure, or in Dyadic, which never is.
+// Squared distances of triangles as fractions, from their nearest features: corners, edges, faces. Computed in
+// RoughNumber and LongNumber, which may be unsure, or in Dyadic, which never is.
 #pragma once
 
 #include <pcl_bsh/geometry/exact/dyadic.h>
@@ -25,7 +25,7 @@ inline int signOf(const Dyadic& x, bool&)
   return x.sign();
 }
 
-/// numerator / denominator, of which the latter is positive.
+/// numerator / denominator, with a positive denominator.
 template <class Number>
 struct Fraction {
   Number numerator = Number(0.0), denominator = Number(1.0);
@@ -45,7 +45,7 @@ struct FeaturePairs {
   std::uint8_t faces = 0x3f; ///< bit i: corner i of the first, the second's face; bit 3 + j: corner j of the second
 };
 
-/// Two features, of which the insides are nearest to each other. Edge k goes from corner k to the next.
+/// A feature of each triangle, with the nearest places inside both. Edge k goes from corner k to the next.
 struct Features {
   enum Kind : std::uint8_t { meeting, corners, corner_edge, edge_corner, edges, corner_face, face_corner };
   Kind kind = meeting;
@@ -189,9 +189,9 @@ private:
     return false;
   }
 
-  /// Takes the two features whose nearest places have both triangles on the outer sides of the planes across the way
-  /// between them: the triangles are as far apart as these planes. Signs alone tell it, also where other features are
-  /// hardly farther apart. @return false where it is not sure of any two
+  /// Takes two features if the planes through their nearest places, across the way between these, separate both
+  /// triangles: the triangles are as far apart as the planes. Signs alone prove it, also where other features are
+  /// hardly farther apart. @return false where no two features are sure
   bool takeSeparated(const Vector (&normals)[2], FeaturePairs pairs)
   {
     for (std::size_t k = 0; k < 6; ++k) {
@@ -222,7 +222,7 @@ private:
     return true;
   }
 
-  /// Whether two corners of a triangle are surely no farther along a direction than the one before them.
+  /// Whether the other corners of a triangle are surely no farther along a direction than corner i.
   static bool areBehind(const Vector& direction, const Corners& t, std::size_t i, bool& sure)
   {
     for (const std::size_t k : {(i + 1) % 3, (i + 2) % 3})
@@ -241,8 +241,8 @@ private:
     return true;
   }
 
-  /// Whether the nearest places of two edges' lines are surely inside both, and the third corners not between the
-  /// planes through these edges.
+  /// Whether the nearest places of two edges' lines are surely inside both edges, and neither third corner is between
+  /// the planes through these edges.
   bool areEdgesBetween(std::size_t i, std::size_t j) const
   {
     const Vector &from_a = a_[i], &from_b = b_[j];
@@ -256,7 +256,7 @@ private:
     return isInside(normal, cross(v, w), sure) && isInside(normal, cross(u, w), sure);
   }
 
-  /// Whether a corner i of a triangle and the inside of an edge j of another have both triangles so.
+  /// Whether corner i of a triangle and the inside of edge j of another surely separate both so: see takeSeparated().
   static bool isEdgeBefore(const Corners& t, std::size_t i, const Corners& ends, std::size_t j)
   {
     const Vector edge = ends[(j + 1) % 3] - ends[j], from = t[i] - ends[j];
@@ -267,7 +267,7 @@ private:
     return signOf(dot(way, ends[(j + 2) % 3] - ends[j]), sure) <= 0 && sure && areBehind(-way, t, i, sure);
   }
 
-  /// Whether two corners have both triangles so.
+  /// Whether corner i of the first triangle and corner j of the second surely separate both so.
   bool areCornersBetween(std::size_t i, std::size_t j) const
   {
     const Vector way = a_[i] - b_[j];
@@ -300,7 +300,8 @@ private:
     offer(Features::corners, i, j);
   }
 
-  /// Corner i of the first and edge j of the second; or the other way round.
+  /// Offers corner i of the first and edge j of the second; without `of_first`, corner i of the second and edge j of
+  /// the first.
   void offerEdge(std::size_t i, std::size_t j, bool of_first)
   {
     const std::uint32_t bit = 1u << (3 * i + j + (of_first ? 0 : 9));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Directions of triangles of any size: what is as small as 1e-100 has normals whose squares are not in the range of
+// Directions of triangles of any size. A triangle as small as 1e-100 has a normal whose square is below the range of
 // double.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace pcl_bsh {
 
 /// A power of two by which lengths become about 1 where their fourth powers would leave the range of double; else 1.
-/// @param largest of them, >= 0
+/// @param largest of these lengths, >= 0
 inline double toOrdinary(double largest)
 {
   constexpr double least = 0x1p-200, most = 0x1p200;
@@ -24,7 +24,8 @@ inline Vector3<double> ofOrdinaryLength(const Vector3<double>& v)
 {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}), factor = toOrdinary(largest);
   if (factor == 1.0) return v;
-  return std::ldexp(1.0, -std::ilogb(factor * largest)) * (factor * v); // one factor is too small for the least numbers
+  return std::ldexp(1.0, -std::ilogb(factor * largest)) *
+         (factor * v); // two factors: one alone is not large enough for the least numbers
 }
 
 } // namespace pcl_bsh

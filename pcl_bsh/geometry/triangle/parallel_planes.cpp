@@ -37,8 +37,8 @@ PlaneOverlap TriangleDistance::findOverlap(const TrianglePair& pair) const
   return *areParallel(corners(a_, pair.a), corners(b_, pair.b)) ? overlap : PlaneOverlap::unknown;
 }
 
-/// Whether planes are parallel, in the given coordinates: those of one pose have short numbers there. Nothing where
-/// that is not known.
+/// Whether the planes of triangles under one pose are parallel, by the given coordinates, which are short numbers.
+/// Nothing where that is not known, or where the poses differ.
 std::optional<bool> TriangleDistance::areParallelAsGiven(const TrianglePair& pair) const
 {
   if (a_ != b_) return std::nullopt;

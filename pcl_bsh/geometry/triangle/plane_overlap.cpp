@@ -13,7 +13,7 @@ bool areEqual(const LongNumber& x, const LongNumber& y)
   return x.value() == y.value() && x.tail() == y.tail() && x.error() == 0.0 && y.error() == 0.0;
 }
 
-/// Whether all corners are at one exact place along an axis.
+/// Whether all corners have one coordinate along an axis, known exactly.
 bool isAcross(const LongCorners& t, std::size_t axis)
 {
   return areEqual(t[0][axis], t[1][axis]) && areEqual(t[0][axis], t[2][axis]);
@@ -29,14 +29,14 @@ double turn(const Place& u, const Place& v, const Place& w)
   return (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
 }
 
-/// A turn of coordinates up to a scale that are off by a few roundings of it errs by far less than this share of the
-/// scale's square.
+/// Let coordinates be at most a scale, and off by a few roundings of the scale. Then a turn errs by far less than this
+/// share of the scale's square.
 constexpr double kTurnDoubt = 0x1p-40;
-/// A turn of coordinates that are off by more errs by less than this many times the scale times their error. It is the
+/// Where coordinates are off by more, a turn errs by less than this times the scale times their error. A turn is the
 /// sum of two products of differences, each up to twice the scale, and each off by two errors.
 constexpr double kTurnErrors = 32.0;
 
-/// Whether a place is surely inside. @param doubt of turns
+/// Whether a place is surely inside. @param doubt bound of the error of turns
 bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
 {
   const double turns[3] = {turn(t[0], t[1], at), turn(t[1], t[2], at), turn(t[2], t[0], at)};
@@ -44,8 +44,8 @@ bool isInside(const std::array<Place, 3>& t, const Place& at, double doubt)
          (turns[0] < -doubt && turns[1] < -doubt && turns[2] < -doubt);
 }
 
-/// Whether some place of a surely is inside b: the middle of what they have in common, as doubles find it. It is in a
-/// up to its rounding, and inside b by more than that.
+/// Whether some place of a surely is inside b. It tries the middle of their intersection, computed in doubles: this is
+/// in a up to its rounding, and must be inside b by more than that.
 /// @param error of any coordinate, without its rounding to double
 bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, double error)
 {
@@ -79,8 +79,9 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, do
   return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
-/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both touch along
-/// parts of their edges, doubles know no place inside both. @param turnOf(from, to, corner): to which side it turns
+/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both touch only
+/// along parts of their edges, there is no place inside both for surelyMeet(). @param turnOf(from, to, corner): to
+/// which side it turns
 template <class TurnOf>
 bool surelyTouch(const LongCorners& t, const LongCorners& closed, const TurnOf& turnOf)
 {
@@ -189,7 +190,7 @@ double errorOf(const Vector3<LongNumber>& v)
 
 PlaneOverlap overlapOf(const LongCorners& a, const LongCorners& b)
 {
-  // In doubles, along an edge of a and across it in the plane of a, both as long as the edge.
+  // Coordinates in doubles: along an edge of a, and across it in the plane of a. Both axes are as long as the edge.
   const Vector3<LongNumber> edge = a[1] - a[0], normal = cross(edge, a[2] - a[0]);
   const Point3 along = roughly(edge), side = roughly(a[2] - a[0]), up = roughly(normal);
   const double length = std::sqrt(dot(along, along)), height = std::sqrt(dot(up, up));

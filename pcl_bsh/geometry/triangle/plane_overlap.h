@@ -15,11 +15,11 @@ namespace pcl_bsh {
 
 using LongCorners = std::array<Vector3<LongNumber>, 3>;
 
-/// The distance of two triangles that lie across one axis, where a place of one surely is above a place of the other;
-/// exact. Nothing where numbers are not exact, or that is not sure.
+/// The exact distance of two triangles that are both perpendicular to one axis, where a place of one surely is above a
+/// place of the other. Nothing where numbers are not exact, or where that is not sure.
 std::optional<LongNumber> gapOfFacing(const LongCorners& a, const LongCorners& b);
 
-/// Whether they are surely farther apart than the root of a fraction, along the normal of one of both.
+/// Whether two triangles are surely farther apart than sqrt(numerator / denominator), along the normal of one of them.
 /// @param numerator >= 0 @param denominator > 0
 bool areFacesBeyond(const LongCorners& a, const LongCorners& b, const LongNumber& numerator,
                     const LongNumber& denominator);

@@ -18,11 +18,11 @@ int compareRoot(const Fraction<Number>& squared, const Number& length, bool& sur
   return signOf(squared.numerator - squared.denominator * (length * length), sure);
 }
 
-/// Its root, rounded to the nearest double; NaN where that is in doubt.
+/// The root of a fraction, rounded to the nearest double; NaN where that is in doubt.
 ///
 /// The quotient q of the values is corrected by what is left of the numerator, n - q d, as LongNumber has it, over d.
-/// The correction is rounded by v twice, and taken over d's value, which is v of d off: 4 v of the correction; what n
-/// - q d errs by stays as it is.
+/// The correction is rounded by v twice, and divided by d's value, which is off by v of d: 4 v of the correction. The
+/// error of n - q d stays as it is.
 inline double nearestRoot(const Fraction<LongNumber>& squared)
 {
   const LongNumber &n = squared.numerator, &d = squared.denominator;

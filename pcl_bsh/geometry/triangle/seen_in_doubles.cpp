@@ -22,7 +22,7 @@ TriangleDistance::Seen TriangleDistance::seen(const Point3& a, const Triangle3& 
   return seen;
 }
 
-/// The corners of b by way of the first of a.
+/// The origin is the first corner of b. The other corners of b are computed by way of the first corner of a.
 TriangleDistance::Seen TriangleDistance::seen(const Triangle3& a, const Triangle3& b) const
 {
   Seen seen{{}, {}, 0.0};

@@ -124,7 +124,7 @@ void findNearest(const Corners& a, const Corners& b, NearestPlaces& nearest)
   }
 }
 
-/// A number of a corner's motion: at s, from + s way + 4 s (1 - s) bow.
+/// A coordinate of a corner's motion: at s, from + s way + 4 s (1 - s) bow.
 struct Course {
   double from, way, bow;
 
@@ -133,7 +133,7 @@ struct Course {
   double least(double begin, double end) const
   {
     double value = std::min(at(begin), at(end));
-    if (bow < 0.0) { // it has a least place of its own
+    if (bow < 0.0) { // the parabola has a minimum
       const double foot = 0.5 + way / (8.0 * bow);
       if (foot > begin && foot < end) value = std::min(value, at(foot));
     }
@@ -151,7 +151,7 @@ double lengthOf(const Point3& v)
   return std::sqrt(dot(v, v));
 }
 
-/// No corner, nor anything between corners, goes faster.
+/// An upper bound of the speed of all corners, and of all places between them, per unit of s.
 double speedOf(const MovingCorners& corners)
 {
   double speed = 0.0;
@@ -211,8 +211,8 @@ Separation separationOf(const Corners& a, const Corners& b, const Near& near)
 {
   Separation apart = near.at;
   if (!(near.length > 0.0)) return apart;
-  // Where faces or edges are parallel, many places are as near as these, to rounding; of directions between them those
-  // count that hold both apart.
+  // Where faces or edges are parallel, many pairs of places are equally near, up to rounding. Only some directions
+  // between such pairs separate both, so that several are tried.
   const Point3 between = apart.place_a - apart.place_b;
   BestDirection best(a, b);
   best.offer(between);

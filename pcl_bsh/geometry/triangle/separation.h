@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far apart two points, or triangles, are in double arithmetic, and along which direction: what motion is bounded
-// by. Answers at poses are those of RecordDistance.
+// How far apart two points, or triangles, are in double arithmetic, and along which direction. Bounds of motion follow
+// from it; answers at poses are those of RecordDistance.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -46,12 +46,12 @@ struct MovingCorners {
   Corners at(double s) const;
 };
 
-/// Two of them, in one frame and at the same time. Borrowed.
+/// Two MovingCorners in one frame, which share s. Refers to both, and owns neither.
 class PCL_BSH_EXPORT_INTERNAL MovingPair {
 public:
   MovingPair(const MovingCorners& a, const MovingCorners& b);
 
-  /// No less than this are both apart between two instants, along a direction of length 1; may be negative.
+  /// A lower bound of the gap from b to a along a direction of length 1, between two instants; may be negative.
   double leastApart(const Point3& direction, double begin, double end) const;
 
   const MovingCorners &a, &b;
@@ -61,18 +61,19 @@ private:
   double error_;
 };
 
-/// When two of them come near.
+/// When two MovingCorners come near each other.
 struct Approach {
-  bool contact = false;                         ///< whether they come near enough; the next are set only then
-  double distance = 0.0, at = 0.0, enter = 0.0; ///< the smallest one, when that is, and the first instant near enough
+  bool contact = false;                         ///< whether they come near enough; the next three are set only then
+  double distance = 0.0, at = 0.0, enter = 0.0; ///< the smallest one, its instant, and the first instant near enough
   bool meets = false;                           ///< whether they meet at an instant looked at, up to rounding
   std::uint32_t looks = 0;                      ///< instants that were looked at
 };
 
 /// There is no contact where both stay beyond `near_enough`, and there is one where they come nearer than that by more
-/// than `resolution`. Distances are the smallest within it, and instants those before which none are nearer by more.
+/// than `resolution`. `distance` is the smallest one within `resolution`. Before `enter`, they are never nearer than
+/// `near_enough` by more than it.
 /// @param resolution above what rounding takes; bounds the work. @param nearest whether the smallest distance counts;
-/// if not, only the first instant does @param early_enough from here on any contact is as good as the first
+/// if not, only the first instant does @param early_enough contacts from this instant on count as equally early
 PCL_BSH_EXPORT_INTERNAL Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough,
                                             double resolution, bool nearest, double early_enough = 1.0);
 

@@ -25,7 +25,7 @@ TriangleDistance::Stages& orNone(TriangleDistance::Stages* stages, TriangleDista
   return stages ? *stages : none;
 }
 
-/// Whether both features lie on one corner or one edge of the second triangles: those of a mesh share theirs.
+/// Whether both pairs of features use one corner or one edge of the second triangles: triangles of a mesh share theirs.
 bool areOne(const Features& x, const Triangle3& of_x, const Features& y, const Triangle3& of_y)
 {
   if (x.kind != y.kind || x.i != y.i) return false;
@@ -35,7 +35,7 @@ bool areOne(const Features& x, const Triangle3& of_x, const Features& y, const T
   return (from_x == from_y && to_x == to_y) || (from_x == to_y && to_x == from_y);
 }
 
-/// The distance of parallel planes: of a corner from the first face, which has a normal.
+/// Features whose distance is that of parallel planes: the first face, which has a normal, and a corner of the second.
 constexpr Features kPlanes = {Features::face_corner, 0, 0};
 
 } // namespace
@@ -53,7 +53,8 @@ TriangleDistance::TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen:
 
 // Double ----------------------------------------------------------------------------------------------------------
 
-/// In double, of a distance that is compared with a sum: eight additions at most, rounded relative to what they add up.
+/// Compares a distance with a sum, in double first. The sum takes eight additions at most, rounded relative to the
+/// absolute values of its terms.
 template <class Pair>
 int TriangleDistance::compareByStages(const Pair& pair, const ExactDistance::Sum& reach, Stages& stages) const
 {
@@ -140,8 +141,8 @@ Fraction<Number> TriangleDistance::squared(const Pair& pair, const Features& fea
   return squaredDistance<Number>(features, corner_a, [&](std::size_t j) { return placed<Number>(b_, pair.b[j]); });
 }
 
-/// The distance of triangles across one axis, where it is known by the planes of both: of what features are nearest,
-/// long numbers cannot be sure where many are.
+/// The distance of triangles perpendicular to one axis, where their planes tell it; 0 where they share a corner. Where
+/// many features are equally near, long numbers cannot be sure which are nearest.
 template <class Pair>
 std::optional<LongNumber> TriangleDistance::acrossAxis(const Pair& pair) const
 {
@@ -166,7 +167,8 @@ PlaneOverlap TriangleDistance::overlap(const Pair& pair) const
   }
 }
 
-/// Whether both have a corner at one place for certain: of a mesh against itself nearly all that meet do.
+/// Whether both certainly have a corner at one place. In a mesh against itself, nearly all triangles that meet have
+/// one.
 template <class Pair>
 bool TriangleDistance::shareCorner(const Pair& pair) const
 {

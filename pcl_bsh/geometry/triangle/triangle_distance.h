@@ -30,15 +30,15 @@ struct Fraction;
 template <class Number>
 class NearestFeatures;
 
-/// Under two fixed poses, a's for what is named first. Const methods may run in several threads at once. Cost: about
-/// 0.15 us for a point and 1 us for a triangle where doubles can vouch for the answer; up to 0.1 ms where nothing but
-/// long integers can.
+/// Distances under two fixed poses: the pose of a places the first point or triangle, the pose of b the second. Const
+/// methods may run in several threads at once. Cost: about 0.15 us for a point and 1 us for a triangle where doubles
+/// can vouch for the answer; up to 0.1 ms where nothing but long integers can.
 class PCL_BSH_EXPORT_INTERNAL TriangleDistance {
 public:
   using Enclosure = ExactDistance::Enclosure;
 
-  /// How many answers double arithmetic gave, sums of doubles that know their error, and integers of any length (for
-  /// the distance, or for what is nearest).
+  /// How many answers came from double arithmetic, from sums of doubles that know their error, and from integers of any
+  /// length (for the distance, or for the nearest features).
   struct Stages {
     std::uint64_t doubles = 0, long_numbers = 0, integers = 0;
   };
@@ -46,7 +46,7 @@ public:
   TriangleDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
   /// Bounds of the distance as far as double arithmetic can tell; both infinite where it cannot.
-  /// @param reach the bounds need not be near to each other where both are beyond it
+  /// @param reach the bounds need not be near to each other where both are on one side of it
   Enclosure enclose(const Point3& p, const Triangle3& b) const;
   Enclosure enclose(const Triangle3& a, const Triangle3& b,
                     double reach = std::numeric_limits<double>::infinity()) const;
@@ -94,13 +94,14 @@ public:
   double gap(const PointPair& pair, Stages* stages = nullptr) const;
   double gap(const TrianglePair& pair, Stages* stages = nullptr) const;
 
-  /// From the place of b that is nearest to a to the place of a, in the world, within rounding; 0 where they meet.
+  /// The vector from the place of b that is nearest to a, to the nearest place of a, in the world, within rounding; 0
+  /// where they meet.
   Point3 between(const PointPair& pair) const;
   Point3 between(const TrianglePair& pair) const;
 
-  /// Planes through the nearest places, across the way between them: the first's and the second's, each in the
-  /// coordinates that these are given in, its normal towards the other. They are exactly as far apart as the places.
-  /// Nothing where the pair meets. Radii do not count.
+  /// Planes through the nearest places, perpendicular to the way between them: one of a and one of b. Each is in the
+  /// coordinates in which a or b is given, with its normal towards the other. They are exactly as far apart as the
+  /// places. Nothing where the pair meets. Radii do not count.
   std::optional<std::array<ExactPlane, 2>> planesBetween(const PointPair& pair) const;
   std::optional<std::array<ExactPlane, 2>> planesBetween(const TrianglePair& pair) const;
 

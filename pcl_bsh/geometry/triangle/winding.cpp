@@ -9,8 +9,8 @@
 namespace pcl_bsh {
 namespace {
 
-/// Corners seen from the point, the ray's axis first. `sure` is false where a sign was unknown, and the rest then worth
-/// nothing.
+/// The crossing of a triangle. @param t its corners, relative to the point, the ray's axis first @param sure becomes
+/// false where a sign is unknown; the result is then worth nothing
 template <class Number>
 Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
 {
@@ -21,8 +21,8 @@ Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
     for (std::size_t i = 0; i < 3; ++i) all += signOf(t[i][k], known);
     if (all == -3 || (k > 0 && all == 3)) return {};
   }
-  // In units of e << 1 along the second axis and e^2 along the third, the point is at (0, e, e^2). A side seen from
-  // there along the ray: the sign of its area with the point, by falling powers of e.
+  // The ray begins at (0, e, e^2) for an infinitesimal e. An edge's turn says on which side the ray passes it: the sign
+  // of the area of the edge and this place, seen along the ray, by falling powers of e.
   int turns[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3<Number>&u = t[i], &v = t[(i + 1) % 3];
@@ -46,10 +46,11 @@ Winding::Crossing meet(const std::array<Vector3<Number>, 3>& t, bool& sure)
       if (!sure) return {};
     }
   }
-  // Off the triangle, a place in its plane is not beside it either: the ray passes by.
+  // Where side is 0, the point is off the triangle, but in its plane if there is one. So places infinitely near to the
+  // point are off the triangle, too, and the ray passes by.
   if (side == 0 || turns[0] == 0 || turns[0] != turns[1] || turns[1] != turns[2]) return {};
-  // The ray meets the plane in front of the point where the volume has the sign of the normal along the ray, which that
-  // of the turns is.
+  // The turns have the sign of the normal along the ray. The ray meets the plane in front of the point where the volume
+  // has this sign, too.
   return {side == turns[0] ? turns[0] : 0, false};
 }
 
@@ -83,7 +84,7 @@ std::array<Number, 3> Winding::seen(const Point3& p, const Point3& q) const
 }
 
 /// Turns corners to b's own axes, the ray's first, then cyclically. Lengths are multiplied by the determinant of b's
-/// rotation: row k of the inverse, multiplied so, is the product of the columns k + 1 and k + 2.
+/// rotation: row k of the inverse times the determinant is the cross product of the columns k + 1 and k + 2.
 template <class Number>
 Winding::Corners<Number> Winding::turnedBack(const Corners<Number>& corners) const
 {

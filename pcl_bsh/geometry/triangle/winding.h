@@ -29,7 +29,7 @@ public:
     bool on_surface = false; ///< the point is on the closed triangle; turns then say nothing
   };
 
-  /// How many crossings double arithmetic decided, sums of doubles that know their error, and integers.
+  /// How many crossings were decided by double arithmetic, by sums of doubles that know their error, and by integers.
   struct Stages {
     std::uint64_t doubles = 0, long_numbers = 0, integers = 0;
   };
