@@ -54,8 +54,7 @@ public:
     return reach > kSmallestLength ? static_cast<float>(reach) * (1.0f - kReachMargin) : -1.0f;
   }
 
-  /// Whether the box of the frame is farther than `length` units from the point, so that no point of the frame is
-  /// within them.
+  /// Whether the frame's box, and so each of its points, is farther than `length` units from the point.
   bool separates(const LocalFrame& frame, double length) const noexcept
   {
     double squared = 0.0;

@@ -208,8 +208,7 @@ RelativeFrame::RelativeFrame(const LocalFrame& a, const Eigen::Isometry3d& pose_
     for (unsigned j = 0; j < 3; ++j) {
       const double entry = axes.entries[j][i];
       m[3 * i + j] = roundToFloat(entry);
-      overflows =
-          overflows || !(std::abs(entry) < kLargestCarried); // even where it is multiplied with small coordinates
+      overflows = overflows || !(std::abs(entry) < kLargestCarried); // even if it multiplies a small coordinate
     }
     squared += axes.error[i] * axes.error[i];
     in_range = in_range && inFloatRange(axes.shift[i]) && inFloatRange(axes.moved[i]) && inFloatRange(b.reach[i]);

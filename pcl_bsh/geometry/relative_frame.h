@@ -84,9 +84,8 @@ public:
   bool separates(double clearance) const noexcept;
 
 private:
-  double span_ = 0.0; // of both frames' points around their origins, in b's units
-  double float_error_ =
-      0.0; // as `error`, but finite, too, where values leave the range of float: good in double arithmetic
+  double span_ = 0.0;        // of both frames' points around their origins, in b's units
+  double float_error_ = 0.0; // as `error`, but finite for values out of float's range: good in double arithmetic
   double prune_error_ = 0.0; // the error for spheres, not for points: infinite where carried points may overflow
   double unit_b_ = 1.0;
   double skew_ = 0.0; ///< bounds ||E||

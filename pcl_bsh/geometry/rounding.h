@@ -34,8 +34,7 @@ inline float roundToFloat(double x) noexcept
   return rounded;
 }
 
-/// The float that is `steps` floats farther from 0 than x, or nearer where `steps` < 0. @pre there is one of the same
-/// sign
+/// The float `steps` floats farther from 0 than x, or nearer where `steps` < 0. @pre there is one of the same sign
 inline float stepAwayFromZero(float x, std::int32_t steps) noexcept
 {
   std::int32_t bits;
@@ -49,8 +48,7 @@ inline float stepAwayFromZero(float x, std::int32_t steps) noexcept
 inline float roundUp(double x) noexcept
 {
   const float rounded = roundToFloat(x);
-  const std::int32_t is_below =
-      static_cast<double>(rounded) < x; // true for half of all x: so no branch, and no nextafter()
+  const std::int32_t is_below = static_cast<double>(rounded) < x; // for half of all x: no branch, and no nextafter()
   return stepAwayFromZero(rounded, std::signbit(rounded) ? -is_below : is_below);
 }
 

@@ -7,8 +7,7 @@
 
 namespace pcl_bsh {
 
-/// An upper bound, except for underflow (kSmallestLength), of a length whose square float arithmetic found to be
-/// `squared`.
+/// An upper bound, except for underflow (kSmallestLength), of a length whose square is `squared` in float arithmetic.
 inline double lengthOver(float squared) noexcept
 {
   return std::sqrt(static_cast<double>(squared)) * (1.0 + kLengthError);

@@ -300,8 +300,7 @@ private:
     offer(Features::corners, i, j);
   }
 
-  /// Offers corner i of the first and edge j of the second; without `of_first`, corner i of the second and edge j of
-  /// the first.
+  /// Offers corner i of one triangle and edge j of the other. `of_first`: the corner is of the first triangle.
   void offerEdge(std::size_t i, std::size_t j, bool of_first)
   {
     const std::uint32_t bit = 1u << (3 * i + j + (of_first ? 0 : 9));

@@ -24,8 +24,7 @@ inline Vector3<double> ofOrdinaryLength(const Vector3<double>& v)
 {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}), factor = toOrdinary(largest);
   if (factor == 1.0) return v;
-  return std::ldexp(1.0, -std::ilogb(factor * largest)) *
-         (factor * v); // two factors: one alone is not large enough for the least numbers
+  return std::ldexp(1.0, -std::ilogb(factor * largest)) * (factor * v); // 2^1000 is too small a factor for denormals
 }
 
 } // namespace pcl_bsh

@@ -79,9 +79,8 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, do
   return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
-/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both touch only
-/// along parts of their edges, there is no place inside both for surelyMeet(). @param turnOf(from, to, corner): to
-/// which side it turns
+/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both only touch
+/// along parts of their edges, surelyMeet() finds no place. @param turnOf(from, to, corner): to which side it turns
 template <class TurnOf>
 bool surelyTouch(const LongCorners& t, const LongCorners& closed, const TurnOf& turnOf)
 {

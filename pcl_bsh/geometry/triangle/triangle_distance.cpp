@@ -167,8 +167,7 @@ PlaneOverlap TriangleDistance::overlap(const Pair& pair) const
   }
 }
 
-/// Whether both certainly have a corner at one place. In a mesh against itself, nearly all triangles that meet have
-/// one.
+/// Whether both certainly have a corner at one place. In a mesh against itself, nearly all that meet do.
 template <class Pair>
 bool TriangleDistance::shareCorner(const Pair& pair) const
 {
