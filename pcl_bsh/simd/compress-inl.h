@@ -31,7 +31,7 @@ constexpr SetBits setBits()
 
 alignas(64) inline constexpr SetBits kSetBits = setBits();
 
-/// Where lanes with their bit set go. Whole vectors are stored: there must be room.
+/// Moves the lanes with their bit set to the front. Whole vectors are stored: there must be room.
 class Compress {
 public:
   HWY_INLINE explicit Compress(std::uint32_t bits)
@@ -50,7 +50,7 @@ public:
     hn::StoreU(hn::BitCast(Unsigned(), hn::TableLookupLanes(lanes, from_)), Unsigned(), to);
   }
 
-  /// `first` plus the number of each lane.
+  /// Stores `first` plus the number of each of these lanes.
   HWY_INLINE void storeNumbers(std::uint32_t first, std::uint32_t* to) const
   {
     hn::StoreU(hn::Add(hn::Set(Unsigned(), first), numbers_), Unsigned(), to);

@@ -20,12 +20,12 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// At least the squares of the lengths of ways to what lies in two slabs. @param dx, dy, dz from their centre
+/// Lower bounds of squared distances to anything that lies in both slabs. @param dx, dy, dz from their centre
 /// @param margin kSlabMargin of all lengths, as FacingSlabs has it
 ///
-/// A vector v from there has components of at least g and k along the normals n and c. Let m = |n . c|: normals need
-/// not be square to each other. Then |v|^2 >= (g^2 + k^2 - 2 m g k) / (1 - m^2) >= (1 - m) (g^2 + k^2). The cosine and
-/// the squares lose less than 2^-16 in float arithmetic.
+/// A vector v from a place into both slabs has components of at least g and k along the normals n and c. Let m = |n .
+/// c|: normals need not be square to each other. Then |v|^2 >= (g^2 + k^2 - 2 m g k) / (1 - m^2) >= (1 - m) (g^2 +
+/// k^2). The cosine and the squares lose less than 2^-16 in float arithmetic.
 HWY_INLINE LaneVector squaredToSlabs(const CrossedSlabs& held, LaneVector dx, LaneVector dy, LaneVector dz,
                                      LaneVector margin)
 {
@@ -65,10 +65,10 @@ HWY_INLINE std::uint32_t pointsNearSlabs(const float* x, const float* y, const f
 /// Bit i: the records in sphere i and its two slabs are proven to be more than reach away from the other's. The proof
 /// is along a normal of either, or across the directions in which both are longest.
 ///
-/// Whatever led to a direction u, the gap along it is a bound; it is measured for |u|. A part of u along a normal
-/// reaches as far as its slab, the rest as far as the sphere (NodeSupport). Normals of 0 prove nothing, and leave all
-/// to the sphere. kSlabMargin of all lengths pays for the errors of normals, as in FacingSlabs, and for float
-/// arithmetic. The rest of u errs by 8 roundings of it, a product with u by 4.
+/// The gap along any direction u is a lower bound; it is measured in units of |u|. A part of u along a normal reaches
+/// as far as its slab, the rest as far as the sphere (NodeSupport). Normals of 0 prove nothing, and leave all to the
+/// sphere. kSlabMargin of all lengths pays for the errors of normals, as in FacingSlabs, and for float arithmetic. The
+/// rest of u errs by 8 roundings of it, a product with u by 4.
 HWY_INLINE std::uint32_t crossedSlabsApart(const SphereLanes& spheres, const SlabLanes& slabs,
                                            const SlabLanes& cross_slabs, const CrossedSlabs& other, float reach)
 {

@@ -26,9 +26,10 @@ inline constexpr int kFlatUnderRoundings = 3; ///< of the height of a side above
 /// The sum of these errors, in units of (distance + longest side): proved in test/proof/triangles.g.
 inline constexpr int kFlatTriangleUnits = 15;
 
-/// Error of a gap between a flat triangle and one in a lane, for each unit of the direction's length, in u. The unit is
-/// the greatest distance of a corner from the flat one's origin, plus its longest side. And the share of the compared
-/// value. Derived in triangle_pair_lanes-inl.h, proved in test/proof/triangle_pairs.g.
+/// Error of a gap between a flat triangle and one in a lane, per unit of the direction's length. It has two parts:
+/// kTrianglePairUnits in u of a length, and kTrianglePairMargin as a share of the compared value. The length is the
+/// greatest distance of a corner from the flat one's origin, plus the flat one's longest side. Derived in
+/// triangle_pair_lanes-inl.h, proved in test/proof/triangle_pairs.g.
 inline constexpr int kTrianglePairUnits = 8;
 inline constexpr float kTrianglePairMargin = 0x1p-18f;
 

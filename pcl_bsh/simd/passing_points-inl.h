@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-// A rounded place at an instant: beside the above, 3 u of twice the largest coordinate and of four times the bow. A
-// point's shift and the gap to it have 3 u.
+// A rounded place at an instant: beside the 8 + 7 u of segment_lanes-inl.h, 3 u of twice the largest coordinate and of
+// four times the bow. A point's shift and the gap to it have 3 u.
 static_assert(1.7321 * (8 + 7 + 6 + 3) * kFloatUnit < kSegmentRounding);
 
 /// Where an arc is at as many instants as there are lanes: step / steps, (step + 1) / steps, ...
@@ -40,7 +40,7 @@ struct PlacesOnArc {
     z = along(2);
   }
 
-  /// From a box.
+  /// The squared distances from a box.
   HWY_INLINE LaneVector squaredDistance(const float* low, const float* high) const
   {
     const LaneTag d;
@@ -51,7 +51,7 @@ struct PlacesOnArc {
     return squaredNorm(beside(x, 0), beside(y, 1), beside(z, 2));
   }
 
-  /// From the nearest of `count` points, at (others + shift).
+  /// The squared distances from the nearest of `count` points, which are at (others + shift).
   HWY_INLINE LaneVector nearestSquared(const float* others_x, const float* others_y, const float* others_z,
                                        std::size_t count, const float* shift) const
   {
@@ -67,16 +67,16 @@ struct PlacesOnArc {
   }
 };
 
-/// The points that a line passes.
+/// How a line passes points, one in each lane.
 struct Passage {
-  LaneVector at;      ///< the foot of the perpendicular, of the way
-  LaneVector squared; ///< distance from the line
-  LaneVector left;    ///< what the reach, squared, is longer than that
+  LaneVector at;      ///< the foot of the perpendicular, as a share of the way
+  LaneVector squared; ///< squared distance from the line
+  LaneVector left;    ///< the squared reach less `squared`
 
   auto isWithin() const { return hn::Ge(left, hn::Zero(LaneTag())); }
 };
 
-/// A line through where a point is first, that passes within a reach of others.
+/// The line of a moving point, which may pass within a reach of other points.
 class LineLanes {
 public:
   /// @param smallest a shorter way is taken for rest. @param rounding in lengths
@@ -121,10 +121,10 @@ private:
 template <std::size_t Count>
 struct Passages {
   std::uint32_t near;               ///< points within the reach, as bits
-  alignas(64) float squared[Count]; ///< distance from the line through it
-  alignas(64) float enter[Count];   ///< not before this part of its way is it within the reach
+  alignas(64) float squared[Count]; ///< squared distance from the line of the segment
+  alignas(64) float enter[Count];   ///< the part of its way before which it is not within the reach
 
-  /// The points in `points` that the line comes near before a part of its way, or nearer than a squared distance.
+  /// The points in `points` with `enter` before a part of the way, or with `squared` at most `squared_limit`.
   HWY_INLINE std::uint32_t before(std::uint32_t points, float part, float squared_limit) const
   {
     const LaneTag d;

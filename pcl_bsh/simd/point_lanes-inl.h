@@ -50,8 +50,8 @@ HWY_INLINE std::uint32_t pointsNear(const float* x, const float* y, const float*
   return ~far & firstBits(count);
 }
 
-/// The least distance from any of a leaf's `count` points to a slab, by how far that reaches towards each; sixteen are
-/// read. Bounded from below, as slabGaps() has it.
+/// A lower bound of the distance from a leaf's `count` points to a slab, by how far the slab's points reach towards
+/// each; sixteen are read. 0 where no gap is known, as in slabGaps().
 HWY_INLINE float pointsGap(const float* x, const float* y, const float* z, std::size_t count, const Slab& slab)
 {
   const LaneTag d;
@@ -116,7 +116,7 @@ HWY_INLINE void nearestSquared(const LeafPoints& points, const float* x, const f
   }
 }
 
-/// The nearest of the other points so far, of each of sixteen, and how near the next one is.
+/// For each of sixteen points, the nearest of other points so far, and how near the second nearest is.
 struct NearestTwo {
   alignas(64) float first[kLeafPoints];
   alignas(64) float second[kLeafPoints];
@@ -269,7 +269,7 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
 }
 
 /// Whether any point is within a reach of its own: reach + scale * lengths[i]; a negative reach holds no point.
-/// @param reach rounded inward, and scale so that the products are. @param lengths >= 0; as many are read as of x
+/// @param reach rounded inward, and scale such that the products are. @param lengths >= 0; as many are read as of x
 HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* z, const float* lengths, float scale,
                                    std::size_t count, const Point& to, float reach)
 {
@@ -288,7 +288,7 @@ HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* 
 }
 
 /// Lowers longer[i] to the smallest distance of point i to those points (x, y, z) that have their bit set, each plus
-/// scale * lengths[j], and shorter[i] to the smallest less that. Both in float arithmetic: kReachMargin of all terms.
+/// scale * lengths[j], and shorter[i] to the smallest less that. Both err by kReachMargin of all terms in float.
 HWY_INLINE void nearestWithLengths(const LeafPoints& points, const float* x, const float* y, const float* z,
                                    const float* lengths, float scale, std::uint32_t others, float* longer,
                                    float* shorter)

@@ -76,8 +76,8 @@ inline constexpr float kSlabMargin = 0x1p-16f;
 inline constexpr float kReachMargin = 0x1p-21f;
 
 /// Segments against boxes: rounding relative to the largest coordinate of starts, ends and widened boxes. Starts take 5
-/// u, carried ends 5 u, their difference 2 u, the gap to a box 2 u. The time takes 6 u of the motion, of up to two such
-/// coordinates, for the time. Less than 40 u of the 64.
+/// u, carried ends 5 u, their difference 2 u, the gap to a box 2 u. The error of the time shifts a place by 6 u of the
+/// motion, which is at most two such coordinates. Together less than 40 u of the 64.
 inline constexpr float kSegmentRounding = 0x1p-18f;
 
 /// Error of an instant i / steps, in steps: two roundings of up to `steps`, and those of the stay's ends.

@@ -19,8 +19,8 @@ namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Arcs from start to end: at t from 0 to 1 on the parabola start + t motion + 4 t (1 - t) bow. Each is tested against
-/// boxes widened by a reach of its own. The caller pays for rounding in the reach, also for taking a motion below
-/// `smallest` for one of `smallest` (kSegmentRounding).
+/// boxes widened by a reach of its own. The caller adds rounding (kSegmentRounding) to the reach, which also covers
+/// that a motion below `smallest` is taken for one of `smallest`.
 /// @tparam Reaches 3: along each axis another, 1: the same along all.
 template <std::size_t Count, std::size_t Reaches = 1>
 struct Segments {
@@ -29,7 +29,7 @@ struct Segments {
   alignas(64) float motion[3][Count]; ///< end - start
   alignas(64) float bow[3][Count];
   alignas(64) float reach[Reaches][Count];
-  float ball = 0.0f; ///< with three reaches: what they have in common, a distance in all directions
+  float ball = 0.0f; ///< with three reaches: their common part, a distance in all directions
 
   HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], const float (&bows)[3][Count],
                       float smallest)
@@ -71,7 +71,7 @@ struct ArcLanes {
   LaneVector start, motion, inverse, bow, reach;
 };
 
-/// The chord is where the box is that is widened by the bow, too.
+/// Clips an arc by its chord: where the arc is in the widened box, the chord is in that box widened by the bow, too.
 HWY_INLINE void clipAxis(const ArcLanes& arc, LaneVector low, LaneVector high, ClippedLanes& clip)
 {
   const LaneTag d;
@@ -91,8 +91,8 @@ HWY_INLINE LaneVector placeOn(const ArcLanes& arc, LaneVector t)
   return hn::Add(arc.start, hn::Mul(t, hn::Add(arc.motion, bent)));
 }
 
-/// At most the distance of the clipped part of an arc from a box along an axis, less (reach - ball). The part bows by
-/// the square of its share of the whole.
+/// A lower bound of the distance of an arc's clipped part from a box along an axis, less (reach - ball). The bow of the
+/// part is the arc's bow times the square of the part's share.
 HWY_INLINE LaneVector gapToBox(const ArcLanes& arc, LaneVector ball, LaneVector low, LaneVector high,
                                const ClippedLanes& clip)
 {

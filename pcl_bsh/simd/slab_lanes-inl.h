@@ -33,8 +33,8 @@ struct SlabLanes {
 /// The longest length that slabs are compared with: sums of its squares are in the range of float.
 inline constexpr float kLongestOfSlabs = 0x1p60f;
 
-/// A vector of slabs, from lane i on, and another one: what the bounds of their distance have in common. d is from the
-/// other centre to those of the lanes.
+/// The slabs of one vector, from lane i on, against another slab: values that all bounds of their distance use. d is
+/// the vector from the other centre to the centre of each lane.
 ///
 /// Across a normal spheres are as wide as their radii, and d less its part along the normal errs by 2^-17 |d| and
 /// rounding, which kSlabMargin pays for, too. The squares err as those of spheres do.
@@ -42,9 +42,9 @@ inline constexpr float kLongestOfSlabs = 0x1p60f;
 /// Along a normal u, another slab of normal n and sphere of radius r reaches as far as |u . n| h + |u - (u . n) n| r.
 /// Here u is split into its components along n and across it. Normals may be off length 1 by 2^-19, and so may the
 /// rotation that carries them between frames. kSlabMargin of all lengths pays for these and for float arithmetic, a few
-/// roundings of each term. As much in the sine's square pays for those of 1 - cosine^2. A normal of 0 proves nothing.
-/// Nothing is proven where squares may leave the range of float: triangles reach beyond the frame that holds their
-/// middles.
+/// roundings of each term. As much, kSlabMargin, in the sine's square pays for the roundings of 1 - cosine^2. A normal
+/// of 0 proves nothing. Nothing is proven where squares may leave the range of float: triangles reach beyond the frame
+/// that holds their middles.
 struct FacingSlabs {
   HWY_INLINE FacingSlabs(LaneTag d, std::size_t i, const SphereLanes& spheres, const SlabLanes& slabs,
                          const Slab& other)
@@ -81,7 +81,7 @@ struct FacingSlabs {
     return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
   }
 
-  /// |d| less its part `on` a normal.
+  /// The length of d without its part `on` along a normal (x, y, z).
   HWY_INLINE LaneVector rest(LaneVector on, LaneVector x, LaneVector y, LaneVector z) const
   {
     return hn::Sqrt(squaredNorm(hn::Sub(dx, hn::Mul(on, x)), hn::Sub(dy, hn::Mul(on, y)), hn::Sub(dz, hn::Mul(on, z))));
@@ -99,7 +99,7 @@ struct FacingSlabs {
     return hn::IfThenElseZero(hn::Lt(lengths, hn::Set(d, kLongestOfSlabs)), sum);
   }
 
-  /// Between how far both reach along d. Underflow in a rest is far below the smallest length.
+  /// A lower bound of the gap along d between the points of both. Underflow in a rest is far below the smallest length.
   HWY_INLINE LaneVector between(LaneTag d, LaneVector rest_u, LaneVector rest_n) const
   {
     const LaneVector length = hn::Sqrt(squaredNorm(dx, dy, dz));
@@ -119,7 +119,7 @@ struct FacingSlabs {
   }
 
   LaneVector ux, uy, uz, nx, ny, nz, dx, dy, dz, h, r, other_h, other_r, on_u, on_n, along;
-  hn::Mask<LaneTag> by_own; ///< along whose normals they are farther apart
+  hn::Mask<LaneTag> by_own; ///< they are farther apart along the lane's normal than along the other one
 };
 
 /// Bit i: slab i, of sphere i, is proven to be more than reach away from another one: along the normal of either and
@@ -176,7 +176,7 @@ struct CrossedSlabs {
   float thickness() const { return h > cross_h ? h : cross_h; }
 };
 
-/// slabGaps() by how far the points in two slabs each reach along d.
+/// slabGaps() for points in two slabs each: lower bounds of the gap along d between the points of both.
 HWY_INLINE void supportGaps(const SphereLanes& spheres, const SlabLanes& slabs, const SlabLanes& cross_slabs,
                             const CrossedSlabs& other, float* gaps)
 {

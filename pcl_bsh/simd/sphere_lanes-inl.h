@@ -28,7 +28,7 @@ inline constexpr std::size_t kLanes = 8; ///< children of a node
 using LaneTag = hn::CappedTag<float, kLanes>;
 using LaneVector = hn::Vec<LaneTag>;
 
-/// Bit i of the result: lane (first + i) of the mask.
+/// Bit i of the result: lane i of the mask.
 template <class Mask>
 HWY_INLINE std::uint32_t bitsOf(LaneTag d, Mask mask)
 {
@@ -71,7 +71,7 @@ static_assert(affine(Roundings{1}, kNoTerm, kNoTerm, kNoTerm, Roundings{}, Round
                   Roundings{kCarriedShiftRoundings},
               "the bounds of carried points follow from it");
 
-/// The columns of one row of a transformation, spread over lanes: row . (x, y, z) + shift.
+/// One row of a transformation, each number spread over all lanes: row . (x, y, z) + shift.
 struct AffineRow {
   LaneVector rx, ry, rz, shift;
 
@@ -131,8 +131,8 @@ struct QueryBall {
   float inside_reach; ///< the clearance less the radius, rounded inward
 };
 
-/// The limit of spheresNear(), of a radius and its stretch, and a reach that is a sum of another such radius and a
-/// pruneReach(); squared, and times 1 + kSphereMargin.
+/// The squared limit of spheresNear(): (radius + reach)^2 times `margin`, which is 1 + kSphereMargin. The radius is
+/// stretched. The reach is the sum of another stretched radius and a pruneReach().
 template <class Number>
 HWY_INLINE constexpr Number nearLimit(Number radius, Number reach, Number margin)
 {
@@ -209,8 +209,8 @@ HWY_INLINE std::uint32_t spheresNearBox(const SphereLanes& spheres, const QueryB
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// Bit i: (x, y, z) is not proven to be farther than reaches[i] + more from the centre of sphere i; proven it is where
-/// that sum is below 0. As nearLimit() has it, both rounded outward. @param gap as spheresNear() has it, or null
+/// Bit i: (x, y, z) is not proven to be farther than reaches[i] + more from the centre of sphere i; a sum below 0
+/// counts as proof. As nearLimit() has it, both rounded outward. @param gap as spheresNear() has it, or null
 HWY_INLINE std::uint32_t spheresNearEach(const SphereLanes& spheres, const float* reaches, const Point& to, float more,
                                          float* gap)
 {
@@ -228,7 +228,7 @@ HWY_INLINE std::uint32_t spheresNearEach(const SphereLanes& spheres, const float
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// Bit i: from the centre of sphere i to that of another one it is more than `times` as far as both radii together.
+/// Bit i: the centres of sphere i and of another sphere are more than `times` the sum of both radii apart.
 /// @param gap as spheresNear() gave it. @param radius of the other one
 HWY_INLINE std::uint32_t spheresFar(const float* gap, const float* radii, float stretch, float radius, float times)
 {
@@ -264,7 +264,7 @@ HWY_INLINE std::uint32_t spheresNear(const float* squared, const float* radii, f
   return apart ^ ((1u << kLanes) - 1);
 }
 
-/// Raises all values to `least`. Bit i: it is `floor` or less even so.
+/// Raises values below `least` to it. Bit i: the raised value is still at most `floor`.
 HWY_INLINE std::uint32_t raiseLanes(float* values, float least, float floor)
 {
   const LaneTag d;
@@ -308,7 +308,7 @@ HWY_INLINE std::uint32_t smallestLanes(const float* values, std::uint32_t among)
   return lanes != 0 ? lanes : among; // NaN and infinity: any
 }
 
-/// The first of them.
+/// The first lane of smallestLanes().
 HWY_INLINE std::uint32_t smallestLane(const float* values, std::uint32_t among)
 {
   return static_cast<std::uint32_t>(std::countr_zero(smallestLanes(values, among)));

@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One number, as vectors of them.
+// The operations of vectors, for one number.
 HWY_INLINE double Add(double a, double b)
 {
   return a + b;
@@ -80,7 +80,7 @@ HWY_INLINE void turnToTriangle(const FlatTriangle<Number>& triangle, const Sprea
   take(row(0), row(1), row(2));
 }
 
-/// Calls candidate(dx, dy) with what is left of (x, y) in the triangle's plane beyond three places of it.
+/// Calls candidate(dx, dy) with the vectors, in the triangle's plane, from three places of the triangle to (x, y).
 ///
 /// Why it holds for any shape: no angle, normal or area is divided by. In its plane the nearest place of the triangle
 /// is on one of the two sides at the apex, or it is found as follows. The x is clamped to the longest side, and y to

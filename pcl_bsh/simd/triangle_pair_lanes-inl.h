@@ -26,7 +26,7 @@ struct LeafCorners {
 
 struct LanesVerdict {
   std::uint32_t apart = 0;  ///< bits of the lanes that are surely farther apart than the reach
-  std::uint32_t within = 0; ///< bits of those of which a corner surely is within the sure reach
+  std::uint32_t within = 0; ///< bits of the lanes that surely have a corner within the sure reach
 };
 
 /// Compares triangles in lanes with one that was laid flat in their frame.
@@ -42,13 +42,13 @@ struct LanesVerdict {
 /// - The flat triangle's corners along w: 5.2 u |w| L for the turn, 2 u |w| L for two products and their sum.
 /// - The difference of both, the squares and their comparison: shares of what is compared, below 16 u, as is what the
 ///   rows change of a length; of kTrianglePairMargin.
-/// Together less than kTrianglePairUnits of (C + L): proved in test/proof/triangle_pairs.g. Where the flat triangle is
-/// stored is triangle.error.
+/// Together less than kTrianglePairUnits of (C + L): proved in test/proof/triangle_pairs.g. How far the flat triangle
+/// is off as stored is triangle.error.
 ///
-/// Within: a corner is, as squaredToTriangle() tells.
+/// Within: some corner is within the sure reach, as squaredToTriangle() tells.
 /// @param lanes those asked for. @param reach beyond which a lane is apart, with triangle.error and all that corners
-/// may be off. @param sure_square what a corner's squared distance must not exceed (DistanceBand::hit); negative:
-/// nobody asks
+/// may be off. @param sure_square what a corner's squared distance must not exceed (DistanceBand::hit). Negative:
+/// `within` is not asked for
 HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle, const LeafCorners& leaf,
                                             std::uint32_t lanes, float reach, float sure_square)
 {
@@ -86,12 +86,12 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
     const auto lowest = [&](LaneVector u, LaneVector v, LaneVector w)
                             HWY_ATTR { return hn::Min(hn::Min(dot(u, v, w, 0), dot(u, v, w, 1)), dot(u, v, w, 2)); };
 
-    // Across the flat triangle: that tells of most.
+    // Along the normal of the flat triangle: this decides most lanes.
     LaneVector on_z[3];
     for (std::size_t k = 0; k < 3; ++k) on_z[k] = dot(spread(rows[6]), spread(rows[7]), spread(rows[8]), k);
     consider(hn::Max(hn::Min(hn::Min(on_z[0], on_z[1]), on_z[2]), hn::Neg(hn::Max(hn::Max(on_z[0], on_z[1]), on_z[2]))),
              spread(1.0f));
-    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
+    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave float's range
     const auto bitsIn = [&](auto mask) HWY_ATTR { return bitsOf(d, mask) << i & block; };
     std::uint32_t open = lanes & block & ~bitsIn(hn::And(apart, in_range));
     if (open == 0) {
@@ -99,7 +99,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
       continue;
     }
 
-    // From it to each corner.
+    // From the flat triangle to each corner.
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = [&](std::size_t r) HWY_ATTR {
         return dot(spread(rows[3 * r]), spread(rows[3 * r + 1]), spread(rows[3 * r + 2]), k);
@@ -124,7 +124,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
 
     open &= ~bitsIn(apart) & ~bitsIn(within);
     if (open != 0) {
-      const auto considerBoth = [&](LaneVector ux, LaneVector uy, LaneVector uz) HWY_ATTR { // ways along it
+      const auto considerBoth = [&](LaneVector ux, LaneVector uy, LaneVector uz) HWY_ATTR { // along u, both ways
         const LaneVector on_x = turned(spread(rows[0]), spread(rows[1]), spread(rows[2]), ux, uy, uz),
                          on_y = turned(spread(rows[3]), spread(rows[4]), spread(rows[5]), ux, uy, uz);
         const LaneVector end = hn::Mul(on_x, length), apex = hn::Add(hn::Mul(on_x, apex_x), hn::Mul(on_y, apex_y));

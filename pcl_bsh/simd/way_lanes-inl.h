@@ -15,14 +15,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// A straight way of points, from where they are.
+/// A straight way that all points go, each from its place.
 struct PointsWay {
   float x = 0.0f, y = 0.0f, z = 0.0f;
   float per_square = 0.0f; ///< 1 over the square of its length, or 0: then points stay where they are
 };
 
-/// Which of sixteen points do not stay, on their way, farther from (qx, qy, qz) than a squared distance. The place at
-/// which one is nearest is rounded; it is on the way all the same.
+/// Which of sixteen points do not stay, on all of their way, farther than a squared distance from (qx, qy, qz).
+/// Rounding moves the nearest place of a way along this way only.
 HWY_INLINE std::uint32_t pointsPassing(const LeafPoints& points, const PointsWay& way, float qx, float qy, float qz,
                                        float squared_limit)
 {
