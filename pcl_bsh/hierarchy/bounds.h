@@ -19,7 +19,7 @@ struct Bounds {
 
   void add(const Point3& point) noexcept { add(point, point); }
 
-  /// All points of other bounds.
+  /// Adds all points of the box [lowest, highest].
   void add(const Point3& lowest, const Point3& highest) noexcept
   {
     for (std::size_t k = 0; k < 3; ++k) {

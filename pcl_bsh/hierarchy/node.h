@@ -34,7 +34,7 @@ struct alignas(32) Node {
   /// How many of a leaf's points there are to compare.
   std::uint32_t comparedPoints(std::size_t i) const noexcept { return isCoincident(i) ? 1 : points(i); }
 
-  /// @param below its node, or kLeaf. Ranges follow each other.
+  /// Appends a child over [from, to), which begins where the last child's range ends. @param below its node, or kLeaf
   void addChild(std::uint32_t from, std::uint32_t to, std::uint32_t below) noexcept
   {
     begin[count] = from;
@@ -56,7 +56,7 @@ struct alignas(32) Node {
 };
 static_assert(sizeof(Node) == 256, "a node fills four cache lines");
 
-/// Children of all these nodes: so many spheres they hold.
+/// The number of children, and so of spheres, in all these nodes.
 inline std::uint64_t countChildren(const std::vector<Node>& nodes) noexcept
 {
   std::uint64_t count = 0;

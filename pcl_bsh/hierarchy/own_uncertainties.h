@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The uncertainties that points have each of their own, in the order of a voxel's tree: where all points below a node
-// are well known, or none is, one test decides about the node.
+// The uncertainties of single points, in the order of a voxel's tree. Where all points below a node are well known, or
+// no point is, one test decides about the node.
 #pragma once
 
 #include <pcl_bsh/base/made_once.h>
@@ -14,7 +14,8 @@ namespace pcl_bsh {
 struct PointsView;
 struct Voxel;
 
-/// Between which lengths those of the points below a node's children are, in the cloud's unit; 0 past the last child.
+/// The least and the greatest uncertainty of the points below each child of a node, in the cloud's unit; 0 past the
+/// last child.
 struct alignas(32) UncertaintyLanes {
   float least[kNodeChildren], most[kNodeChildren];
 };
@@ -22,7 +23,7 @@ struct alignas(32) UncertaintyLanes {
 /// The uncertainties of a voxel's points and nodes.
 struct OwnUncertainties {
   std::vector<UncertaintyLanes> nodes; ///< as Voxel::nodes
-  std::unique_ptr<float[]> points;     ///< in the order of the block, then kMaxLeafPoints times 0, to be read
+  std::unique_ptr<float[]> points;     ///< in the order of the block, then kMaxLeafPoints zeros that may be read
   float most = 0.0f;                   ///< of all
 };
 

@@ -38,9 +38,10 @@ struct PointsView {
   double uncertainty = 0.0;
   const float* uncertainties = nullptr; ///< optional, one per record, added to `uncertainty`; finite and >= 0
 
-  /// Optional: what the records are, of which points and radii say balls that hold them (triangles_view.h).
+  /// Optional: the triangles that the records are. The points and radii are then balls that hold the triangles
+  /// (triangles_view.h).
   const TrianglesView* triangles = nullptr;
-  double off_middle = 0.0; ///< how far such a point may be from its triangle, by rounding
+  double off_middle = 0.0; ///< how far such a ball's middle may be from its triangle, by rounding
 
   /// Only these records are points; none where there are no records, wherever the pointer points to.
   void restrictTo(const std::int32_t* records, std::size_t record_count) noexcept
@@ -88,9 +89,9 @@ struct PointsView {
   /// How far a record reaches beyond its point or its triangle: 0 for triangles, whose ball only bounds them.
   double ownRadius(std::uint32_t record) const noexcept { return triangles ? 0.0 : radius(record); }
 
-  bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< queries tell verdicts apart
+  bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< some verdicts may be undecided
 
-  /// The uncertainty of a record beside `uncertainty`, which all share.
+  /// The uncertainty of a record in addition to `uncertainty`, which all share.
   double ownUncertainty(std::uint32_t record) const noexcept { return uncertainties ? uncertainties[record] : 0.0; }
 };
 

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Clipping ears takes the square of the corners.
+/// Corners of a polygon that is clipped, at most: the time for clipping ears grows with their square.
 constexpr std::size_t most_clipped = 4096;
 
 double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
@@ -27,7 +27,8 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-/// A polygon's corners in the plane of its vector area, to its left when walked round; NaN where it has no area.
+/// A polygon's corners in the plane of its vector area, with the area to the left as one walks round; NaN without an
+/// area.
 std::vector<Vector2d> flattened(const std::vector<Vector3d>& corners)
 {
   double largest = 0.0;
@@ -95,7 +96,7 @@ std::optional<std::vector<Triangle>> clipEars(const std::vector<Vector2d>& flat)
   return triangles;
 }
 
-/// By positions in the polygon.
+/// The triangles of a polygon, with corners named by their positions in it.
 std::vector<Triangle> triangulated(const std::vector<Vector3d>& corners)
 {
   const std::vector<Vector2d> flat = flattened(corners);

@@ -59,14 +59,14 @@ struct SlabPlaces {
   }
 
   std::vector<Set> sets;
-  double slack; ///< between a place as given and as it is here
+  double slack; ///< largest distance of a place as given from the place as it is here
 
 private:
   std::vector<float> corners_;
 };
 
-/// How the places below child i of a node spread. In eight sums side by side on every instruction set: the same places
-/// give the same bits.
+/// The covariance of the places below child i of a node. It has eight partial sums on every instruction set, so that
+/// equal places give equal bits.
 Eigen::Matrix3d covarianceOf(const SlabPlaces& places, const Node& node, std::uint32_t i)
 {
   constexpr std::uint32_t kSums = 8;
@@ -150,7 +150,7 @@ std::uint64_t fitSlabsOnTarget(const Voxel& voxel, const PointsView& view, SlabA
     for (std::uint32_t i = 0; i < node.count; ++i) {
       Eigen::Vector3f& normal = normals[node.isLeaf(i) ? n : node.child[i]];
       Eigen::Vector3f own = normal;
-      if (!node.isLeaf(i) || view.triangles) { // a few triangles say how they lie, as a few points do not
+      if (!node.isLeaf(i) || view.triangles) { // a few triangles have a meaningful axis, a few points do not
         own = principalAxis(covarianceOf(places, node, i), axis);
         if (!node.isLeaf(i)) normal = own;
         ++found;

@@ -65,8 +65,8 @@ struct RefitReport {
   bool sorted_anew = false; ///< the whole hierarchy was made anew: points had scattered, or some came or went
   std::size_t voxels_refitted = 0;
   std::size_t voxels_dropped = 0;   ///< built ones that had grown loose: their next visit builds them anew
-  std::size_t volumes_refitted = 0; ///< spheres fitted to the points: of the voxels, above them, and in those that keep
-                                    ///< their tree
+  std::size_t volumes_refitted = 0; ///< spheres fitted to the points: one for each voxel, those above the voxels, and
+                                    ///< those in voxels that keep their tree
   double looseness = 1.0;           ///< mean growth of the voxels since points were sorted into them
 };
 
@@ -90,8 +90,8 @@ public:
   std::size_t size() const noexcept;                  ///< finite points indexed
   bool empty() const noexcept { return size() == 0; } ///< no finite point
 
-  /// The distance of neighbouring float32 numbers at the largest coordinate: what rounding to float32 may have moved a
-  /// point by, per axis, twice over. 0 for float64 clouds and for empty ones.
+  /// The distance of neighbouring float32 numbers at the largest coordinate. Rounding to float32 may have moved a point
+  /// by half of it, per axis. 0 for float64 clouds and for empty ones.
   double coordinateSpacing() const noexcept;
 
   /// Builds every voxel now. @param threads 0: all of the machine's. The result is the same for any number.

@@ -62,8 +62,8 @@ struct Voxel {
   double leaf_radii = 0.0;     ///< sum over its leaves when last built; 0 until a refit asks
   /// x[count], y[count], z[count], record[count], once built; PointRecord[count] until then, unless they are listed
   float* block = nullptr;
-  const std::uint32_t* list = nullptr; ///< until it is built, perhaps: its records, as runs (point_runs.h). Null: the
-                                       ///< block has its points
+  const std::uint32_t* list = nullptr; ///< its records as runs (point_runs.h), until it is built. Null: the block has
+                                       ///< its points
   float* radii = nullptr;              ///< one per point in the order of x, once built; null when points have none
   std::vector<Node> nodes;             ///< nodes[0] is the root; empty until built
   std::vector<GivenSphere> given;      ///< see givenSpheres(); empty unless the voxel has crowded cells
@@ -96,7 +96,7 @@ struct Voxel {
     state.store(other.state.load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
 
-  /// A point of a built voxel as it was given; read from the voxel, if it holds it like that.
+  /// A point of a built voxel as it was given; read from the voxel if its frame is lossless, else from the view.
   Point3 point(const PointsView& view, std::uint32_t i) const noexcept
   {
     if (!frame.lossless) return view.point(records()[i]);
@@ -153,19 +153,19 @@ public:
   /// own, and two slabs tell where their triangles are.
   bool hasLongTriangles(std::size_t voxel) const
   {
-    constexpr double kLong = 0.25; // its ball's radius, in radii of its voxel
+    constexpr double kLong = 0.25; // radius of the largest ball, in radii of the voxel
     const Voxel& of = voxels[voxel];
     return view.triangles && double{of.largest_radius} > kLong * double{of.radius} * of.frame.unit;
   }
 
   /// Where a place lies in the voxel grid.
   struct GridPlace {
-    std::uint32_t voxel; ///< whose cell the place is in, or kNoVoxel
+    std::uint32_t voxel; ///< the voxel whose cell the place is in, or kNoVoxel
     double margin;       ///< no point of another voxel is nearer than this, in the cloud's unit; negative: not known
   };
 
-  /// Keys tell in which cell points were when they were sorted. After a refit() they may be elsewhere, and an update
-  /// leaves them there in the voxels that it does not touch: the margin is less by `strayed`.
+  /// Looks up a place by the voxels' keys: the cells that points were in when they were sorted. A refit() keeps moved
+  /// points in their voxels, an update in those that it does not touch: the margin is less by `strayed`.
   GridPlace find(const Point3& place) const noexcept;
 
   /// Calls visit(record) for each point of a voxel, built or not.
@@ -174,12 +174,12 @@ public:
   {
     Voxel& v = voxels[voxel];
     if (!claim(v)) return v.forEachRecord(visit);
-    const Claim claimed{v}; // others wait: the visit may throw
+    const Claim claimed{v}; // other threads wait; released also where the visit throws
     v.forEachRecord(visit);
   }
 
-  /// Calls read(voxel) where the voxel lists its points, is not built, and was not read like this before: what is
-  /// asked once needs no tree. Threads that want to build it wait meanwhile, so that read() must not wait for a voxel.
+  /// Calls read(voxel) where the voxel lists its points, is not built, and was not read like this before: one question
+  /// needs no tree. Threads that want to build it wait meanwhile, so that read() must not wait for a voxel.
   /// @return what read() returned; false where it was not called
   template <class Read>
   bool readOnce(std::size_t voxel, const Read& read) const
@@ -208,7 +208,7 @@ public:
   /// has put them there (kCellRounding). A refit() leaves moved points in their voxels and measures it.
   double strayed = 0.0;
 
-  /// At least how far the range [low, high] reaches out of the cell of that key, on any axis, in cells.
+  /// An upper bound of how far the range [low, high] reaches out of the cell of a key, on any axis, in cells.
   double shiftOf(std::uint64_t key, const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept;
 
   /// Another number after every change of the points; no two hierarchies of a process share one. For callers that
@@ -275,18 +275,18 @@ private:
   static void release(Voxel& voxel, Voxel::State state);
 };
 
-/// Cells are counted in the cloud's scalar type: rounding may put a point into the neighbouring voxel that is nearer to
-/// the face between them than this, times the cell's number and 2, in cells.
+/// Cell numbers are computed in the cloud's scalar type. Rounding may put a point into the neighbouring voxel where the
+/// face between them is nearer than kCellRounding (cell number + 2), in cells.
 inline constexpr double kCellRounding = 0x1p-23;
 
-/// Sets what is known of a voxel by its frame and points: `radius`, `largest_radius`; forgets what was made when asked
-/// for. @pre its points' records are set
+/// Sets a voxel's `radius` and `largest_radius` by its frame and points, and drops its slabs and own uncertainties.
+/// @pre its points' records are set
 void measureVoxel(Voxel& voxel, const PointsView& view);
 
 /// Voxel::radius of points in this frame.
 float radiusOf(const LocalFrame& frame, float largest_radius);
 
-/// Voxels that so many points may be sorted into: more would take more memory than the points, and be no quicker.
+/// The most voxels for so many points: more would take more memory than the points, and be no quicker.
 inline std::size_t mostVoxels(std::size_t points) noexcept
 {
   return std::max<std::size_t>(4096, points / 16);
@@ -313,8 +313,8 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted
-/// still.
+/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted as
+/// before.
 /// @param cube of the voxel in the grid
 void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube);
 
@@ -339,8 +339,8 @@ VoxelSorting sortIntoVoxels(const PointsView& view, const HierarchyOptions& opti
 /// The octree above voxels in the order of their keys, one at least, in the cloud's frame. Into the memory of `reuse`.
 std::vector<Node> buildTop(const std::vector<Voxel*>& voxels, const LocalFrame& frame, std::vector<Node> reuse);
 
-/// A frame's reach is rounded outward by this share of it, far above the errors of double arithmetic. It has this least
-/// value, so that no coordinate other than 0 is stored beside a reach of 0.
+/// A frame's reach is rounded outward by this share of it, far above the errors of double arithmetic. kSmallestReach is
+/// added, so that no coordinate other than 0 is stored beside a reach of 0.
 inline constexpr double kReachGrowth = 0x1p-20;
 inline constexpr double kSmallestReach = 0x1p-140;
 

@@ -25,7 +25,7 @@ namespace {
 
 constexpr auto kName = "triangles";
 
-/// Squares of the sides that face the corners, as shares of the longest one's.
+/// The square of the side opposite each corner, as a share of the longest side's square.
 std::array<double, 3> sharesOf(const std::array<Point3, 3>& corners)
 {
   std::array<double, 3> sides;
@@ -99,7 +99,7 @@ struct Balls {
   LargeBuffer<float> radii;
 };
 
-/// One of them. @param largest raised to its largest coordinate
+/// Makes the ball of triangle i. @param largest raised to its largest coordinate
 template <class Coordinate>
 void ballOf(Balls<Coordinate>& balls, std::size_t i, double& largest)
 {

@@ -21,7 +21,7 @@ namespace pcl_bsh {
 /// The records of a triangle's corners.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A read-only view of `count` triangles. The memory must stay unchanged, and there, as that of PointsView must.
+/// A read-only view of `count` triangles. The memory must stay valid and unchanged, as that of PointsView must.
 struct TrianglesView {
   PointsView vertices;                            ///< all of its records; neither a subset nor radii nor uncertainties
   const std::uint32_t* corners = nullptr;         ///< of triangle 0: three records of `vertices`
@@ -44,23 +44,24 @@ struct TrianglesView {
   }
 };
 
-/// A view that keeps alive what it refers to: the list, and whatever the vertices' owner does. @pre not null
+/// A view of listed triangles. It keeps alive the list, and whatever the vertices' owner keeps. @pre the list is not
+/// null
 TrianglesView trianglesOf(const PointsView& vertices, std::shared_ptr<const std::vector<Triangle>> triangles);
 
-/// Finite vertices that no triangle names: no part of the surface. @pre as viewOf() asks
+/// The number of finite vertices that no triangle names: no part of the surface. @pre as viewOf() asks
 std::size_t looseVertices(const TrianglesView& triangles);
 
-/// The triangles as records of a cloud. Record i is triangle i; its point and its radius are those of a ball that holds
-/// it, which trees are built of, and queries decide by the triangle itself. A triangle with a corner that is not finite
-/// is no part of it, as a point that is not finite. The balls, 16 bytes a triangle (28 of float64 vertices), are owned
-/// by the view that is returned, and so is a copy of `triangles`.
+/// The triangles as records of a cloud. Record i is triangle i. Its point and its radius are a ball that holds it:
+/// trees are built of the balls, and queries decide by the triangles. A triangle with a corner that is not finite is
+/// left out, as a point that is not finite. The balls, 16 bytes a triangle (28 of float64 vertices), are owned by the
+/// view that is returned, and so is a copy of `triangles`.
 /// @throws InvalidInput (Input::surface) naming the triangle and the value: corners that are null or not in the view,
 ///   too many triangles, a stride below three numbers, a triangle too large for a float32 radius. Also vertices with
 ///   radii, uncertainties of their own or a subset, and the vertices that checkView() refuses
 PointsView viewOf(const TrianglesView& triangles);
 
 /// The middles of a view's records as points: of triangles, those of their balls, which lie on the triangles up to
-/// rounding. Whatever is no triangle is seen as it is, without radii.
+/// rounding. Records that are no triangles keep their points, and lose their radii.
 PointsView middlesOf(const PointsView& view);
 
 /// Refuses the triangles that viewOf() refuses, except for their size. @throws InvalidInput

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh {
 
-/// Between which lengths the uncertainties of a view's records are, all in all; rounded outward.
+/// The least and the greatest uncertainty of a view's records, common and own ones added up; rounded outward.
 struct UncertaintyRange {
   UncertaintyRange() = default;
 

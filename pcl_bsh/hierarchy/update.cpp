@@ -41,7 +41,7 @@ HWY_AFTER_NAMESPACE();
 namespace pcl_bsh {
 namespace {
 
-constexpr double kMostUnused = 0.5; // of the floats in use, before blocks are moved together
+constexpr double kMostUnused = 0.5; // unused floats for each one in use, before blocks are moved together
 
 [[noreturn]] void refuse(const std::string& what)
 {
@@ -63,7 +63,7 @@ struct Touched {
   }
 };
 
-/// The points of some records of a large cloud, in any order: memory is asked for each before its turn.
+/// Calls visit(record, point) for some records of a large cloud, in any order. Memory of each is prefetched.
 template <class Visit>
 void eachPoint(const PointsView& view, const std::vector<std::uint32_t>& records, const Visit& visit)
 {
@@ -116,14 +116,14 @@ void compact(SphereHierarchy::Storage& storage)
   storage.floats_unused = 0;
 }
 
-/// Around all voxels' points.
+/// The frame around all voxels' points.
 LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float largest_radius)
 {
   Bounds bounds;
   for (const Voxel* voxel : voxels) {
     const LocalFrame& f = voxel->frame;
     Point3 low, high;
-    for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not leave the numbers
+    for (std::size_t k = 0; k < 3; ++k) { // rounding outward must not overflow
       constexpr double largest = std::numeric_limits<double>::max();
       const double half = (f.reach[k] + f.slack(static_cast<int>(k))) * f.unit * (1.0 + kDoubleMargin);
       low[k] = std::max(f.origin[k] - half, -largest);
@@ -134,8 +134,8 @@ LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float la
   return frameBetween(bounds.low, bounds.high, scalar == Scalar::float32, largest_radius);
 }
 
-/// Whether a voxel's tree is outdated by its points' lengths, though none of them moved. Radii may differ. So may
-/// uncertainties of points of one place, of which one stands for all.
+/// Whether new radii or uncertainties outdate a voxel's tree, though no point moved: radii that differ, or different
+/// uncertainties in a leaf of one place, where one point stands for all.
 bool isOutdated(const Voxel& voxel, const PointsView& now)
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
@@ -262,7 +262,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
                                           [](const Voxel& v, std::uint64_t key) { return v.key < key; });
     if (found != end && found->key == voxel.key) voxel.old = found;
     const std::size_t count = voxel.old ? voxel.old->count : 0;
-    // A point that is not where its coordinates say has moved since (SphereHierarchy::refit()).
+    // A point in another voxel than its coordinates say has moved since it was sorted (SphereHierarchy::refit()).
     if (voxel.leaving > count) return sortAnew(now);
     report.points_read += voxel.records.size() + count - voxel.leaving;
   }
@@ -298,7 +298,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
   }
   if (count > 2 * mostVoxels(now.count)) return sortAnew(now); // twice, so that the next few points do not do it again
   auto voxels = std::make_unique<Voxel[]>(count);
-  std::vector<Voxel*> after; // where the voxels are as yet
+  std::vector<Voxel*> after; // where each voxel is until it is moved into `voxels`
   after.reserve(count);
   std::size_t source = 0, unused = storage.floats_unused;
   const auto takeUntil = [&](const Voxel* end) {

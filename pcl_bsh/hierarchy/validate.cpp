@@ -50,7 +50,8 @@ private:
     if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
   }
 
-  /// Stored coordinates are within the frame's bounds of the given ones, and given ones where find() expects them.
+  /// Checks that stored coordinates are near the given ones, by the frame's bounds, and these where find() expects
+  /// them.
   void checkPoints(const Voxel& voxel)
   {
     const double cells =
@@ -137,7 +138,7 @@ private:
     return true;
   }
 
-  /// Every point below child i is within its sphere, as given and in exact arithmetic.
+  /// Checks that every point below child i, as given, is within its sphere, in exact arithmetic.
   void checkSphere(const Node& node, std::uint32_t i, const LocalFrame& frame, std::uint32_t voxel,
                    const std::string& here)
   {
@@ -166,8 +167,8 @@ private:
                .compare(s_.view.point(record), c, node.r[i] * frame.unit, -s_.view.radius(record)) <= 0;
   }
 
-  /// Every point below child i is between its planes, or has none. Double has the bits to say so: a slab is 2^-20 of
-  /// its sphere's radius thicker than its points.
+  /// Checks that every point below child i is between the planes of its slab, if it has one. Double is precise enough:
+  /// a slab is 2^-20 of its sphere's radius thicker than its points.
   void checkSlab(const Node& node, std::uint32_t index, std::uint32_t i, const Voxel& voxel, LazySlabs& fitted,
                  const std::string& here)
   {
@@ -206,7 +207,7 @@ private:
 
   const SphereHierarchy::Storage& s_;
   std::vector<std::uint32_t> seen_;
-  bool all_are_records_ = true; ///< of the cloud: nodes are looked at, which read their points
+  bool all_are_records_ = true; ///< else nodes are not checked, because this reads points by their records
   std::string name_;
   HierarchyDefects defects_;
 };

@@ -25,14 +25,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-constexpr unsigned kFinerBits = 4;       // spent at most on cells that hold nothing
-constexpr unsigned kCoarseBits = 9;      // of the cells by which to judge how many those are
-constexpr unsigned kWorthJudging = 6;    // bits from which on that is done
+constexpr unsigned kFinerBits = 4;       // further bits, at most, because many cells are empty
+constexpr unsigned kCoarseBits = 9;      // bits, at most, of the coarse cells that tell how many cells are empty
+constexpr unsigned kWorthJudging = 6;    // from so many bits on, empty cells are counted
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
-constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // at most, which rankSort() sorts faster than nth_element()
+constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // rankSort() sorts so many or fewer faster than nth_element()
 constexpr std::uint32_t kFullNode = 96;                  // points that eight leaves hold, cut between cells
-constexpr double kRoundedOutside = 0x1p-8; // of a cube's edge: points so near outside were put there by rounding
+constexpr double kRoundedOutside = 0x1p-8; // share of a cube's edge: points so near outside were put there by rounding
 
 /// Memory for sorting a voxel's points into cells; a thread keeps it from voxel to voxel.
 struct CellScratch {
@@ -92,7 +92,7 @@ public:
   /// Whether any cell is crowded.
   bool hasCrowdedCells() const { return crowded_; }
 
-  /// Whether all points are in `sorted`, whatever build() has thrown; some perhaps no longer where they were.
+  /// Whether all points are in `sorted`, also after build() has thrown. The block may have lost some of them then.
   bool hasMoved() const { return moved_; }
 
 private:
@@ -169,7 +169,7 @@ private:
     const auto [computed, bits] = codeCells(begin, end, bounds);
     const unsigned dropped = computed - bits;
 
-    // Counts go one entry beyond the next cell's, so that they end up as the cells' starts.
+    // Counts stand two entries further on, so that after the points are moved, each cell's entry is its start.
     std::vector<std::uint32_t>& starts = scratch_.starts[recursion];
     starts.assign((std::size_t{1} << bits) + 2, 0);
     for (std::uint32_t i = begin; i < end; ++i) ++starts[(scratch_.codes[i] >> dropped) + 2u];
@@ -362,7 +362,7 @@ private:
   std::vector<Node>& nodes_;
   PointRecord* given_; // the voxel's block
   double crowded_extent_;
-  static constexpr std::uint64_t kOfNode = 32; ///< pairs of nodes that take as long
+  static constexpr std::uint64_t kOfNode = 32; ///< a new node takes as long as so many pairs of nodes
   Pulse pulse_;
   bool crowded_ = false;
   bool moved_ = false;

@@ -38,7 +38,7 @@ public:
       const std::uint32_t record = points[i].record;
       given.push_back({view.point(record), view.radius(record), view.ownUncertainty(record), points[i]});
     }
-    const TrianglesView* const triangles = view.triangles; // the balls of several may be one
+    const TrianglesView* const triangles = view.triangles; // different triangles may have equal balls
     const auto before = [triangles](const Given& l, const Given& r) {
       const auto of_l = std::tie(l.point, l.radius, l.uncertainty), of_r = std::tie(r.point, r.radius, r.uncertainty);
       if (triangles && of_l == of_r) {

@@ -23,7 +23,7 @@ std::vector<GivenSphere> givenSpheres(const Voxel& voxel, const PointsView& view
 /// The sphere of a child in the cloud's own frame: as given where that is known or quickly found, else as stored.
 GivenSphere givenSphereOf(const PointsView& view, const Voxel& voxel, const Node& node, std::uint32_t child);
 
-/// The sphere as it is stored.
+/// The sphere of a child in the cloud's own frame, as stored.
 GivenSphere storedSphere(const LocalFrame& frame, const Node& node, std::uint32_t child);
 
 } // namespace pcl_bsh

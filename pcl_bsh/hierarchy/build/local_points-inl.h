@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// Points of a cloud as a frame has them. All that it gives are finite and within the frame's reach, so that a cloud
-/// which was changed without a word makes answers wrong, but touches no memory of others.
+/// Gives points of a cloud the coordinates of a frame. All results are finite and within the frame's reach. So a cloud
+/// that was changed unannounced makes answers wrong, but no other memory is touched.
 template <class T>
 class LocalPlace {
 public:
@@ -38,7 +38,7 @@ public:
 
   Quad operator()(const GivenPoint<T>& p) const { return max(min(local(p), reach_), Quad::of(0) - reach_); }
 
-  /// Whether a point's place is its difference from the origin, in the type that it has.
+  /// Whether a point's place is its difference from the origin in float, without a scale.
   bool isPlain() const { return std::is_same_v<T, float> && plain_; }
 
 private:
@@ -71,13 +71,13 @@ inline void storePoint(const Quad& place, std::uint32_t record, PointRecord& out
   out.record = record;
 }
 
-/// Reads points of a cloud as a frame has them.
+/// Reads points of a cloud in the coordinates of a frame.
 template <class T>
 class LocalReader {
 public:
   LocalReader(const LocalFrame& frame, const PointsView& view) : read_(view), place_(frame) {}
 
-  /// Records that follow each other. @return behind the last
+  /// Reads a run of records. @return the place behind the last one
   PointRecord* operator()(const Run& run, PointRecord* out) const
   {
     const std::uint32_t end = run.number + run.points;

@@ -58,7 +58,7 @@ struct Triple {
   }
 };
 
-/// How a scalar type's points are held and computed with.
+/// The type that holds a point of a scalar type, and computes with it.
 template <class T>
 struct PointOf;
 template <>
@@ -98,7 +98,7 @@ public:
     return GivenPoint<T>::load(copy);
   }
 
-  /// Records below it may be read at once, with what follows.
+  /// Records below this number may be read by load(), which may also read bytes behind the point.
   std::uint32_t whole() const { return whole_; }
 
   /// @pre record < whole()

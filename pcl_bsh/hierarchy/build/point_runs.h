@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kNoBin = 0x7fffffffu;
 
 /// Points that follow each other in the cloud.
 struct Run {
-  std::uint32_t number; ///< of the bin that all of them are in, kNoBin: they are not finite; or of their first record
+  std::uint32_t number; ///< their bin, kNoBin if they are not finite; or their first record
   std::uint32_t points;
 
   /// How many numbers it is stored as.
@@ -49,7 +49,7 @@ private:
   const std::uint32_t* next_;
 };
 
-/// Calls visit(run) for the runs that these records come in, of which recordOf(i) is the i-th, begin <= i < end.
+/// Calls visit(run) for each run of consecutive numbers among recordOf(i), begin <= i < end.
 template <class RecordOf, class Visit>
 void eachRun(std::size_t begin, std::size_t end, const RecordOf& recordOf, Visit&& visit)
 {

@@ -63,7 +63,7 @@ private:
     return node;
   }
 
-  /// Where the highest bit in which the keys of [begin, end) differ is set for the first time.
+  /// The first voxel of [begin, end) whose key has the highest bit set in which these keys differ.
   std::uint32_t halve(std::uint32_t begin, std::uint32_t end) const
   {
     const std::uint64_t bit = std::bit_floor(voxels_[begin]->key ^ voxels_[end - 1]->key);

@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// Points of the same voxel, as one chunk of the cloud has them; a line of the caches.
+/// The points of one voxel in one chunk of the cloud. Aligned to cache lines.
 template <class T>
 struct alignas(64) Bin {
   std::uint64_t cell = 0;

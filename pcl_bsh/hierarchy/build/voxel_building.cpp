@@ -71,8 +71,7 @@ public:
       voxel_.nodes.assign(nodes_.begin(), nodes_.end());
       if (cells.hasCrowdedCells()) voxel_.given = givenSpheres(voxel_, view_);
     }
-    catch (...) { // out of memory, or stopped: the block has to be what a voxel that is not built has, in the cloud's
-                  // order
+    catch (...) { // out of memory, or stopped: the block has to hold the points as before, in the cloud's order
       if (!voxel_.isListed()) {
         auto* const points = reinterpret_cast<PointRecord*>(voxel_.block);
         if (cells.hasMoved()) std::copy(scratch_.sorted.begin(), scratch_.sorted.end(), points);
@@ -152,7 +151,7 @@ private:
 
   void fitSpheres()
   {
-    // Balls of one radius are their middles, and so much more.
+    // Where all balls have one radius, their middles are measured, and the radius is added.
     const bool of_one_size = !voxel_.radii || std::equal(voxel_.radii + 1, voxel_.radii + voxel_.count, voxel_.radii);
     const double ball = voxel_.radii ? static_cast<double>(voxel_.radii[0]) / voxel_.frame.unit : 0.0;
     const double slack = storedSlack(voxel_.frame);

@@ -15,7 +15,7 @@ namespace {
 // Enough points that the work of a voxel outweighs its frame, few enough that building one stays in the cache.
 constexpr double kPointsPerVoxel = 6000.0;
 
-// A voxel with less than a part so small of the points that it should have is one of strays.
+// A voxel counts as one of strays where it holds less than 1 / kStrayShare of the wanted points.
 constexpr double kStrayShare = 64.0;
 
 // Keep an edge and its inverse normal numbers; 2^20 of the largest hold any cloud of doubles.
@@ -73,7 +73,7 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
     const std::uint64_t difference = codes[i] ^ codes[i - 1];
     if (difference != 0) ++split_at[static_cast<std::size_t>(63 - __builtin_clzll(difference)) / 3];
   }
-  // Voxels of cell * 2^b, those of strays by the points that they hold.
+  // The number of occupied voxels of edge cell * 2^b. Voxels of strays count in part, by the points that they hold.
   const double enough = std::max(1.0, static_cast<double>(codes.size()) / (kStrayShare * wanted));
   const auto occupiedByMany = [&](unsigned b) {
     double occupied = 0.0;
@@ -88,9 +88,9 @@ double voxelEdgeFromDensity(const PointsView& view, const Bounds& bounds)
   std::size_t occupied = 1;
   const double most = std::max(2.0, wanted * wanted);
   for (unsigned b = kMortonBits; b-- > 0;) {
-    // Going down to voxels of cell * 2^b: stop where that many would be farther from what is wanted than so few. Two
-    // are never too many: an outlier has one of its own. But a few strays must not keep all other points in one voxel:
-    // go on where these are too few even two levels farther down.
+    // Going down to voxels of edge cell * 2^b: stop where their number would be farther from the wanted one, as a
+    // ratio, than the present number. Two are never too many: an outlier has one of its own. But a few strays must not
+    // keep all other points in one voxel: go on where voxels of many points are too few even two levels farther down.
     const std::size_t finer = occupied + split_at[b];
     if (static_cast<double>(finer) * static_cast<double>(occupied) > most &&
         occupiedByMany(b - std::min(b, 1u)) * occupiedByMany(b - std::min(b, 2u)) > most)

@@ -27,8 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
-/// The point at which a chunk asks first: each chunk does, so that many of them ask often enough, except the first, so
-/// that a small cloud does not.
+/// The point at which a chunk first asks the watcher. Chunks ask at once, so that many small chunks ask often enough.
+/// The first chunk asks later, so that a small cloud never asks.
 std::size_t firstToAsk(std::size_t chunk, std::size_t begin)
 {
   return chunk == 0 ? begin + kPairsOfPulse : begin;
@@ -50,8 +50,8 @@ public:
 
   VoxelSorting run()
   {
-    // A sample's bounds will do, unless some point lies far outside, or voxels get too many. From there on, bounds and
-    // edges depend on the points alone, not on what the chunks found before they gave up.
+    // A sample's bounds will do, unless some point lies far outside, or voxels get too many. Then bounds and edges come
+    // from all points, not from results of chunks that gave up.
     if (!fillBins(sampleBounds(), 0.0)) {
       const Bounds bounds = findBounds();
       if (bounds.finite == 0) return std::move(result_);
@@ -130,7 +130,7 @@ private:
     const std::size_t most = mostVoxels(view_.size());
     result_.edge = options_.voxel_edge > 0.0 ? voxelEdgeFromRequest(options_.voxel_edge, bounds)
                                              : voxelEdgeFromDensity(view_, bounds);
-    // Cell numbers are computed in T: its inverse must not overflow.
+    // Cell numbers are computed in T: the inverse of the edge must not overflow.
     result_.edge = std::max({result_.edge, static_cast<double>(std::numeric_limits<T>::min()) * 0x1p20, least_edge});
     result_.base = CellNumbers<T>::baseOf(result_.edge, bounds);
     const CellNumbers<T> cell_of(result_.edge, result_.base);
@@ -188,7 +188,7 @@ private:
     return std::find(gave_up.begin(), gave_up.end(), 1) == gave_up.end() && countCells() <= most;
   }
 
-  /// Calls visit(run) for the runs of records that points [begin, end) of the view are.
+  /// Calls visit(run) for the runs of records of points [begin, end) of the view.
   template <class Visit>
   void eachRunOf(std::size_t begin, std::size_t end, Visit&& visit) const
   {
@@ -220,7 +220,8 @@ private:
     }
   }
 
-  /// Cells that any chunk has points in; perhaps more, but not more than mostVoxels(), where those are fewer.
+  /// The number of cells that hold points. Cells that chunks share may count several times, as long as the sum is at
+  /// most mostVoxels().
   std::size_t countCells() const
   {
     std::size_t bins = 0;
@@ -337,7 +338,8 @@ private:
     });
   }
 
-  /// In random order each point takes another: of a float cloud, what it reads is one line of the caches.
+  /// Where the next point of a voxel goes. In random order each point takes another one: of a float cloud, one cache
+  /// line.
   struct alignas(64) Target {
     PointRecord* next;
     LocalPlace<T> place;
@@ -359,8 +361,8 @@ private:
   const Reader<T> read_;
   const unsigned threads_;
   const std::size_t chunk_count_;
-  std::vector<std::size_t> begins_; // of the chunks, and the end
-  LargeBuffer<std::uint32_t> runs_; // each chunk's from where its points begin
+  std::vector<std::size_t> begins_; // first points of the chunks, and the end
+  LargeBuffer<std::uint32_t> runs_; // each chunk's runs begin at the number of its first point
   std::vector<BinTable<T>> chunks_;
   VoxelSorting result_;
 };
