@@ -13,7 +13,7 @@ inline std::string nounOf(std::uint64_t count, const std::string& one, const std
   return count == 1 ? one : many.empty() ? one + 's' : many;
 }
 
-/// The count and its noun: "1 point", "2 points".
+/// "1 point", "2 points".
 inline std::string counted(std::uint64_t count, const std::string& one, const std::string& many = {})
 {
   return std::to_string(count) + ' ' + nounOf(count, one, many);

@@ -50,7 +50,7 @@ enum class Input : std::uint8_t {
 /// what() reads `subject: what is wrong: what to do`; the last part is absent where the first two say it.
 class InvalidInput : public std::invalid_argument {
 public:
-  /// `remedy` may be empty where `subject` and `wrong` already say what to do.
+  /// `remedy` may be empty, where the other two say it.
   InvalidInput(Input input, const std::string& subject, std::string wrong, std::string remedy = {})
   : std::invalid_argument(subject + ": " + wrong + (remedy.empty() ? "" : ": " + remedy)),
     input_(input),

@@ -12,8 +12,8 @@ namespace pcl_bsh {
 struct KeptScratch {
   virtual ~KeptScratch() = default;
 
-  std::size_t bytes = 0;       ///< its size, as counted among the retained memory
-  KeptScratch* next = nullptr; ///< the next in a list of scratch to be deleted
+  std::size_t bytes = 0;       ///< of it, as counted among the retained memory
+  KeptScratch* next = nullptr; ///< in a list of those to be deleted
 };
 
 /// Holds a thread's scratch of one kind between two uses. Other threads may take it from here to free it.

@@ -25,7 +25,7 @@ struct AllocatedBuffer {
   std::size_t size; ///< at least what was asked for
 };
 
-/// Returns a kept buffer, or a new one from operator new. @throws std::bad_alloc
+/// A kept one, or one of operator new. @throws std::bad_alloc
 AllocatedBuffer allocateBuffer(std::size_t bytes);
 
 /// Gives it back to the system.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every loop that can last asks its thread's watcher now and then whether it shall go on.
+// Every loop that can last asks now and then whether it shall go on, without knowing whom.
 //
 //   const Watched watched(&watcher); // a query, or a share of one on another thread
 //   Pulse pulse;                     // of a loop, wherever that is

@@ -76,7 +76,7 @@ ExactDistance::ExactDistance(const Eigen::Isometry3d& pose_a, const Eigen::Isome
 
 int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, double radius_p, double radius_q) const
 {
-  // Two additions. Their rounding is relative to the absolute values of the terms, which may be of either sign.
+  // Two sums, rounded relative to what they add up, which may be of either sign.
   const double reach = clearance + radius_p + radius_q;
   const double rounding = kFewDoubleRoundings * (std::abs(clearance) + std::abs(radius_p) + std::abs(radius_q));
   const auto side = [reach, rounding](const Enclosure& distance) {
@@ -97,7 +97,7 @@ int ExactDistance::compare(const Point3& p, const Point3& q, double clearance, d
 
 int ExactDistance::compare(const Point3& p, const Point3& q, const Sum& reach) const
 {
-  // Seven additions. Their rounding is relative to the absolute values of the terms, which may be of either sign.
+  // Seven sums, rounded relative to what they add up, which may be of either sign.
   double sum = 0.0, magnitude = 0.0;
   for (const double term : reach) {
     sum += term;
@@ -124,7 +124,7 @@ int ExactDistance::compareGaps(const Pair& first, const ExactDistance& other, co
   const double slack = kFewDoubleRoundings * (first_distance.high + second_distance.high + first_radii + second_radii);
   if (first_distance.high - first_radii + slack < second_distance.low - second_radii) return -1;
   if (second_distance.high - second_radii + slack < first_distance.low - first_radii) return 1;
-  // Scans have points twice, so ties are common.
+  // Scans have points twice, and then ties everywhere.
   if (this == &other && first.p == second.p && first.q == second.q && first.radius_p == second.radius_p &&
       first.radius_q == second.radius_q)
     return 0;
@@ -181,8 +181,8 @@ ExactDistance::Difference ExactDistance::approximate(const Point3& p, const Poin
 }
 
 /// Without rotations, (p - q) + (t_a - t_b): the errors of these three sums are known, so that points of any scale are
-/// told apart wherever they lie. Twice the sum of the errors covers the rounding of that sum. The norm of the sums is
-/// rounded by 2.5 v of itself, the last subtraction by one more.
+/// told apart wherever they lie. Twice the errors pay for their own summation. The norm of the sums is rounded by 2.5 v
+/// of itself, the last subtraction by one more.
 ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, const Point3& q) const
 {
   Difference z;

@@ -11,7 +11,7 @@
 
 namespace pcl_bsh {
 
-/// The rotation between two poses, which all frames under these poses share.
+/// The rotation that all frames of two poses share.
 struct RelativeRotation {
   RelativeRotation(const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b);
 
@@ -66,7 +66,7 @@ public:
   /// Spheres of this radius or less are of the size of the error: float tests say little about where their points are.
   float bluntRadius() const noexcept;
 
-  /// Whether the error may have changed the float test of two blunt spheres near each other.
+  /// Whether two blunt spheres that the float test calls near may be apart: the error may have changed the test.
   /// @param squared distance of their centres. @param reach the sum of their stretched radii and pruneReach().
   bool isUndecided(float squared, float reach) const noexcept
   {

@@ -60,7 +60,7 @@ public:
   /// much farther than the pivot. This holds however often the body turns.
   double turningReach(double radius, double length) const;
 
-  /// An upper bound of the factor by which a pose of the motion lengthens the distance of two points of the body.
+  /// No pose of the motion lengthens the distance of two points of the body by a larger factor.
   double stretch() const { return stretch_; }
 
 private:

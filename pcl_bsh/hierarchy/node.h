@@ -56,7 +56,7 @@ struct alignas(32) Node {
 };
 static_assert(sizeof(Node) == 256, "a node fills four cache lines");
 
-/// The number of children, and so of spheres, in all these nodes.
+/// Children of all these nodes: so many spheres they hold.
 inline std::uint64_t countChildren(const std::vector<Node>& nodes) noexcept
 {
   std::uint64_t count = 0;

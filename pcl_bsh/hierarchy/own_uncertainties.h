@@ -14,8 +14,7 @@ namespace pcl_bsh {
 struct PointsView;
 struct Voxel;
 
-/// The least and the greatest uncertainty of the points below each child of a node, in the cloud's unit; 0 past the
-/// last child.
+/// Least and greatest uncertainty of the points below each child of a node, in the cloud's unit; 0 past the last child.
 struct alignas(32) UncertaintyLanes {
   float least[kNodeChildren], most[kNodeChildren];
 };

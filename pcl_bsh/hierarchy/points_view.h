@@ -38,8 +38,7 @@ struct PointsView {
   double uncertainty = 0.0;
   const float* uncertainties = nullptr; ///< optional, one per record, added to `uncertainty`; finite and >= 0
 
-  /// Optional: the triangles that the records are. The points and radii are then balls that hold the triangles
-  /// (triangles_view.h).
+  /// Optional: the triangles that are the records; points and radii are then balls that hold them (triangles_view.h).
   const TrianglesView* triangles = nullptr;
   double off_middle = 0.0; ///< how far such a ball's middle may be from its triangle, by rounding
 
@@ -91,7 +90,7 @@ struct PointsView {
 
   bool isUncertain() const noexcept { return uncertainty > 0.0 || uncertainties; } ///< some verdicts may be undecided
 
-  /// The uncertainty of a record in addition to `uncertainty`, which all share.
+  /// The uncertainty of a record beside `uncertainty`, which all share.
   double ownUncertainty(std::uint32_t record) const noexcept { return uncertainties ? uncertainties[record] : 0.0; }
 };
 

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Corners of a polygon that is clipped, at most: the time for clipping ears grows with their square.
+/// The most corners of a polygon to clip: the time for clipping ears grows with their square.
 constexpr std::size_t most_clipped = 4096;
 
 double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
@@ -27,8 +27,7 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c)
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-/// A polygon's corners in the plane of its vector area, with the area to the left as one walks round; NaN without an
-/// area.
+/// A polygon's corners in the plane of its vector area, counterclockwise on the whole; NaN where it has no area.
 std::vector<Vector2d> flattened(const std::vector<Vector3d>& corners)
 {
   double largest = 0.0;

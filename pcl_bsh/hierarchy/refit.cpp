@@ -74,7 +74,7 @@ void follow(Voxel& voxel, const LocalFrame& frame, const PointsView& now, double
 {
   const bool built = voxel.state.load(std::memory_order_acquire) == Voxel::built;
   if (built && voxel.leaf_radii == 0.0) voxel.leaf_radii = sumOfLeafRadii(voxel);
-  voxel.frame = frame; // its unit may be another, so radii are compared in the cloud's unit
+  voxel.frame = frame; // its unit may be another: radii are compared in the cloud's
   bool keep = built && voxel.given.empty() && !hasCoincidentLeaf(voxel);
   if (!voxel.isListed())
     voxel.forEachRecord(

@@ -59,7 +59,7 @@ struct SlabPlaces {
   }
 
   std::vector<Set> sets;
-  double slack; ///< largest distance of a place as given from the place as it is here
+  double slack; ///< between a place as given and as it is here
 
 private:
   std::vector<float> corners_;
@@ -150,7 +150,7 @@ std::uint64_t fitSlabsOnTarget(const Voxel& voxel, const PointsView& view, SlabA
     for (std::uint32_t i = 0; i < node.count; ++i) {
       Eigen::Vector3f& normal = normals[node.isLeaf(i) ? n : node.child[i]];
       Eigen::Vector3f own = normal;
-      if (!node.isLeaf(i) || view.triangles) { // a few triangles have a meaningful axis, a few points do not
+      if (!node.isLeaf(i) || view.triangles) { // a few triangles say how they lie, as a few points do not
         own = principalAxis(covarianceOf(places, node, i), axis);
         if (!node.isLeaf(i)) normal = own;
         ++found;

@@ -12,8 +12,8 @@ struct PointsView;
 struct Voxel;
 
 /// Beside a node's spheres: every point below child i, stored or given, is within h[i] of the plane through the
-/// sphere's centre with the normal (x, y, z)[i], |n . (p - centre)| <= h; of triangles, every place of them. Leaves of
-/// points have the normal of the node that they are in; the root's leaves have none: (0, 0, 0).
+/// sphere's centre with the normal (x, y, z)[i], |n . (p - centre)| <= h; of triangles, all of each. Leaves of points
+/// have the normal of the node that they are in; the root's leaves have none: (0, 0, 0).
 struct alignas(32) Slabs {
   float x[kNodeChildren], y[kNodeChildren], z[kNodeChildren], h[kNodeChildren];
 };

@@ -160,7 +160,7 @@ public:
 
   /// Where a place lies in the voxel grid.
   struct GridPlace {
-    std::uint32_t voxel; ///< the voxel whose cell the place is in, or kNoVoxel
+    std::uint32_t voxel; ///< whose cell the place is in, or kNoVoxel
     double margin;       ///< no point of another voxel is nearer than this, in the cloud's unit; negative: not known
   };
 
@@ -313,8 +313,8 @@ inline PointRecord storedIn(const LocalFrame& frame, const Point3& p, std::uint3
   return {local[0], local[1], local[2], record};
 }
 
-/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted as
-/// before.
+/// Reads the voxel's points and turns them into cells and bounding spheres. When it throws, the voxel is sorted
+/// still.
 /// @param cube of the voxel in the grid
 void buildVoxel(Voxel& voxel, const PointsView& view, const HierarchyOptions& options, const Cube& cube);
 

@@ -12,7 +12,7 @@ inline constexpr std::size_t kBallsTogether = 8;
 struct EightBalls {
   double corners[3][3][kBallsTogether]; ///< corner, axis, triangle
   double centers[3][kBallsTogether];    ///< rounded to coordinates
-  float radii[kBallsTogether];          ///< NaN where the triangle's ball has to be made by itself
+  float radii[kBallsTogether];          ///< NaN where the triangle has to be looked at by itself
   double largest = 0.0;                 ///< largest coordinate of the other triangles
 };
 

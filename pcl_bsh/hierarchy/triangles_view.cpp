@@ -25,7 +25,7 @@ namespace {
 
 constexpr auto kName = "triangles";
 
-/// The square of the side opposite each corner, as a share of the longest side's square.
+/// Squares of the sides that face the corners, as shares of the longest one's.
 std::array<double, 3> sharesOf(const std::array<Point3, 3>& corners)
 {
   std::array<double, 3> sides;

@@ -116,7 +116,7 @@ void compact(SphereHierarchy::Storage& storage)
   storage.floats_unused = 0;
 }
 
-/// The frame around all voxels' points.
+/// Around all voxels' points.
 LocalFrame frameOfAll(const std::vector<Voxel*>& voxels, Scalar scalar, float largest_radius)
 {
   Bounds bounds;
@@ -262,7 +262,7 @@ UpdateReport HierarchyUpdate::commit(const PointsView& now)
                                           [](const Voxel& v, std::uint64_t key) { return v.key < key; });
     if (found != end && found->key == voxel.key) voxel.old = found;
     const std::size_t count = voxel.old ? voxel.old->count : 0;
-    // A point in another voxel than its coordinates say has moved since it was sorted (SphereHierarchy::refit()).
+    // A point that is not where its coordinates say has moved since (SphereHierarchy::refit()).
     if (voxel.leaving > count) return sortAnew(now);
     report.points_read += voxel.records.size() + count - voxel.leaving;
   }

@@ -19,7 +19,7 @@ namespace pcl_bsh {
 
 /// Counts of an update. Counts are free of noise.
 struct UpdateReport {
-  std::size_t voxels_touched = 0; ///< that a point left or entered, or made anew for other radii or uncertainties
+  std::size_t voxels_touched = 0; ///< that a point left or entered, or that were made for other radii or uncertainties
   std::size_t voxels_added = 0;   ///< of these, new ones
   std::size_t voxels_removed = 0; ///< of these, ones left without a point
   std::size_t points_read = 0;    ///< points that the touched voxels hold afterwards

@@ -50,8 +50,7 @@ private:
     if (defects_.lines.size() < kMostLines) defects_.lines.push_back(name_ + ": " + what);
   }
 
-  /// Checks that stored coordinates are near the given ones, by the frame's bounds, and these where find() expects
-  /// them.
+  /// Stored coordinates are within the frame's bounds of the given ones, and given ones where find() expects them.
   void checkPoints(const Voxel& voxel)
   {
     const double cells =
@@ -138,7 +137,7 @@ private:
     return true;
   }
 
-  /// Checks that every point below child i, as given, is within its sphere, in exact arithmetic.
+  /// Every point below child i is within its sphere, as given and in exact arithmetic.
   void checkSphere(const Node& node, std::uint32_t i, const LocalFrame& frame, std::uint32_t voxel,
                    const std::string& here)
   {

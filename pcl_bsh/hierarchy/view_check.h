@@ -12,7 +12,7 @@ namespace pcl_bsh {
 ///   lie over each other, an index outside the view.
 void checkView(const std::string& name, const PointsView& view);
 
-/// Checks that radii and uncertainties, common and single ones, are finite and >= 0. @throws std::invalid_argument
+/// Radii and uncertainties, of all points and of all records: finite and >= 0. @throws std::invalid_argument
 void checkLengths(const std::string& name, const PointsView& view);
 
 } // namespace pcl_bsh

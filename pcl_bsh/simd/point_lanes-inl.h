@@ -269,7 +269,7 @@ HWY_INLINE bool anyPointWithin(const float* x, const float* y, const float* z, s
 }
 
 /// Whether any point is within a reach of its own: reach + scale * lengths[i]; a negative reach holds no point.
-/// @param reach rounded inward, and scale such that the products are. @param lengths >= 0; as many are read as of x
+/// @param reach rounded inward, and scale so that the products are. @param lengths >= 0; as many are read as of x
 HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* z, const float* lengths, float scale,
                                    std::size_t count, const Point& to, float reach)
 {
@@ -288,7 +288,7 @@ HWY_INLINE bool anyPointWithinEach(const float* x, const float* y, const float* 
 }
 
 /// Lowers longer[i] to the smallest distance of point i to those points (x, y, z) that have their bit set, each plus
-/// scale * lengths[j], and shorter[i] to the smallest less that. Both err by kReachMargin of all terms in float.
+/// scale * lengths[j], and shorter[i] to the smallest less that. Both in float arithmetic: kReachMargin of all terms.
 HWY_INLINE void nearestWithLengths(const LeafPoints& points, const float* x, const float* y, const float* z,
                                    const float* lengths, float scale, std::uint32_t others, float* longer,
                                    float* shorter)

@@ -29,7 +29,7 @@ struct Segments {
   alignas(64) float motion[3][Count]; ///< end - start
   alignas(64) float bow[3][Count];
   alignas(64) float reach[Reaches][Count];
-  float ball = 0.0f; ///< with three reaches: their common part, a distance in all directions
+  float ball = 0.0f; ///< with three reaches: what they have in common, a distance in all directions
 
   HWY_INLINE void set(const float (&from)[3][Count], const float (&to)[3][Count], const float (&bows)[3][Count],
                       float smallest)

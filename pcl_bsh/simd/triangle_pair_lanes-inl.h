@@ -91,7 +91,7 @@ HWY_INLINE LanesVerdict compareWithTriangle(const FlatTriangle<float>& triangle,
     for (std::size_t k = 0; k < 3; ++k) on_z[k] = dot(spread(rows[6]), spread(rows[7]), spread(rows[8]), k);
     consider(hn::Max(hn::Min(hn::Min(on_z[0], on_z[1]), on_z[2]), hn::Neg(hn::Max(hn::Max(on_z[0], on_z[1]), on_z[2]))),
              spread(1.0f));
-    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave float's range
+    const auto in_range = hn::Lt(hn::Add(farthest, length), spread(0x1p40f)); // beyond, gaps may leave that of float
     const auto bitsIn = [&](auto mask) HWY_ATTR { return bitsOf(d, mask) << i & block; };
     std::uint32_t open = lanes & block & ~bitsIn(hn::And(apart, in_range));
     if (open == 0) {

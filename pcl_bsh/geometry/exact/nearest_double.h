@@ -13,7 +13,7 @@
 namespace pcl_bsh {
 
 /// The double nearest to a number (ties to even; infinity beyond the largest). @param guess near it, not NaN
-/// @param side called with a Dyadic: gives the sign of the number less this Dyadic
+/// @param side called with a Dyadic: the sign of the number less it
 template <class Side>
 double nearestDouble(double guess, const Side& side)
 {

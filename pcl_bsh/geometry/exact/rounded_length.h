@@ -46,7 +46,7 @@ inline double roundedRoot(double high, double low, double error, double radius_p
   return sure ? rounded.value : none;
 }
 
-/// The double nearest to |vector| - radii, or NaN where its error leaves in doubt which double that is.
+/// The double nearest to |vector| - radii, where its error leaves no doubt which that is; else NaN.
 ///
 /// A square is value^2, as two doubles, and 2 value tail + tail^2, which errs by four roundings of itself at most and
 /// by 2 (|value| + |tail|) error. The sum of the squares is kept as two doubles; all that is of low order is added up

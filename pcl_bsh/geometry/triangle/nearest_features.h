@@ -25,7 +25,7 @@ inline int signOf(const Dyadic& x, bool&)
   return x.sign();
 }
 
-/// numerator / denominator, with a positive denominator.
+/// numerator / denominator, of which the latter is positive.
 template <class Number>
 struct Fraction {
   Number numerator = Number(0.0), denominator = Number(1.0);
@@ -241,8 +241,8 @@ private:
     return true;
   }
 
-  /// Whether the nearest places of two edges' lines are surely inside both edges, and neither third corner is between
-  /// the planes through these edges.
+  /// Whether the nearest places of two edges' lines are surely inside both, and the third corners not between the
+  /// planes through these edges.
   bool areEdgesBetween(std::size_t i, std::size_t j) const
   {
     const Vector &from_a = a_[i], &from_b = b_[j];

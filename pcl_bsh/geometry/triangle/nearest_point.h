@@ -11,7 +11,7 @@
 
 namespace pcl_bsh {
 
-/// The place of a triangle nearest to a point, up to rounding; also of triangles without area.
+/// Up to rounding, also of triangles without area.
 inline Point3 nearestPoint(const Point3& p, const Triangle3& triangle)
 {
   using Vector = std::array<double, 3>;
@@ -41,7 +41,7 @@ inline Point3 nearestPoint(const Point3& p, const Triangle3& triangle)
   return nearest;
 }
 
-/// The nearest places of two triangles, one of each. Alternating projections (von Neumann) converge to them.
+/// The nearest places of two triangles, one of each. Projecting to and fro (von Neumann) comes to them.
 inline std::array<Point3, 2> nearestPoints(const Triangle3& a, const Triangle3& b)
 {
   constexpr int most = 1000;

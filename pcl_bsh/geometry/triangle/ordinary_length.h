@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Directions of triangles of any size. A triangle as small as 1e-100 has a normal whose square is below the range of
+// Directions of triangles of any size: what is as small as 1e-100 has normals whose squares are not in the range of
 // double.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace pcl_bsh {
 
 /// A power of two by which lengths become about 1 where their fourth powers would leave the range of double; else 1.
-/// @param largest of these lengths, >= 0
+/// @param largest of them, >= 0
 inline double toOrdinary(double largest)
 {
   constexpr double least = 0x1p-200, most = 0x1p200;

@@ -13,7 +13,7 @@ bool areEqual(const LongNumber& x, const LongNumber& y)
   return x.value() == y.value() && x.tail() == y.tail() && x.error() == 0.0 && y.error() == 0.0;
 }
 
-/// Whether all corners have one coordinate along an axis, known exactly.
+/// Whether all corners are at one exact place along an axis.
 bool isAcross(const LongCorners& t, std::size_t axis)
 {
   return areEqual(t[0][axis], t[1][axis]) && areEqual(t[0][axis], t[2][axis]);
@@ -79,8 +79,8 @@ bool surelyMeet(const std::array<Place, 3>& a, const std::array<Place, 3>& b, do
   return isInside(b, middle, scale * (kTurnDoubt * scale + kTurnErrors * error));
 }
 
-/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both only touch
-/// along parts of their edges, surelyMeet() finds no place. @param turnOf(from, to, corner): to which side it turns
+/// Whether one of the corners of t surely lies on a closed triangle, seen along their normal. Where both touch along
+/// parts of their edges, doubles know no place inside both. @param turnOf(from, to, corner): to which side it turns
 template <class TurnOf>
 bool surelyTouch(const LongCorners& t, const LongCorners& closed, const TurnOf& turnOf)
 {

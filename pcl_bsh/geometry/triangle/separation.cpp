@@ -151,7 +151,7 @@ double lengthOf(const Point3& v)
   return std::sqrt(dot(v, v));
 }
 
-/// An upper bound of the speed of all corners, and of all places between them, per unit of s.
+/// No corner, nor anything between corners, goes faster.
 double speedOf(const MovingCorners& corners)
 {
   double speed = 0.0;

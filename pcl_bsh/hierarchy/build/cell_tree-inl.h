@@ -30,9 +30,9 @@ constexpr unsigned kCoarseBits = 9;      // bits, at most, of the coarse cells t
 constexpr unsigned kWorthJudging = 6;    // from so many bits on, empty cells are counted
 constexpr unsigned kMostRecursions = 40; // cells within cells: each of them tells at least two places apart
 constexpr std::uint32_t kCellPoints = 3; // cells hold this many on average: fine enough to cut leaves at good places
-constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // rankSort() sorts so many or fewer faster than nth_element()
+constexpr std::uint32_t kFewPoints = 2 * kMaxLeafPoints; // at most, which rankSort() sorts faster than nth_element()
 constexpr std::uint32_t kFullNode = 96;                  // points that eight leaves hold, cut between cells
-constexpr double kRoundedOutside = 0x1p-8; // share of a cube's edge: points so near outside were put there by rounding
+constexpr double kRoundedOutside = 0x1p-8; // of a cube's edge: points so near outside were put there by rounding
 
 /// Memory for sorting a voxel's points into cells; a thread keeps it from voxel to voxel.
 struct CellScratch {

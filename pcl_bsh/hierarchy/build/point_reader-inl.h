@@ -58,7 +58,7 @@ struct Triple {
   }
 };
 
-/// The type that holds a point of a scalar type, and computes with it.
+/// How a scalar type's points are held and computed with.
 template <class T>
 struct PointOf;
 template <>

@@ -8,7 +8,7 @@
 
 namespace pcl_bsh {
 
-/// The number of evenly spread points of a view that are sampled to judge its density.
+/// How many evenly spread points of a view tell enough about its density.
 inline std::size_t sampleSize(const PointsView& view) noexcept
 {
   return std::min(view.size(), std::max<std::size_t>(4096, view.size() / 256));

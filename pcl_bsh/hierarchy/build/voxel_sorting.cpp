@@ -188,7 +188,7 @@ private:
     return std::find(gave_up.begin(), gave_up.end(), 1) == gave_up.end() && countCells() <= most;
   }
 
-  /// Calls visit(run) for the runs of records of points [begin, end) of the view.
+  /// Calls visit(run) for the runs of records that points [begin, end) of the view are.
   template <class Visit>
   void eachRunOf(std::size_t begin, std::size_t end, Visit&& visit) const
   {
@@ -361,7 +361,7 @@ private:
   const Reader<T> read_;
   const unsigned threads_;
   const std::size_t chunk_count_;
-  std::vector<std::size_t> begins_; // first points of the chunks, and the end
+  std::vector<std::size_t> begins_; // of the chunks, and the end
   LargeBuffer<std::uint32_t> runs_; // each chunk's runs begin at the number of its first point
   std::vector<BinTable<T>> chunks_;
   VoxelSorting result_;
