@@ -198,9 +198,8 @@ ExactDistance::Difference ExactDistance::approximateTranslated(const Point3& p, 
   return z;
 }
 
-/// Compensated sums, for points so far from the origin that plain double arithmetic cannot tell them apart. A
-/// coordinate errs by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v
-/// more.
+/// Compensated sums, for points so far from the origin that double arithmetic cannot tell them apart. A coordinate errs
+/// by v of itself and CompensatedSum::kError of its terms; norm, root and last subtraction by 3.5 v more.
 ExactDistance::Enclosure ExactDistance::encloseClosely(const Point3& p, const Point3& q) const
 {
   double squared = 0.0;

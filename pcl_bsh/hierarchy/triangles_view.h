@@ -44,8 +44,7 @@ struct TrianglesView {
   }
 };
 
-/// A view of listed triangles. It keeps alive the list, and whatever the vertices' owner keeps. @pre the list is not
-/// null
+/// A view that keeps alive the listed triangles, and whatever the vertices' owner keeps. @pre the list is not null
 TrianglesView trianglesOf(const PointsView& vertices, std::shared_ptr<const std::vector<Triangle>> triangles);
 
 /// The number of finite vertices that no triangle names: no part of the surface. @pre as viewOf() asks

@@ -31,7 +31,7 @@ constexpr SetBits setBits()
 
 alignas(64) inline constexpr SetBits kSetBits = setBits();
 
-/// Moves the lanes with their bit set to the front. Whole vectors are stored: there must be room.
+/// Moves to the front the lanes whose bit is set. Whole vectors are stored: there must be room.
 class Compress {
 public:
   HWY_INLINE explicit Compress(std::uint32_t bits)

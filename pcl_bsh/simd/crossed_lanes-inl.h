@@ -23,9 +23,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Lower bounds of squared distances to anything that lies in both slabs. @param dx, dy, dz from their centre
 /// @param margin kSlabMargin of all lengths, as FacingSlabs has it
 ///
-/// A vector v from a place into both slabs has components of at least g and k along the normals n and c. Let m = |n .
-/// c|: normals need not be square to each other. Then |v|^2 >= (g^2 + k^2 - 2 m g k) / (1 - m^2) >= (1 - m) (g^2 +
-/// k^2). The cosine and the squares lose less than 2^-16 in float arithmetic.
+/// A vector v from a place into both slabs has components of at least g and k along the normals n and c. These need not
+/// be square to each other. Let m = |n . c|. Then |v|^2 >= (g^2 + k^2 - 2 m g k) / (1 - m^2) >= (1 - m) (g^2 + k^2).
+/// The cosine and the squares lose less than 2^-16 in float arithmetic.
 HWY_INLINE LaneVector squaredToSlabs(const CrossedSlabs& held, LaneVector dx, LaneVector dy, LaneVector dz,
                                      LaneVector margin)
 {

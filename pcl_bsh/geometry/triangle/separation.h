@@ -71,7 +71,7 @@ struct Approach {
 
 /// There is no contact where both stay beyond `near_enough`, and there is one where they come nearer than that by more
 /// than `resolution`. `distance` is the smallest one within `resolution`. Before `enter`, they are never nearer than
-/// `near_enough` by more than it.
+/// `near_enough` by more than that.
 /// @param resolution above what rounding takes; bounds the work. @param nearest whether the smallest distance counts;
 /// if not, only the first instant does @param early_enough contacts from this instant on count as equally early
 PCL_BSH_EXPORT_INTERNAL Approach approachOf(const MovingCorners& a, const MovingCorners& b, double near_enough,

@@ -94,8 +94,7 @@ public:
   double gap(const PointPair& pair, Stages* stages = nullptr) const;
   double gap(const TrianglePair& pair, Stages* stages = nullptr) const;
 
-  /// The vector from b's place nearest to a, to a's place nearest to b, in the world, within rounding; 0 where they
-  /// meet.
+  /// From b's place nearest to a, to a's place nearest to b: a vector in the world, within rounding; 0 where they meet.
   Point3 between(const PointPair& pair) const;
   Point3 between(const TrianglePair& pair) const;
 

@@ -338,8 +338,7 @@ private:
     });
   }
 
-  /// Where the next point of a voxel goes. In random order each point takes another one: of a float cloud, one cache
-  /// line.
+  /// Where the next point of a voxel goes. Points in random order take another one each: of floats, one cache line.
   struct alignas(64) Target {
     PointRecord* next;
     LocalPlace<T> place;
