@@ -30,12 +30,12 @@ struct DistanceObstacle {
   float slack;                        ///< pruneReach(0): what floats may err by
   float blunt_radius;                 ///< as the frame has it
   float error;                        ///< of carried points, at least
-  float least, most;                  ///< at most, and at least, what a length of 1 in the frame is, in the walk's unit
-  float at_most_inside;               ///< at least what a length of 1 in the walk's unit is in the frame
-  float normal_scale;                 ///< of normals that the frame has carried, to make them of length 1
+  float least, most;                  ///< lower and upper bound of a length of 1 in the frame, in the walk's unit
+  float at_most_inside;               ///< upper bound of a length of 1 in the walk's unit, in the frame
+  float normal_scale;                 ///< factor that makes normals carried into the frame of length 1
   bool is_plain;                      ///< whether float distances in the frame can be compared with those in others
   const Slabs* slabs = nullptr;       ///< of the voxel's nodes, where it has triangles
-  const Slabs* cross_slabs = nullptr; ///< second ones of these, where the triangles are long
+  const Slabs* cross_slabs = nullptr; ///< second slabs of the nodes, where the triangles are long
 
   /// @param unit of the walk, in the clouds' unit @param unit_a of a's voxel
   DistanceObstacle(const Voxel* entered, const LocalFrame& in, const RelativeFrame& from_a, double unit, double unit_a)
@@ -72,7 +72,7 @@ struct CarriedNode {
   float nx[kLanes], ny[kLanes], nz[kLanes], h[kLanes];
 };
 
-/// Adds slabs to them. @param slabs of the same node
+/// Carries the slabs of a node into the frame, and adds them to its carried children.
 HWY_INLINE void carrySlabs(const DistanceObstacle& obstacle, const Slabs& slabs, CarriedNode& own)
 {
   carry(obstacle.frame.m.data(), kNowhere, slabs.x, slabs.y, slabs.z, kLanes, own.nx, own.ny, own.nz);
@@ -92,7 +92,7 @@ HWY_INLINE LaneVector orNone(LaneVector lower)
   return hn::IfThenElse(hn::Eq(lower, lower), lower, hn::Set(LaneTag(), -std::numeric_limits<float>::infinity()));
 }
 
-/// A lower bound of a length in the frame as one in the walk's unit, whether it is above 0 or below.
+/// Converts a lower bound of a length in the frame into one in the walk's unit. It may be above 0 or below.
 template <class Vector>
 HWY_INLINE Vector atLeast(const DistanceObstacle& obstacle, Vector near)
 {
@@ -124,8 +124,9 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
   }
 }
 
-/// From places in a frame to what lies both in a sphere and in its slabs, at least. As slabsApart() has it: kSlabMargin
-/// of all lengths pays for the normals and for float arithmetic. 0 where squares may leave the range of float.
+/// Returns lower bounds of the lengths from places in a frame to what lies both in a sphere and in its slabs. As
+/// slabsApart() has it: kSlabMargin of all lengths pays for the normals and for float arithmetic. 0 where squares may
+/// leave the range of float.
 HWY_INLINE LaneVector lengthToSlabs(const CrossedSlabs& slab, LaneVector x, LaneVector y, LaneVector z)
 {
   const LaneTag d;
@@ -209,8 +210,8 @@ HWY_INLINE void boundFromBox(const SphereLanes& spheres, const DistanceObstacle&
   }
 }
 
-/// The least of upper bounds of the distances from any point of a box to all of each of some spheres, eight at most:
-/// as boundDistances() has them. Infinite where floats tell no bound.
+/// Returns the least of some upper bounds, one for each of up to eight spheres: of the distance from any point of a box
+/// to any point of the sphere. The unit is that of boundDistances(). Infinite where floats tell no bound.
 HWY_INLINE float farthestFromBox(const SphereLanes& spheres, const DistanceObstacle& obstacle, const float* low,
                                  const float* high, std::uint32_t count)
 {

@@ -36,7 +36,8 @@ class DifferenceBound {
 public:
   DifferenceBound() = default; ///< nothing is outdone
 
-  /// @param extent of b's points, at least. @param nearest of a distance between points of a and b, at most
+  /// @param extent upper bound of the distance between two points of b
+  /// @param nearest lower bound of the distance between a point of a and one of b
   DifferenceBound(double extent, double nearest)
   {
     if (!(extent < kFarExtents * nearest)) return; // near, or not a number

@@ -44,12 +44,12 @@ public:
       shift_[static_cast<std::size_t>(k)] = twoSum(query.a.pose.translation()(k), -query.b.pose.translation()(k));
   }
 
-  /// Whether measureAlone() may be called for what is plain.
+  /// Whether measureAlone() may be called. It leaves out what is not plain.
   bool mayMeasureAlone() const { return points_.mayFindBelow(); }
 
   /// Measures the leaves of a visit that go through its list by themselves: eight spheres at once, and the points of
   /// the nearest bound what is left better than spheres do.
-  /// @param cut no point is farther from its nearest, unless that exceeds the greatest distance @return the leaves
+  /// @param cut no point is farther from its nearest, unless that is beyond max_distance @return these leaves
   std::uint32_t measureAlone(const Voxel& voxel, const DistanceVisit& visit, const std::vector<NearSphere>& list,
                              float cut)
   {
@@ -64,7 +64,7 @@ public:
   }
 
   /// Measures all points of a leaf by leaves of b. @param visit of the node it is a child of @param lane the child
-  /// @param near those that can hold a nearest point; left in another order
+  /// @param near leaves of b that can hold a nearest point; their order changes
   void measure(const Voxel& voxel, const DistanceVisit& visit, std::uint32_t lane, std::vector<NearSphere>& near)
   {
     const float cut = visit.cut[lane];
@@ -113,8 +113,9 @@ public:
   }
 
 private:
-  /// The leaves to which none of the list's spheres is above a voxel, in another unit, or to be told apart by the
-  /// points as given.
+  /// The leaves that may go through the list by themselves. There is no such leaf where a sphere of the list is above
+  /// the voxels, or in an obstacle that is not plain. Leaves are left out that are blunt, or small beside a leaf of the
+  /// list.
   std::uint32_t leavesAlone(const DistanceVisit& visit, const std::vector<NearSphere>& list) const
   {
     if (visit.leaves == 0) return 0;
@@ -158,8 +159,9 @@ private:
       write(i, leaf_.found[i], visit.node->begin[lane], visit.node->begin[lane + 1]);
   }
 
-  /// The nearest to one point, of the near leaves, in exact arithmetic; of several the smallest record.
-  /// @param named one that may be it, or none @param cut upper bound of its distance, unless that exceeds the greatest
+  /// Returns the nearest record of the near leaves to point i, in exact arithmetic; of several the smallest.
+  /// @param named a record that may be it, or none
+  /// @param cut upper bound of its distance, unless that is beyond max_distance
   NearestFound decide(std::uint32_t i, const NearestFound& named, float cut)
   {
     const double own_radius = leaf_.range.radius(i);

@@ -73,7 +73,7 @@ public:
   const std::vector<Run>& runs() const { return runs_; }
   const ObstacleSphere& sphere(std::uint32_t place) const { return sphere_[place]; }
 
-  /// Eight, from a place on.
+  /// Eight spheres, from a place on.
   SphereLanes lanes(std::uint32_t place, float stretch) const
   {
     return {&x_[place], &y_[place], &z_[place], &r_[place], stretch};
@@ -82,7 +82,7 @@ public:
   /// Lower bounds of the distances from the leaf, at first the list's; kDone where no sphere is, or it is done.
   float* lower() { return lower_.data(); }
 
-  /// Places that have a lower bound.
+  /// The end of the places that have a lower bound.
   std::uint32_t end() const { return runs_.empty() ? 0 : runs_.back().wholeVectors(); }
 
   /// The place of the least lower bound, the first of several. @pre there are spheres
@@ -144,9 +144,9 @@ struct DistanceRow {
   ObstacleSphere sphere;
   std::uint32_t lanes; ///< children that it matters to
   float lower[kLanes];
-  float about_center[kLanes]; ///< the same without the child's slab, for DifferenceBound; where slabs of both sides are
-                              ///< compared
-  std::uint32_t as_given = 0; ///< children whose bound was sharpened about another centre
+  float about_center[kLanes]; ///< `lower` before the child's slab raised it, for DifferenceBound; where slabs of both
+                              ///< are compared
+  std::uint32_t as_given = 0; ///< children whose bound compareAsGiven() sharpened, about other centres
 };
 
 /// One node of a, its children measured all at once.
@@ -158,8 +158,8 @@ struct DistanceVisit : ListVisit<NearSphere> {
   float limit[kLanes];                    ///< spheres with a lower bound above it are outdone; infinite where none are
   float turn[kLanes];                     ///< DifferenceBound::turnOf() of the children
   std::array<std::uint8_t, kLanes> order; ///< in which the children are measured
-  std::vector<DistanceRow> rows;          ///< of what the node itself was near to
-  std::vector<DistanceRow> kept;          ///< of what its children are to be compared with
+  std::vector<DistanceRow> rows;          ///< of the spheres in the node's own list
+  std::vector<DistanceRow> kept;          ///< of the spheres for the lists of its children
   std::vector<CarriedNode> carried;       ///< by obstacle
 
   void begin(const NodeInSphere& entered, float upper, std::uint64_t number)
@@ -192,7 +192,8 @@ struct DistanceVisit : ListVisit<NearSphere> {
   }
 };
 
-/// Lowers `cut` to upper bounds, and `limit` to what they make of spheres that are outdone (difference_bound.h).
+/// Lowers `cut` to upper bounds, and `limit` to these less `turn`, above which spheres are outdone
+/// (difference_bound.h).
 HWY_INLINE void lowerCuts(DistanceVisit& visit, const float* upper)
 {
   const LaneTag d;
@@ -267,7 +268,7 @@ struct MaybeNearest {
   float squared[kLeafPoints];
 };
 
-/// Memory of one walk after another, to be had by a ScratchLease.
+/// Memory that walks use one after another; a ScratchLease lends it.
 struct DistanceScratch {
   std::uint64_t stamp = 0; ///< the last one given
   Visits<DistanceVisit> visits;

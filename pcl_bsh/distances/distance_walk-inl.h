@@ -22,7 +22,7 @@ namespace pcl_bsh::HWY_NAMESPACE {
 
 class DistanceWalk : public ListVisitor<DistanceVisit> {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr float kWide = 3.0f; ///< wider than children by this, spheres are opened for them
+  static constexpr float kWide = 3.0f; ///< spheres more than this many times as wide as a child are opened for it
 
 public:
   DistanceWalk(const DistancesQuery& query, const StopRule& rule, const DistanceSheet& sheet, DistanceScratch& scratch)
@@ -47,7 +47,7 @@ public:
   {
     voxel_ = voxel;
     spaces_.begin(voxel);
-    // A quotient that vanished would bound what is beyond a limit above 0.
+    // The cut of a limit above 0 must not be a quotient that underflowed to 0.
     const float cut = roundUp(std::max(max_ / unit_, std::min(max_, 0x1p-1000)) * (1.0 + kDoubleMargin));
     if (max_ < kInfinity || rule_.mayStop()) {
       const VoxelBounds::Range whole = boundVoxel(cut);
@@ -75,8 +75,7 @@ public:
 
   // As ListWalk asks.
 
-  /// A node of a. No point below it is farther from its nearest than the cut, unless that exceeds the greatest
-  /// distance.
+  /// A node of a. No point below it is farther from its nearest than the cut, unless it is beyond max_distance.
   struct Part : NodeInSphere {
     float cut;
   };
@@ -156,7 +155,7 @@ private:
   }
 
   /// Measures the leaves of triangles: each of these goes down from the list by itself.
-  /// @return them
+  /// @return these leaves
   std::uint32_t measureTriangles(const DistanceVisit& visit, const std::vector<NearSphere>& list, float cut)
   {
     if (!a_.storage.view.triangles || rule_.mayStop()) return 0;
@@ -166,7 +165,7 @@ private:
     return visit.leaves;
   }
 
-  /// Leaves out the children that a greater distance is known for. The farthest are measured first.
+  /// Leaves out the children that are all nearer than a distance measured before. The farthest are measured first.
   void leaveNearer(DistanceVisit& visit) const
   {
     std::sort(visit.order.begin(), visit.order.begin() + visit.node->count, [&](std::uint8_t x, std::uint8_t y) {
@@ -327,7 +326,7 @@ private:
     a_.storage.forEachRecord(voxel_, visit);
   }
 
-  /// Farther than max_distance.
+  /// Writes that a point is farther than max_distance.
   void setBeyond(std::uint32_t record)
   {
     sheet_.set(record, std::numeric_limits<double>::quiet_NaN(), kNothing, {max_, kInfinity});
@@ -364,12 +363,12 @@ private:
   const Spaces &a_, &b_;
   const double unit_; ///< of bounds, in the clouds' unit
   const double max_;
-  const bool compares_slabs_; ///< of both sides: of triangles, and of triangles or points that are no balls
+  const bool compares_slabs_; ///< of both sides: a is of triangles, b is not of balls
   DistanceLeaf leaf_;
   ListWalk<DistanceVisit> walk_;
-  bool leaves_alone_ = false;        ///< whether leaves of a may: see DistanceLeaf::measureAlone()
+  bool leaves_alone_ = false;        ///< whether DistanceLeaf::measureAlone() may measure leaves
   DifferenceBound difference_bound_; ///< of the voxel of a
-  double radius_unit_ = 0.0;         ///< at most what a length of 1 in it is, in the walk's unit
+  double radius_unit_ = 0.0;         ///< lower bound of a length of 1 in it, in the walk's unit
   std::uint32_t voxel_ = kNoVoxel;   ///< of a
   const Voxel* a_voxel_ = nullptr;
   WorkPulse pulse_{found.work};

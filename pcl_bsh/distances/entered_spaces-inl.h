@@ -82,7 +82,7 @@ public:
     return own;
   }
 
-  /// Adds their slabs. @pre they were carried() for this visit. @param voxel of a
+  /// Adds the slabs of the children. @pre carried() was called for this visit. @param voxel of a
   const CarriedNode& carriedSlabs(DistanceVisit& visit, std::uint32_t obstacle, const Voxel& voxel)
   {
     CarriedNode& own = visit.carried[obstacle];

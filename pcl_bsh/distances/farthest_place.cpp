@@ -18,11 +18,11 @@ namespace {
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTogether = 4096;   ///< pieces that are divided before their places are measured
 constexpr std::size_t kOfTask = 64;       ///< pieces
-constexpr double kOfSide = 0.5773502692;  ///< no place of a triangle is farther from a corner: of the longest side
-constexpr double kOfPlace = 16 * 0x1p-53; ///< what five roundings move a place by, of the largest coordinate
-constexpr double kNearEnd = 0x1p-10;      ///< shares of a side that are no cut
+constexpr double kOfSide = 0.5773502692;  ///< a nearest corner is no farther than this share of the longest side
+constexpr double kOfPlace = 16 * 0x1p-53; ///< share of the largest coordinate that bounds five roundings of a place
+constexpr double kNearEnd = 0x1p-10;      ///< shares of a side nearer to an end are no cut
 
-/// A sum of two that is not below it.
+/// Returns an upper bound of x + y.
 double sumAbove(double x, double y)
 {
   return std::nextafter(x + y, kBoundless);
@@ -120,7 +120,7 @@ PointsView FarthestPlace::viewOfPlaces(std::size_t from) const
   return viewOf(places_[from].data(), places_.size() - from, sizeof(Point3));
 }
 
-/// All places from this one on.
+/// Measures all places from number `from` on.
 void FarthestPlace::measure(std::size_t from)
 {
   if (from == places_.size()) return;
@@ -151,7 +151,7 @@ double FarthestPlace::mostOf(std::uint32_t place) const
   return sumAbove(std::nextafter(distance_[place], kBoundless), error_[place]);
 }
 
-/// At least, between the places that these stand for.
+/// Returns an upper bound of the length between the places that two places stand for.
 double FarthestPlace::lengthBetween(std::uint32_t place, std::uint32_t other) const
 {
   const Point3 &p = places_[place], &q = places_[other];
@@ -216,7 +216,7 @@ Interval FarthestPlace::interval() const
   return {lower_, std::max({lower_, settled_, waiting})};
 }
 
-/// From a place of a, in b's frame, up to rounding.
+/// Returns the distance of a place of a, given in b's frame, from a record of b, up to rounding.
 double FarthestPlace::roughDistance(const Eigen::Vector3d& at, std::uint32_t record) const
 {
   const PointsView& view = b_.hierarchy().view();

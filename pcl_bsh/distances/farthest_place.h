@@ -27,7 +27,7 @@ public:
   /// Holds the distance of the farthest place.
   Interval interval() const;
 
-  double distance() const { return farthest_distance_; } ///< that was measured of a place
+  double distance() const { return farthest_distance_; } ///< the greatest that was measured
   PointPair pair() const { return farthest_; }           ///< its record, and the nearest of b
 
   /// Divides some pieces, those that may be the farthest.
@@ -42,7 +42,7 @@ private:
     std::uint32_t depth;
     std::array<std::uint32_t, 3> corners; ///< their places
   };
-  /// The less important one: an order of all pieces, so that it does not depend on threads.
+  /// Whether `one` is less important than `other`. This orders all pieces, so that nothing depends on threads.
   static bool precedes(const Piece& one, const Piece& other);
 
   /// Where a piece is cut: a side, by its first corner, and how far along.
@@ -69,7 +69,7 @@ private:
   const double tolerance_;
   const unsigned threads_;
   Work& work_;
-  const Eigen::Isometry3d in_b_; ///< a's places as b's
+  const Eigen::Isometry3d in_b_; ///< takes places of a into the frame of b
   double largest_ = 0.0;         ///< coordinate of a
 
   // Places, in the order in which they were measured.

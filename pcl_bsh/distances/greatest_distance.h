@@ -6,7 +6,7 @@
 
 namespace pcl_bsh {
 
-/// Sets what is said of all points together from the distances of the single ones.
+/// Sets `measured`, `greatest` and `greatest_pair` from the distances of single points.
 /// @pre `distance` and `closest_point` are set
 void findGreatest(const Placed& a, const Placed& b, PointDistances& result);
 

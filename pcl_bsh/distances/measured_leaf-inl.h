@@ -22,8 +22,8 @@ namespace pcl_bsh::HWY_NAMESPACE {
 struct NearestFound {
   const Voxel* voxel = nullptr;                            ///< null: none
   std::uint32_t point = 0;                                 ///< in the voxel
-  double least = -std::numeric_limits<double>::infinity(); ///< of the distance, less the radius of b's point alone
-  double most = std::numeric_limits<double>::infinity();   ///< of that distance
+  double least = -std::numeric_limits<double>::infinity(); ///< lower bound of distance less radius of b's point
+  double most = std::numeric_limits<double>::infinity();   ///< upper bound of that difference
 };
 
 inline std::uint32_t recordOf(const NearestFound& found)
@@ -37,7 +37,7 @@ inline float enough(double x)
   return roundToFloat(x) * (1.0f + 0x1p-22f) + 0x1p-140f;
 }
 
-/// At least what a length of the clouds' unit is in the obstacle's.
+/// Upper bound of a length of 1 in the clouds' unit, in the obstacle's.
 inline float stretchOf(const DistanceObstacle& obstacle)
 {
   return enough(static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit);
@@ -114,8 +114,8 @@ struct MeasuredLeaf {
 /// The nearest of some records of b to one of the leaf's, in exact arithmetic; of several the smallest record.
 class BestRecord {
 public:
-  /// @param i of the leaf's records @param cut it is no farther than this from b, in the walk's unit, unless that
-  /// exceeds the greatest distance
+  /// @param i of the leaf's records @param cut it is no farther than this from b, in the walk's unit, unless it is
+  ///   beyond max_distance
   BestRecord(MeasuredLeaf& leaf, std::uint32_t i, float cut) : leaf_(leaf), i_(i), most_(double{cut} * leaf.unit) {}
 
   /// Takes one that may be the nearest, before any other.
@@ -148,7 +148,7 @@ public:
   double most() const { return most_; }
 
 private:
-  /// As far as doubles know it.
+  /// The interval of a gap that doubles tell, in the clouds' unit.
   Interval gapOf(const RecordDistance::Pair& pair) const
   {
     const double radii = pair.radius_p + pair.radius_q;
@@ -159,7 +159,7 @@ private:
 
   void take(const NearestFound& found, const RecordDistance::Pair& pair, const Interval& gap)
   {
-    best_.voxel = found.voxel; // what floats say of a distance may be that of another one
+    best_.voxel = found.voxel; // its float bounds stay unset: they may be those of another record
     best_.point = found.point;
     pair_ = pair;
     least_ = gap.lower;

@@ -32,7 +32,7 @@ public:
   {
   }
 
-  /// Whether findBelow() may be called for what is plain.
+  /// Whether findBelow() may be called, where all obstacles are plain.
   bool mayFindBelow() const
   {
     return !leaf_.of_triangles && hasBallsInRange() && leaf_.query.b.hierarchy().size() < kMostNamed;
@@ -59,7 +59,7 @@ public:
   }
 
   /// Finds the nearest of b's points to each point of the leaf, of gathered leaves whose lower bounds are known.
-  /// @param cut no point of the leaf is farther from its nearest, unless that exceeds the greatest distance
+  /// @param cut no point of the leaf is farther from its nearest, unless that is beyond max_distance
   /// @return false where all points are known to be nearer than what was measured
   bool find(float cut)
   {
@@ -67,10 +67,10 @@ public:
     return findGathered();
   }
 
-  /// The points that another one than was found may be the nearest to.
+  /// The points whose nearest may be another one than was found.
   std::uint32_t undecided() const { return leaf_.largest_radius > 0.0 ? ambiguous<true>() : ambiguous<false>(); }
 
-  /// The point of b that float arithmetic found for point i; with a greatest distance, also bounds of theirs.
+  /// The point of b that float arithmetic found for point i; with a max_distance, also bounds of their distance.
   NearestFound named(std::uint32_t i) const
   {
     if (two_.name[i] < 0) return {};
@@ -149,7 +149,7 @@ private:
     }
   }
 
-  /// Spheres with a greater lower bound hold no nearest point of any.
+  /// Spheres with a greater lower bound do not hold the nearest point of any point of the leaf.
   float farthest() const
   {
     const float sum = limit_ + own_radii_; // below 0 within balls; one rounding, kReachMargin is good for six
@@ -238,8 +238,8 @@ private:
     return ((near & kHalf) != 0 ? kHalf : 0) | (near > kHalf ? kHalf << kLanes : 0);
   }
 
-  /// Lowers `most_` and the limit to what the nearest points so far tell. The tolerance is taken off what was found of
-  /// all points, not off their cut: a point that has none yet would be left without.
+  /// Lowers `most_` and the limit to what the nearest points so far tell. The tolerance is subtracted from distances
+  /// that were found, not from the cut: a point for which none was found would be left without.
   template <bool kBalls>
   void lowerMost()
   {
@@ -260,7 +260,7 @@ private:
 
   // In the walk's unit.
 
-  /// At least, and at most, the distance that float arithmetic found to be so: squared, or that to a ball.
+  /// Upper and lower bound of the distance that float arithmetic found as `value`: squared, or as that to a ball.
   template <bool kBalls>
   double mostOf(float value) const
   {
@@ -321,10 +321,10 @@ private:
   MeasuredLeaf& leaf_;
   GatheredSpheres& gathered_;
   std::vector<NearLeaf>& near_leaves_;
-  const float own_radii_; ///< the largest of a's points, in the walk's unit
-  const float balls_;     ///< two of the largest of b's, in the walk's unit
+  const float own_radii_; ///< largest radius of a's points, in the walk's unit
+  const float balls_;     ///< twice the largest radius of b's points, in the walk's unit
 
-  alignas(64) float most_[kLeafPoints]; ///< that points are away from what is nearest, in the walk's unit
+  alignas(64) float most_[kLeafPoints]; ///< upper bounds of the distances of points, in the walk's unit
   NearestTwo two_;
   float limit_ = 0.0f; ///< no point of the leaf is farther than this from its nearest, in the walk's unit
   double error_ = 0.0; ///< of the float distances, in the walk's unit

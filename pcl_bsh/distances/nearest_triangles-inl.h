@@ -34,8 +34,9 @@ public:
     long_.forget();
   }
 
-  /// The nearest triangle of b to each point of the leaf: floats leave those that may be, longer numbers decide.
-  /// @param near leaves that can hold it, by their lower bounds
+  /// The nearest triangle of b to each point of the leaf: floats leave those that may be the nearest, longer numbers
+  /// decide.
+  /// @param near leaves that can hold it, in the order of their lower bounds
   /// @return false where all points are known to be nearer than what was measured
   bool find(float cut, const std::vector<NearSphere>& near)
   {
@@ -104,8 +105,8 @@ private:
     }
   }
 
-  /// Whether squared distances are surely above the square of a reach and what it may be short of. A reach of minus
-  /// infinity is that of no point; NaN is beyond nothing.
+  /// Whether squared distances are surely above the square of `reach` plus `more`. A reach of minus infinity stands for
+  /// no point; NaN is beyond nothing.
   static HWY_INLINE hn::Mask<LaneTag> isBeyond(LaneVector squared, LaneVector reach, LaneVector more)
   {
     const LaneTag d;
@@ -129,13 +130,13 @@ private:
 
   /// The triangle that is the nearest to a point, of those that were looked at.
   struct Nearest {
-    bool compared = false; ///< with another one; the following are set
+    bool compared = false; ///< whether with another one: then the following are set
     SharedPart part;
     double gap;   ///< of the triangle, at most
-    bool bounded; ///< whether doubles have told that
+    bool bounded; ///< whether doubles have bounded the gap
   };
 
-  /// Decides for each point which of the triangles that may be the nearest is it.
+  /// Decides for each point which triangle is the nearest, among those that may be.
   void decideAmong()
   {
     const LaneTag d;
@@ -256,7 +257,7 @@ private:
 
   LongVector places_[kLeafPoints]; ///< of the points that have their bit in placed_
   std::uint32_t placed_ = 0;
-  alignas(64) float most_[kLeafPoints]; ///< that points are away from what is nearest, in the walk's unit
+  alignas(64) float most_[kLeafPoints]; ///< upper bounds of the distances of points, in the walk's unit
   Nearest nearest_[kLeafPoints];        ///< of points that several triangles may be the nearest to
 };
 

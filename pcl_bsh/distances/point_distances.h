@@ -81,9 +81,10 @@ struct SymmetricDistances {
   /// cloud is empty. For surfaces, NaN also where the accuracy stops early. Then it is not known.
   double hausdorff = std::numeric_limits<double>::quiet_NaN();
   std::optional<PointPair> hausdorff_pair; ///< that realises it, of several the smallest (a, b)
-  /// Holds it for certain: as HausdorffDistance::interval, which the accuracy's tolerance is for. NaN where not known.
+  /// Holds that distance for certain, as HausdorffDistance::interval does; the accuracy's tolerance applies to it. NaN
+  /// where not known.
   Interval hausdorff_interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  Work hausdorff_work; ///< of surfaces: of that alone
+  Work hausdorff_work; ///< of surfaces: of the Hausdorff distance alone
 };
 
 /// Distances from each cloud to the other. A count of sphere tests, or a time, is for both together.
@@ -95,10 +96,10 @@ void symmetricDistances(const Placed& a, const Placed& b, const PointDistancesRe
                         SymmetricDistances& result);
 
 /// Options of hausdorffDistance(). For points it is exact. For surfaces a tolerance says how wide the interval may be;
-/// without one that is kHausdorffShare of the greater extent of both.
+/// without one it is kHausdorffShare of the larger box's diagonal.
 struct HausdorffRequest : Effort {
   using Effort::Effort;
-  /** All. */ HausdorffRequest(Effort effort) : Effort(std::move(effort)) {}
+  /** Sets all. */ HausdorffRequest(Effort effort) : Effort(std::move(effort)) {}
   HausdorffRequest() = default;
 };
 
@@ -113,15 +114,15 @@ struct HausdorffDistance {
   /// Holds the greatest distance for certain; of points both ends are `distance`. It may be wider than the tolerance
   /// where doubles do not tell places apart, or where a million divisions of triangles were not enough.
   Interval interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  std::optional<PointPair> pair; ///< that realises it; of points and several of them the smallest (a, b)
+  std::optional<PointPair> pair; ///< that realises it; of points, the smallest (a, b) of several
   Work work; ///< of points with several threads: depends on which is the first to measure a great distance
 };
 
-/// The symmetric Hausdorff distance alone: what symmetricDistances() says of it without a limit, bit for bit, for less.
-/// For surfaces all their places count: triangles are divided, the one that may be the farthest first, until the
-/// interval is narrow enough. From a triangle to a record, the greatest distance is that of a corner. Points that are
-/// certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm for calculating
-/// the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
+/// The symmetric Hausdorff distance alone: the one that symmetricDistances() returns without a limit, bit for bit, for
+/// less work. For surfaces all their places count: triangles are divided, the one that may be the farthest first, until
+/// the interval is narrow enough. From a triangle to a record, the greatest distance is that of a corner. Points that
+/// are certainly nearer than one that was measured are left out (Taha and Hanbury, "An efficient algorithm for
+/// calculating the exact Hausdorff distance", IEEE TPAMI 37(11), 2015), and so are whole nodes.
 /// @throws std::invalid_argument when a pose is not what its declaration asks for; an accuracy that stops early.
 ///   Cancelled.
 HausdorffDistance hausdorffDistance(const Placed& a, const Placed& b, const HausdorffRequest& request = {});

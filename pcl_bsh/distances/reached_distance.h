@@ -25,7 +25,7 @@ public:
   }
 
   /// Whether no distance up to the bound is the greatest, or as great. False of NaN.
-  /// @param upper bound, in any unit @param unit of it, whose product is rounded
+  /// @param upper bound, in multiples of `unit` @param unit in the clouds' unit; the product is rounded
   bool exceeds(float upper, double unit) const noexcept
   {
     return std::nextafter(double{upper} * unit, kInfinity) < below_.load(std::memory_order_relaxed);

@@ -27,7 +27,7 @@ double percentileOf(const std::vector<double>& ascending, double percent)
   return std::lerp(ascending[below], ascending[below + 1], place - static_cast<double>(below));
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is not smaller.
+/// The least number that is not below `least` and is 1, 2 or 5 times a power of ten.
 double roundWidth(double least)
 {
   const double decade = std::pow(10.0, std::floor(std::log10(least)));

@@ -32,7 +32,7 @@ public:
   {
   }
 
-  /// Before the first triangle of a leaf. @param lane the child of a node that it is
+  /// Call before the first triangle of a leaf, which is child `lane` of the node.
   void begin(const Node& node, std::uint32_t lane)
   {
     node_ = &node;
@@ -40,8 +40,8 @@ public:
   }
 
   /// The nearest record of b to triangle i of the leaf. @param list spheres that hold all that can be the nearest
-  /// @param cut the triangle is no farther than this from b, unless that exceeds the greatest distance
-  /// @param below(sphere) the first of those below a sphere; not asked of leaves
+  /// @param cut the triangle is no farther than this from b, unless it is beyond max_distance
+  /// @param below(sphere) returns the first child of a sphere; not called for leaves
   template <class Below>
   NearestFound nearest(std::uint32_t i, float cut, const std::vector<NearSphere>& list, const Below& below)
   {
@@ -70,7 +70,7 @@ public:
     return best.found();
   }
 
-  /// No less than the distance of the last triangle, in the walk's unit.
+  /// Upper bound of the distance of the last triangle, in the walk's unit.
   float limit() const { return limit_; }
 
 private:
@@ -91,7 +91,8 @@ private:
     }
   }
 
-  /// Lower bounds of the distances of what is in some children of a node, of which each holds a record.
+  /// Sets lower bounds of the distances from the triangle to what is in some children of a node. Lowers the limit to
+  /// upper bounds, because each child holds a record.
   void bound(const ObstacleSphere& sphere, std::uint32_t lanes, float* lower)
   {
     leaf_.pulse.look();

@@ -11,14 +11,14 @@
 namespace pcl_bsh {
 namespace {
 
-/// Memory of one query after another, to be had by a ScratchLease.
+/// Memory that queries use one after another; a ScratchLease lends it.
 struct FlagArrays {
   FlagsResult flags;
 
   std::size_t bytes() const noexcept { return (flags.a.capacity() + flags.b.capacity()) * sizeof(Verdict); }
 };
 
-/// Appends the records of these flags that have one of two verdicts to its list. Their numbers are known.
+/// Appends the colliding and the undecided records to one list each. @param colliding, undecided how many there are
 void list(const std::vector<Verdict>& flags, std::size_t colliding, std::size_t undecided,
           std::vector<std::int32_t>& of_colliding, std::vector<std::int32_t>& of_undecided)
 {

@@ -62,8 +62,8 @@ public:
 
 private:
   std::vector<Verdict>& flags_;
-  /// Whether points are undecided at first: a budget may end before a voxel is looked at. A level looks at all voxels,
-  /// and has to look only at those that come near.
+  /// Whether points are undecided at first: a budget may end before a voxel is looked at. A walk to a level looks at
+  /// every voxel that comes near; points of the others are free.
   const bool marked_;
   const PointPairs pairs_;
   const PointPairs certain_;
@@ -72,7 +72,7 @@ private:
   std::atomic<std::size_t> colliding_{0};
 };
 
-/// The flags of points that are where `places` says, which takes the progress from one share of the whole to another.
+/// Flags points that are where `places` says. Takes the progress from the share `from` of the whole to the share `to`.
 void flagPlaces(const Placed& a, const Placed& b, const FlagsRequest& request, MeantPlaces places, FlagsResult& found,
                 Progress& progress, double from, double to)
 {

@@ -20,7 +20,7 @@ enum class Flagged : std::uint8_t { a = 1, b = 2, both = 3 };
 /// Options of collisionFlags().
 struct FlagsRequest : Effort {
   FlagsRequest() = default;
-  /** All. */ FlagsRequest(double within, Flagged whose = Flagged::a, Effort effort = {})
+  /** All but the spacings. */ FlagsRequest(double within, Flagged whose = Flagged::a, Effort effort = {})
   : Effort(std::move(effort)),
     clearance(within),
     flagged(whose)
@@ -31,14 +31,14 @@ struct FlagsRequest : Effort {
   Flagged flagged = Flagged::a; ///< whose points are flagged
 
   /// The density guard, for collisionFlags(): how far the samples of b's surface are apart at each record of its view
-  /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, alike at the same place; null: no guard. A patch
+  /// (patchSpacings() in neighbors/patch_spacings.h), finite and >= 0, equal at the same place; null: no guard. A patch
   /// is the ball about a point of b whose diameter is its spacing. A point of a that is free, but within the clearance
-  /// of a patch (wherever points truly are), is Verdict::sparse instead of free. It is no farther from a point of b
-  /// than the clearance and half of its spacing.
+  /// of a patch (wherever points truly are), is Verdict::sparse instead of free. It is no farther from some point of b
+  /// than the clearance and half of that point's spacing.
   ///
   /// Promised: no place of b's surface is within the clearance of a free point that stays free, if each place of that
-  /// surface is in a patch. Not promised: that the patches cover it. Holes wider than the spacings say, what nobody
-  /// scanned, and the gaps between the samples of a, whose surface the guard does not know, are as they were.
+  /// surface is in a patch. Not promised: that the patches cover it. The guard says nothing of holes wider than the
+  /// spacings, of what nobody scanned, and of gaps between the samples of a, whose surface it does not know.
   const float* spacings_of_b = nullptr;
 };
 

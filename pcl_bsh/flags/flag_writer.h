@@ -13,7 +13,7 @@ namespace pcl_bsh {
 
 /// A walk's finding about one point.
 enum class Finding : std::uint8_t {
-  colliding, ///< some points are told so more than once
+  colliding, ///< a point may be told this more than once
   possible,  ///< where points are uncertain: it may collide; colliding may follow
   free,      ///< only told by walks that may stop early
   left       ///< undecided by this walk
@@ -44,7 +44,7 @@ public:
     each(finding, [this](const auto& take) { cloud_.forEachRecord(voxel_, take); });
   }
 
-  std::size_t colliding = 0; ///< points flagged so that were not before
+  std::size_t colliding = 0; ///< points that were not flagged so before
 
 private:
   /// @param visit calls a function for each record

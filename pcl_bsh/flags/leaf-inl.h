@@ -16,12 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// Bits of a leaf's points that collide for certain, and that may collide; or of those that may turn out to do so.
+/// Masks of a leaf's points, a bit each: points that certainly collide, and points that may collide; or points for
+/// which one or the other is still open.
 struct OpenPoints {
   std::uint32_t surely = 0, perhaps = 0;
 };
 
-/// Which of the open points collide with a leaf of b. @param recordOf(i) of one of them
+/// Which of the open points collide with a leaf of b, and which may. @param recordOf(i) returns the record of point i
 template <class RecordOf>
 inline OpenPoints hitUncertain(const ObstacleVoxel& obstacle, const LeafPoints& points, const RecordOf& recordOf,
                                const LeafRange& other, const OpenPoints& open, const FlagQuery& query, Work& work)
@@ -54,7 +55,7 @@ inline OpenPoints hitUncertain(const ObstacleVoxel& obstacle, const LeafPoints& 
   return hit;
 }
 
-/// The points of a leaf of b that face the child: those of neighbouring leaves that may matter.
+/// Returns the points of a leaf of b, a bit each, that may be within reach of the child's sphere.
 inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                                   const LeafRange& other)
 {
@@ -62,8 +63,8 @@ inline std::uint32_t facingPoints(const ObstacleVoxel& obstacle, const FlagVisit
                     visit.r[lane] + obstacle.reach, kSphereMargin);
 }
 
-/// Which open points collide for certain, where points are uncertain. Sets visit.perhaps of those that may collide. The
-/// nearest of b decide, each as far as its own uncertainty makes it; single pairs decide the rest.
+/// Which open points collide for certain, where points are uncertain. Adds those that may collide to visit.perhaps. The
+/// least distances to points of b, plus and less their own uncertainties, decide most; single pairs decide the rest.
 /// @param reach of the obstacle. @param own uncertainties of the leaf's points
 HWY_NOINLINE inline std::uint32_t hitUncertainPoints(const ObstacleVoxel& obstacle, const UncertainReach& reach,
                                                      FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf,
@@ -132,7 +133,7 @@ inline std::uint32_t hitPoints(const ObstacleVoxel& obstacle, const FlagVisit& v
   return hit;
 }
 
-/// Bits of squared distances that are beyond the sum of two radii and a pruneReach(), each rounded once.
+/// Bits of the squared distances that are beyond a length: the sum of two radii and a pruneReach(), each rounded once.
 HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
 {
   const LaneTag d;
@@ -140,16 +141,17 @@ HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
   return bitsOf(d, hn::Gt(squared, hn::Add(limit, hn::Set(d, kVanishingSquare))));
 }
 
-/// Radii of b's balls, in the obstacle's units, for each of them as stored.
+/// Factor that takes a ball's stored radius to the obstacle's frame and unit.
 inline double ballScale(const ObstacleVoxel& obstacle)
 {
   return static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
 }
 
-/// Which open points have the middle of a ball of b's triangles, which is on its triangle, surely within reach. For
-/// each candidate, visit.asked gets the points that a ball of it may be near to. Where the clearance is less than
-/// rounding, these are all open points, and none is looked at. Where the candidate's balls are larger than the reach,
-/// they are all, too, as such balls are near to most. @param radii of a's balls in the obstacle's frame, or zeros
+/// Returns the open points that are surely within reach of the middle of a ball of b's triangles: the middle is on the
+/// triangle. Sets visit.asked, for each candidate, to the open points that one of its balls may be near to. It is all
+/// open points where the clearance is less than rounding, and no point is looked at then. It is all, too, where the
+/// candidate's balls are larger than the reach, because such balls are near to most. @param radii of a's balls in the
+/// obstacle's frame, or zeros
 inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                                 const LeafPoints& points, const float* radii)
 {
@@ -180,8 +182,8 @@ inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit,
   return hit;
 }
 
-/// Which balls of a leaf of b are not proven to be farther than the reach from all of a child. @param within gets how
-/// far what matters may be from the middle of each
+/// Which balls of a leaf of b are not proven to be farther than the reach from all of a child. @param within gets, for
+/// each ball, how far from its middle points may matter
 inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,
                                  const LeafRange& other, float* within)
 {
@@ -198,9 +200,10 @@ inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit&
   return firstBits(other.count) & ~far;
 }
 
-/// Calls compare(record, triangle, squared, near) for triangles of b until it returns true. The balls of these may be
-/// near enough to points that hitMiddles() left in visit.asked, or to their balls; `near` has the bits of such points,
-/// `squared` the distances from the triangle. @param hit bits of points that need not be compared.
+/// Calls compare(record, triangle, squared, near) for triangles of b until it returns true. `near` has the bits of the
+/// points of visit.asked, as hitMiddles() set it, that may be near enough, they or their balls, to the triangle's ball.
+/// `squared` has the squared distances of points from the triangle. @param hit bits of points that need not be
+/// compared.
 /// @param radii of a's balls in the obstacle's frame, at least; or zeros
 template <class FacingOf, class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,

@@ -18,9 +18,9 @@ struct FlagQuery {
   const PointPairs& pairs;
   RelativeRotation rotation;
   LengthBand length_band;
-  /// Where points are uncertain: `pairs` are those that may collide, these are the ones that do for certain.
+  /// Set where points are uncertain: `pairs` decides which pairs may collide, `certain` which ones do for certain.
   const PointPairs* certain = nullptr;
-  LengthBand surely; ///< of the pairs that do for certain, or of all
+  LengthBand surely; ///< the band of surePairs()
 
   const PointPairs& surePairs() const { return certain ? *certain : pairs; }
 };

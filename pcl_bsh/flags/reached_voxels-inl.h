@@ -19,7 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// Each is an obstacle.
+/// The voxels of b that a walk reaches. Each becomes an obstacle.
 class ReachedVoxels {
 public:
   ReachedVoxels(const FlagQuery& query, const Spaces& a, const Spaces& b, FlagScratch& scratch, Work& work)
@@ -39,7 +39,8 @@ public:
     flat_.prepare(b_.storage);
   }
 
-  /// Finds those of a voxel of a. @return what all of its points are, where spheres tell that
+  /// Finds the voxels that a voxel of a reaches. @return the finding for all points of that voxel, where spheres tell
+  /// it
   std::optional<Finding> find(std::uint32_t voxel)
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);
@@ -56,7 +57,7 @@ public:
     return points;
   }
 
-  /// Builds them, and makes obstacles of them.
+  /// Builds the voxels that were found, and makes obstacles of them. @param voxel of a
   void enter(std::uint32_t voxel, WorkPulse& pulse)
   {
     for (const std::uint32_t other : numbers) {
@@ -77,7 +78,7 @@ public:
     }
   }
 
-  /// Whether a triangle may be near the sphere of a voxel of a, which need not be built if not.
+  /// Whether a triangle may be near the sphere of a voxel of a. If not, the voxel need not be built.
   /// @param mayFit() whether slabs are worth fitting by now
   template <class MayFit>
   HWY_NOINLINE bool haveTrianglesNear(std::uint32_t voxel, FlagSlabs& slabs, const MayFit& mayFit)
@@ -89,7 +90,7 @@ public:
     });
   }
 
-  /// Which spheres in an obstacle's frame, of eight, the triangles of a leaf may be near to.
+  /// Returns which of up to eight spheres, in an obstacle's frame, the triangles of a leaf may be near to.
   LanesNear nearTo(const LeafRange& leaf, const ObstacleVoxel& obstacle, const float* x, const float* y, const float* z,
                    const float* r, std::uint32_t lanes, float sure_reach)
   {

@@ -24,10 +24,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 inline constexpr std::uint64_t kStepsOfVoxel = 2048;
 inline constexpr std::uint64_t kMostStepsPerPoint = 20;
 
-/// The radius of a group at most, in reaches.
+/// The greatest radius of a group, as a multiple of the reach.
 inline constexpr float kWidestGroup = 3.0f;
 
-/// Only points that collide, or may, are told.
+/// Flags the points of one voxel in groups. Tells the writer only of points that collide or may collide.
 class FlagRuns {
 public:
   /// @param voxel listed. @param obstacles all voxels of b that it can reach; points have no radii
@@ -84,7 +84,8 @@ private:
   std::uint64_t steps() const { return work_.node_pairs + kLeafPoints * work_.leaf_pairs + work_.exact_decisions; }
   bool isTooMuch() const { return given_up_ || steps() > allowed_; }
 
-  /// Whether a group is so wide beside the reach that a leaf of b settles few of its points: compact leaves are better.
+  /// Whether a group is so wide beside the reach that a leaf of b settles few of its points. The compact leaves of a
+  /// tree are better then.
   bool isTooWide() const
   {
     const ObstacleVoxel& obstacle = obstacles_.front();
@@ -297,7 +298,9 @@ private:
     return true;
   }
 
-  /// Reports which points may collide. @param nearest of the leaf's points to each @return those that do for certain
+  /// Reports which points may collide. @param nearest squared distances of the open points from the leaf's nearest
+  /// points
+  /// @return the points that collide for certain
   std::uint32_t compareUncertain(const ObstacleVoxel& obstacle, const LeafRange& leaf, const float* nearest,
                                  OpenPoints open)
   {

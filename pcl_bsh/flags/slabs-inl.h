@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slabs in a walk that flags points: which children of a visit a sphere of b may be near to, as the planes tell that
-// hold what is in them. Spheres say little where surfaces face each other, and of triangles as long as their voxel.
+// Slabs in a walk that flags points: the planes that hold a node's records tell which children of a visit a sphere of b
+// may be near to. Spheres say little where surfaces face each other, and of triangles as long as their voxel.
 
 #if defined(PCL_BSH_FLAGS_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_FLAGS_SLABS_INL_H_
@@ -63,8 +63,8 @@ public:
            !b_.storage.view.areBalls() && (!of_triangles_ || has_long_triangles_ || obstacle.has_long_triangles);
   }
 
-  /// Has the visit's children, and the obstacle, compared as slabs too. Where surfaces face each other across the
-  /// clearance, spheres leave most of b as candidates. @pre mayHave()
+  /// From now on the visit's children and the obstacle are compared by slabs, too. Where surfaces face each other
+  /// across the clearance, spheres leave most of b as candidates. @pre mayHave()
   HWY_NOINLINE void take(FlagVisit& visit)
   {
     ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -80,7 +80,7 @@ public:
           visit.cz);
   }
 
-  /// The children in `near` that a sphere of b may be near to, as its slabs and theirs tell.
+  /// The children in `near` that a sphere of b may be near to, by its slabs and the children's slabs.
   HWY_INLINE std::uint32_t nearOf(FlagVisit& visit, const ObstacleSphere& candidate, const Point& center, float radius,
                                   std::uint32_t near)
   {
@@ -93,8 +93,8 @@ public:
     return nearAcross(visit, candidate, near);
   }
 
-  /// Whether both slabs of what a candidate holds, which the visit's children were compared with, are thinner than the
-  /// reach about the smallest of these: then its triangles tell little more.
+  /// Whether both slabs of a candidate, with which the visit's children were compared, are thinner than the reach plus
+  /// the radius of the smallest child. Then the candidate's triangles tell little more than its slabs.
   bool isThin(const FlagVisit& visit, const ObstacleSphere& candidate) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -108,7 +108,8 @@ public:
     return has_long_triangles_ && !b_.storage.view.triangles && candidate.isLeaf();
   }
 
-  /// Which points of such a leaf may be near to long triangles of a leaf of a. @pre visit.has_slabs
+  /// Which points of a leaf of b may be near to the long triangles of a leaf of a. @pre isLeafOfPoints(),
+  /// visit.has_slabs
   std::uint32_t facingLeaf(const FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf) const
   {
     const CrossedSlabs held{{visit.nx[lane], visit.ny[lane], visit.nz[lane]},

@@ -19,13 +19,13 @@ namespace pcl_bsh::HWY_NAMESPACE {
 /// The reaches of a visit's children, in the obstacle voxel's frame.
 struct UncertainLanes {
   alignas(32) float sure[kLanes];      ///< a point so near to the centre makes all below collide for certain
-  alignas(32) float maybe[kLanes];     ///< all below may collide
+  alignas(32) float maybe[kLanes];     ///< a point so near to the centre makes all below possible: they may collide
   alignas(32) float sure_near[kLanes]; ///< what is farther from the centre makes nothing below collide for certain
-  alignas(32) float near[kLanes];      ///< nothing below may collide
-  std::uint32_t may_be_sure = 0;       ///< bits of the children that a point may be near enough to for this
+  alignas(32) float near[kLanes];      ///< what is farther from the centre makes nothing below possible
+  std::uint32_t may_be_sure = 0;       ///< children that a point may be within `sure` of, a bit each
   std::uint32_t may_be_possible = 0;
 
-  /// @param r the children's radii in the obstacle's frame. @param own theirs
+  /// @param r the children's radii in the obstacle's frame. @param own the children's least and greatest uncertainties
   void set(const UncertainReach& reach, const float* r, const UncertaintyLanes& own)
   {
     for (std::size_t i = 0; i < kLanes; ++i) {
@@ -72,7 +72,7 @@ struct CandidateReach {
 /// Finds points of b by their distance and their uncertainty, for hasPointWithin().
 class UncertainPoint {
 public:
-  /// @param certain whether it shortens the reach, else it makes it longer
+  /// @param certain whether the uncertainty shortens the reach, as it does for certain collisions; else it lengthens it
   UncertainPoint(const ObstacleVoxel& obstacle, const UncertainReach& reach, bool certain)
   : voxel_(*obstacle.voxel),
     stretch_(obstacle.frame.stretch_b),
@@ -216,7 +216,7 @@ private:
     return within;
   }
 
-  /// All points below these children may collide.
+  /// Takes note that all points below these children may collide.
   static void know(FlagVisit& visit, std::uint32_t lanes)
   {
     visit.known |= lanes;

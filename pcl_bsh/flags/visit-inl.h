@@ -27,13 +27,13 @@ struct ObstacleVoxel {
   RelativeFrame frame;
   float reach;        ///< what is farther apart is free
   float sure_reach;   ///< what comes within it collides
-  float accept_reach; ///< what comes within it may count as colliding; no less
+  float accept_reach; ///< what comes within it may count as colliding; at least `sure_reach`
   float blunt_radius;
   DistanceBand band;                  ///< of what collides, where points are uncertain: for certain
   DistanceBand possible;              ///< of what may collide
-  DistanceBand flat, possibly_flat;   ///< of these, of triangles for which FlatRecord::isUsual()
+  DistanceBand flat, possibly_flat;   ///< `band` and `possible` for triangles with FlatRecord::isUsual()
   const Slabs* slabs = nullptr;       ///< of its nodes, once asked for
-  const Slabs* cross_slabs = nullptr; ///< second ones of these, where triangles are long
+  const Slabs* cross_slabs = nullptr; ///< second slabs of its nodes, where triangles are long
   bool has_long_triangles = false;    ///< about as long as the voxel is wide: balls of nodes say little about them
 };
 
@@ -56,7 +56,7 @@ struct FlagVisit : ListVisit<ObstacleSphere> {
   BoundingSphere around;     ///< holds them all; in the frame of a's voxel
   QueryBall ball;            ///< about it, with the reach; in the obstacle voxel's frame
 
-  std::vector<std::uint32_t> asked; ///< of each of near[lane], bits of points, while a leaf is compared with triangles
+  std::vector<std::uint32_t> asked; ///< set by hitMiddles(): for each of near[lane], bits of the points to compare
   std::uint32_t open_points[kLanes] = {}; ///< of leaves: bits of the points not flagged yet
   std::uint32_t perhaps[kLanes] = {};     ///< of leaves: bits of points that may collide, but were not found to
   std::uint32_t known = 0;  ///< bits of the children all of whose points may collide; it is open whether they do
@@ -79,7 +79,8 @@ struct FlagVisit : ListVisit<ObstacleSphere> {
   std::size_t bytes() const noexcept { return ListVisit::bytes() + asked.capacity() * sizeof(std::uint32_t); }
 };
 
-/// Tells a writer of some of sixteen points. @param bits of them. @param recordOf(i) of one
+/// Tells a writer one finding for some of sixteen points. @param bits of these points
+/// @param recordOf(i) returns the record of point i
 template <class RecordOf>
 inline void tellBits(FlagWriter& writer, Finding finding, std::uint32_t bits, const RecordOf& recordOf)
 {
@@ -124,7 +125,7 @@ inline bool hasPointWithin(const Finder& finder, const ObstacleVoxel& obstacle, 
   return false;
 }
 
-/// Memory of one walk after another, to be had by a ScratchLease.
+/// Memory that walks use one after another; a ScratchLease lends it.
 struct FlagScratch {
   Visits<FlagVisit> visits;
   std::vector<ObstacleVoxel> obstacles;

@@ -209,8 +209,8 @@ private:
     return lanes.near & visit.open;
   }
 
-  /// Compares a sphere of b with those children of the visit that are in `lanes`: settles them, drops it, keeps it for
-  /// their own descent, or opens it.
+  /// Compares a sphere of b with the children of the visit that are in `lanes`. Settles children, drops the sphere,
+  /// keeps it for a child's own descent, or opens it.
   void take(FlagVisit& visit, const ObstacleSphere& candidate, std::uint32_t lanes)
   {
     pulse_.step();
@@ -298,8 +298,8 @@ private:
     }
   }
 
-  /// Which open points of a leaf, carried to the obstacle voxel, collide with the leaves of it that the child is near
-  /// to.
+  /// Which open points of a leaf, carried to the obstacle voxel, collide with the leaves of that voxel that are near
+  /// the child.
   std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];
@@ -364,8 +364,8 @@ private:
   const double reach_; ///< of all pairs
   const StopRule& rule_;
   FlagWriter& writer_;
-  static constexpr std::size_t kManyCandidates = 256;   ///< as they are where surfaces face each other
-  static constexpr std::size_t kSeveralCandidates = 64; ///< as the clearance leaves them about what is far smaller
+  static constexpr std::size_t kManyCandidates = 256;   ///< more are left where surfaces face each other
+  static constexpr std::size_t kSeveralCandidates = 64; ///< more are left about nodes far smaller than the clearance
 
   std::uint32_t voxel_ = kNoVoxel; ///< of a
   std::uint64_t allowed_ = 0;      ///< steps, before slabs of long triangles are fitted

@@ -54,7 +54,7 @@ private:
   Pause pause_;
 };
 
-/// By so many threads. A search that is soon over is that of one.
+/// Searches by several threads; a search that is soon over takes one.
 AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& request, MeantPlaces places,
                        unsigned threads, const Watch& watch)
 {
@@ -66,7 +66,7 @@ AnyResult searchShared(const Placed& a, const Placed& b, const AnyRequest& reque
     if (result.verdict != Verdict::undecided) return result;
     alone = result.work;
     shared.emplace(search.left());
-  } // what it used is there for this thread's share
+  } // its memory is free for this thread's share now
   shared->visit(threads, [&] { return AnySearch(a, b, request, Pausing(), places); });
   return resultOf({reachBetween(a, b, request.clearance, places), request.accuracy}, shared->found(), false,
                   alone += shared->work());

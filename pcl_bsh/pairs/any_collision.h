@@ -15,7 +15,7 @@ namespace pcl_bsh {
 /// Options of anyCollision().
 struct AnyRequest : Effort {
   AnyRequest() = default;
-  /** All. */ AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
+  /** Sets all. */ AnyRequest(double within, Effort effort = {}) : Effort(std::move(effort)), clearance(within) {}
 
   double clearance = 0.0; ///< finite, >= 0; inclusive
 };
@@ -26,7 +26,7 @@ struct AnyResult {
                                    ///< or where points have uncertainties
   /// A colliding pair, when colliding: the first that the depth-first search meets, for any number of threads.
   std::optional<PointPair> pair;
-  Interval interval; ///< of the clouds, as far as the walk had to learn it
+  Interval interval; ///< holds the distance of the clouds, as far as the walk had to learn it
   Work work;
 };
 

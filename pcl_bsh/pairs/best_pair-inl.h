@@ -69,7 +69,8 @@ protected:
     return walk_.lowest(pair) < *best_.pair;
   }
 
-  /// Orders children that may be at a distance of 0, below that: by how far spheres overlap for their size.
+  /// Returns a key for a child that may be at a distance of 0: below 0, and the smaller, the more the spheres overlap
+  /// for their size.
   static float overlapOf(const PairWalk::Step& step, std::uint32_t lane)
   {
     const float radius = step.children.r[lane] * step.children.stretch;
@@ -77,8 +78,9 @@ protected:
     return overlap < 2.0f ? overlap - 2.0f : 0.0f;
   }
 
-  /// No pair of what touches the planes is as near as the best with smaller record numbers than this. A record of
-  /// b that touches only where the one looked at beside all of a does is as near as that one at most, and so no better.
+  /// Returns a pair of numbers: no smaller pair of records that touch the planes is as near as the best pair. A record
+  /// of b that touches only where `looked_round_` does is no nearer than `looked_round_`, which was compared with all
+  /// of a. So it makes no better pair with a smaller record of a.
   PointPair firstAmong(const PlanesBetween::Touching& touching) const
   {
     const auto& [of_a, of_b] = touching;
@@ -91,7 +93,7 @@ protected:
   /// it did.
   bool take(PointPair candidate)
   {
-    const bool none_nearer = none_nearer_ || (best_.high == 0.0 && !pairs_.mayOverlap()); // as nothing is than at 0
+    const bool none_nearer = none_nearer_ || (best_.high == 0.0 && !pairs_.mayOverlap()); // nothing is nearer than 0
     if (none_nearer && *best_.pair < candidate) return false;
     const RecordDistance::Pair posed = pairs_.posed(candidate);
     ++walk_.work.exact_decisions;
@@ -136,8 +138,8 @@ protected:
   /// Without radii no distance is below 0, so that pairs at 0 are settled by their record numbers.
   const float lowest_key_ = pairs_.mayOverlap() ? -std::numeric_limits<float>::infinity() : 0.0f;
   float left_over_ = std::numeric_limits<float>::infinity(); ///< no pair that was left is nearer
-  float at_least_ = -std::numeric_limits<float>::infinity(); ///< the gaps that are considered
-  double best_lower_ = -kInfinity;                           ///< so much of the best one
+  float at_least_ = -std::numeric_limits<float>::infinity(); ///< lower bound of the gaps that are considered
+  double best_lower_ = -kInfinity;                           ///< lower bound of the best pair's gap
   bool settled_ = false;                                     ///< a pair is within the goal's clearance
   Nearest best_;
   RecordDistance::Pair best_posed_; ///< of the best pair, or of one before it
@@ -145,16 +147,16 @@ protected:
   static constexpr std::uint64_t kDecisionsBeforePlanes = 256;
   PlanesBetween planes_{pairs_.distance, walk_.a.storage, walk_.b.storage,
                         kDecisionsBeforePlanes}; ///< of the best pair
-  double planes_of_ = kInfinity;                 ///< Nearest::high of the pair they are of
+  double planes_of_ = kInfinity;                 ///< Nearest::high of the pair that they were laid for
   std::uint64_t steps_in_vain_ = 0;              ///< since a nearer pair was found: decisions and pairs of leaves
   const std::uint64_t steps_to_look_round_ = 2 * (std::uint64_t{walk_.a.storage.size} + walk_.b.storage.size);
   bool has_looked_round_ = false;
-  std::uint32_t looked_round_ = BehindPlane::kNoRecord; ///< of b: the best is no later than it beside all of a
-  bool none_nearer_ = false;                            ///< than the best below the pair that is visited
+  std::uint32_t looked_round_ = BehindPlane::kNoRecord; ///< record of b that lookRound() compared with all of a
+  bool none_nearer_ = false;                            ///< nothing below the visited pair is nearer than the best
 
 private:
-  /// Bounds of a pair's gap: those of double arithmetic, if they are so narrow beside the clouds' size that no more
-  /// pairs are looked at. Rounding the gap takes ten times as long.
+  /// Bounds of a pair's gap: those of double arithmetic, if they are so narrow beside the clouds' size that the search
+  /// looks at no more pairs for them. Rounding the gap takes ten times as long.
   RecordDistance::Enclosure boundGap(const RecordDistance::Pair& posed) const
   {
     if (!pairs_.ofTriangles()) {

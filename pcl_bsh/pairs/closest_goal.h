@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The goal of a search for the closest pair, and when the search may end before.
+// The goal of a search for the closest pair, and when the search may end earlier.
 #pragma once
 
 #include <pcl_bsh/pairs/any_collision.h>

@@ -102,7 +102,7 @@ DistanceResult closestPairOnTarget(const Placed& a, const Placed& b, const Close
     if (alone.left().empty()) return result;
     work = result.work;
     shared.emplace(alone.left());
-  } // what it used is there for this thread's share
+  } // its memory is free for this thread's share now
   shared->visit(threads, [&] { return ClosestSearch(a, b, goal, Sharing(nearest)); });
   return ClosestSearch(a, b, goal, Sharing(nearest)).result(work += shared->work());
 }

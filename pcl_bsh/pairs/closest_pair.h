@@ -16,7 +16,7 @@ namespace pcl_bsh {
 /// Options of closestPair().
 struct DistanceRequest : Effort {
   using Effort::Effort;
-  /** All. */ DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
+  /** Sets the effort alone. */ DistanceRequest(Effort effort) : Effort(std::move(effort)) {}
   DistanceRequest() = default;
 
   /// No pair that is farther apart is found: what is beyond costs as little as anyCollision(). >= 0, inclusive,
@@ -32,7 +32,7 @@ struct DistanceResult {
   std::optional<PointPair> pair; ///< the pair that realises it; of several, the smallest (a, b)
   /// Holds the smallest distance for certain. The neighbouring doubles of `distance` when the request's accuracy is
   /// exact; otherwise `distance` and `pair` are those of the nearest pair that was found, and the upper end. Without a
-  /// pair, from what is known, at most max_distance, to infinity.
+  /// pair it reaches from a lower bound, at most max_distance, to infinity.
   Interval interval;
   Work work;
 };

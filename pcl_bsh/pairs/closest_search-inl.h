@@ -42,12 +42,12 @@ struct NoOthers {
 /// finds near pairs late; each dive that finds none doubles the steps to the next one.
 inline constexpr std::uint32_t kStepsBetweenDives = 12;
 
-/// Pairs that a search with a time compares of leaves before it may take long steps. Most searches come to no more.
+/// Pairs of leaves that a search with a time compares before it may take long steps. Most searches come to no more.
 inline constexpr std::uint64_t kPairsBeforePoints = 48;
 
 /// @tparam Others the searches of other threads: `kAreThere`; `stops()` before each pair is visited, whether to pause
-///   there; `hear(nearest)`: takes over what they have found; `tell(nearest, pairs)`: gives it to them, and takes what
-///   is nearer; `allow(pause)`: until when not to stop
+///   there; `hear(nearest)`: sets it to what they have found; `tell(nearest, pairs)`: gives it to them, or sets it to
+///   theirs where that is nearer; `allow(pause)`: sets when to stop
 template <class Others>
 class ClosestSearch : public PairVisitor, private BestPair {
 public:
@@ -105,8 +105,8 @@ public:
 
   static constexpr bool kBounds = true;
 
-  /// Distances above this are of no interest. A dive is for a nearer pair, though it may not be nearer by the
-  /// tolerance.
+  /// Distances above this are of no interest. A dive looks for any nearer pair, even one that is nearer by less than
+  /// the tolerance.
   double reach() const { return std::max(diving_ && best_.pair ? best_.high : best_.to_beat, 0.0); }
 
   /// Whether there is time for what opening a pair takes.
@@ -182,7 +182,7 @@ private:
         }
         if (queue_.isEmpty()) return;
         next = queue_.pop();
-        if (!mayImprove(*next)) { // those left may, at most, by their record numbers
+        if (!mayImprove(*next)) { // pairs left in the queue may improve at most by their record numbers
           if (next->key <= best_.to_beat && !queue_.isEmpty()) {
             next.reset();
             continue;
@@ -216,8 +216,8 @@ private:
     }
   }
 
-  /// Whether each pair of points below is within the tolerance of all that the pair bounds; or, where a budget may stop
-  /// the search, whether any of them is likely to make the interval narrower.
+  /// Whether the gaps of all pairs of points below differ by no more than the tolerance. Where a budget may stop the
+  /// search: whether any of these pairs is likely to make the interval narrower.
   bool isSmall(const LanePair& pair) const
   {
     if (!goal_.rule.mayStop()) return goal_.tolerance > 0.0 && 2.0 * walk_.radiiOf(pair) <= goal_.tolerance;
@@ -225,8 +225,8 @@ private:
   }
 
   /// Whether a dive for a nearer pair than the one considered is so deep that raising the interval's lower end gains
-  /// more. A budget may end before a leaf is reached. (The factor: intervals after the same work,
-  /// of 2 to 16.)
+  /// more. A budget may end before a leaf is reached. (The factor was chosen among 2 to 16 by the intervals after the
+  /// same work.)
   bool isDeepEnough(const LanePair& pair) const
   {
     return goal_.rule.mayStop() && 6.0 * walk_.radiiOf(pair) <= widthBefore(pair);
@@ -280,7 +280,8 @@ private:
     return goes_on ? std::optional(nearest) : std::nullopt;
   }
 
-  /// Considers a pair on the first dive, which a budget may not let end.
+  /// Considers one pair of points below, where the spheres' centres are much nearer than the best pair. For the first
+  /// dive, which may not end within a budget.
   void considerIfMuchNearer(const LanePair& pair, float between_centers)
   {
     const double between = static_cast<double>(between_centers) * walk_.b.frame(pair.b.space).unit;
@@ -310,14 +311,14 @@ private:
   }
 
   /// Whether a pair can improve where bounds tell little: among ties, and what doubles hardly tell from them.
-  /// @pre there is a best pair, which a limit may keep away for long
+  /// @pre there is a best pair (where distances are limited, it may be found late)
   HWY_NOINLINE bool mayImproveAmongTies(const LanePair& pair)
   {
     if (!has_looked_round_ && steps_in_vain_ >= steps_to_look_round_) lookRound();
     return canImprove(pair) && !(planes_.policy.mayAsk() && isSettledByPlanes(pair));
   }
 
-  /// Compares each of the best pair with all of the other cloud. It costs half of what was done in vain before.
+  /// Compares each record of the best pair with all of the other cloud. It costs half of what was done in vain before.
   void lookRound()
   {
     has_looked_round_ = true;
@@ -335,9 +336,9 @@ private:
     planes_of_ = kInfinity;
   }
 
-  /// Whether nothing below a pair is nearer than the best, as planes between that one's nearest places tell exactly
-  /// where bounds cannot, and nothing as near has smaller record numbers. Planes of a pair that is farther than the
-  /// best tell less, but nothing wrong.
+  /// Whether nothing below a pair is nearer than the best pair, and nothing as near has smaller record numbers. Planes
+  /// between the best pair's nearest places tell this exactly where bounds cannot. Planes of a farther pair tell less,
+  /// but nothing wrong.
   bool isSettledByPlanes(const LanePair& pair)
   {
     if (best_.high < planes_of_) {
@@ -374,7 +375,7 @@ private:
   }
 
   const ScratchLease<PairStack> kept_stack_;
-  std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of what is depth first; before that, of a step's children
+  std::vector<LanePair>& stack_ = (*kept_stack_).pairs; ///< of the depth-first search; empty before it
   PairWalk::Step step_;
   PairQueue queue_{lowest_key_};
   alignas(32) float keys_[kLanes] = {}; ///< of the children that the last step tested

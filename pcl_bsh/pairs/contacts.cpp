@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
-/// All of them, until there are too many.
+/// Keeps all pairs within the clearance, until there are too many.
 class AllPairs {
 public:
   static constexpr bool kHasWays = false;
@@ -58,10 +58,10 @@ struct PairGap {
 
   double low, high;
   PointPair pair;
-  mutable std::uint32_t tie = kAlone; ///< with others that are exactly as near
+  mutable std::uint32_t tie = kAlone; ///< number of a set of pairs that are exactly as near
 };
 
-/// Memory of one NearestPairs after another, to be had by a ScratchLease.
+/// Memory that NearestPairs use one after another; a ScratchLease lends it.
 struct PairHeap {
   std::vector<PairGap> pairs;
   std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(PairGap); }
@@ -129,8 +129,8 @@ public:
 
   double reach() const { return reach_; }
 
-  /// Whether nothing below two lanes is nearer than the farthest pair, nor as near with smaller records: where that one
-  /// meets, or as planes between its nearest places tell.
+  /// Whether nothing below two lanes is nearer than the farthest pair kept, nor as near with smaller records. Known
+  /// where that pair meets, or by planes between its nearest places.
   bool passesOver(const PairWalk& walk, const LanePair& lanes)
   {
     none_nearer_ = false;
@@ -196,10 +196,10 @@ public:
 
 private:
   static constexpr std::uint64_t kDecisionsBeforePlanes = 8;
-  static constexpr std::uint64_t kLooksForDecision = 256; ///< at records, where these bring nothing
+  static constexpr std::uint64_t kLooksForDecision = 256; ///< at records, in vain
   static constexpr std::uint64_t kMostLooked = 512;       ///< below a lane: larger nodes would be looked at often
 
-  /// As doubles tell; rounding a gap takes ten times as long.
+  /// Sets the bounds of a gap that doubles tell; rounding the gap takes ten times as long.
   void boundGap(const RecordDistance::Pair& posed, PairGap& entry) const
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -223,7 +223,7 @@ private:
     return true;
   }
 
-  /// Counts pairs that were as near as doubles tell. Enough of them pay for planes.
+  /// Counts a pair that doubles did not tell from the farthest one. Enough of them pay for planes.
   void decidedInVain()
   {
     looks_ += kLooksForDecision;
@@ -259,13 +259,13 @@ private:
   const std::size_t most_;
   double reach_;
   bool heaped_ = false;
-  bool meet_ = false;    ///< all of them
+  bool meet_ = false;    ///< whether all pairs kept meet
   PlanesBetween planes_; ///< of a pair that was the farthest
   PointPair planes_of_;
   bool none_nearer_ = false; ///< below the lanes that are visited
   std::uint64_t looks_ = 0;
-  mutable std::uint64_t orders_ = 0;        ///< that doubles did not tell
-  mutable std::vector<std::uint32_t> ties_; ///< of a tie another one that it is a part of, or itself
+  mutable std::uint64_t orders_ = 0;        ///< comparisons that doubles did not decide
+  mutable std::vector<std::uint32_t> ties_; ///< for each set of ties the one that it was joined to, or itself
   mutable Pulse pulse_;                     ///< of ties
   const ScratchLease<PairHeap> scratch_;
   std::vector<PairGap>& kept_ = (*scratch_).pairs;

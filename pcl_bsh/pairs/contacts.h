@@ -19,7 +19,7 @@ struct ContactsRequest : Effort {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
   ContactsRequest() = default;
-  /** All. */ ContactsRequest(double within, std::size_t at_most = kAll, Effort effort = {})
+  /** Sets all. */ ContactsRequest(double within, std::size_t at_most = kAll, Effort effort = {})
   : Effort(std::move(effort)),
     clearance(within),
     most(at_most)

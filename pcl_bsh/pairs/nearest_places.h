@@ -20,7 +20,7 @@ inline std::array<Eigen::Vector3d, 2> nearestPlaces(const Placed& a, const Place
   const Corners own_a = cornersOf(view_a, pair.a), own_b = cornersOf(view_b, pair.b);
   const Eigen::Vector3d first = b.pose * vectorOf(own_b.at[0]);
   if (!view_a.triangles && !view_b.triangles) return {a.pose * vectorOf(own_a.at[0]), first};
-  const auto seen = [&](Corners corners, const Eigen::Isometry3d& pose) { // from one of them, so that little is rounded
+  const auto seen = [&](Corners corners, const Eigen::Isometry3d& pose) { // from one corner, so that little is rounded
     for (Point3& p : corners.at) {
       const Eigen::Vector3d at = pose * vectorOf(p) - first;
       p = {at.x(), at.y(), at.z()};

@@ -19,7 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 namespace {
 
-/// Records of a on their ways. Records below a lane differ in their ways by what the turn makes of the lane's radius.
+/// Collects pairs of records of a on their ways and records of b. The way of a record below a lane differs from that of
+/// the lane's middle by at most the norm of the turn times the lane's radius.
 class PassingPairs {
 public:
   static constexpr bool kHasWays = true;
@@ -92,7 +93,7 @@ private:
 
   struct Sphere {
     Eigen::Vector3d center; ///< in the cloud's frame
-    double radius;          ///< as poses may stretch it, and with what stored points are rounded by
+    double radius;          ///< as poses may stretch it, with the rounding of stored points
   };
 
   static Sphere sphereOf(const PairWalk& walk, const Spaces& side, const Lane& lane)
@@ -133,16 +134,16 @@ private:
 
   const StraightWays& ways_;
   const double turn_size_;
-  const double beside_; ///< the ways, straying included
+  const double beside_; ///< how far beside their ways points may be: clearance and stray
   const std::size_t most_;
   const std::uint64_t most_leaf_pairs_;
   const EndOfWays& end_of_ways_;
   PairsWithin& result_;
-  double end_ = 1.0; ///< of the ways of interest
+  double end_ = 1.0; ///< t up to which ways are of interest
 
   // The lanes that were entered have these:
   Eigen::Vector3d way_ = Eigen::Vector3d::Zero(); ///< of their middle, as far as it is of interest
-  double near_ = 0.0;                             ///< beside that way
+  double near_ = 0.0;                             ///< how far beside that way points may be
   double reach_ = std::numeric_limits<double>::infinity();
   bool is_beyond_ = false;
 };

@@ -31,9 +31,9 @@ PCL_BSH_EXPORT_INTERNAL double leastOnWay(const Eigen::Vector3d& from, const Eig
 /// fall: the first of all meetings makes ways so short that little is left to compare.
 using EndOfWays = std::function<double(PointPair)>;
 
-/// All pairs of records that come within the clearance on a's ways of interest, in no particular order, and some that
-/// do not. Points of these come nearly so near. Balls and triangles are found wherever the spheres of their leaves are
-/// not kept apart.
+/// Returns all pairs of records that come within the clearance on a's ways of interest, in no particular order, and
+/// some that do not. Such pairs of points come nearly as near. Balls and triangles are returned wherever the spheres of
+/// their leaves are not proven apart.
 /// @param request as pairsWithin() takes it @param most_leaf_pairs to compare; where there are more, the result is not
 ///   complete @param end_of_ways called for each pair; null: all of each way is of interest
 PCL_BSH_EXPORT_INTERNAL PairsWithin pairsAlong(

@@ -11,9 +11,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// The fate of a sphere during a walk; of several meetings, the furthest.
+/// The fate of a sphere during a walk; of several fates, the last one in this list.
 enum class SphereFate : std::uint8_t {
-  pruned,   ///< tested, and it or all children of what it was tested against out of reach
+  pruned,   ///< tested; it, or all children of the sphere it was tested against, were out of reach
   kept,     ///< within reach as far as it was tested, but not opened before the walk was done
   opened,   ///< its children, or its voxel's, were tested
   compared, ///< a leaf whose points were compared

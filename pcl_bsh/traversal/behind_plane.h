@@ -39,20 +39,20 @@ public:
   }
 
   /// Returns an upper bound of how far anything below a child reaches beyond the plane, in the plane's unit; NaN where
-  /// doubles cannot tell. Returns nothing where that takes more records than `looks`, from which records are
-  /// subtracted.
+  /// doubles cannot tell. Returns nothing where it would have to look at more than `looks` records; else subtracts the
+  /// number of records that it looks at from `looks`.
   std::optional<double> heightAtMost(const NodeChild& child, std::uint64_t& looks);
 
   /// Returns how far the child reaches beyond the plane, with its error; nothing where LongNumber cannot tell.
-  /// @pre heightAtMost() has paid for looking at the child
+  /// @pre heightAtMost() returned a height for the child
   std::optional<LongNumber> height(const NodeChild& child);
 
-  /// Both heights of one record.
+  /// heightAtMost() and height() of a single record.
   double heightAtMost(std::uint32_t record) const;
   std::optional<LongNumber> height(std::uint32_t record) const;
 
   /// Returns the records below a child that touch the plane, exactly; nothing where a record reaches beyond it.
-  /// @pre heightAtMost() has paid for looking at the child
+  /// @pre heightAtMost() returned a height for the child
   std::optional<Touching> touching(const NodeChild& child);
 
   /// Returns 1 where a record reaches beyond the plane, 0 where it touches the plane, -1 where all of it is behind.

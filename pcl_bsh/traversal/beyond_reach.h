@@ -12,9 +12,9 @@
 
 namespace pcl_bsh {
 
-/// Lays planes through the nearest places of a pair that is beyond the reach. Records are beyond the reach, too, if the
-/// planes prove them no nearer than that pair, or nearer by less than it exceeds the reach. Tells nothing of clouds
-/// without triangles, of balls, and where pairs have reaches of their own.
+/// Lays planes through the nearest places of a pair that is beyond the reach by some excess. Two other records are
+/// beyond the reach, too, if the planes prove them no nearer than that pair, or nearer by less than the excess. Proves
+/// nothing for clouds without triangles, for balls, and where pairs have reaches of their own.
 class BeyondReach {
 public:
   BeyondReach(const PointPairs& pairs, const SphereHierarchy::Storage& a, const SphereHierarchy::Storage& b)

@@ -114,8 +114,8 @@ struct CenterDifference {
 /// Let D be the vector from centre to centre, and u a vector of length 1. Then |D + q - p| >= dot(u, D + q - p) >=
 /// dot(u, D) - support(u) - support(-u) for all p, q about their centres. Doubles compute d, which is off D by e at
 /// most, and u = d / |d|. So dot(u, D) = (|d|^2 + |D|^2 - |d - D|^2) / (2 |d|) >= |D| - e^2 / (2 |d|). The code
-/// subtracts four times that last term, for roundings. It compares nothing where doubles find the nodes nearer than
-/// that.
+/// subtracts four times that last term, for roundings. Where doubles find the centres too near to prove that, it
+/// returns false without an exact comparison.
 /// @param exact_decisions counts the comparison
 inline bool areFarNodesApart(const ExactDistance& distance, const Eigen::Isometry3d& pose_a, const NodeSupport& a,
                              const Eigen::Isometry3d& pose_b, const NodeSupport& b, double clearance,

@@ -47,8 +47,8 @@ struct FlatRecord {
     return flat;
   }
 
-  /// Returns by how much more than stored points it may be off, in the voxel's unit. A frame's own error counts the
-  /// skew of the poses within its reach only, and corners may lie beyond.
+  /// Returns the triangle's error beside that of stored points, in the voxel's unit. A frame's own error counts the
+  /// skew of the poses only within the frame's reach, and corners may lie beyond it.
   double error(const RelativeFrame& frame) const { return double{flat.error} + 2 * frame.skew() * reach; }
 
   /// Whether error() is at most the frame's error of points.
@@ -99,10 +99,10 @@ private:
 /// The triangles of a leaf of a in the frame of a voxel of b.
 struct CarriedTriangles {
   LeafCorners leaf;
-  double error = 0.0; ///< of corners, beside the frame's, in the voxel's unit: they may lie beyond its reach
+  double error = 0.0; ///< of corners, to be added to the frame's, in its unit: corners may lie beyond the reach
 
-  /// Error of a carried corner, a vector, relative to the sum of its coordinates: storing and carrying round each, as
-  /// RelativeFrame counts.
+  /// Length of a carried corner's error, relative to the absolute sum of the corner's coordinates. Storing and carrying
+  /// round each coordinate, as RelativeFrame counts.
   static constexpr double kError = 1.7321 * (kStoringError + kCarriedProductError + kFewDoubleRoundings);
 
   void carry(const PointsView& view, const LeafRange& of_a, const RelativeFrame& frame)
@@ -129,9 +129,9 @@ struct CarriedTriangles {
 };
 
 /// Calls found(i, j) for the pairs of two leaves that floats do not prove to be farther apart than reach(), radii of
-/// points subtracted. Stops when found() returns true. One leaf at least is of triangles; a point beside a's triangles
-/// counts as a triangle without sides.
-/// @param reach in the clouds' unit, >= 0; asked before each record of b
+/// points subtracted. Stops when found() returns true. At least one leaf is of triangles. Beside triangles of a, a
+/// point of b counts as a triangle with three equal corners.
+/// @param reach returns a length >= 0 in the clouds' unit; called before each record of b
 template <class Reach, class Found>
 bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_a, const PointsView& view_b,
                            FlatRecords& flat, const Reach& reach, const Found& found)
@@ -177,7 +177,7 @@ bool eachPairNearTriangles(const ComparedLeaves& leaves, const PointsView& view_
 /// The result of comparing up to eight spheres with triangles, in the frame of a voxel of b: bits of the spheres.
 struct LanesNear {
   std::uint32_t near = 0;   ///< spheres that one of the triangles may be near to
-  std::uint32_t inside = 0; ///< spheres wholly within the length of one triangle, for certain
+  std::uint32_t inside = 0; ///< spheres that are certainly, as wholes, within `sure_reach` of one triangle
 };
 
 /// Compares up to eight spheres with triangles.

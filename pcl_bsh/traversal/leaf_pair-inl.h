@@ -19,8 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// A leaf more than this many times as large as a node is compared by its points. They are far from each other for the
-/// node, so the leaf's sphere prunes nothing.
+/// A leaf more than this many times as large as a node is compared by its points. The points lie far apart compared
+/// with the node, so the leaf's sphere prunes nothing.
 inline constexpr float kLargeLeaf = 8.0f;
 
 /// For nodes far from each other a smaller ratio is enough: there the leaf's bend counts, the square of its size.

@@ -82,12 +82,12 @@ struct ListVisit {
   }
 };
 
-/// The visits of one walk after another, by depth. References to shallower visits stay in use while deeper ones are
-/// added.
+/// The visits of a walk by depth, kept for later walks. References to shallower visits stay in use while deeper ones
+/// are added.
 template <class Visit>
 class Visits {
 public:
-  /// @pre depth is at most the greatest one before, and one more
+  /// @pre depth is at most one more than the greatest depth asked for before
   Visit& at(std::size_t depth)
   {
     if (by_depth_.size() == depth) by_depth_.emplace_back();
@@ -121,29 +121,30 @@ struct NodeInSphere {
 /// Defaults of visitors.
 template <class Visit>
 struct ListVisitor {
-  /// Whether a node is to be taken in parts, each by descend(part).
+  /// Returns true after it took the node in smaller parts, by calling descend(part) for each; else false.
   template <class Part, class Descend>
   static bool divides(const Part&, const Descend&)
   {
     return false;
   }
 
-  /// The i-th child of a visit to go on with.
+  /// Returns the child that is visited as the i-th.
   static std::uint32_t childAt(const Visit&, std::uint32_t i) { return i; }
 
   /// Whether a child is still of interest when its turn comes.
   static bool wants(const Visit&, std::uint32_t) { return true; }
 
-  /// Nothing of b matters to a child.
+  /// Called where no item of b matters to a child.
   static void alone(const Visit&, std::uint32_t) {}
 
-  /// A child that is a leaf, at a depth. Others have compared it in refine().
+  /// Called for a child that is a leaf, with the depth of its parent. Visitors without this have compared leaves in
+  /// refine().
   template <class Part>
   static void compare(const Part&, const Visit&, std::uint32_t, std::size_t)
   {
   }
 
-  /// All below an inner child is done.
+  /// Called when all below an inner child is done.
   template <class Part>
   static void settled(const Part&, std::uint32_t)
   {
@@ -163,7 +164,8 @@ public:
   {
   }
 
-  /// Takes a node of a, all its children at once, through its list; then each child through its own.
+  /// Tests the list of a node of a against all its children at once; then descends into each child with the child's own
+  /// list.
   /// @tparam Visitor a ListVisitor that has
   ///   `void left(part, list)`: a node stays undecided
   ///   `std::uint32_t refine(visit, part, list)`: begins the visit, and sets the lists of the children that it returns

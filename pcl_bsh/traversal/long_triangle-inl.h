@@ -55,7 +55,7 @@ inline Vector3<LongNumber> placedLong(const Eigen::Isometry3d& pose, const Point
       p);
 }
 
-/// x - y, one coordinate. Where neither has a tail, the rounding error of the difference is all of it.
+/// x - y, one coordinate. Where both are plain, the difference of the values and its rounding error are exact.
 HWY_INLINE LongCoordinate lessLong(const LongVector& x, const LongVector& y, std::size_t k)
 {
   const WithError between = twoSum(x.value[k], -y.value[k]);
@@ -104,7 +104,8 @@ struct LongDirection {
     }
     const LongNumber square = dot(v, v);
     if (!(square.value() > 0x1p-400 && square.value() < 0x1p400)) return;
-    // Newton's step from the root in double, which it takes to within 0.4 t^2 of itself; t's tail is 2^-101 at most.
+    // One step of Newton from the root in double: it errs by at most 0.4 t^2 of the root. The tail of t is 2^-101 at
+    // most.
     const double root = 1.0 / std::sqrt(square.value());
     const LongNumber t = LongNumber(1.0) - square * (LongNumber(root) * LongNumber(root));
     if (!(std::abs(t.value()) < 0x1p-48)) return;
@@ -181,7 +182,7 @@ struct LongTriangle {
     usable = true;
   }
 
-  /// The direction of edge j; or of the normal.
+  /// The directions of edge j, and of the normal. Computed when first asked for.
   const LongDirection& edge(std::size_t j)
   {
     if (long_edges[j].state == LongDirection::not_asked) long_edges[j].set(corners[(j + 1) % 3] - corners[j]);

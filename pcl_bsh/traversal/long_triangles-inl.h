@@ -167,7 +167,7 @@ public:
   /// Call before a walk: empties the cache.
   void forget() { keys_.assign(kSlots, kNone); }
 
-  /// Valid until a call for another one.
+  /// Returns a placed triangle. It is valid until a call for another triangle, or for another pose.
   /// @param k the number of the pose, out of those asked about
   LongTriangle& of(const TrianglesView& view, const Eigen::Isometry3d& pose, std::uint32_t record, std::uint32_t k = 0)
   {
@@ -181,7 +181,7 @@ public:
     return triangles_[slot];
   }
 
-  /// Whether one stays valid when the other one is asked for.
+  /// Whether a triangle at a pose stays valid when another one is asked for.
   static bool areApart(std::uint32_t record, std::uint32_t k, std::uint32_t other, std::uint32_t other_k)
   {
     return slotOf(record, k) != slotOf(other, other_k);

@@ -40,7 +40,7 @@ struct WaitingChildren {
   }
 };
 
-/// Memory of one queue after another, to be had by a ScratchLease.
+/// Memory that queues use one after another; a ScratchLease lends it.
 struct QueueScratch {
   std::vector<std::uint64_t> heap;
   std::vector<WaitingChildren> waiting;

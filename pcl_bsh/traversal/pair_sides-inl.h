@@ -36,7 +36,7 @@ struct LanePair {
   Lane a, b;
 };
 
-/// Memory of one search's stack after another, to be had by a ScratchLease.
+/// Memory that the stacks of searches use one after another; a ScratchLease lends it.
 struct PairStack {
   std::vector<LanePair> pairs;
   std::size_t bytes() const noexcept { return pairs.capacity() * sizeof(LanePair); }

@@ -5,7 +5,8 @@
 
 namespace pcl_bsh {
 
-/// When planes are worth asking: decisions of pairs in vain pay for them, and answers in vain let them wait.
+/// Decides when planes are asked: once enough pairs were decided in vain to pay for them. Answers that tell nothing put
+/// the next question off.
 class PlanePolicy {
 public:
   /// @param decisions in vain before planes are asked
@@ -18,14 +19,15 @@ public:
   bool mayAsk() const { return decisions_ >= next_; }
   bool begins() const { return decisions_ == next_; } ///< whether the last decision was the first to pay for planes
 
-  /// Lets planes wait until so many decisions.
+  /// Planes are not asked until so many pairs were decided in vain.
   void wait(std::uint64_t decisions)
   {
     next_ = decisions;
     asked_in_vain_ = 0;
   }
 
-  /// Takes note of an answer. After 32 in vain, one after the other, planes wait until decisions are twice as many.
+  /// Takes note of an answer. After 32 answers in a row that tell nothing, planes are not asked until decisions are
+  /// twice as many.
   /// @param known whether the answer told anything @return known
   bool answered(bool known)
   {

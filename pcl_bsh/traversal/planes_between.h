@@ -38,7 +38,8 @@ public:
   }
 
   /// Lays planes between the nearest places of a pair. There may be no such planes.
-  /// @param less records surely farther apart than the pair's distance less this count as beyond the planes
+  /// @param less a length: records count as beyond the planes when they are surely farther apart than the pair's
+  ///   distance minus this length
   /// @param known_of_b as BehindPlane takes it
   void lay(PointPair pair, double less = 0.0, std::uint32_t known_of_b = BehindPlane::kNoRecord)
   {
@@ -53,14 +54,14 @@ public:
     less_ = less > 0x1p-400 ? (1.0 - off) * less * (*planes)[0].length() : 0.0;
   }
 
-  /// The records of two children that touch the planes; no record where the children are surely farther apart than
-  /// these.
+  /// The records of two children that touch the planes; no record where the children are surely farther apart than the
+  /// planes.
   struct Touching {
     BehindPlane::Touching a, b;
   };
 
-  /// Returns the records that touch a plane, which may be as near as the pair, if all below two children is proved to
-  /// be no nearer. Returns nothing otherwise, and where too few decisions have paid for looking.
+  /// If the planes prove all below two children no nearer than the pair, returns the records that touch a plane; these
+  /// may be as near as the pair. Returns nothing otherwise, and where too few decisions have paid for looking.
   std::optional<Touching> touching(const NodeChild& a, const NodeChild& b)
   {
     const std::uint64_t allowed = kLooksForDecision * policy.decisionsInVain();

@@ -208,8 +208,8 @@ private:
     return areFarNodesApart(distance_.ofPoints(), a_.pose, a, b_.pose, b, compared.reach, work_.exact_decisions);
   }
 
-  /// Whether a node is apart from each point of a leaf of the other cloud: a leaf of a cylinder bends by more than the
-  /// points near its axis differ in their distance.
+  /// Whether a node is apart from each point of a leaf of the other cloud. The leaf's support may not tell that: a leaf
+  /// of a cylinder bends by more than distances from a node near the axis differ.
   bool isLeafFarApart(const ChildrenAndSphere& compared, const LeafRange& leaf, bool leaf_is_a,
                       const NodeSupport& node) const
   {

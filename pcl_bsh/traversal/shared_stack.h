@@ -30,7 +30,7 @@ struct Pause {
   std::uint32_t steps = kStepsAlone;
   const std::atomic<bool>* dropped = nullptr;
 
-  /// Counts a step.
+  /// Returns whether to pause; if not, counts a step.
   bool stops()
   {
     if (steps == 0 || (dropped && dropped->load(std::memory_order_relaxed))) return true;
@@ -119,7 +119,7 @@ private:
 
   void waitForChange(std::unique_lock<std::mutex>& lock)
   {
-    struct Idle { // no more, should the caller want an end
+    struct Idle { // counts down also where the wait throws
       explicit Idle(std::size_t& idle) : count(idle) { ++count; }
       ~Idle() { --count; }
       std::size_t& count;
@@ -140,7 +140,7 @@ private:
     if (idle_ != 0) changed_.notify_all();
   }
 
-  /// Some pairs of a piece: few, so that those behind them are there for other threads.
+  /// Returns the next few pairs of a piece as a piece of their own; the others stay for other threads.
   Place frontOf(Place piece)
   {
     constexpr std::size_t most = 8;
@@ -190,7 +190,7 @@ private:
     pieces_.erase(at);
   }
 
-  /// No thread needs to go on.
+  /// Ends the search on all threads.
   void fail()
   {
     const std::lock_guard<std::mutex> lock(mutex_);

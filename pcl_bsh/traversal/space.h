@@ -20,7 +20,7 @@
 
 namespace pcl_bsh {
 
-/// In place of a node's number above the voxels: the one that Spaces::makeWhole() makes.
+/// The number, among the nodes above the voxels, of the node that Spaces::makeWhole() makes.
 inline constexpr std::uint32_t kWhole = 0xffffffffu;
 
 /// A cloud's spaces. Voxels are built as a walk enters them.
@@ -40,10 +40,11 @@ public:
     return index == kWhole ? whole_ : storage.top[index];
   }
 
-  /// The node whose first child the whole cloud is.
+  /// Returns the number of the node whose first child is the whole cloud.
   std::uint32_t whole() const { return storage.top[0].count == 1 ? 0 : kWhole; }
 
-  /// Before a walk comes to whole(), or to pairs with it that another walk left. @pre points
+  /// Makes the node of whole(). Call it before a walk comes to whole(), or to pairs with it that another walk left.
+  /// @pre the cloud has points
   void makeWhole()
   {
     const Node& root = storage.top[0];
@@ -76,7 +77,7 @@ private:
   Node whole_;
 };
 
-/// Memory of one FrameTable after another, to be had by a ScratchLease.
+/// Memory that FrameTables use one after another; a ScratchLease lends it.
 struct FrameScratch {
   struct Entry {
     std::uint32_t space_a = 0, space_b = 0;

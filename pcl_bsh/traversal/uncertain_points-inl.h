@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points of a leaf that are uncertain, against those of another leaf: float bounds that count both of a pair.
+// Compares uncertain points of two leaves by float bounds that count the
+// uncertainties of both points.
 
 #if defined(PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_
@@ -21,8 +22,8 @@ inline constexpr float kSumMargin = kReachMargin;
 /// their terms. The other point's length counts three times, and thresholds err by 4 u: less than 23 u of its 32 u.
 inline constexpr float kLengthsMargin = 4 * kSumMargin;
 
-/// Thresholds of a leaf's points, for distances plus (longer) or less (shorter) the other points' uncertainties, as
-/// nearestWithLengths() returns them.
+/// Thresholds for each point of a leaf. A longer distance is that of another point plus its uncertainty, a shorter one
+/// is less its uncertainty: nearestWithLengths() returns the least of both.
 struct UncertainPoints {
   alignas(64) float sure[kLeafPoints];      ///< longer ones up to it: collides for certain
   alignas(64) float maybe[kLeafPoints];     ///< shorter ones up to it: may collide

@@ -15,7 +15,7 @@
 
 namespace pcl_bsh {
 
-/// Memory of one query after another, to be had by a ScratchLease.
+/// Memory that queries use one after another; a ScratchLease lends it.
 template <class Place, class Part>
 struct PassScratch {
   std::vector<Place> places;
