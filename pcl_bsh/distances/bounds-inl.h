@@ -124,9 +124,9 @@ HWY_INLINE void boundDistances(const CarriedNode& spheres, const DistanceObstacl
   }
 }
 
-/// Returns lower bounds of the lengths from places in a frame to what lies both in a sphere and in its slabs. As
-/// slabsApart() has it: kSlabMargin of all lengths pays for the normals and for float arithmetic. 0 where squares may
-/// leave the range of float.
+/// Lower bounds of lengths from places in a frame to what lies both in a sphere and in its slabs. As slabsApart() has
+/// it: kSlabMargin of all lengths pays for the normals and for float arithmetic. 0 where squares may leave the range of
+/// float.
 HWY_INLINE LaneVector lengthToSlabs(const CrossedSlabs& slab, LaneVector x, LaneVector y, LaneVector z)
 {
   const LaneTag d;

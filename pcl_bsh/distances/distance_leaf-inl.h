@@ -113,9 +113,8 @@ public:
   }
 
 private:
-  /// The leaves that may go through the list by themselves. There is no such leaf where a sphere of the list is above
-  /// the voxels, or in an obstacle that is not plain. Leaves are left out that are blunt, or small beside a leaf of the
-  /// list.
+  /// The leaves that may go through the list by themselves: neither blunt, nor small beside a leaf of the list. There
+  /// are none where a sphere of the list is above the voxels, or its obstacle is not plain.
   std::uint32_t leavesAlone(const DistanceVisit& visit, const std::vector<NearSphere>& list) const
   {
     if (visit.leaves == 0) return 0;

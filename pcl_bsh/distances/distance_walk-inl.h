@@ -165,7 +165,7 @@ private:
     return visit.leaves;
   }
 
-  /// Leaves out the children that are all nearer than a distance measured before. The farthest are measured first.
+  /// Leaves out children that are surely nearer than a distance measured before. The farthest are measured first.
   void leaveNearer(DistanceVisit& visit) const
   {
     std::sort(visit.order.begin(), visit.order.begin() + visit.node->count, [&](std::uint8_t x, std::uint8_t y) {

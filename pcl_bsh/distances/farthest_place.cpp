@@ -18,7 +18,7 @@ namespace {
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTogether = 4096;   ///< pieces that are divided before their places are measured
 constexpr std::size_t kOfTask = 64;       ///< pieces
-constexpr double kOfSide = 0.5773502692;  ///< a nearest corner is no farther than this share of the longest side
+constexpr double kOfSide = 0.5773502692;  ///< the nearest corner of a place is within this share of the longest side
 constexpr double kOfPlace = 16 * 0x1p-53; ///< share of the largest coordinate that bounds five roundings of a place
 constexpr double kNearEnd = 0x1p-10;      ///< shares of a side nearer to an end are no cut
 

@@ -27,7 +27,7 @@ public:
   /// Holds the distance of the farthest place.
   Interval interval() const;
 
-  double distance() const { return farthest_distance_; } ///< the greatest that was measured
+  double distance() const { return farthest_distance_; } ///< of the farthest place that was measured
   PointPair pair() const { return farthest_; }           ///< its record, and the nearest of b
 
   /// Divides some pieces, those that may be the farthest.

@@ -22,7 +22,7 @@ namespace pcl_bsh::HWY_NAMESPACE {
 struct NearestFound {
   const Voxel* voxel = nullptr;                            ///< null: none
   std::uint32_t point = 0;                                 ///< in the voxel
-  double least = -std::numeric_limits<double>::infinity(); ///< lower bound of distance less radius of b's point
+  double least = -std::numeric_limits<double>::infinity(); ///< lower bound: distance less the radius of b's point alone
   double most = std::numeric_limits<double>::infinity();   ///< upper bound of that difference
 };
 

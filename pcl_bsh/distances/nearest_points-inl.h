@@ -239,7 +239,7 @@ private:
   }
 
   /// Lowers `most_` and the limit to what the nearest points so far tell. The tolerance is subtracted from distances
-  /// that were found, not from the cut: a point for which none was found would be left without.
+  /// that were found, not from the cut: a point for which none was found would get none.
   template <bool kBalls>
   void lowerMost()
   {

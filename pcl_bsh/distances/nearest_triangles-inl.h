@@ -34,8 +34,7 @@ public:
     long_.forget();
   }
 
-  /// The nearest triangle of b to each point of the leaf: floats leave those that may be the nearest, longer numbers
-  /// decide.
+  /// The nearest triangle of b to each point of the leaf: floats leave a few candidates, longer numbers decide.
   /// @param near leaves that can hold it, in the order of their lower bounds
   /// @return false where all points are known to be nearer than what was measured
   bool find(float cut, const std::vector<NearSphere>& near)
@@ -105,8 +104,8 @@ private:
     }
   }
 
-  /// Whether squared distances are surely above the square of `reach` plus `more`. A reach of minus infinity stands for
-  /// no point; NaN is beyond nothing.
+  /// Whether squared distances are surely above the square of the sum of `reach` and `more`. A reach of minus infinity
+  /// stands for no point; NaN is beyond nothing.
   static HWY_INLINE hn::Mask<LaneTag> isBeyond(LaneVector squared, LaneVector reach, LaneVector more)
   {
     const LaneTag d;

@@ -71,8 +71,8 @@ void clear(PointDistances& result, const Placed& a, const PointDistancesRequest&
   result = std::move(fresh);
 }
 
-/// Unit of the voxel with the middle point. In a unit that suits all voxels, one outlier at 1e20 would leave floats
-/// nothing to tell.
+/// Unit of the voxel with the middle point. In the unit of all voxels, an outlier at 1e20 leaves floats nothing to
+/// tell.
 double unitOfMost(const SphereHierarchy::Storage& storage)
 {
   const Voxel* const first = storage.voxels.get();

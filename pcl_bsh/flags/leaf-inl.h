@@ -141,17 +141,17 @@ HWY_INLINE std::uint32_t lanesBeyond(LaneVector squared, LaneVector length)
   return bitsOf(d, hn::Gt(squared, hn::Add(limit, hn::Set(d, kVanishingSquare))));
 }
 
-/// Factor that takes a ball's stored radius to the obstacle's frame and unit.
+/// Factor that takes the stored radius of a ball of b to the obstacle's frame and unit.
 inline double ballScale(const ObstacleVoxel& obstacle)
 {
   return static_cast<double>(obstacle.frame.stretch_b) / obstacle.voxel->frame.unit;
 }
 
-/// Returns the open points that are surely within reach of the middle of a ball of b's triangles: the middle is on the
-/// triangle. Sets visit.asked, for each candidate, to the open points that one of its balls may be near to. It is all
-/// open points where the clearance is less than rounding, and no point is looked at then. It is all, too, where the
-/// candidate's balls are larger than the reach, because such balls are near to most. @param radii of a's balls in the
-/// obstacle's frame, or zeros
+/// Returns the open points that are surely within reach of the middle of a ball of b's triangles, which is on its
+/// triangle. Sets visit.asked, for each candidate, to the points that a ball of it may be near to. It has all open
+/// points where the clearance is less than rounding, and none is looked at. It has all, too, where the candidate's
+/// balls are larger than the reach, as such balls are near to most. @param radii of a's balls in the obstacle's frame,
+/// or zeros
 inline std::uint32_t hitMiddles(const ObstacleVoxel& obstacle, FlagVisit& visit, std::uint32_t lane,
                                 const LeafPoints& points, const float* radii)
 {
@@ -200,10 +200,9 @@ inline std::uint32_t facingBalls(const ObstacleVoxel& obstacle, const FlagVisit&
   return firstBits(other.count) & ~far;
 }
 
-/// Calls compare(record, triangle, squared, near) for triangles of b until it returns true. `near` has the bits of the
-/// points of visit.asked, as hitMiddles() set it, that may be near enough, they or their balls, to the triangle's ball.
-/// `squared` has the squared distances of points from the triangle. @param hit bits of points that need not be
-/// compared.
+/// Calls compare(record, triangle, squared, near) for triangles of b until it returns true. The triangle's ball may be
+/// near enough to points that hitMiddles() left in visit.asked, or to their balls: `near` has the bits of these points.
+/// `squared` has the squared distances from the triangle. @param hit bits of points that need not be compared.
 /// @param radii of a's balls in the obstacle's frame, at least; or zeros
 template <class FacingOf, class Compare>
 void eachTriangleNear(const ObstacleVoxel& obstacle, const FlagVisit& visit, std::uint32_t lane,

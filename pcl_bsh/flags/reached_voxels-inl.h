@@ -39,8 +39,7 @@ public:
     flat_.prepare(b_.storage);
   }
 
-  /// Finds the voxels that a voxel of a reaches. @return the finding for all points of that voxel, where spheres tell
-  /// it
+  /// Finds the voxels that a voxel of a reaches. @return the finding for all points of that voxel, if spheres tell
   std::optional<Finding> find(std::uint32_t voxel)
   {
     const RelativeFrame above(a_.frame(voxel), a_.pose, b_.frame(kAboveVoxels), b_.pose, query_.rotation);

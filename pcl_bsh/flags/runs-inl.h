@@ -84,8 +84,8 @@ private:
   std::uint64_t steps() const { return work_.node_pairs + kLeafPoints * work_.leaf_pairs + work_.exact_decisions; }
   bool isTooMuch() const { return given_up_ || steps() > allowed_; }
 
-  /// Whether a group is so wide beside the reach that a leaf of b settles few of its points. The compact leaves of a
-  /// tree are better then.
+  /// Whether a group is so wide beside the reach that a leaf of b settles few points: a tree's compact leaves are
+  /// better.
   bool isTooWide() const
   {
     const ObstacleVoxel& obstacle = obstacles_.front();
@@ -298,9 +298,7 @@ private:
     return true;
   }
 
-  /// Reports which points may collide. @param nearest squared distances of the open points from the leaf's nearest
-  /// points
-  /// @return the points that collide for certain
+  /// Reports which points may collide. @param nearest squared distances to the leaf @return points that surely collide
   std::uint32_t compareUncertain(const ObstacleVoxel& obstacle, const LeafRange& leaf, const float* nearest,
                                  OpenPoints open)
   {

@@ -108,8 +108,8 @@ public:
     return has_long_triangles_ && !b_.storage.view.triangles && candidate.isLeaf();
   }
 
-  /// Which points of a leaf of b may be near to the long triangles of a leaf of a. @pre isLeafOfPoints(),
-  /// visit.has_slabs
+  /// Which points of a leaf of b may be near to the long triangles of a leaf of a.
+  /// @pre isLeafOfPoints(), visit.has_slabs
   std::uint32_t facingLeaf(const FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf) const
   {
     const CrossedSlabs held{{visit.nx[lane], visit.ny[lane], visit.nz[lane]},

@@ -298,8 +298,7 @@ private:
     }
   }
 
-  /// Which open points of a leaf, carried to the obstacle voxel, collide with the leaves of that voxel that are near
-  /// the child.
+  /// Which open points of a leaf, carried to the obstacle voxel, collide with its leaves near the child.
   std::uint32_t collidingPoints(FlagVisit& visit, std::uint32_t lane, const LeafRange& leaf, const LeafPoints& points)
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];

@@ -78,9 +78,9 @@ protected:
     return overlap < 2.0f ? overlap - 2.0f : 0.0f;
   }
 
-  /// Returns a pair of numbers: no smaller pair of records that touch the planes is as near as the best pair. A record
-  /// of b that touches only where `looked_round_` does is no nearer than `looked_round_`, which was compared with all
-  /// of a. So it makes no better pair with a smaller record of a.
+  /// Returns two record numbers. Among records that touch the planes, no pair with smaller numbers is as near as the
+  /// best. A record of b that touches only where `looked_round_` does is no nearer than `looked_round_`, which was
+  /// compared with all of a. So it makes no better pair with a record of a below the best pair's.
   PointPair firstAmong(const PlanesBetween::Touching& touching) const
   {
     const auto& [of_a, of_b] = touching;

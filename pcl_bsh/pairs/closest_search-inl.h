@@ -225,8 +225,8 @@ private:
   }
 
   /// Whether a dive for a nearer pair than the one considered is so deep that raising the interval's lower end gains
-  /// more. A budget may end before a leaf is reached. (The factor was chosen among 2 to 16 by the intervals after the
-  /// same work.)
+  /// more. A budget may end before a leaf is reached. (The factor was chosen from 2 to 16 by intervals after equal
+  /// work.)
   bool isDeepEnough(const LanePair& pair) const
   {
     return goal_.rule.mayStop() && 6.0 * walk_.radiiOf(pair) <= widthBefore(pair);
@@ -280,8 +280,8 @@ private:
     return goes_on ? std::optional(nearest) : std::nullopt;
   }
 
-  /// Considers one pair of points below, where the spheres' centres are much nearer than the best pair. For the first
-  /// dive, which may not end within a budget.
+  /// Considers a pair of points below spheres whose centres are much nearer than the best pair. For the first dive,
+  /// which a budget may end early.
   void considerIfMuchNearer(const LanePair& pair, float between_centers)
   {
     const double between = static_cast<double>(between_centers) * walk_.b.frame(pair.b.space).unit;

@@ -196,7 +196,7 @@ public:
 
 private:
   static constexpr std::uint64_t kDecisionsBeforePlanes = 8;
-  static constexpr std::uint64_t kLooksForDecision = 256; ///< at records, in vain
+  static constexpr std::uint64_t kLooksForDecision = 256; ///< looks at records in vain, for each decision
   static constexpr std::uint64_t kMostLooked = 512;       ///< below a lane: larger nodes would be looked at often
 
   /// Sets the bounds of a gap that doubles tell; rounding the gap takes ten times as long.
@@ -265,7 +265,7 @@ private:
   bool none_nearer_ = false; ///< below the lanes that are visited
   std::uint64_t looks_ = 0;
   mutable std::uint64_t orders_ = 0;        ///< comparisons that doubles did not decide
-  mutable std::vector<std::uint32_t> ties_; ///< for each set of ties the one that it was joined to, or itself
+  mutable std::vector<std::uint32_t> ties_; ///< by PairGap::tie: the set that it was joined to, or itself
   mutable Pulse pulse_;                     ///< of ties
   const ScratchLease<PairHeap> scratch_;
   std::vector<PairGap>& kept_ = (*scratch_).pairs;

@@ -33,12 +33,12 @@ inline Added keepPair(PointPair pair, std::size_t most, PairsWithin& result)
   return Added::kept;
 }
 
-/// Walks to every pair of points that may be within a reach and hands it to a receiver. It has `pairs`, which decides
-/// them; `double reach()`, how far apart pairs are still of interest: it may shrink, to less than 0 where points have
-/// radii; `Added add(PointPair, bool surely, Work&)`, where `surely` tells that the pair is known to collide; `bool
-/// passesOver(PairWalk, LanePair)`, whether nothing below two lanes is of interest, before they are opened or compared.
-/// Where a's points have ways (`kHasWays`), `enter(PairWalk, LanePair)` comes first: from then on the reach is that of
-/// these two lanes.
+/// Walks to every pair of points that may be within a reach and hands it to a receiver. The receiver has `pairs`, which
+/// decides them; `double reach()`, how far apart pairs are still of interest: it may shrink, to less than 0 where
+/// points have radii; `Added add(PointPair, bool surely, Work&)`, where `surely` tells that the pair is known to
+/// collide; `bool passesOver(PairWalk, LanePair)`, whether nothing below two lanes is of interest, before they are
+/// opened or compared. Where a's points have ways (`kHasWays`), `enter(PairWalk, LanePair)` comes first: from then on
+/// the reach is that of these two lanes.
 template <class Receiver>
 class ReachWalk : public PairVisitor {
 public:

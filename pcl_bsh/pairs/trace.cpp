@@ -119,7 +119,8 @@ CollisionTrace traceOnTarget(const Placed& a, const Placed& b, const AnyRequest&
   progress.finish();
   trace.a = met_a.spheres();
   trace.b = met_b.spheres();
-  if (trace.result.verdict == Verdict::free) { // nothing waits any more: what met it was opened, and is out of reach
+  // Nothing is left to visit: the spheres that a kept sphere met were opened, and their children are out of reach.
+  if (trace.result.verdict == Verdict::free) {
     for (std::vector<TracedSphere>* const side : {&trace.a, &trace.b})
       for (TracedSphere& sphere : *side)
         if (sphere.fate == SphereFate::kept) sphere.fate = SphereFate::pruned;

@@ -137,8 +137,7 @@ struct ListVisitor {
   /// Called where no item of b matters to a child.
   static void alone(const Visit&, std::uint32_t) {}
 
-  /// Called for a child that is a leaf, with the depth of its parent. Visitors without this have compared leaves in
-  /// refine().
+  /// Called for a child that is a leaf, with its parent's depth. Visitors without this compare leaves in refine().
   template <class Part>
   static void compare(const Part&, const Visit&, std::uint32_t, std::size_t)
   {
@@ -164,8 +163,7 @@ public:
   {
   }
 
-  /// Tests the list of a node of a against all its children at once; then descends into each child with the child's own
-  /// list.
+  /// Tests the list of a node of a against all its children at once; then descends into each child with its own list.
   /// @tparam Visitor a ListVisitor that has
   ///   `void left(part, list)`: a node stays undecided
   ///   `std::uint32_t refine(visit, part, list)`: begins the visit, and sets the lists of the children that it returns

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares uncertain points of two leaves by float bounds that count the
-// uncertainties of both points.
+// Compares uncertain points of two leaves by float bounds that count the uncertainties of both points.
 
 #if defined(PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PCL_BSH_TRAVERSAL_UNCERTAIN_POINTS_INL_H_
