@@ -82,8 +82,8 @@ struct ListVisit {
   }
 };
 
-/// The visits of a walk by depth, kept for later walks. References to shallower visits stay in use while deeper ones
-/// are added.
+/// A walk's visits by depth, kept for later walks. References to shallower visits stay in use while deeper ones are
+/// added.
 template <class Visit>
 class Visits {
 public:

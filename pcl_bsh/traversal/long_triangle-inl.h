@@ -104,8 +104,7 @@ struct LongDirection {
     }
     const LongNumber square = dot(v, v);
     if (!(square.value() > 0x1p-400 && square.value() < 0x1p400)) return;
-    // One step of Newton from the root in double: it errs by at most 0.4 t^2 of the root. The tail of t is 2^-101 at
-    // most.
+    // Newton's step from the root in double errs by at most 0.4 t^2 of the root. The tail of t is 2^-101 at most.
     const double root = 1.0 / std::sqrt(square.value());
     const LongNumber t = LongNumber(1.0) - square * (LongNumber(root) * LongNumber(root));
     if (!(std::abs(t.value()) < 0x1p-48)) return;
