@@ -6,8 +6,8 @@
 namespace pcl_bsh {
 
 /// Every query along a path calls this before anything else. A pose of the model is named by its index.
-/// @throws InvalidInput naming the value: what check() of two clouds refuses; a tolerance or a pivot that is not what
-///   its declaration asks for, and what the request's accuracy cannot tell.
+/// @throws InvalidInput naming the value: a clearance, accuracy, tolerance, pivot or pose that is not what its
+///   declaration asks for; an answer that the accuracy, or swept motion, cannot give; too many poses.
 void check(const Placed& scan, const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
 /// Refuses a tolerance of swept motion that is not finite and > 0.

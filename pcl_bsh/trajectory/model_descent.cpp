@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// Compares the point with all that lies below a node. @param voxel that it is of; null above the voxels
+  /// Compares the point with all that lies below a node. @param voxel the node's voxel; null above the voxels
   void all(const Voxel* voxel, const Node& node)
   {
     struct Near {
@@ -44,7 +44,7 @@ public:
       if (!areApart(distance_.ofPoints(), sphere_, children[i].sphere, reach_)) open(voxel, node, children[i].child);
   }
 
-  /// Compares the point with all that lies below one of its children.
+  /// Compares the point with all that lies below one of a node's children.
   void open(const Voxel* voxel, const Node& node, std::uint32_t child)
   {
     if (voxel && node.isLeaf(child)) return compare(*voxel, node, child);

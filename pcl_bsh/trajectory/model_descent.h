@@ -19,14 +19,15 @@ struct PointAtPose {
   bool for_pose;      ///< whether its nearest point counts for the pose
 };
 
-/// The answer about it.
+/// The answer about a point at a pose.
 struct PointMet {
   bool collides = false;
   double gap = std::numeric_limits<double>::infinity(); ///< where a nearest point is asked for: its distance, rounded
 };
 
-/// Compares a point with the points of one of the model's voxels; above the voxels, with those below a child of a node.
-/// Where no nearest one is asked for, up to the first that collides.
+/// Compares a point with the points of one of the model's voxels. If `voxel` is kAboveVoxels, compares it with all
+/// points below a child of a node above the voxels. Ends at the first point that collides, unless a nearest point is
+/// asked for.
 PointMet meet(const TrajectoryQuery& query, VoxelResults& results, const PointAtPose& point, std::uint32_t voxel,
               std::uint32_t node, std::uint32_t child);
 

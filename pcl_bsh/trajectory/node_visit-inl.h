@@ -27,7 +27,8 @@ class OrientedBoxes {
 public:
   explicit OrientedBoxes(const VoxelInModelFrame& voxel_frame) : voxel_frame_(voxel_frame) {}
 
-  /// Fits a box around each child of each node. @param map whose axes they are parallel to.
+  /// Fits a box around each child of each node. @param map from the voxel into the model, at the pose at which the
+  /// boxes are parallel to the model's axes
   void fit(const Voxel& voxel, const AffineMap& map)
   {
     const auto unit = static_cast<float>(voxel_frame_.frame.unit);
@@ -57,7 +58,7 @@ public:
 
   /// How far each child of a node reaches from its centre, along the model's axes, at any instant of the voxel's
   /// motion.
-  /// @param radius of its sphere, which it does not reach beyond.
+  /// @param radius of each child's sphere: no extent is larger
   void see(std::uint32_t node, const VoxelMotion& motion, const float (&radius)[kLanes],
            float (&extent)[3][kLanes]) const
   {
@@ -113,7 +114,8 @@ struct NodeVisit : ListVisit<Siblings> {
   Segment around;
   float radius[kLanes];
   std::vector<Siblings> candidates; ///< boxes that any of them may meet
-  // Set at one pose only: the children's boxes, and no less than the smallest distance of any of their points.
+  // Set at one pose only. Per child: its box, the squared distance beyond which boxes of the model do not matter, and
+  // an upper bound of the distance from each of its points to the nearest point of the model.
   alignas(64) float low[3][kLanes], high[3][kLanes], near_squared[kLanes], bound[kLanes];
 
   /// @param index of the node in its voxel

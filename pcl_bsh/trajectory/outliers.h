@@ -11,8 +11,8 @@
 
 namespace pcl_bsh {
 
-/// Records of a scan and of a model, divided into outliers and others. There may be no outliers of one. No outlier
-/// comes within reach of an ordinary point of the other, at any pose.
+/// Records of a scan and of a model, divided into outliers and ordinary ones. One of the clouds may have no outliers.
+/// No outlier of one cloud comes within reach of an ordinary point of the other, at any pose.
 struct Outliers {
   std::vector<std::int32_t> ordinary_scan, outlier_scan, ordinary_model, outlier_model;
 };
@@ -21,8 +21,8 @@ struct Outliers {
 std::optional<Outliers> findOutliers(const Placed& scan, const SphereHierarchy& model,
                                      const std::vector<Eigen::Isometry3d>& model_poses, double clearance);
 
-/// The answers about ordinary points, in `result`, become those about all. @param outliers the same question about
-/// outlier_scan and outlier_model alone
+/// Adds the answers about outliers. @param result has the answers about ordinary points, and becomes the result of all.
+/// @param outliers the result of the same question about outlier_scan and outlier_model alone
 void addOutliers(TrajectoryResult& result, const TrajectoryResult& outliers,
                  const std::vector<std::int32_t>& outlier_scan);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExcessRounding = 0x1p-48;  ///< of R'R - I, whose entries are sums of products up to 1
 constexpr double kStretchRounding = 0x1p-50; ///< of differences of stretches, which are about 1
-constexpr double kRigid = 0x1p-47;           ///< what a stretch that rounding makes does not exceed
+constexpr double kRigid = 0x1p-47;           ///< rounding alone makes no stretch that exceeds this
 
 double distance(const Point3& a, const Point3& b)
 {
@@ -223,7 +223,7 @@ void PosePath::bound(PathInterval& interval) const
     return i < 9 ? pose.back[i] : seen[i - 9];
   };
   const double at_middle = last > first ? static_cast<double>(interval.middle() - first) / (last - first) : 0.0;
-  const double bent = at_middle > 0.0 ? 1.0 / (at_middle * (1.0 - at_middle)) : 0.0; // of 4 t (1 - t) there: 1
+  const double bent = at_middle > 0.0 ? 1.0 / (at_middle * (1.0 - at_middle)) : 0.0; // times t (1 - t) there: 1
   double line[2] = {0.0, 0.0}, bend[2] = {0.0, 0.0}, bow[12], bow_squared[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < 12; ++i) {
     bow[i] = bent * (number(middle, middle_seen, i) -
@@ -275,7 +275,8 @@ void PosePath::bound(PathInterval& interval) const
   interval.bend_drift += stretch;
 }
 
-/// How far the model's points stray from straight lines because the poses stretch them, each by a little and otherwise.
+/// Bounds how far the model's points stray from straight lines because poses that are not quite rigid stretch the
+/// model, each differently.
 double PosePath::stretchStray(std::uint32_t first, std::uint32_t last) const
 {
   double most = 0.0;

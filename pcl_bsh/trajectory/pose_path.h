@@ -16,7 +16,8 @@
 
 namespace pcl_bsh {
 
-/// The progress of a query along a path at the end of these parts; the walks do the rest.
+/// Shares of a query's progress, in [0, 1]: at the end of making the path, and at the end of the broad phase. The walks
+/// do the rest.
 inline constexpr double kPathDone = 0.05, kBroadPhaseDone = 0.1;
 
 /// Bounds the error of the C library's sine and cosine of an angle up to a turn: four units in the last place of 1. The
@@ -73,7 +74,7 @@ public:
     double size;   ///< of the model around `center`
     double reach;
     double stray;
-    double rounding; ///< how far a point of the model may be from where it is at an instant as reported
+    double rounding; ///< how far the rounding of a reported instant may move a point of the model, at most
   };
 
   /// A swept path has no more poses than this; it takes some 260 bytes for each.

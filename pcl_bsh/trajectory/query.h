@@ -34,7 +34,7 @@ enum class Wanted : std::uint8_t {
 
 /// The question, and the data for its answer that no voxel changes.
 struct TrajectoryQuery {
-  /// @param model_boxes of the model. @param where the points are
+  /// @param model_boxes the boxes of the model. @param where the places that are meant of uncertain points
   TrajectoryQuery(const Placed& scan_at, const SphereHierarchy& model_of, const BoxTree& model_boxes,
                   const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& asked,
                   TrajectoryResult& into, Progress& progress, MeantPlaces where = MeantPlaces::measured,
@@ -47,10 +47,10 @@ struct TrajectoryQuery {
   TrajectoryResult& result;
 
   const BoxTree& boxes;
-  const Reach between;      ///< of all pairs, less their radii
-  const PairReach of_pairs; ///< of each, radii included
-  const bool of_points;     ///< of both clouds: neither balls nor triangles
-  const double reach;       ///< of records: the clearance, half of the tolerance; the greatest of all
+  const Reach between;      ///< bounds the reach of all pairs, radii not included
+  const PairReach of_pairs; ///< the reach of each pair, radii included
+  const bool of_points;     ///< whether both clouds are points: neither balls nor triangles
+  const double reach;       ///< the greatest distance at which two records matter: see reachOf()
   const PosePath path;
   const bool certain;        ///< looks for points that collide wherever uncertain points truly are
   const bool witness;        ///< the walk ends at the first pair that collides
@@ -62,7 +62,7 @@ struct TrajectoryQuery {
   {
     return closest && !request.pose_summaries && (!first || first_contact <= from);
   }
-  /// Whether the nearest pair of a point collides where any pair of it does.
+  /// Whether the nearest pair of a point collides if any of its pairs does.
   bool nearestDecides() const { return of_pairs.isOne(); }
 
   /// Swept: how near a pair of points counts as a contact; below 0 where it does at no distance.
@@ -71,7 +71,8 @@ struct TrajectoryQuery {
   /// Returns the caller's pose for path index k.
   const Eigen::Isometry3d& poseAt(std::uint32_t k) const { return given[path.poses[k].given]; }
 
-  bool everything() const { return closest || request.pose_summaries; } ///< whether a collision settles nothing
+  /// Whether a point that collides may still change answers: nearest pairs, or summaries of poses, are asked for.
+  bool everything() const { return closest || request.pose_summaries; }
 
   /// Bounds the rounding of double arithmetic in the place of a scan's point seen by the model.
   /// @param origin of its voxel, in the world
@@ -84,7 +85,7 @@ struct TrajectoryQuery {
   /// intervals not yet tested are included.
   std::vector<NearVoxel> nearVoxels(const StopRule& rule, Progress& progress) const;
 
-  mutable std::mutex mutex; ///< of those below, and of the result's number of colliding points
+  mutable std::mutex mutex; ///< guards the members below, and the result's number of colliding points
   mutable std::vector<NearestAtPose> nearest_at_pose;
   mutable std::vector<std::size_t> pose_counts;
   mutable double earliest = std::numeric_limits<double>::infinity(); ///< swept: pose of the path plus fraction of
@@ -114,19 +115,20 @@ double farthestPlace(const Eigen::Isometry3d& pose, const BoxTree& boxes, const 
 void checkTolerance(const Placed& scan, const TrajectoryRequest& request, const BoxTree& boxes, double reach,
                     double far);
 
-/// Returns the distance within which a record of the model matters to a record of the scan.
+/// Returns the distance within which a record of the model matters to a record of the scan, radii not included: the
+/// greatest reach of any pair, at least 0; swept, plus half of the tolerance.
 double reachOf(const TrajectoryRequest& request, const Reach& between);
 
 /// Returns the sweep of a request with `swept`. @param reach as TrajectoryQuery has it
 PosePath::Sweep sweepOf(const TrajectoryRequest& request, const BoxTree& boxes, double reach);
 
-/// Cuts those of the first voxel off a list that nearVoxels() gave.
+/// Takes the entries of the first voxel off the front of a list that nearVoxels() returned. @return these entries
 std::span<const NearVoxel> takeVoxel(std::span<const NearVoxel>& near_voxels);
 
 /// The result of a voxel's walk.
 struct VoxelResult {
   Work work;
-  bool undecided = false;           ///< whether points were left so
+  bool undecided = false;           ///< whether points were left undecided
   std::optional<PointPair> witness; ///< where one is wanted
 };
 

@@ -18,7 +18,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// Equal poses in a row were looked at once.
+/// Writes the summary of each pose. Equal poses in a row were looked at once, and have equal summaries.
 void summarize(const TrajectoryQuery& query, TrajectoryResult& result)
 {
   const std::vector<PathPose>& poses = query.path.poses;
@@ -37,7 +37,8 @@ void summarize(const TrajectoryQuery& query, TrajectoryResult& result)
   }
 }
 
-/// The instant of a place on a swept path.
+/// Returns the instant at a time on a swept path. @param time pose of the path, plus the fraction of the motion to the
+/// next
 FirstContact instantOf(const PosePath& path, double time)
 {
   const auto k = static_cast<std::size_t>(time);
@@ -87,7 +88,8 @@ void follow(const TrajectoryQuery& query, const StopRule& rule, Progress& progre
   if (request.pose_summaries) summarize(query, result);
 }
 
-/// One walk, of points that are where `places` says. Nothing where floats cannot hold the lengths.
+/// Walks once, for the places of uncertain points that `places` means. Returns nothing where floats cannot hold the
+/// lengths.
 std::optional<TrajectoryResult> walkAlong(const Placed& scan, const SphereHierarchy& model,
                                           const std::vector<Eigen::Isometry3d>& model_poses,
                                           const TrajectoryRequest& request, MeantPlaces places,
@@ -177,7 +179,7 @@ SphereHierarchy hierarchyOf(const SphereHierarchy& of, const std::vector<std::in
   return SphereHierarchy(some, of.options());
 }
 
-/// Outliers by themselves, and all other points by themselves.
+/// Asks about outliers alone and about all other points alone, and adds up the answers.
 TrajectoryResult walkApart(const Placed& scan, const SphereHierarchy& model,
                            const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request,
                            const Outliers& outliers)

@@ -42,10 +42,11 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// The request of collideAlong(). With a tolerance, pairs at distances in (clearance, clearance + tolerance] may count
-/// or not, at each pose anew. A point that has no other pairs has a distance within the tolerance of the smallest.
-/// Accuracies that stop early (level, pairs, time) decide flags only, and leave the others undecided. Swept motion has
-/// a tolerance of its own: exact only. Progress is reported also while nothing is near.
+/// The request of collideAlong(). With an accuracy `tolerance`, a pair at a distance in (clearance, clearance +
+/// tolerance] may count or not, at each pose anew. If a point has only such pairs, its distance is within the tolerance
+/// of the smallest. Accuracies that stop early (level, pairs, time) decide flags only, and leave some undecided. Swept
+/// motion has a tolerance of its own, and takes only the accuracy `exact`. Progress is reported also while nothing is
+/// near.
 struct TrajectoryRequest : Effort {
   double clearance = 0.0;      ///< finite, >= 0; inclusive
   bool flags = true;           ///< per scan point: does it collide at any pose?
@@ -94,20 +95,21 @@ struct TrajectoryResult {
   std::vector<Verdict> flags;               ///< undecided only where the accuracy lets the walk stop early, or places
                                             ///< are uncertain
   std::size_t colliding = 0;                ///< points that collide; 0 when nothing is asked for
-  std::size_t undecided = 0;                ///< points that are
+  std::size_t undecided = 0;                ///< points that are undecided
   std::vector<float> distance;              ///< less the radii; the float nearest to the distance in double; NaN: free
   std::vector<std::int32_t> first_pose;     ///< kNothing (-1) where free
   std::vector<std::int32_t> closest_pose;   ///< kNothing (-1) where free
   std::vector<std::uint32_t> closest_point; ///< with distances or closest_poses: the record of the model that realises
                                             ///< the distance at the closest pose, of several the smallest;
                                             ///< kNothing where free
-  /// With distances, where a solid was added that holds anything (question/enclosed.h). An interval certainly holds the
-  /// distance of a record that a solid makes negative, or may; NaN for other records. Else empty.
+  /// With distances, where a solid was added that holds anything (question/enclosed.h): for each record whose distance
+  /// a solid makes negative, or may, an interval that certainly holds it. NaN for other records. Otherwise empty.
   std::vector<Interval> interval;
   std::vector<std::int32_t> certain_pose; ///< with first_poses, where points are uncertain: the first pose at which a
                                           ///< point collides for certain; kNothing where at none
   std::vector<PoseSummary> poses;         ///< one per pose
-  /// Swept: no pair comes within the clearance before; at it, one is within clearance + tolerance. Empty when free.
+  /// Swept: before this instant no pair comes within the clearance; at it a pair is within clearance + tolerance. Empty
+  /// when all points are free.
   std::optional<FirstContact> first_contact;
   std::optional<FirstContact> certain_contact; ///< the first one for certain, where points are uncertain
   Work work;                                   ///< leaf pairs count once per pose they were compared at

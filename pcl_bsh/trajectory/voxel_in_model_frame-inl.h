@@ -33,11 +33,11 @@ struct VoxelMotion {
   float steps;             ///< poses after the first; 0 where all instants count
   float reach;             ///< a point that collides is within this of a parabola, in floats
   float near;              ///< records in a box farther than this, in floats at one pose, do not collide
-  float near_squared;      ///< of that
+  float near_squared;      ///< `near` squared
   float smallest;          ///< motion that floats distinguish from rest
   float rounding;          ///< of places in floats
   float blunt;             ///< smaller boxes are not told apart at single poses; 0 where motion is swept
-  bool squares;            ///< whether squares of places and of such motions are in the range of floats
+  bool squares;            ///< whether squares of places, and of `smallest`, are in the range of floats
   bool at_rest;            ///< one pose, and nothing before or after it
 
   /// Whether it has halves, and strays farther than `stray_limit`.
@@ -147,7 +147,8 @@ public:
     return motion;
   }
 
-  /// The parabola through where the model sees a point at the first, middle and last pose. None of fewer poses.
+  /// Sets the bow of the parabola through the places where the model sees a point at the first, middle and last pose.
+  /// It is 0 where there are fewer than three poses.
   /// @return how far any point of the voxel bows at most
   double setBow(VoxelMotion& motion) const
   {
@@ -182,7 +183,8 @@ public:
     return segment;
   }
 
-  /// Around `count` arcs, each with an extent of its own along the axes; all of them aligned for vectors.
+  /// Returns a segment around `count` arcs, each with an extent of its own along the axes. The arrays are aligned for
+  /// vectors.
   template <std::size_t Count>
   static Segment aroundSegments(const VoxelMotion& motion, const float (&from)[3][Count], const float (&to)[3][Count],
                                 const float (&bow)[3][Count], const float (&extent)[3][Count], std::size_t count)
@@ -219,7 +221,7 @@ public:
     return segment;
   }
 
-  /// A radius in the voxel's unit as the model sees it.
+  /// Returns a radius as the model sees it, in the clouds' unit. @param own the radius in the voxel's unit
   float seenRadius(float own) const
   {
     return static_cast<float>(own * frame.unit * (1.0 + path.skew) * (1.0 + kRadiusMargin));
@@ -245,13 +247,13 @@ public:
     return segment;
   }
 
-  /// No less than the distance of a pair at this squared one in floats.
+  /// Returns an upper bound of the distance of a pair. @param squared its squared distance in floats
   double highOf(float squared) const
   {
     return (lengthOver(squared) + error) * (1.0 + path.skew) * (1.0 + kDoubleMargin);
   }
 
-  /// A pair at a larger squared distance in floats is farther than one at this.
+  /// Returns a squared distance in floats: pairs beyond it are farther apart than a pair at `squared`.
   float notBeyond(float squared) const { return skewedBand(highOf(squared), error, path.skew).miss; }
 
   /// No less than the distance from any point of a ball to the nearest point in a box, in the clouds' unit.

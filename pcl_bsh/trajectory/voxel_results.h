@@ -11,8 +11,8 @@ namespace pcl_bsh {
 /// The nearest point of the model, so far.
 struct NearestPoint {
   double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
-  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of triangles: no less than that
-  bool meets = false;                                   ///< it is 0, swept up to rounding: nothing is nearer
+  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of balls, triangles: no less
+  bool meets = false; ///< whether the distance is 0 (swept: up to rounding), so that nothing is nearer
   std::uint32_t record = kNothing;
   float limit = std::numeric_limits<float>::infinity(); ///< a pair at a larger squared distance is not nearer
   float reach = std::numeric_limits<float>::infinity(); ///< a pair at a larger distance is not nearer
@@ -34,11 +34,11 @@ public:
   void finish(const Voxel& voxel);
 
   /// Where flags start as undecided: writes those of the voxel that are decided now.
-  /// @param unsure nothing but a hit is. @return whether points were left undecided.
+  /// @param unsure whether only hits are decided. @return whether points were left undecided.
   bool decide(const Voxel& voxel, bool unsure);
 
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
-  std::vector<std::uint16_t> undecided;    ///< per slot: such bits; of a child that is no leaf any bit stands for all
+  std::vector<std::uint16_t> undecided;    ///< per slot: such bits; if it is no leaf, any bit stands for all its points
   std::vector<double> first;               ///< per point: when it collides first, if that is asked for; see firstOf()
   double earliest = std::numeric_limits<double>::infinity(); ///< swept: the least of `first`
   std::vector<NearestPoint> best;                            ///< per point, if that is asked for

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Along a trajectory: a node's list holds what can still matter of the model, for an interval of poses at once. Seen by
-// the model, the scan's points move nearly on parabolas: a node is a thick arc, the model a tree of boxes. The arc is
-// as thick as the node's sphere, and as far as the interval strays from a parabola. The larger of both is divided.
+// The walk along a trajectory. The list of a scan's node holds the boxes of the model that can still matter to it, for
+// an interval of poses at once. Seen by the model, the scan's points move nearly on parabolas: a node is a thick arc,
+// the model a tree of boxes. The arc is as thick as the node's sphere, and as far as the interval strays from a
+// parabola. An interval that strays far for the node's size is halved; else the node is opened.
 #include <pcl_bsh/query/progress.h>
 #include <pcl_bsh/trajectory/query.h>
 
@@ -25,7 +26,7 @@ constexpr double kNodeStray = 0.03; // of a node's radius: an interval that stra
 constexpr float kSeedSize = 0.5f;   // of the voxel's radius: larger boxes of the model are opened before its descent
 constexpr float kBoxSize = 2.0f;    // of a node's radius: a larger box of the model is opened
 
-/// Memory of one voxel's walk after another.
+/// Memory that one voxel's walk after another uses.
 struct WalkScratch {
   Visits<NodeVisit> visits;
   LongTriangles long_triangles;
@@ -156,7 +157,7 @@ private:
     return rule_.mayEnter([this] { return query_.scan.hierarchy().storage().pointsToBuild(index_); });
   }
 
-  /// @param unsure not all was looked at.
+  /// Ends the walk. @param unsure whether something was not looked at
   VoxelResult leave(bool unsure)
   {
     VoxelResult answer;
@@ -188,8 +189,8 @@ private:
     return voxel_frame_.band.hit > 0.0f ? std::sqrt(voxel_frame_.band.hit) * (1.0f - kRadiusMargin) : 0.0f;
   }
 
-  /// The probe of a child that settles it: by the most of its points' lengths for certain, by the least for what may
-  /// be.
+  /// Returns a probe: a child is settled if a point of the model is in it. Where certain collisions are asked for, the
+  /// largest uncertainty of the child's points makes it shorter; else the smallest makes it longer.
   ProbeSphere probeOf(std::uint32_t index, std::uint32_t lane, float radius) const
   {
     const Node& node = voxel_->nodes[index];
@@ -212,8 +213,9 @@ private:
     open_lanes_[index] &= static_cast<std::uint8_t>(~(1u << lane));
   }
 
-  /// Whether poses are taken one by one: few of them, and a reach in which a node's points differ by little. A pose by
-  /// itself has distances, which bound those of a whole node, and nothing strays across a plane beside the model.
+  /// Whether poses are taken one by one: where they are few, and the reach is longer than any child is wide, or a plane
+  /// lies beside the model. A single pose has distances, which bound those of a whole node. At a single pose nothing
+  /// strays across the plane.
   bool isWorthEachPose(const VoxelMotion& motion, float largest) const
   {
     return leaves_.isWorthEachPose(motion) &&
@@ -241,7 +243,7 @@ private:
     }
   }
 
-  /// Settles children that a single point of the model is near enough to, at one pose, for all that they hold.
+  /// Settles children all of whose points collide with a single point of the model at one pose.
   void settleByPoints(NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     const Node& node = voxel_->nodes[index];
@@ -256,7 +258,7 @@ private:
       }
   }
 
-  /// Settles those that points in a box are near enough to.
+  /// Settles such children by the points in one box of the model.
   void settleBy(const ModelBox& candidate, const NodeVisit& visit, std::uint32_t index, const VoxelMotion& motion)
   {
     ClippedSegments<kLanes> clipped;
@@ -295,8 +297,8 @@ private:
     for (std::uint32_t i = 0; i < voxel_->nodes[below].count; ++i) settle(below, i);
   }
 
-  /// Compares boxes of the model with those children of the visit that are in `lanes`: drops them, keeps them for their
-  /// own descent, or opens them.
+  /// Compares boxes of the model with the visit's children in `lanes`. For each child, a box is dropped, kept for the
+  /// child's own descent, or opened.
   void take(NodeVisit& visit, const Siblings& candidate, const VoxelMotion& motion, std::uint32_t lanes)
   {
     std::uint32_t kept[kLanes] = {};
@@ -335,7 +337,7 @@ private:
   WorkPulse pulse_{results_.work};
   ModelBoxes model_;
   LeafWalk leaves_;
-  const float settled_reach_;             // pairs nearer in floats collide; probeOf() has own uncertainties
+  const float settled_reach_;             // pairs nearer in floats collide; probeOf() adds points' own uncertainties
   const bool settling_;                   // whether one pose and one point of the model answer the request
   const Voxel* voxel_ = nullptr;          // once it was entered
   const OwnUncertainties* own_ = nullptr; // of its points, once it was entered

@@ -48,8 +48,8 @@ struct PlacedPoint {
 /// A tree of boxes over a voxel's points, which come to stand in the order of its leaves.
 class PointGrouping {
 public:
-  /// @param most points of a leaf. @param fit called as fit(node, lane, low, high, first) for each leaf: sets its box
-  /// around the points between these places, of which this is one
+  /// @param most points of a leaf. @param fit called as fit(node, lane, low, high, first) for each leaf: sets its box.
+  /// All points of the leaf are between low and high, and `first` is one of them
   template <class Fit>
   PointGrouping(std::vector<PlacedPoint>& points, const float* stretch, std::size_t most, const Fit& fit)
   : points_(points),
@@ -71,10 +71,10 @@ private:
     Place begin, end;
     Eigen::Array4f low, high; ///< of x, y, z; the fourth element of each is not used
     Eigen::Index axis = 0;    ///< along which it is divided
-    float size = -1.0f;       ///< along it, by the stretch; negative: a leaf
+    float size = -1.0f;       ///< along that axis, divided by the stretch; negative: a leaf
   };
 
-  static constexpr std::ptrdiff_t kLeastShare = 16; ///< a half with less than this part: the points' number is halved
+  static constexpr std::ptrdiff_t kLeastShare = 16; ///< each side needs more than one in so many points
 
   Group measured(Place begin, Place end) const
   {
@@ -159,10 +159,10 @@ double medianOf(std::vector<double>& numbers)
 }
 
 constexpr std::size_t kRecordsForOrigin = 1024; // that are looked at
-constexpr double kLarge = 64.0;                 // times as large as most of them
+constexpr double kLarge = 64.0;                 // a record is large if its radius is so many times the median
 
-/// The middle of a cloud; near most records where one of them is much larger, so that the middle is far away from them:
-/// floats would not tell them apart there.
+/// Returns the middle of a cloud, or a place near most records where one record is much larger than most. The middle
+/// may then be so far away from most records that floats would not tell them apart there.
 Point3 originOf(const SphereHierarchy::Storage& storage)
 {
   if (arePoints(storage.view) || storage.size == 0) return storage.frame.origin;
@@ -351,7 +351,7 @@ BoxedVoxel::BoxedVoxel(const Voxel& voxel, const PointsView& view, const Point3&
       middle[axis] = roundToFloat(0.5 * (parts[i].low()[axis] + parts[i].high()[axis]));
     middles.emplace_back(middle[0], middle[1], middle[2], static_cast<std::uint32_t>(i));
   }
-  double largest = 0.0; // coordinate of a corner, and of what was taken off
+  double largest = 0.0; // coordinate of a corner, and of the origin that was subtracted
   for (std::size_t axis = 0; axis < 3; ++axis) {
     largest = std::max(largest, std::abs(origin[axis]));
     for (const BoxedPart& part : parts)

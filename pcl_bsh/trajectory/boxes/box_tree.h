@@ -21,7 +21,7 @@ struct alignas(32) BoxNode {
 
   float low[3][kNodeChildren];
   float high[3][kNodeChildren];
-  std::uint32_t child[kNodeChildren]; ///< a node of the same voxel; or kLeaf + its leaf, above the voxels + its voxel
+  std::uint32_t child[kNodeChildren]; ///< a node; or kLeaf + number of a leaf, above the voxels of a voxel
   std::uint32_t count = 0;            ///< children in use, 1..8
 
   bool isLeaf(std::size_t lane) const noexcept { return (child[lane] & kLeaf) != 0; }
@@ -29,8 +29,8 @@ struct alignas(32) BoxNode {
   std::uint32_t leaf(std::size_t lane) const noexcept { return child[lane] & ~kLeaf; }
 };
 
-/// Points of a voxel that share a box, sixteen at most. Readable for whole vectors. Where they have radii or are
-/// triangles, a ball or a part of a triangle by itself, without coordinates.
+/// Points of a voxel that share a box, sixteen at most. Readable for whole vectors. In a cloud of balls or triangles a
+/// leaf has one ball, or one part of a triangle, without coordinates.
 struct BoxLeaf {
   const float *at_x, *at_y, *at_z; ///< as the voxel stores them
   const std::uint32_t* records;

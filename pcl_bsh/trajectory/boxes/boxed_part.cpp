@@ -11,7 +11,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr std::size_t kPartsOfEach = 4, kMostParts = 1U << 14;
-constexpr std::size_t kRecordsOfPart = 16; ///< that are compared with it, at least, on average
+constexpr std::size_t kRecordsOfPart = 16; ///< records to be compared with a part, at least, on average
 
 double sideOf(const Triangle3& triangle, std::size_t i)
 {
@@ -27,7 +27,7 @@ std::size_t longestSideOf(const Triangle3& triangle)
   return longest;
 }
 
-/// At the middle of the longest side.
+/// Halves a part at the middle of its longest side.
 std::pair<BoxedPart, BoxedPart> halvesOf(const BoxedPart& part)
 {
   const std::size_t i = longestSideOf(part.corners), next = (i + 1) % 3;

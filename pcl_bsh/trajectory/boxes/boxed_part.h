@@ -13,7 +13,7 @@ namespace pcl_bsh {
 struct BoxedPart {
   BoxedPart(const Triangle3& at, std::uint32_t of);
 
-  Triangle3 corners; ///< of a ball, two of its box
+  Triangle3 corners; ///< for a ball: two opposite corners of its box, and its centre
   double thickness;  ///< about how far a place in its box may be from the triangle
   std::uint32_t record;
 
@@ -24,7 +24,7 @@ struct BoxedPart {
 /// How far triangles are divided into parts.
 struct Division {
   double thin = 0.0;           ///< parts that are no thicker are not divided
-  std::size_t most = 1U << 10; ///< most parts in all; always four of each triangle
+  std::size_t most = 1U << 10; ///< most parts in all, or four for each triangle where that is more
 };
 
 /// Returns the division that pays where parts are compared with so many records of at most this radius. Parts finer

@@ -77,10 +77,10 @@ struct BoxEnds {
   }
 };
 
-/// Boxes by their distance from a point, those at the same distance as they come.
+/// Sorts boxes by their distance from a point. Boxes at equal distances keep their order.
 class BoxesByDistance {
 public:
-  /// @param into each of them by itself
+  /// @param into becomes the boxes, an entry each, nearest first
   void sort(const std::vector<Siblings>& boxes, const Point& from, std::vector<Siblings>& into)
   {
     order_.clear();
@@ -106,8 +106,8 @@ struct ProbeSphere {
   Point center;
   float reach;
   std::uint32_t pose;
-  float scale = 0.0f;   ///< of points' own uncertainties, which make the reach longer, or shorter
-  float farther = 0.0f; ///< by this at most
+  float scale = 0.0f;   ///< a point's own uncertainty, times this, is added to the reach; may be below 0
+  float farther = 0.0f; ///< how much that makes the reach longer at most
 };
 
 /// Opens the model's boxes.

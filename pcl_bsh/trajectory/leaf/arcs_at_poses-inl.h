@@ -14,11 +14,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace pcl_bsh::HWY_NAMESPACE {
 
-/// A point matters at many poses, with summaries at each at which it collides, and mostly near several points of the
-/// model. Its distance from its arc is bounded. So its distances on the arc, of many poses at once, prove that it
-/// collides, or that it does not. Pairs that they do not decide are compared at the pose itself once all boxes were
-/// seen. By then another point of the model has decided most of them, or is nearer. Where very many pairs are at just
-/// the clearance, or equally near, those seen so far are compared earlier, so that few are kept.
+/// Decides many poses of a point at once. A point matters at many poses (with summaries, at each pose at which it
+/// collides), mostly near several points of the model. How far a point strays from its arc is bounded. So distances
+/// from places on the arc prove that a pair collides, or that it does not. Pairs that they do not decide are compared
+/// at the pose itself once all boxes were seen. By then another point of the model has decided most of them, or is
+/// nearer. Where very many pairs are at just the clearance, or equally near, the pairs seen so far are compared
+/// earlier, so that few are kept.
 class ArcsAtPoses {
 public:
   ArcsAtPoses(const TrajectoryQuery& query, const VoxelInModelFrame& voxel_frame, VoxelResults& results,
@@ -103,7 +104,7 @@ private:
 
   HWY_NOINLINE void compareCandidates(LeafVisit& leaf, const VoxelMotion& motion)
   {
-    // The nearest first: what they bound is not compared.
+    // The nearest first: they bound the search, and pairs beyond the bound are not compared.
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.squared < b.squared; });
     for (const Candidate& candidate : candidates_) {
@@ -199,7 +200,7 @@ private:
   std::uint32_t first_pose_ = 0; // of the motion
   float astray_ = 0.0f;          // how much farther two points may be from each other on the arc than at the pose
   float miss_ = 0.0f;            // a larger squared distance on the arc: they do not collide
-  float sure_ = 0.0f;            // no larger: they do
+  float sure_ = 0.0f;            // a squared distance on the arc of at most this: they collide
   std::vector<float> limits_;    // per step: limitOf() the pose
   std::vector<Candidate> candidates_;
   alignas(64) float nearest_[kLanes];

@@ -119,7 +119,7 @@ public:
   const UncertainReach& reach() const { return at_pose_.reach(); }
 
 private:
-  /// After a leaf was compared during a motion: points that no later motion changes.
+  /// After a leaf was compared during a motion: notes the points whose answers no later motion changes.
   void settle(const LeafVisit& leaf)
   {
     std::uint32_t settled = results_.hit[leaf.slot];

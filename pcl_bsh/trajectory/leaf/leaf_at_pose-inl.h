@@ -88,8 +88,8 @@ public:
     if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
   }
 
-  /// Points of the leaf at pose k against a box that is not a leaf, each by itself, in double: against all points of
-  /// the model's voxel, where the box is within one.
+  /// Compares points of the leaf at pose k with the points in a box that is not a leaf, one by one, in double. If the
+  /// box is in a voxel of the model, compares them with all points of the voxel.
   HWY_NOINLINE void meetInDoubles(LeafVisit& leaf, std::uint32_t lanes, const ModelBox& box, std::uint32_t k,
                                   const VoxelMotion& motion)
   {
@@ -118,8 +118,8 @@ public:
     }
   }
 
-  /// Adds the points that were found to collide to the poses' numbers. @param points that the leaf holds, of which
-  /// those that coincide are compared as one
+  /// Adds the number of points that were found to collide to each pose's count. @param points how many the leaf holds;
+  /// points that coincide are compared as one
   void countPoses(const LeafVisit& leaf, const VoxelMotion& motion, std::size_t points)
   {
     for (std::size_t i = 0; i < pose_hits_.size(); ++i) {
@@ -146,8 +146,9 @@ public:
   }
 
 private:
-  /// Points with uncertainties of their own, as the query asks about them. @param hit, undecided become those in
-  /// `lanes` that collide for certain, and those of which single pairs have to be asked
+  /// Compares points with uncertainties of their own.
+  /// @param hit becomes the bits of points in `lanes` that collide certainly, or possibly, as the query asks
+  /// @param undecided becomes the bits of points whose pairs have to be decided one by one
   HWY_NOINLINE void compareUncertain(const LeafVisit& leaf, std::uint32_t lanes, const LeafPoints& points,
                                      const BoxLeaf& other, std::uint32_t& hit, std::uint32_t& undecided) const
   {

@@ -72,7 +72,8 @@ private:
   }
 };
 
-/// The poses at which each of a leaf's points has to be looked at: first..last, of all of them [begin, end).
+/// The poses at which each of a leaf's points has to be looked at: first[i] to last[i], inclusive. All of these are in
+/// [begin, end).
 struct PoseRanges {
   std::uint32_t lanes = 0; ///< points that have such a pose
   std::uint32_t first[kLeafPoints], last[kLeafPoints];
@@ -115,8 +116,8 @@ inline PoseRanges rangesAt(std::uint32_t lanes, const VoxelMotion& motion)
   return ranges;
 }
 
-/// Which points of a leaf were compared with which records of the model during a motion, as far as is remembered: parts
-/// of one triangle hold nothing new.
+/// Remembers which points of a leaf were compared with which records of the model during a motion: further parts of the
+/// same triangle hold nothing new for them. It may forget.
 class ComparedPairs {
 public:
   void clear()
@@ -124,7 +125,8 @@ public:
     if (is_used_) *this = ComparedPairs();
   }
 
-  /// @param points bits of them. @return those that were not compared with the record; from now on they are
+  /// Notes points as compared with a record. @param points bits of the leaf's points. @return bits of the points that
+  /// were not yet, as far as is remembered
   std::uint32_t add(std::uint32_t record, std::uint32_t points)
   {
     is_used_ = true;

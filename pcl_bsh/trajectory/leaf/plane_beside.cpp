@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kDecisionsBeforePlane = 64;
-constexpr std::uint64_t kRecordsForDecision = 16; // that a plane looks at cost no more
+constexpr std::uint64_t kRecordsForDecision = 16; // laying a plane looks at so many at the cost of one decision
 
 } // namespace
 

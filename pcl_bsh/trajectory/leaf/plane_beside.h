@@ -11,13 +11,15 @@
 
 namespace pcl_bsh {
 
-/// Its normal is the direction along which the nearest of the pairs was apart that were decided in vain. Knows nothing
-/// where records have radii or reaches of their own, nor where all are points.
+/// A plane beside the model, once enough pairs were decided in vain. Its normal is the direction along which the
+/// nearest of these pairs was apart. No plane is laid where records have radii or reaches of their own, nor where all
+/// are points.
 class PlaneBeside {
 public:
   explicit PlaneBeside(const TrajectoryQuery& query);
 
-  /// Takes note of a pair that does not collide at a pose. These pay for a plane.
+  /// Takes note of a pair that does not collide at a pose. A plane is laid once such pairs have cost as much as it
+  /// does.
   void decidedInVain(const Separation& apart)
   {
     if (!may_know_) return;
@@ -41,8 +43,8 @@ private:
   const TrajectoryQuery& query_;
   const bool may_know_;
   const double error_;           ///< of places along the normal
-  double least_;                 ///< distance of the nearest of the pairs since the last plane, at least
-  Point3 direction_ = {0, 0, 0}; ///< along which it is apart
+  double least_;                 ///< lower bound of the distance of the nearest pair since the last plane
+  Point3 direction_ = {0, 0, 0}; ///< along which that pair is apart
   Point3 normal_ = {0, 0, 0};    ///< from the model to the scan
   MovingCorners touching_ = {};  ///< the record of the model that reaches farthest along the normal
   PlanePolicy policy_;

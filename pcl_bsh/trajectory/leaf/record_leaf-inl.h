@@ -62,7 +62,8 @@ public:
   /// Whether there is such a plane.
   bool hasPlane() const { return plane_.number() != 0; }
 
-  /// A leaf of the model, at the poses that bring it near; of a triangle in parts at all poses, once.
+  /// Compares records with a leaf of the model, at the poses that bring them near. A triangle that is divided into
+  /// parts is compared once, at all poses of the motion.
   void compare(LeafVisit& leaf, const PoseRanges& ranges, const ModelBox& box, const VoxelMotion& motion)
   {
     const BoxLeaf other = box.points(query_.boxes);
@@ -120,10 +121,10 @@ private:
     LeafVisit& leaf;
     const VoxelMotion& motion;
     const RecordCourse& course;
-    MovingPair moving; ///< the first on its arcs
+    MovingPair moving; ///< the scan's record on its arcs, the model's at rest
     PointPair records;
-    std::uint32_t i;           ///< of the scan's
-    double radii, least, most; ///< their own; distances up to `least` collide, above `most` they do not
+    std::uint32_t i;           ///< the scan's record: its place in the leaf
+    double radii, least, most; ///< sum of radii; at distances up to `least` they collide, above `most` they do not
 
     std::uint32_t point() const { return leaf.points.begin + i; }
   };
@@ -147,12 +148,12 @@ private:
     return plane_.isBeside(courseOf(leaf, i, motion).arcs, seenOf(query_.reach) + motion.stray);
   }
 
-  /// A distance seen by the model that is longer is longer than this.
+  /// Returns a bound: records that the model sees farther apart than this are farther apart than `length`.
   double seenOf(double length) const
   {
     return (length * (1.0 + query_.path.skew) + placing_) * (1.0 + kFewDoubleRoundings);
   }
-  /// One that is seen is no longer than this.
+  /// Returns an upper bound of the distance of records that the model sees `seen` apart.
   double highOf(double seen) const
   {
     return (seen + placing_) * (1.0 + query_.path.skew) * (1.0 + kFewDoubleRoundings);
@@ -168,7 +169,7 @@ private:
   bool isHit(const Pair& pair) const { return (results_.hit[pair.leaf.slot] >> pair.i & 1) != 0; }
 
   /// Whether nothing at these poses changes an answer. Contacts later than a known one do not, where only the first is
-  /// asked for. @param last is lowered to before that
+  /// asked for. @param last is lowered to the pose before a known contact
   bool isSettled(const Pair& pair, std::uint32_t first, std::uint32_t& last) const
   {
     if (query_.everything() || !isHit(pair)) return false;
@@ -200,7 +201,7 @@ private:
     return least - pair.motion.stray <= seenOf(mattering(pair, first));
   }
 
-  /// At a pose at which the pair may collide.
+  /// Looks at a pair at pose k, at which it may collide.
   void look(const Pair& pair, std::uint32_t k, const Separation& apart)
   {
     const bool for_pose = query_.request.pose_summaries && (may_overlap_ || results_.poseReach(k) > 0.0f);
@@ -274,16 +275,16 @@ private:
 
   const TrajectoryQuery& query_;
   const VoxelInModelFrame& voxel_frame_;
-  const double placing_;   ///< of a record as the model sees it, in double
+  const double placing_;   ///< bounds the error of a record's place as the model sees it, in double
   const bool may_overlap_; ///< balls may, so that gaps are below 0
   VoxelResults& results_;
   LeafAtPose& at_pose_;
   ComparedPairs& compared_;
   LongTriangles& long_;
   RecordCourse courses_[kLeafPoints];
-  std::uint32_t known_ = 0; ///< bits of those that are set
+  std::uint32_t known_ = 0; ///< bits of the courses that are set
   PlaneBeside plane_;
-  std::uint32_t asked_ = 0, asked_plane_ = 0; ///< bits of points of the leaf that it was asked about, and its number
+  std::uint32_t asked_ = 0, asked_plane_ = 0; ///< bits of the leaf's points that a plane was asked about; its number
 };
 
 } // namespace pcl_bsh::HWY_NAMESPACE

@@ -77,7 +77,7 @@ private:
     return !query_.closest && !query_.witness && isHit(leaf, i) && results_.firstOf(leaf.points.begin + i) <= from;
   }
 
-  /// From which part of an interval on contacts of a point need not be its first.
+  /// Returns the part of an interval from which on any contact of a point is as good as its first.
   double earlyEnough(double begin, double steps) const
   {
     if (query_.witness) return 0.0;
@@ -106,8 +106,8 @@ private:
     return (motion.reach - static_cast<float>(motion.stray) - static_cast<float>(query_.reach)) + motion.rounding;
   }
 
-  /// Returns those of `points` that can change an answer. While no contact of point i is known, these are all. Then
-  /// they are those that it may come near earlier, or as near as the best.
+  /// Returns the bits of `points` of the model that can change an answer. While no contact of point i is known, these
+  /// are all. Then they are the points that it may come near before its first contact, or as near as its nearest.
   std::uint32_t mattering(const LeafVisit& leaf, std::uint32_t i, std::uint32_t points, const VoxelMotion& motion) const
   {
     if (points == 0 || query_.witness || !isHit(leaf, i)) return points;
