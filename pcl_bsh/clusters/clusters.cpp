@@ -176,8 +176,8 @@ private:
   std::vector<std::vector<std::uint8_t>> united_; ///< per voxel, per lane of its nodes: known to be of one cluster
   std::vector<std::uint8_t> united_above_;
   std::vector<LanePair> stack_;
-  bool parent_united_ = false; ///< of the node whose children are tested
-  std::uint32_t inside_ = 0;   ///< bits of these
+  bool parent_united_ = false; ///< whether the node whose children are tested is known to be of one cluster
+  std::uint32_t inside_ = 0;   ///< bits of its children all of whose points are near enough to the other node's
 };
 
 } // namespace

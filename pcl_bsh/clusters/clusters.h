@@ -16,7 +16,7 @@ namespace pcl_bsh {
 /// The clusters of a cloud, numbered from 0.
 struct Clusters {
   std::vector<std::int32_t>
-      of; ///< one per record of the view: number of its cluster; kNothing: not a finite point of it
+      of; ///< one per record of the view: number of its cluster; kNothing: no finite point of the view
   std::vector<std::size_t> sizes; ///< points of each cluster
   Work work;
 };

@@ -14,7 +14,7 @@
 
 namespace pcl_bsh {
 
-/// The first of these that is wrong; `count` where none is.
+/// Returns the first i for which isWrong(i), out of [0, count); `count` if there is no such i.
 template <class IsWrong>
 std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWrong)
 {
@@ -34,10 +34,11 @@ std::size_t firstWrong(std::size_t count, unsigned threads, const IsWrong& isWro
   return first;
 }
 
-/// Refuses a pose that is not rigid, by its index, and more poses than an index can name. @param whose words for them
+/// Refuses a pose that is not rigid, by its index, and more poses than an index can name. @param whose name of the
+/// cloud
 void checkPoses(const PoseList& poses, const char* whose, unsigned threads);
 
-/// As many entries of a list as one task answers: the first of them has no earlier answer to begin with.
+/// How many entries of a list one task answers. The first of them has no earlier answer to begin with.
 inline constexpr std::size_t kBatch = 64;
 
 /// Calls answer(i, work) for each entry of a list, in batches, from several threads. Each batch has an `Answer` of its

@@ -43,8 +43,8 @@ struct DistancesAtPoses {
   Work work;
 };
 
-/// Does any pair of points collide, b at each of the poses T_world_b (rigid within 1e-6)? Verdicts alone: the
-/// witness of a pose is tried first at the next one; anyCollision() gives that of a pose.
+/// Does any pair of points collide, b at each of the poses T_world_b (rigid within 1e-6)? Returns verdicts alone: the
+/// witness of a pose is tried first at the next one. anyCollision() returns the witness of one pose.
 /// @throws std::invalid_argument naming the value: a clearance or a pose that is not what its declaration asks for (a
 ///   pose by its index), an accuracy that stops early. Cancelled.
 AnyAtPoses anyCollisionAtPoses(const Placed& a, const SphereHierarchy& b, const PoseList& T_world_b,

@@ -47,7 +47,7 @@ Eigen::Vector3d seen(const Eigen::Isometry3d& pose, const Eigen::Vector3d& world
   return pose.linear().transpose() * (world - pose.translation());
 }
 
-/// Tells of each motion in turn whether points collide that are where `places` says.
+/// Tells of each motion in turn whether points collide, for the places of uncertain points that `places` means.
 class MotionSearch {
 public:
   MotionSearch(const MotionsQuery& query, MeantPlaces places) : query_(query), places_(places) {}
@@ -68,7 +68,7 @@ public:
   }
 
 private:
-  /// At the instant that a straight line between the motion's ends suggests.
+  /// Whether a pair collides at the instant at which a straight line between the motion's ends brings it nearest.
   bool collideNearest(const RigidMotion& motion, const PointPair& pair, Work& work) const
   {
     const Point3 p = query_.scan.hierarchy().view().point(pair.a), q = query_.model.view().point(pair.b);
@@ -87,7 +87,7 @@ private:
     return found.pair;
   }
 
-  /// As a swept path that ends at the first witness, which it has if and only if there is one.
+  /// Walks the motion as a swept path, up to the first witness. Returns a witness if and only if the path has one.
   std::optional<PointPair> sweep(const RigidMotion& motion, Work& work) const
   {
     const std::function<bool(double)> none;

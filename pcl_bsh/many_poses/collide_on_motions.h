@@ -15,8 +15,8 @@
 // one verdict in both directions, wherever it stands in the list, whatever else the list holds, for any number of
 // threads and any processor. Points may have uncertainties (PointsView). Then a motion is free if no pair can come
 // within the clearance on it. It collides if some pair surely comes within clearance + `swept`. Otherwise it is
-// undecided. In one of its directions it is that of collideAlong(); between clearance and clearance + `swept` those of
-// the two directions may differ.
+// undecided. In one of the two directions collideAlong() has the same verdict. In the other direction it may have
+// another one where the distance is between clearance and clearance + `swept`.
 #pragma once
 
 #include <pcl_bsh/base/cancelled.h>
@@ -38,7 +38,7 @@ struct PoseMotion {
   std::uint32_t from = 0, to = 0;
 };
 
-/// The request of anyCollisionOnMotions(). `swept` is all that it may be off: no accuracy but exact.
+/// The request of anyCollisionOnMotions(). Answers may be off by `swept` alone: the accuracy has to be exact.
 struct MotionsRequest : Effort {
   double clearance = 0.0;   ///< finite, >= 0; inclusive
   double swept = 0.0;       ///< to this tolerance: finite, > 0, has to be given

@@ -28,13 +28,14 @@ struct MotionsQuery {
   const MotionsRequest& request;
   const BodyBall body;     ///< of the model
   const BoxTree boxes;     ///< of the model
-  TrajectoryRequest swept; ///< the same, of one motion
+  TrajectoryRequest swept; ///< the request, about one motion
 };
 
 /// The motion between two poses, the same in both directions.
 RigidMotion motionBetween(const Eigen::Isometry3d& one, const Eigen::Isometry3d& other, const Point3& pivot);
 
-/// At least how far any point of the body gets, during a motion, from where it is at the pose of its middle.
+/// Bounds how far any point of the body is, at any instant of a motion, from its place at the middle of the motion.
+/// @param middle the pose at half of the motion
 double extentAround(const Eigen::Isometry3d& middle, const RigidMotion& motion, const BodyBall& body);
 
 /// Refuses values of the request, poses by their index, and motions that name no pose.

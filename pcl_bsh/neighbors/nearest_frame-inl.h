@@ -46,7 +46,7 @@ struct NearestFrame {
   /// Squared float distances above this are beyond `bound`.
   float miss(float bound) const { return (bound + slack) * inverse_below; }
 
-  /// Spheres farther than this and their radius are beyond `distance`.
+  /// Spheres whose centres are farther than this plus their radius are beyond `distance`.
   float reach(float distance) const { return (distance * inverse_unit + error) * (1.0f + kNeighborMargin); }
 
   static constexpr float kVanishing = 0x1p-100f;     ///< above what underflows, as a squared distance

@@ -60,8 +60,8 @@ public:
 private:
   static SphereLanes spheresOf(const Node& node) { return {node.x, node.y, node.z, node.r, 1.0f}; }
 
-  /// A voxel near the query, by the spheres above it: its unit suits distances there. Strays make that of the cloud too
-  /// large.
+  /// Returns a voxel near the query, by the spheres above it: its unit suits distances there. A few points far outside
+  /// make the unit of the cloud too large.
   std::uint32_t nearVoxel() const
   {
     const Node* node = cloud_.top.data();
@@ -174,7 +174,7 @@ private:
     countAndTighten();
   }
 
-  /// In leaves, whether they were reached one by one or not.
+  /// Counts compared points as pairs of leaves, whether their leaves were reached one by one or not.
   void noteCompared(std::uint32_t points) { work_.leaf_pairs += (points + kMaxLeafPoints - 1) / kMaxLeafPoints; }
 
   /// compare() for k = 1, at most kScanned points.
@@ -250,8 +250,9 @@ private:
     countAndTighten();
   }
 
-  /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it. As many
-  /// as were kept beyond k, where ties keep more than that: so that each candidate is looked at a few times only.
+  /// Lowers the bound when enough candidates have come since that was last done, and forgets those beyond it. Where
+  /// ties keep more than k candidates, as many as are kept beyond k have to come: so each is looked at a few times
+  /// only.
   void countAndTighten()
   {
     if (places_.size() < wanted_) return;
@@ -300,7 +301,7 @@ private:
     distance_ = std::sqrt(bound) * (1.0f + kNeighborMargin);
   }
 
-  /// No candidate's lower bound is less than its upper one by more than that: above * inverse_below is less than
+  /// A candidate whose upper bound exceeds this has a lower bound above `bound`: above * inverse_below is less than
   /// 1 + 8 kNeighborShare.
   float missOfHighs(float bound) const { return (bound + most_slack_) * (1.0f + 8 * kNeighborShare) + most_slack_; }
 

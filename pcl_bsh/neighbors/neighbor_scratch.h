@@ -11,11 +11,11 @@
 
 namespace pcl_bsh {
 
-/// To be had by a ScratchLease.
+/// Memory of one query, lent by a ScratchLease.
 struct NeighborScratch {
   LargeArray<std::uint32_t> records; ///< what was found
   LargeArray<float> squared; ///< how far it is: perhaps an upper bound while searching, then the value of the answer
-  LargeArray<const Voxel*> voxels; ///< where the candidates for the nearest are, in the order of those
+  LargeArray<const Voxel*> voxels; ///< of the candidates for the nearest, in the candidates' order
 
   // of sorting
   LargeArray<std::uint32_t> sorted_records;
@@ -40,7 +40,7 @@ void checkOfPoints(const PointsView& cloud);
 /// Exact: |p - q| <= radius.
 bool isWithin(const Point3& p, const Point3& q, double radius, Work& work);
 
-/// Sorts scratch.records by scratch.squared, its equals in any order.
+/// Sorts scratch.records by scratch.squared. Records at equal squared distances come in any order.
 void sortBySquared(NeighborScratch& scratch);
 
 /// The vectors that an answer is written to.
@@ -53,8 +53,8 @@ struct NeighborOutput {
 void writeNearestFirst(const PointsView& view, const Point3& query, const RadiusOptions& options,
                        NeighborScratch& scratch, const NeighborOutput& found, Work& work);
 
-/// One query each, arguments checked, environment set: found and measured, in any order. The radius search ignores
-/// options.most.
+/// Each answers one query: finds and measures records, in any order, into the scratch. @pre arguments are checked, and
+/// the DefaultFloatEnvironment is set. The radius search ignores options.most.
 void findWithin(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, NeighborScratch& scratch,
                 Work& work);
 bool findAny(const SphereHierarchy::Storage& cloud, const Point3& query, double radius, Work& work);

@@ -46,7 +46,7 @@ void makeRoom(NeighborLists& found, std::size_t queries)
   found.squared_distances.resize(queries);
 }
 
-/// Has memory fetch the vectors that an answer will go to, and soon before it does, what they hold.
+/// Prefetches the vectors that an answer will go to, or, soon before it does, their elements.
 void fetch(const NeighborLists& found, std::size_t i, bool soon)
 {
   hwy::Prefetch(soon ? static_cast<const void*>(found.indices[i].data()) : &found.indices[i]);

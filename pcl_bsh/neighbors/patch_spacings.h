@@ -30,7 +30,7 @@ namespace pcl_bsh {
 /// 1983). So where the surface is flat over a gap's width, every place of it in a hole of at most `widest_gap` is
 /// within half of the spacing of one of its samples. Nothing is promised of wider holes, of edges, of surfaces nearer
 /// to each other than `widest_gap`, of wires.
-/// @param widest_gap > 0; what gapes wider is an opening, not a surface. Infinity: nothing is, and time is quadratic
+/// @param widest_gap > 0; what gapes wider is an opening, not a surface. Infinity: no opening, and quadratic time
 /// @throws std::invalid_argument when widest_gap is not above 0, or the accuracy not exact. Cancelled.
 std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, const Effort& effort = {});
 

@@ -12,14 +12,15 @@
 namespace pcl_bsh {
 
 /// The numbers [0, queries.size()) by the Morton code of the query's place in the cloud's bounds; queries that are not
-/// finite come last. Each thread orders a stretch of its own: many numbers come in as many orders as there are threads.
-/// @pre checkView() has nothing against the queries
+/// finite come last. Each thread orders a stretch of its own, so the order of many queries depends on how many threads
+/// there are.
+/// @pre checkView() accepts the queries
 std::vector<std::uint32_t> queryOrder(const SphereHierarchy::Storage& cloud, const PointsView& queries,
                                       unsigned threads);
 
 /// Calls body(i, point) for each point that the view names, the i-th, in the DefaultFloatEnvironment. The body returns
-/// how many pairs of nodes would have taken as long. Calls expect(i, soon) twice before that, so that what the answer
-/// needs is fetched: early, and again soon before.
+/// how many pairs of nodes would have taken as long. Calls expect(i, soon) twice before that, to prefetch what the
+/// answer needs: early with soon = false, and shortly before with soon = true.
 /// @throws InvalidInput for an accuracy other than exact. Cancelled
 template <class Expect, class Body>
 void forEachQuery(const SphereHierarchy::Storage& cloud, const PointsView& queries, const Effort& effort,

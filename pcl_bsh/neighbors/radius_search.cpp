@@ -177,7 +177,7 @@ private:
     return false;
   }
 
-  /// Has memory fetch what the children will be looked up in, all at once.
+  /// Prefetches the nodes and points of the children that will be visited, all at once.
   static HWY_INLINE void fetch(const Voxel& voxel, const Node& node, std::uint32_t children)
   {
     if ((children & (children - 1)) == 0) return;

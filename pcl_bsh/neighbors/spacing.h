@@ -10,8 +10,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Distances from points to the nearest other place that has one, in the cloud's unit, of the coordinates as given: in
-/// double arithmetic.
+/// Distances from points to the nearest point at another place, in the cloud's unit. In double arithmetic, from the
+/// coordinates as given.
 struct Spacing {
   std::size_t samples = 0; ///< points that were asked
   double median = 0.0;     ///< 0 when no two places are sampled

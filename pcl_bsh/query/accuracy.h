@@ -36,7 +36,7 @@ struct Accuracy {
   static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
 
   /// Stops after about so many sphere tests: the same answer on every machine. Where points of both clouds are flagged,
-  /// these share them.
+  /// both clouds share the tests.
   static Accuracy nodePairs(std::uint64_t count) noexcept { return {Mode::node_pairs, static_cast<double>(count)}; }
 
   /// Stops when the seconds are spent; all parts of one call share them. In anyCollision() 15/16 of them go to the

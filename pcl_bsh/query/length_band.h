@@ -11,9 +11,9 @@
 
 namespace pcl_bsh {
 
-/// The band of a request, as lengths: what is up to `hit` may count as colliding, what is beyond `miss` may not count
-/// if it is beyond `hit`, too. As measured and exact, the two are one; a tolerance raises `hit`, and where places are
-/// uncertain it is the least reach of all pairs and `miss` the greatest.
+/// The band of a request, as lengths. A pair at a distance up to `hit` may count as colliding. A pair beyond both `hit`
+/// and `miss` must not. For measured places and exact answers, both are equal. A tolerance raises `hit`. Where places
+/// are uncertain, `hit` comes from the least reach of all pairs, and `miss` is the greatest.
 struct LengthBand {
   LengthBand(const Reach& reach, const Accuracy& accuracy)
   : hit(reach.least),
@@ -33,7 +33,7 @@ struct LengthBand {
     return band([&](double distance) { return frame.band(distance); });
   }
 
-  /// @param bandOf a distance
+  /// @param bandOf returns the band of a distance
   template <class BandOf>
   DistanceBand band(const BandOf& bandOf) const
   {
@@ -44,9 +44,9 @@ struct LengthBand {
 
   double hit;           ///< may be below 0
   double miss;          ///< >= 0
-  double surely_within; ///< the distance of what counts as colliding
-  double surely_beyond; ///< that of what does not, except where stops are early
-  bool exact = true;    ///< no pair's answer is open
+  double surely_within; ///< pairs that count as colliding are no farther apart
+  double surely_beyond; ///< pairs that do not count are no nearer, unless the walk stops early
+  bool exact = true;    ///< whether no pair may go either way
 };
 
 } // namespace pcl_bsh

@@ -31,13 +31,13 @@ public:
   /// Whether all pairs share one reach, apart from their radii.
   bool isOne() const { return areMeasured() || !(a_.uncertainties || b_.uncertainties || patches_.spacings); }
 
-  /// Whether a pair is within it. @param distance between records of a and of b
+  /// Whether a pair is within its reach. @param distance between records of a and of b
   bool holds(const RecordDistance& distance, PointPair pair) const
   {
     return (areMeasured() ? distance.compare(pair, clearance_) : distance.compare(pair, of(pair))) <= 0;
   }
 
-  /// Without what points of a pair have of their own: between which lengths it is, at most, for all places.
+  /// Bounds of the reach, whichever places are meant, without the radii, uncertainties and spacings of single records.
   double leastInCommon() const { return clearance_ - a_.uncertainty - b_.uncertainty; }
   double mostInCommon() const { return clearance_ + a_.uncertainty + b_.uncertainty; }
 
@@ -45,7 +45,7 @@ public:
   void prefetchOfA(std::uint32_t record) const { prefetch(a_, record); }
   void prefetchOfB(std::uint32_t record) const { prefetch(b_, record); }
 
-  /// Between which lengths it is for certain, whatever rounding takes. @return the lesser and the greater one
+  /// Returns bounds of a pair's reach that hold in spite of rounding, the lesser one first.
   std::pair<double, double> around(PointPair pair) const
   {
     double sum = 0.0, magnitude = 0.0;
@@ -56,7 +56,7 @@ public:
     return {sum - kDoubleMargin * magnitude, sum + kDoubleMargin * magnitude};
   }
 
-  /// Before rounding.
+  /// Returns the reach of a pair as terms, whose exact sum it is.
   RecordDistance::Sum of(PointPair pair) const
   {
     const double sign = areMeasured() ? 0.0 : places_ == MeantPlaces::certain ? -1.0 : 1.0;

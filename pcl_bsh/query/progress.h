@@ -17,18 +17,18 @@
 
 namespace pcl_bsh {
 
-/// Thrown when the time is over by work that cannot be left half done.
+/// Thrown by work that cannot be left half done, when the time is over.
 struct OutOfTime {};
 
-/// While it lives, its thread works for it: pulses of whatever is computed ask the caller. Without a report they ask
-/// the one that the thread worked for before, if any.
+/// While it lives, it is the Watcher of its thread: pulses of all computations there ask its report whether to go on.
+/// Without a report they ask the watcher that the thread had before, if any.
 class Progress final : public Watcher {
 public:
   /// @param report is called in the thread that made this object, with the fraction done in [0, 1], which never falls;
   ///   false: stop
   explicit Progress(const std::function<bool(double)>& report) : report_(report) {}
 
-  /// Begins the next part of the work: all of its steps together take the whole to this fraction.
+  /// Begins the next part of the work. @param end fraction of the whole that is done after all steps of this part
   void begin(double end, std::size_t steps)
   {
     from_ = to_;
@@ -135,7 +135,7 @@ private:
   const std::thread::id caller_ = std::this_thread::get_id();
   const StopRule* limit_ = nullptr;
   std::size_t steps_ = 0, pieces_ = 0, steps_told_ = 0;
-  double from_ = 0.0, to_ = 0.0; ///< of this part: what its first and its last step take the whole to
+  double from_ = 0.0, to_ = 0.0; ///< fractions of the whole that are done at the beginning and end of this part
   std::atomic<std::size_t> done_{0};
   std::exception_ptr thrown_; ///< by the report; set before it has stopped
   std::atomic<bool> stopped_{false};
@@ -145,7 +145,7 @@ private:
 /// Who watches a search.
 struct Watch {
   Progress* progress = nullptr; ///< null: nobody
-  double end = 0.0;             ///< what the search takes the whole to; 0: it is part of a step
+  double end = 0.0;             ///< fraction of the whole that is done after the search; 0: it is part of a step
 };
 
 /// How many pairs of nodes take as long as some work.

@@ -15,8 +15,8 @@ enum class MeantPlaces : std::uint8_t {
   measured, ///< are they within the clearance as they were measured?
   certain,  ///< are they wherever they truly are, within their uncertainties?
   possible, ///< may they be?
-  either,   ///< both of these at once, of a search that tells them apart
-  covered,  ///< may the first be within it of the other's patch of surface?
+  either,   ///< certain and possible at once, in a search that tells them apart
+  covered,  ///< may the first be within the clearance of the other's patch of surface?
 };
 
 /// How far the samples of a surface are apart at each of its records: nothing, or a float each.
@@ -51,7 +51,7 @@ struct Reach {
     most = up(most + patches.most / 2);
   }
 
-  /// The reach of spheres that hold points which may be within it.
+  /// Returns the greatest distance at which spheres, radii not included, may hold points within the reach.
   double length() const { return std::max(0.0, most); }
 
   double least; ///< below 0 where no pair without radii may be near enough

@@ -48,7 +48,7 @@ public:
            Clock::now() + std::chrono::duration<double>(seconds_per_point * static_cast<double>(points)) < deadline_;
   }
 
-  /// Whether a walk may go below voxels, and has the time to build them. @param points() of these
+  /// Whether a walk may go below voxels, and has the time to build them. @param points() how many are to be built
   template <class Points>
   bool mayEnter(const Points& points) const
   {
@@ -80,8 +80,8 @@ private:
   Clock::time_point deadline_ = Clock::time_point::max();
 };
 
-/// Tells a walk whether its budget is spent, so that it has to end now. A clock costs a fifth of a step, so that it
-/// looks at it seldom while much time is left, and more and more often towards the end.
+/// Tells a walk whether its budget is spent, so that it has to end now. Reading a clock costs a fifth of a step. So the
+/// clock is read seldom while much time is left, and more and more often towards the end.
 class StopCheck {
 public:
   /// @param tested counts the walk's sphere tests
@@ -98,8 +98,8 @@ public:
 private:
   using Clock = StopRule::Clock;
 
-  /// Whether the time is over; if not, decides when to look again: after half of the steps that the rest is good for,
-  /// were they as slow as the slowest of late.
+  /// Whether the time is over. If not, decides when to look again: after half of the steps for which the time left
+  /// suffices, if each is as slow as the slowest of late.
   bool look()
   {
     constexpr std::uint64_t most = 64; // a step may be slow: a page of memory, a leaf of many near pairs

@@ -17,7 +17,8 @@ inline bool areUncertain(const Placed& a, const Placed& b)
   return a.hierarchy().view().isUncertain() || b.hierarchy().view().isUncertain();
 }
 
-/// Where the points of two clouds are that collide for certain, and of those that may.
+/// Returns the places to mean in a search for what collides for certain, and in one for what may collide: the measured
+/// places if no point is uncertain.
 inline MeantPlaces certainPlaces(const Placed& a, const Placed& b)
 {
   return areUncertain(a, b) ? MeantPlaces::certain : MeantPlaces::measured;
@@ -35,7 +36,8 @@ inline Accuracy halfOf(Accuracy accuracy)
 }
 
 /// Points that may collide are undecided, unless they do for certain.
-/// @param flags of what may collide, then the verdicts. @param certain of what does
+/// @param flags of points that may collide; become the verdicts. @param certain of points that collide for certain.
+/// @param colliding, undecided become the numbers of these points
 inline void withhold(std::vector<Verdict>& flags, const std::vector<Verdict>& certain, std::size_t& colliding,
                      std::size_t& undecided)
 {

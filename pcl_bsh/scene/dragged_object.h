@@ -46,14 +46,14 @@ struct NearestObject {
 struct DragStep {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_world_object
   bool held = false;                                      ///< the response keeps it from where it was wanted
-  /// By contactManifold() with the dragged object as a, of all others that it is tested against. The clearance is
-  /// their thickness: a gap is what is left of the way.
+  /// By contactManifold(), between the dragged object as a and all others that it is tested against. The clearance is
+  /// the thickness: a gap is the distance beyond it.
   std::vector<Contact> contacts;
   std::optional<NearestObject> nearest; ///< nothing: it is tested against no point
   Work work;                            ///< of contacts and distances
 };
 
-/// Not to be used from several threads at once. Colliders of all clouds are made when it is.
+/// Not to be used from several threads at once. The constructor makes colliders of all clouds.
 class DraggedObject {
 public:
   /// @param scene must outlive it, and keep its objects and their points. Its other effects are computed in each step
@@ -67,7 +67,7 @@ public:
   /// the scene: its time passes by a second. @throws as Scene::step() does; then nothing has moved
   const DragStep& moveTo(const Eigen::Isometry3d& T_world_object);
 
-  /// Looks about the object where it is: for one that something else has moved.
+  /// Finds contacts and the nearest object where the object is now, for one that something else has moved.
   const DragStep& look();
 
 private:

@@ -72,7 +72,7 @@ struct Effects {
 
   bool has(Effect effect) const noexcept; ///< whether it is listed
   bool none() const noexcept;             ///< whether a query would compute nothing
-  bool ofPairs() const noexcept;          ///< whether one is about pairs of objects
+  bool ofPairs() const noexcept;          ///< whether a listed one is about pairs of objects
 };
 
 /// Counted cost of an effect, equal for any number of threads, and its time.
@@ -167,7 +167,7 @@ struct SweptMotion {
 /// An object that did more since the last query than first_contact and swept look at.
 struct UnsweptObject {
   ObjectId object = 0;
-  bool added = false;    ///< since then, and a query, no step, sees it first: it is looked at where it stands
+  bool added = false;    ///< since then, and seen first by a query, not a step: it is looked at where it stands
   bool reshaped = false; ///< its points have changed: how they got from their former places is not looked at
   bool detoured = false; ///< it may have gone another way than its leg: its pose, or a part's, was set before it moved
                          ///< on by itself, or a response or gravity led it (Outcome::legs)
@@ -177,8 +177,7 @@ struct UnsweptObject {
 struct SceneResult {
   double time = 0.0; ///< of the scene, seconds
   std::vector<CollidingPair> any;
-  /// Pairs of `any`, or where a == b of `self`, that may collide or not: accuracy and uncertainty leave it
-  /// open.
+  /// Pairs of `any`, and (where a == b) of `self`, that may collide or not: accuracy or uncertainty leaves it open.
   std::vector<PartPair> undecided;
   std::vector<FlaggedPart> flags;
   std::vector<DistantPair> distance;

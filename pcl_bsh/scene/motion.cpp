@@ -50,8 +50,8 @@ struct At {
     if (after == 0) return motion.poses.front();
     const auto i = static_cast<std::size_t>(after);
     if (i == motion.times.size() || motion.times[i - 1] == time) return motion.poses[i - 1];
-    // With rotations to rounding: waypoints that are just rigid enough may have poses between that are not, with a
-    // part.
+    // Rotations are made rigid within rounding: between waypoints that are just rigid enough, the pose of a part in the
+    // world might not be.
     const Eigen::Isometry3d from = nearestRigid(motion.poses[i - 1]), to = nearestRigid(motion.poses[i]);
     const Eigen::Vector3d turn = shorterTurnOfRotations(from.linear(), to.linear());
     const double s = (time - motion.times[i - 1]) / (motion.times[i] - motion.times[i - 1]);

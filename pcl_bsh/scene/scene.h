@@ -24,8 +24,8 @@
 // The inside of a solid part collides, at any clearance: the records that it holds collide, and so do the triangles of
 // the body that holds them. Smallest distances are negative then, the depth of the deepest. A first contact of a motion
 // that begins inside is its first instant, and a response is stuck there (Outcome). Swept motion flags the records held
-// at any instant, and each body that holds one then or comes within the tolerance of that. Contacts are those of
-// surfaces.
+// at any instant, and each body that then holds a record, or comes within the tolerance of holding one. Contacts are
+// those of surfaces.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -49,7 +49,7 @@ struct ScenePart {
   std::string name;
   std::shared_ptr<SphereHierarchy> hierarchy;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_object_cloud
-  bool solid = false; ///< of triangles: it counts with what they enclose, and they must close
+  bool solid = false; ///< triangles only: the part counts with what they enclose, and they must close
 };
 
 /// An object: parts that move together, where they stand, and how they move.
@@ -136,8 +136,8 @@ public:
   /// T_world_cloud of a part: the very pose that queries are given.
   const Eigen::Isometry3d& worldPose(ObjectId object, std::uint32_t part = 0) const;
 
-  /// Takes an object, or a part within its object, somewhere, whatever is in between; ends nothing of its motion, which
-  /// goes on from there. `first_contact` and `swept` look at the way there, unless no query has seen the object yet.
+  /// Puts an object, or a part within its object, at a pose, whatever is in between. The object's motion goes on from
+  /// there. `first_contact` and `swept` look at the way there, unless no query has seen the object yet.
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void setPartPose(ObjectId object, std::uint32_t part, const Eigen::Isometry3d& pose);
   void setMotion(ObjectId object, const Motion& motion);

@@ -6,7 +6,7 @@
 
 namespace pcl_bsh {
 
-/// And what they leave out.
+/// Lists the motions that swept effects look at, and the objects of which they leave something out.
 void Scene::State::listSweptMotions()
 {
   std::vector<ObjectId> objects = moved;

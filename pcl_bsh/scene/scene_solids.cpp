@@ -97,13 +97,14 @@ void SceneSolids::turn(DistanceResult& found, const StandingPart& a, const Stand
   turn_by(a, b, false);
 }
 
-/// A place that comes into a body, or leaves it, meets its surface. One that comes out of a hollow meets the surface of
-/// the hollow alone, and the bodies round it hold it from then on: they wound round it before.
+/// A place that comes into a body, or leaves it, meets its surface. A place that comes out of a hollow meets the
+/// surface of the hollow alone, and from then on the bodies round the hollow hold it. Their own surfaces already wind
+/// round it at the beginning.
 std::vector<std::uint32_t> SceneSolids::entered(const SweptPart& solid, const SweptPart& other, double tolerance,
                                                 Work& work) const
 {
   const SphereHierarchy* places = &known_.at(&other.hierarchy).queried->places();
-  std::optional<const SphereHierarchy> middles; // of balls, which are enclosed where these are
+  std::optional<const SphereHierarchy> middles; // of balls: a ball is enclosed where its middle is
   PointsView view = places->view();
   if (std::exchange(view.radii, nullptr)) places = &middles.emplace(view);
   const Reach reach(0.0, solid.hierarchy.storage().uncertainty, other.hierarchy.storage().uncertainty,

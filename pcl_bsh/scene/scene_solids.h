@@ -21,35 +21,35 @@ struct StandingPart {
   bool solid;
 };
 
-/// The solids among a scene's hierarchies, and what of the others they are asked about. Nothing is kept of a scene
-/// without solids. Queries of one state may run side by side.
+/// The solids among a scene's hierarchies, and the records of all hierarchies that solids are asked about. Nothing is
+/// kept of a scene without solids. Queries of one state may run side by side.
 class SceneSolids {
 public:
   bool none() const noexcept { return !any_; }
 
-  /// Makes what is not made yet of a solid. @throws InvalidInput as Solid does
+  /// Makes the Solid and the bodies of a hierarchy, unless they are made. @throws InvalidInput as Solid does
   void addSolid(const std::shared_ptr<SphereHierarchy>& hierarchy);
 
-  /// Before queries, of each part's hierarchy: makes what they need, anew where points have changed since. Does so once
-  /// a scene has a solid. @throws InvalidInput
+  /// Makes what queries need of a hierarchy, anew where points have changed since. Called for each part before queries,
+  /// once a scene has a solid. @param solid whether the part is one. @throws InvalidInput
   void follow(const std::shared_ptr<SphereHierarchy>& hierarchy, bool solid);
 
-  /// A record of a and one of b of which the one is enclosed, and the other is a triangle of a body that holds it,
-  /// where the surfaces are known not to touch.
-  /// @param within for parts whose places are uncertain, the clearance: only what is enclosed wherever they truly are;
-  ///   none: what is enclosed as measured
+  /// Returns a record of a and a record of b, where the surfaces are known not to touch. One of them is enclosed, and
+  /// the other is a triangle of a body that holds it. Nothing where no record is enclosed.
+  /// @param within for parts whose places are uncertain, the clearance: only records count that are enclosed wherever
+  ///   they truly are; nothing: records that are enclosed as measured
   std::optional<PointPair> find(const StandingPart& a, const StandingPart& b, std::optional<double> within,
                                 Work& work) const;
 
-  /// To the verdicts of both surfaces, at a pose. @param found both sides' flags
+  /// Adds what solids hold to the verdicts of both surfaces, at a pose. @param found flags of both sides
   void addTo(FlagsResult& found, const StandingPart& a, const StandingPart& b) const;
 
-  /// The deepest that is enclosed.
+  /// Turns the smallest distance into the depth of the deepest enclosed record, less than 0, where there is one.
   void turn(DistanceResult& found, const StandingPart& a, const StandingPart& b) const;
 
-  /// Triangles, ascending, of each body of a solid that may hold a place of the other at an instant of their motion.
-  /// Bodies in which that place stays throughout are left out: they hold it at the beginning. A body that does not hold
-  /// the place comes within the tolerance of it.
+  /// Returns the triangles, ascending, of each body of a solid that may hold a place of the other part at an instant of
+  /// their motion. Bodies in which that place stays throughout are left out: they hold it at the beginning. A listed
+  /// body that does not hold the place comes within the tolerance of it.
   std::vector<std::uint32_t> entered(const SweptPart& solid, const SweptPart& other, double tolerance,
                                      Work& work) const;
 

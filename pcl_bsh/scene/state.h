@@ -50,8 +50,8 @@ struct Body {
   std::uint64_t last_version = 0;                   ///< at the last query; 0: there was none
   bool reshaped = false;                            ///< since the last query its points have changed
   bool detoured = false;                            ///< since the last query it went another way than in one leg
-  std::uint64_t placed_version = 0;                 ///< in the grid
-  bool placed_swept = false;                        ///< with the motion to its place
+  std::uint64_t placed_version = 0;                 ///< when it was placed in the grid
+  bool placed_swept = false;                        ///< whether it was placed with the motion to its pose
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(); ///< since the last query, full turns included
   double last_motion = 0.0;                         ///< how far its points went between the last two queries, at most
   Eigen::Isometry3d step_pose;                      ///< before the step in progress
@@ -61,7 +61,7 @@ struct Body {
   /// Centre of its box, in the object's frame: the point that moves straight.
   Eigen::Vector3d center() const { return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center(); }
 
-  /// Since the last query.
+  /// Whether a part has moved within the object since the last query.
   bool isPartMoved(std::size_t part) const
   {
     return !last_parts.empty() && last_parts[part].matrix() != object.parts[part].pose.matrix();
@@ -114,7 +114,8 @@ public:
     return bodies[parts.a].object.parts[parts.part_a].solid || bodies[parts.b].object.parts[parts.part_b].solid;
   }
 
-  /// An enclosed record of two standing parts whose surfaces have this verdict; nothing where the surfaces collide.
+  /// Returns an enclosed record of two standing parts, and a triangle of a body that holds it. Nothing where no record
+  /// is enclosed. @param surfaces the verdict of their surfaces, which is not colliding
   std::optional<PointPair> enclosedPair(const StandingPart& a, const StandingPart& b, Verdict surfaces,
                                         double clearance, Work& work) const;
   void followSolids(); ///< makes what queries of solids need
@@ -126,7 +127,7 @@ public:
   void setPose(ObjectId object, const Eigen::Isometry3d& pose);
   void updateWorld(Body& body);
   void shapeChanged(ObjectId object);  ///< its parts or their points are elsewhere in it
-  void pointsChanged(ObjectId object); ///< the same, and its points have not got there with a part
+  void pointsChanged(ObjectId object); ///< the same, where points have moved by themselves, not with a part
   void followPoints(); ///< forgets what is known of points that were changed since the last call, also by another scene
 
   SceneResult step(double dt);
@@ -141,7 +142,7 @@ public:
 
   SceneOptions options;
   mutable std::optional<Progress> progress; ///< of the query or step in progress, and none between them
-  double share = 0.0;                       ///< what the effect that is computed takes the whole to
+  double share = 0.0;                       ///< of the whole that is done at the end of the effect that is computed
   PairRules rules;
   SceneSolids solids;
   std::vector<Body> bodies;

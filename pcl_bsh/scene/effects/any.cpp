@@ -111,7 +111,7 @@ bool Scene::State::remembersAny(BroadPair& pair) const
   return memory.colliding;
 }
 
-/// As `any` has just found.
+/// Whether the effect `any` has just found that the pair is free.
 bool Scene::State::isKnownFree(const BroadPair& pair) const
 {
   return options.effects.any && !pair.memory.colliding && !pair.memory.undecided;

@@ -76,7 +76,7 @@ void Scene::State::findFirstContacts(EffectCost& spent)
         if (areSolid(parts) && !(surely && surely->s == 0.0)) { // a motion that begins inside meets at once
           const StandingPart at_a{a.at(0), bodies[parts.a].object.parts[parts.part_a].solid};
           const StandingPart at_b{b.at(0), bodies[parts.b].object.parts[parts.part_b].solid};
-          const bool touching = met && met->s == 0.0; // then it is the surfaces that may
+          const bool touching = met && met->s == 0.0; // then the surfaces may collide
           if (const auto enclosed = enclosedPair(at_a, at_b, touching ? Verdict::undecided : Verdict::free,
                                                  pair.clearance, pair.memory.work)) {
             surely = PairContact{0.0, *enclosed};

@@ -15,7 +15,7 @@ namespace pcl_bsh {
 
 constexpr double scene_rounding = 0x1p-40; ///< relative; far above that of a few operations in double
 
-/// Calls decide(i) for each pair, in parallel, and adds up what the pairs note of it.
+/// Calls decide(i) for each pair, in parallel, and adds up the costs that the pairs' memories note.
 template <class Decide>
 void Scene::State::eachPair(const std::vector<BroadPair*>& pairs, EffectCost& cost, const Decide& decide)
 {

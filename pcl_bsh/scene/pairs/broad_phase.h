@@ -14,11 +14,11 @@
 
 namespace pcl_bsh {
 
-/// How two objects stood when something was found of them; 0: nothing was.
+/// The versions of two objects (Body::version) at which something was found about them; 0: nothing was.
 struct Versions {
   std::uint64_t a = 0, b = 0;
 
-  /// Becomes these. @return whether it was others
+  /// Takes over the present versions. @return whether they are others than before
   bool follow(std::uint64_t now_a, std::uint64_t now_b)
   {
     const bool same = a == now_a && b == now_b;
@@ -40,7 +40,7 @@ struct PairMemory {
   bool has_witness = false;
   double apart = 0.0; ///< no points were nearer than this when the objects stood at the two poses below
   Eigen::Isometry3d apart_a, apart_b;
-  unsigned patience = 0; ///< queries to come before another wider one is tried
+  unsigned patience = 0; ///< queries to come before a wider clearance is tried again
 
   Versions of_distance;
   bool within = false;
@@ -63,7 +63,8 @@ public:
   /// Forgets everything. @param edge of a voxel; infinity: all objects share one.
   void reset(double edge, const PairRules& rules);
 
-  /// An object is now in these boxes, grown by what pairs may be apart and yet of interest.
+  /// Puts an object into the voxels of these boxes. @param boxes around the object, grown by half of the distance at
+  /// which pairs are still of interest
   void place(ObjectId object, const std::vector<Box3>& boxes, BroadPhaseCost& cost);
 
   /// How many voxels a box reaches over, at most 2^40.
@@ -76,10 +77,10 @@ public:
   /// The pairs of one object, in no order.
   const std::vector<BroadPair*>& pairsOf(ObjectId object) const { return places_[object].pairs; }
 
-  /// Pairs that share no voxel any more are kept, with shared == 0, until no list refers to them.
+  /// Drops the pairs that share no voxel any more. Until then they are kept, with shared == 0, as lists refer to them.
   void dropParted();
 
-  /// Objects that have a voxel in common with the box, ascending. Some more do no harm.
+  /// Finds the objects that have a voxel in common with the box, ascending. There may be some more.
   void around(const Box3& box, std::vector<ObjectId>& objects) const;
 
   void forget(ObjectId object); ///< what pairs remember, after its points have changed

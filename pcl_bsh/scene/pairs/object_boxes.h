@@ -39,7 +39,7 @@ struct Box3 {
   }
 };
 
-/// The box of a box under a pose.
+/// Returns a box around a box that a pose has moved.
 Box3 moved(const Box3& box, const Eigen::Isometry3d& pose);
 
 /// How far places of a part may be from its points: their radii and uncertainties.

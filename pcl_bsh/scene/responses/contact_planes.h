@@ -9,7 +9,7 @@
 
 namespace pcl_bsh {
 
-/// ContactPlanes that a sliding object may not cross: it has met them and has not moved off since.
+/// The planes that a sliding object may not cross: it has met them and has not moved off since.
 class ContactPlanes {
 public:
   void forget() { count_ = 0; }

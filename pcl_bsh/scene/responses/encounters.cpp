@@ -91,8 +91,8 @@ bool Mover::collectFrom(ObjectId other, double clearance, const Passage& passage
   return true;
 }
 
-/// Whether the object begins inside of the other one, or round it. It has not met its surface since, so it is asked
-/// once.
+/// Whether the object begins inside of the other one, or round it. This is asked once: since then the object has not
+/// met the other's surface.
 bool Mover::isInside(ObjectId other)
 {
   if (state_.solids.none() || std::find(outside_of_.begin(), outside_of_.end(), other) != outside_of_.end())

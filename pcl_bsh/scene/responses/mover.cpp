@@ -20,9 +20,9 @@ constexpr int kMostBounces = 32;                  // of these, before points are
 constexpr std::size_t kFewPairs = 1 << 11;        // of points that may meet on a way: it is followed at once
 constexpr std::uint64_t kMostLeafPairs = 1 << 13; // compared for a way
 constexpr double kShortWay = 4.0;                 // tolerances: on a shorter way, more points are followed, too
-constexpr double kFirstWay = 0.25;                // of the object's size: what lies on something is mostly held at once
-constexpr double kLonger = 16.0;                  // times as long is the way after one on which nothing was met
-constexpr double kSlack = 0.125;                  // of a way: so far beside it, a slide may bend
+constexpr double kFirstWay = 0.25; // of the object's size: an object that lies on something is mostly held at once
+constexpr double kLonger = 16.0;   // the way after one on which nothing was met is so many times as long
+constexpr double kSlack = 0.125;   // of a way's length: how far beside it a slide may bend
 
 } // namespace
 
@@ -60,8 +60,8 @@ double Mover::firstWay() const
   return std::max(kFirstWay * 2.0 * body_.box.half().norm(), kShortWay * tolerance_);
 }
 
-/// Along one motion from s = begin to end, in halves where too many points can meet.
-/// @param most that a point goes in its first part @param done s of the last pose taken
+/// Follows one motion from s = begin to end, in halves where too many points can meet.
+/// @param most how far a point may go in the first part @param done becomes s of the last pose taken
 bool Mover::follow(const ObjectMotion& motion, double begin, double end, double most, double& done)
 {
   const double length = end - begin;
@@ -145,7 +145,7 @@ bool Mover::translate(const Eigen::Isometry3d& target, bool slide)
   return false;
 }
 
-/// How far a way leads before it leaves the passage. @param gone what the object went since it was collected
+/// Returns how far a direction leads before it leaves the passage. @param gone the shift since pairs were collected
 double Mover::roomIn(const Passage& passage, const Eigen::Vector3d& gone, const Eigen::Vector3d& direction)
 {
   const double length = passage.length(), slack = passage.ways.stray;
@@ -160,8 +160,8 @@ double Mover::roomIn(const Passage& passage, const Eigen::Vector3d& gone, const 
   return std::max(room, 0.0) * (1.0 - kDoubleMargin);
 }
 
-/// On from where points were collected, within the passage. @param left what is left of the motion, shortened and bent
-/// by what is met @param target the pose at its end
+/// Moves on from where pairs were collected, within the passage.
+/// @param left the rest of the motion; becomes shorter, and bent by what is met @param target the pose at its end
 Mover::Walked Mover::walk(Eigen::Vector3d& left, const Passage& passage, const Eigen::Isometry3d* target, bool slide,
                           ContactPlanes& planes)
 {
@@ -264,7 +264,7 @@ std::optional<double> Mover::contactOn(const RigidMotion& motion, const Eigen::V
   return is_quick ? timeOfContact(apart, way, zone) : contactOn(motion, e, 0.0, end);
 }
 
-/// At the object's pose.
+/// Returns the mover's record, at its pose.
 Corners Mover::mineOf(const Encounter& e) const
 {
   return placedBy(body_.world[e.part], cornersOf(body_.object.parts[e.part].hierarchy->view(), e.pair.a));
@@ -280,8 +280,9 @@ Separation Mover::separationOf(const Encounter& e) const
   return pcl_bsh::separationOf(mineOf(e), othersOf(e));
 }
 
-/// Across a face, where that keeps them as far apart as they may pass each other: what comes over the edge between two
-/// triangles of a floor meets no step there.
+/// Returns the direction across which a pair is in contact. It is the normal of a face, if the pair is as far apart
+/// along it as pairs that pass each other have to be. So an object that slides over the edge between two triangles of a
+/// floor meets no step there. Otherwise it is the direction between the nearest places.
 Eigen::Vector3d Mover::normalOf(const Encounter& e) const
 {
   const Corners mine = mineOf(e), others = othersOf(e);

@@ -28,11 +28,11 @@ public:
   const Eigen::Isometry3d& pose() const { return body_.object.pose; }
   Eigen::Vector3d center() const { return pose() * body_.center(); }
 
-  /// To the target or to the first contact, the centre on a straight line. @return whether it got there
+  /// Moves to the target or to the first contact, the centre on a straight line. @return whether it reached the target
   bool follow(const Eigen::Isometry3d& target, const Eigen::Vector3d& turn);
 
-  /// To the target, which is turned as it is, or to the first contact, or, sliding, along what it meets. @return
-  /// whether it got there
+  /// Moves without turning, to the target or to the first contact, or, sliding, along what it meets. @return whether it
+  /// reached the target
   bool translate(const Eigen::Isometry3d& target, bool slide);
 
 private:
@@ -46,7 +46,7 @@ private:
     double clearance = 0.0;      ///< of the objects
     bool of_points = true;       ///< of both; else one is a triangle
     Eigen::Vector3d apart;       ///< from the other's point to the mover's, at the pose they were collected at
-    std::optional<double> meets; ///< s of their contact, where the first of all was sought and it may be that
+    std::optional<double> meets; ///< s of their contact, where the first contact of all is sought and this may be it
   };
 
   /// A motion from s = begin to end of which only the way to the first contact counts.
@@ -62,7 +62,7 @@ private:
   struct Passage {
     StraightWays ways;                 ///< of its places, in its own frame
     std::size_t most = 0;              ///< pairs of points that may meet on it, with one other part
-    std::uint64_t most_leaf_pairs = 0; ///< compared to find them
+    std::uint64_t most_leaf_pairs = 0; ///< that may be compared to find them
     std::optional<FirstContact> until_met = {};
 
     double length() const { return ways.shift.norm(); } ///< where it does not turn
@@ -103,9 +103,9 @@ private:
   std::vector<ObjectId> around_;
   std::vector<Encounter> encounters_;
   double first_contact_ = 1.0; ///< s, where it is sought
-  std::size_t near_ = 0;       ///< pairs that were found for them, of the part with most
-  Eigen::Isometry3d collected_at_ = Eigen::Isometry3d::Identity(); ///< the pose that their places hold for
-  std::vector<ObjectId> outside_of_;                               ///< of whose solids it is outside
+  std::size_t near_ = 0;       ///< pairs that were found, of the two parts with most
+  Eigen::Isometry3d collected_at_ = Eigen::Isometry3d::Identity(); ///< the pose at which encounters were collected
+  std::vector<ObjectId> outside_of_;                               ///< objects that isInside() has ruled out
 };
 
 } // namespace pcl_bsh

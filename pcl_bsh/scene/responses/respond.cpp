@@ -20,7 +20,7 @@ struct Goal {
   Eigen::Vector3d turn; ///< of the motion there
 };
 
-/// Turned as the goal, about the centre of its box, but still where it is.
+/// Returns the pose of a body that is turned as the goal, while the centre of its box is still where it is.
 Eigen::Isometry3d turnedInPlace(const Body& body, const Goal& goal)
 {
   Eigen::Isometry3d pose = goal.pose;

@@ -138,7 +138,7 @@ public:
   double turningSpeed() const { return rim_; } ///< of any corner at most
   double bend() const { return bend_; }        ///< no acceleration is larger
 
-  /// At an instant, seen from where the centre is at `from`.
+  /// Returns the corners at an instant, in coordinates that have the centre at `from`.
   Corners at(double s, const Eigen::Vector3d& from) const
   {
     Corners corners{{}, count_};
@@ -149,7 +149,7 @@ public:
     return corners;
   }
 
-  /// By turning, of a place that is so far from the centre.
+  /// Returns the velocity by the turn, of a place at this vector from the centre.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& spoke) const { return turn_.cross(spoke); }
 
 private:
@@ -159,7 +159,7 @@ private:
   double drift_ = 0.0, rim_ = 0.0, bend_ = 0.0;
 };
 
-/// Two of them, of which one at least is a triangle, seen from the second's centre.
+/// Two records on their courses, at least one of them a triangle, seen from the second's centre.
 class MovingCornersPair {
 public:
   MovingCornersPair(const CornersMotion& a, const CornersMotion& b)
@@ -187,8 +187,8 @@ public:
     closing = -vectorOf(apart_.direction).dot(velocityOfA(apart_.place_a) - velocityOfB(apart_.place_b));
   }
 
-  /// For this long they stay farther apart than `limit`, or than now: each pair of corners stays so along the direction
-  /// along which they are apart now, though the motion turns.
+  /// For this long they stay farther apart than `limit`, or than now if that is less. Each pair of corners stays
+  /// that far apart along the present direction between the records, though the motion turns.
   double safeStep(double limit) const
   {
     const double gap = distance - limit;
@@ -264,7 +264,8 @@ bool comeWithin(const RigidMotion& motion_a, const Point3& p, const RigidMotion&
   return ((dot(apart, apart) - square) * dot(shift, shift) - along * along).sign() <= 0;
 }
 
-/// In steps that are safe. @param rounding of a distance
+/// Finds the first contact, in steps that certainly have no contact before their end.
+/// @param rounding bounds the rounding of a distance
 template <class MovingPair>
 std::optional<double> advance(MovingPair& moving, const ContactZone& zone, double rounding, double begin, double end)
 {

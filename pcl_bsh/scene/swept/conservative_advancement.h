@@ -12,10 +12,10 @@
 
 namespace pcl_bsh {
 
-/// How near is near: two points within `reach` collide. A pair that approaches is halted at the outer distance; one
-/// that is between outer and inner already is let pass as long as it stays outside of inner. So what has been halted
-/// can move along and away, and rounding, which is far below the distance from inner to reach, never leads to a
-/// collision.
+/// The distances at which a pair collides or is halted. Two points within `reach` collide. A pair that approaches is
+/// halted at the outer distance. A pair that starts between outer and inner may pass as long as it stays outside of
+/// inner. So a halted object can move along and away. Rounding is far below the distance from inner to reach, and never
+/// leads to a collision.
 struct ContactZone {
   static constexpr double kNowRounding = 32 * kDoubleUnit; ///< of a distance, as it is measured
 
@@ -38,7 +38,7 @@ struct ContactZone {
   }
 };
 
-/// The reach of a zone: no less than the sum of its terms, of which rounding may take something.
+/// Returns the reach of a zone: the sum of its terms, rounded so that it is no less than the exact sum.
 template <class Terms>
 double reachOf(const Terms& terms)
 {

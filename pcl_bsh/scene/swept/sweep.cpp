@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both questions in the same way: the pairs of points that can meet at all within an interval are collected, and each
-// is followed by itself. Too many of them: the interval is halved, and they get fewer.
+// First contacts and flags are found in one way. The pairs of points that can meet at all within an interval are
+// collected, and each pair is followed by itself. Where they are too many, the interval is halved, and they get fewer.
 #include <pcl_bsh/flags/collision_flags.h>
 #include <pcl_bsh/geometry/rounding.h>
 #include <pcl_bsh/hierarchy/storage.h>
@@ -67,8 +67,8 @@ private:
     return angle_ * length > kWideTurn && found.pairs.size() > kFewToTurn;
   }
 
-  /// Calls visit(begin, end, found) with the pairs that can meet in an interval: in its halves, in their order, where
-  /// they are too many, until it returns true.
+  /// Calls visit(begin, end, found) with the pairs that can meet in an interval. Where these are too many, calls it for
+  /// the halves, in their order, until it returns true.
   template <class Visit>
   bool eachPart(double begin, double end, const Visit& visit)
   {
@@ -157,7 +157,7 @@ private:
   const double clearance_;
   const MeantPlaces places_;
   const PairReach reach_of_pairs_;
-  const double farthest_; ///< any pair's reach, less its radii
+  const double farthest_; ///< no pair has a greater reach, radii not included
   const double tolerance_, angle_;
   Work& work_;
   std::vector<Verdict>*flags_a_ = nullptr, *flags_b_ = nullptr;
