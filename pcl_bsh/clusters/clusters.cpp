@@ -130,7 +130,7 @@ private:
       });
   }
 
-  /// A leaf compares one point of a crowded place, which answers for all of them.
+  /// Unites points of a leaf that coincide: only one of them is compared, and answers for all.
   void uniteCoincident(const LeafRange& leaf, std::uint32_t points)
   {
     const std::uint32_t* records = leaf.voxel->records() + leaf.begin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many motions: what collides at a pose, then the motions that are left, one after the other.
+// Many motions: first collisions at their poses, then the motions that are left, one after the other.
 #include <pcl_bsh/many_poses/collide_on_motions.h>
 
 #include <pcl_bsh/base/float_environment.h>

@@ -24,9 +24,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// that is within [s / inverse_below - slack, s * above + slack].
 ///
 /// With rho the frame's error and any e > 0, (sqrt(s) + rho)^2 <= s (1 + e) + rho^2 (1 + 1/e); the lower bound is
-/// alike. Here e = kNeighborShare; as much again pays for float arithmetic, and twice as much below. Where floats bound
-/// nothing, the query is at 0, every upper bound is infinite and nothing is left out. This is also so where units are
-/// so far apart that upper bounds overflow. None of these numbers is NaN, nor are those that the walk derives.
+/// alike. Here e = kNeighborShare, and as much again pays for float arithmetic. The lower bound has twice both. Where
+/// floats bound nothing, the query is at 0, every upper bound is infinite and nothing is left out. This is also so
+/// where units are so far apart that upper bounds overflow. None of these numbers is NaN, nor are those that the walk
+/// derives.
 struct NearestFrame {
   NearestFrame(const PointFrame& point, double search_unit)
   {

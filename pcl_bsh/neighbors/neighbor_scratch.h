@@ -13,8 +13,8 @@ namespace pcl_bsh {
 
 /// Memory of one query, lent by a ScratchLease.
 struct NeighborScratch {
-  LargeArray<std::uint32_t> records; ///< what was found
-  LargeArray<float> squared; ///< how far it is: perhaps an upper bound while searching, then the value of the answer
+  LargeArray<std::uint32_t> records; ///< the records found
+  LargeArray<float> squared; ///< their squared distances: while searching perhaps upper bounds, then as in the answer
   LargeArray<const Voxel*> voxels; ///< of the candidates for the nearest, in the candidates' order
 
   // of sorting

@@ -13,7 +13,7 @@ namespace pcl_bsh {
 
 /// The band of a request, as lengths. A pair at a distance up to `hit` may count as colliding. A pair beyond both `hit`
 /// and `miss` must not. For measured places and exact answers, both are equal. A tolerance raises `hit`. Where places
-/// are uncertain, `hit` comes from the least reach of all pairs, and `miss` is the greatest.
+/// are uncertain, `hit` is the least reach of all pairs, and `miss` is the greatest.
 struct LengthBand {
   LengthBand(const Reach& reach, const Accuracy& accuracy)
   : hit(reach.least),

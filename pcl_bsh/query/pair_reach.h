@@ -41,7 +41,7 @@ public:
   double leastInCommon() const { return clearance_ - a_.uncertainty - b_.uncertainty; }
   double mostInCommon() const { return clearance_ + a_.uncertainty + b_.uncertainty; }
 
-  /// Points in the order of a tree are anywhere in the caller's arrays: asks for those that will be read soon.
+  /// Prefetches what will be read soon of a record: records in the order of a tree are anywhere in the caller's arrays.
   void prefetchOfA(std::uint32_t record) const { prefetch(a_, record); }
   void prefetchOfB(std::uint32_t record) const { prefetch(b_, record); }
 

@@ -9,8 +9,8 @@
 
 namespace pcl_bsh {
 
-/// Asks for what will be read soon of a record. Points in the order of a tree are anywhere in the caller's arrays,
-/// where each would be waited for.
+/// Prefetches what will be read soon of a record. Records in the order of a tree are anywhere in the caller's arrays,
+/// so that each read would wait for memory.
 inline void prefetch(const PointsView& view, std::uint32_t record)
 {
   const auto* const base = static_cast<const unsigned char*>(view.data) + view.stride * record;

@@ -68,7 +68,7 @@ public:
     throwIfStopped();
   }
 
-  /// So much of the whole is done, and no part of it begun. @throws Cancelled
+  /// So much of the whole is done, and no part of it is in progress. @throws Cancelled
   void tellWhole(double share)
   {
     from_ = to_ = share;
@@ -114,7 +114,7 @@ private:
   void tell(std::size_t done)
   {
     if (stopped_) return;
-    if (!report_) { // the steps of a small query within another one ask nobody: many of them count as much work
+    if (!report_) { // a query within another one: every 64 of its steps ask the other's watcher
       if ((steps_told_ += kPairsOfPulse / 64) < kPairsOfPulse || !watched_.before()) return;
       steps_told_ = 0;
       return watched_.before()->ask();

@@ -35,7 +35,7 @@ struct PatchSpacings {
 };
 
 /// How far a pair may be apart, less its radii: the clearance, less the uncertainties of both points for a certain
-/// answer, plus them for a possible one. Between these two, whatever the pair.
+/// answer, plus them for a possible one. It is in [least, most] for all pairs.
 struct Reach {
   Reach(double clearance, const UncertaintyRange& a, const UncertaintyRange& b, MeantPlaces places,
         const PatchSpacings& patches = {})

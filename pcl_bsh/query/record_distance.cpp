@@ -95,7 +95,7 @@ std::optional<std::array<ExactPlane, 2>> RecordDistance::planesBetween(PointPair
 {
   if (!ofTriangles() || a_->areBalls() || b_->areBalls()) return std::nullopt;
   auto planes = withTriangles(records, [&](const auto& pair) { return distanceOfPair().planesBetween(pair); });
-  if (planes && !b_->triangles) std::swap((*planes)[0], (*planes)[1]); // what is a point came first
+  if (planes && !b_->triangles) std::swap((*planes)[0], (*planes)[1]); // the point came first
   return planes;
 }
 

@@ -45,7 +45,7 @@ public:
     b_(&b),
     points_(pose_a, pose_b)
   {
-    if (a.triangles) to_a_.emplace(pose_b, pose_a); // what is a point comes first
+    if (a.triangles) to_a_.emplace(pose_b, pose_a); // points come first
     if (b.triangles) to_b_.emplace(pose_a, pose_b);
   }
 

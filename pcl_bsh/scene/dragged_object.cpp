@@ -49,7 +49,7 @@ struct DraggedObject::Parts {
     for (const Part& other : others)
       if (const auto clearance = scene.clearanceOf(object, other.object)) look(other, *clearance);
     if (!now.nearest) return;
-    // The next look begins with what is near: then little is opened of all the others.
+    // The next look begins with the nearest object: its distance bounds the search among all others.
     const auto is_nearest = [&](const Part& other) { return other.object == now.nearest->object; };
     std::iter_swap(others.begin(), std::find_if(others.begin(), others.end(), is_nearest));
   }

@@ -42,7 +42,7 @@ struct NearestObject {
   Eigen::Vector3d other = Eigen::Vector3d::Zero(); ///< of the nearest
 };
 
-/// Where a dragged object is, and what is about it.
+/// Where a dragged object is, its contacts, and the nearest object.
 struct DragStep {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_world_object
   bool held = false;                                      ///< the response keeps it from where it was wanted

@@ -98,7 +98,7 @@ struct SceneOptions : Effort {
   double clearance = 0.0;  ///< of pairs without a rule; finite, >= 0; inclusive
   bool test_pairs = true;  ///< pairs without a rule are tested; false: only those a rule asks for
   double tolerance = 1e-4; ///< of first contacts, swept motion and responses, in the clouds' unit; > 0
-  double voxel_edge = 0.0; ///< of the grid over the scene; 0: from the sizes of what moves
+  double voxel_edge = 0.0; ///< of the grid over the scene; 0: chosen by the sizes of objects that are not fixed
   bool remember = true;    ///< keep witnesses and distances from step to step; never changes an answer
 };
 

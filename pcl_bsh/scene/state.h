@@ -109,7 +109,7 @@ public:
   {
     return {placed(object, part), bodies[object].object.parts[part].solid};
   }
-  bool areSolid(const PartPair& parts) const ///< one of them, at least
+  bool areSolid(const PartPair& parts) const ///< whether at least one of them is
   {
     return bodies[parts.a].object.parts[parts.part_a].solid || bodies[parts.b].object.parts[parts.part_b].solid;
   }

@@ -14,8 +14,8 @@ namespace {
 using Storage = SphereHierarchy::Storage;
 
 constexpr double kGap = 4096.0;         ///< outliers are so many times as far from the middle as ordinary voxels reach
-constexpr double kSlack = 0x1p-20;      ///< above what a pose that is rigid within 1e-6 stretches, and all rounding
-constexpr double kPlaceSlack = 0x1p-40; ///< of coordinates: above what sums of a few of them round
+constexpr double kSlack = 0x1p-20;      ///< exceeds the stretch of a pose that is rigid within 1e-6, and all rounding
+constexpr double kPlaceSlack = 0x1p-40; ///< of coordinates: exceeds the rounding of sums of a few of them
 
 /// The voxels of a cloud that lie about its middle, and how far the others are from there at least.
 class OrdinaryVoxels {

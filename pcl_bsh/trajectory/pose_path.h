@@ -62,7 +62,8 @@ struct PathInterval {
 
 class PosePath {
 public:
-  /// Exactly the given poses. @param center a point in the model's frame, near its middle. @throws what progress throws
+  /// A path of exactly the given poses. @param center a point in the model's frame, near its middle. @throws what
+  /// progress throws
   PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses, const Point3& center,
            Progress& progress);
 
@@ -80,7 +81,7 @@ public:
   /// A swept path has no more poses than this; it takes some 260 bytes for each.
   static constexpr double kMostPoses = 0x1p22;
 
-  /// The motion from each of the given poses to the next, each of them exactly as it was given.
+  /// A swept path: the motion from each given pose to the next. It passes each given pose exactly.
   /// @throws std::invalid_argument naming the poses, before any memory is taken: where that takes too many poses, or
   ///   where the model turns by half a turn, and both directions are as short
   PosePath(const Eigen::Isometry3d& scan_pose, const std::vector<Eigen::Isometry3d>& model_poses, const Point3& center,

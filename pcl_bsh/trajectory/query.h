@@ -102,7 +102,7 @@ private:
                    Progress& progress, std::vector<NearVoxel>& near_voxels) const;
 };
 
-/// @param center the point of the model whose way counts
+/// Returns how the model travels along its own axes, and turns. @param center the point of the model whose way counts
 Travel travelOf(const std::vector<Eigen::Isometry3d>& poses, const Point3& center);
 
 /// The largest coordinate of the model's middle and of the pivot at a pose.

@@ -204,7 +204,7 @@ TrajectoryResult answer(const Placed& scan, const SphereHierarchy& model,
 {
   check(scan, model_poses, request);
   const DefaultFloatEnvironment environment;
-  // Swept motion refuses such coordinates, and what stops early has one budget for all points.
+  // Swept motion refuses such coordinates, and an accuracy that stops early has one budget for all points.
   if (!request.swept && !StopRule(request.accuracy).mayStop() && asksForAnything(request))
     if (const std::optional<Outliers> outliers = findOutliers(scan, model, model_poses, request.clearance))
       return walkApart(scan, model, model_poses, request, *outliers);

@@ -92,7 +92,7 @@ std::optional<PointPair> Scene::State::enclosedPair(const StandingPart& a, const
   return solids.find(a, b, uncertain ? std::optional(clearance) : std::nullopt, work);
 }
 
-/// Whether what an earlier step found still answers.
+/// Whether an earlier step still answers: by the distance at which it found the pair free, or by its witness.
 bool Scene::State::remembersAny(BroadPair& pair) const
 {
   PairMemory& memory = pair.memory;

@@ -88,7 +88,7 @@ void BroadPhase::place(ObjectId object, const std::vector<Box3>& boxes, BroadPha
   }
   place.ranges = ranges_;
 
-  // Both lists ascend: what only the old one has is left, what only the new one has is entered.
+  // Both lists ascend: the object leaves voxels that only the old one has, and enters voxels that only the new one has.
   std::size_t o = 0, n = 0;
   const std::vector<Key>& old = place.voxels;
   while (o < old.size() || n < new_voxels_.size()) {

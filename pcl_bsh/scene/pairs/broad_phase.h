@@ -83,7 +83,7 @@ public:
   /// Finds the objects that have a voxel in common with the box, ascending. There may be some more.
   void around(const Box3& box, std::vector<ObjectId>& objects) const;
 
-  void forget(ObjectId object); ///< what pairs remember, after its points have changed
+  void forget(ObjectId object); ///< forgets what its pairs remember, after its points have changed
 
 private:
   using Key = std::uint64_t;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kCoarse = 64; // voxels of an object's box beyond which its own voxels are looked at
 
-/// A voxel edge that suits most of what moves.
+/// Returns a voxel edge that suits most objects that are not fixed.
 double edgeFor(const std::vector<Body>& bodies, double reach)
 {
   std::vector<double> sizes;
@@ -46,7 +46,7 @@ void Scene::State::prepareGrid()
     return;
   }
   for (const ObjectId i : moved) place(i);
-  for (const ObjectId i : moved_before) place(i); // whose boxes held their motions
+  for (const ObjectId i : moved_before) place(i); // their boxes in the grid held their motions
 }
 
 void Scene::State::place(ObjectId object)

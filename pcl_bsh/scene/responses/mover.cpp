@@ -20,9 +20,9 @@ constexpr int kMostBounces = 32;                  // of these, before points are
 constexpr std::size_t kFewPairs = 1 << 11;        // of points that may meet on a way: it is followed at once
 constexpr std::uint64_t kMostLeafPairs = 1 << 13; // compared for a way
 constexpr double kShortWay = 4.0;                 // tolerances: on a shorter way, more points are followed, too
-constexpr double kFirstWay = 0.25; // of the object's size: an object that lies on something is mostly held at once
-constexpr double kLonger = 16.0;   // the way after one on which nothing was met is so many times as long
-constexpr double kSlack = 0.125;   // of a way's length: how far beside it a slide may bend
+constexpr double kFirstWay = 0.25;                // of the object's size: an object on a floor is mostly held at once
+constexpr double kLonger = 16.0;                  // factor of the next way after one on which nothing was met
+constexpr double kSlack = 0.125;                  // of a way's length: how far beside it a slide may bend
 
 } // namespace
 

@@ -85,7 +85,7 @@ void Scene::State::respond(ObjectId object, const Eigen::Isometry3d& target, con
 {
   Body& body = bodies[object];
   const Response response = options.effects.response;
-  EffectCost unused; // what moves without a response costs nothing to speak of
+  EffectCost unused; // moving without a response costs next to nothing
   EffectCost& moving =
       response == Response::none ? unused : cost(response == Response::stop ? Effect::stop : Effect::slide);
   const Eigen::Isometry3d start = body.object.pose;
