@@ -177,7 +177,7 @@ private:
   std::vector<std::uint8_t> united_above_;
   std::vector<LanePair> stack_;
   bool parent_united_ = false; ///< whether the node whose children are tested is known to be of one cluster
-  std::uint32_t inside_ = 0;   ///< bits of its children all of whose points are near enough to the other node's
+  std::uint32_t inside_ = 0;   ///< bits of its children: each point is within reach of all of the other node's
 };
 
 } // namespace

@@ -11,7 +11,7 @@ namespace pcl_bsh {
 /// The nearest point of the model, so far.
 struct NearestPoint {
   double time = 0.0; ///< pose of the path; swept: plus the fraction of the motion to the next
-  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else of balls, triangles: no less
+  double gap = std::numeric_limits<double>::infinity(); ///< swept: the distance; else no less, and infinite for points
   bool meets = false; ///< whether the distance is 0 (swept: up to rounding), so that nothing is nearer
   std::uint32_t record = kNothing;
   float limit = std::numeric_limits<float>::infinity(); ///< a pair at a larger squared distance is not nearer
@@ -38,8 +38,8 @@ public:
   bool decide(const Voxel& voxel, bool unsure);
 
   std::vector<std::uint16_t> hit, settled; ///< per slot: bits of the leaf's points
-  std::vector<std::uint16_t> undecided;    ///< per slot: such bits; if it is no leaf, any bit stands for all its points
-  std::vector<double> first;               ///< per point: when it collides first, if that is asked for; see firstOf()
+  std::vector<std::uint16_t> undecided; ///< per slot: such bits; for a child that is no leaf, any bit means all points
+  std::vector<double> first;            ///< per point: when it collides first, if that is asked for; see firstOf()
   double earliest = std::numeric_limits<double>::infinity(); ///< swept: the least of `first`
   std::vector<NearestPoint> best;                            ///< per point, if that is asked for
   std::optional<PointPair> witness;                          ///< where one is wanted
