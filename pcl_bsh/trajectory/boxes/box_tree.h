@@ -21,8 +21,9 @@ struct alignas(32) BoxNode {
 
   float low[3][kNodeChildren];
   float high[3][kNodeChildren];
-  std::uint32_t child[kNodeChildren]; ///< a node; or kLeaf + number of a leaf, above the voxels of a voxel
-  std::uint32_t count = 0;            ///< children in use, 1..8
+  /// A node of the same voxel, or kLeaf + the number of a leaf. Above the voxels a node there, or kLeaf + a voxel.
+  std::uint32_t child[kNodeChildren];
+  std::uint32_t count = 0; ///< children in use, 1..8
 
   bool isLeaf(std::size_t lane) const noexcept { return (child[lane] & kLeaf) != 0; }
   /// A leaf of the voxel, counted from 0; above the voxels the voxel.
