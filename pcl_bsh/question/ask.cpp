@@ -28,7 +28,7 @@ namespace {
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// Compares measured distances with lengths. A record without a distance is farther than any length. A distance that
-/// equals the length was rounded: the coordinates decide.
+/// equals the length may be rounded: the coordinates decide.
 class MeasuredDistances {
 public:
   MeasuredDistances(const Placed& input, const Placed& obstacle, const PointDistances& found)
@@ -46,7 +46,7 @@ public:
     if (std::isnan(distance)) return 1;
     if (distance != length) return distance < length ? -1 : 1;
     const std::uint32_t nearest = found_.closest_point[record];
-    if (exact_.ofTriangles() && distance < sunk_.ownRadius(record)) // a depth; of triangles not known better
+    if (exact_.ofTriangles() && distance < sunk_.ownRadius(record)) // a depth, which of triangles is not known exactly
       return sunk_.triangles ? 0 : -depth_.compare({record, nearest}, -length);
     return exact_.compare({record, nearest}, length);
   }
@@ -153,8 +153,8 @@ private:
   /// Whether a query along a path answers, if only along one pose.
   bool alongPath() const { return question_.path || wanted_.contacts || wanted_.poses || wanted_.first_poses; }
 
-  /// How many queries there are to report their progress, in the order in which they do: the spacings of a density
-  /// guard, collisions, the closest pair, distances. Some may turn out not to be needed.
+  /// Returns how many queries report progress. Their order is: the spacings of a density guard, collisions, the closest
+  /// pair, distances. Some may turn out not to be needed.
   int queries() const
   {
     const bool path = alongPath();
@@ -177,7 +177,7 @@ private:
     return effort;
   }
 
-  /// Null where nothing is guarded.
+  /// Returns the spacings for the density guard; null where nothing is guarded.
   const float* guard()
   {
     if (obstacle_.isSurface()) {
@@ -193,13 +193,13 @@ private:
 
   void followPath()
   {
-    const bool measures = !wanted_.collisions(); // or nothing is wanted but the closest, which is one of these
+    const bool measures = !wanted_.collisions(); // distances are wanted, or the closest alone
     TrajectoryRequest request;
     static_cast<Effort&>(request) = nextEffort();
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
     const bool flags = wanted_.flags || wanted_.contacts || wanted_.poses;
-    request.flags = flags || !solids_->none();                                // which what is held is counted by
-    const bool closest = wanted_.closest && !question_.accuracy.stopsEarly(); // which knows no distances
+    request.flags = flags || !solids_->none();                                // addToPath() counts by them
+    const bool closest = wanted_.closest && !question_.accuracy.stopsEarly(); // an early stop knows none
     request.distances = request.closest_poses = wanted_.contacts || wanted_.distances || closest;
     request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;
@@ -215,8 +215,8 @@ private:
     }
   }
 
-  /// Tells the pair of each pose; swept, all of the motion from each pose to the next. Only records that collide
-  /// anywhere are asked about: they are few.
+  /// Sets the pair of each pose; swept, the whole summary of the motion from each pose to the next. Only records that
+  /// collide somewhere, or may, are asked about: they are few.
   void tellPoses(TrajectoryRequest request)
   {
     const std::vector<Verdict>& flags = answer_.collisions.flags;
@@ -334,7 +334,7 @@ private:
   Placed b_, a_; ///< in this order: what is wrong with the obstacle is told first
   std::optional<Solids> solids_;
   bool closest_is_known_ = false;
-  int begun_ = 0; ///< queries that have
+  int begun_ = 0; ///< how many queries have begun
   Answer answer_;
 };
 

@@ -28,12 +28,13 @@ namespace pcl_bsh {
 struct Answer {
   /// Flags, contacts (distance, first_pose, closest_pose, closest_point: a record of the obstacle), poses, and how many
   /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
-  /// too. Swept, an entry of `poses` is of the motion from its pose to the next, the last one of the last pose.
+  /// too. Swept, an entry of `poses` is about the motion from its pose to the next, and the last entry about the last
+  /// pose.
   TrajectoryResult collisions;
-  /// With Wanted::poses, of each pose at which anything collides, or may: the pair of its smallest distance, of several
-  /// the smallest (input, obstacle).
+  /// With Wanted::poses, for each pose at which anything collides, or may: the pair with the smallest distance. Among
+  /// equal distances it is the smallest (input, obstacle).
   std::vector<std::optional<PointPair>> pose_pairs;
-  AnyResult any; ///< its pair: of a solid, what is held, and a triangle of the body that holds it
+  AnyResult any; ///< its pair: with a solid, the record that is held, and a triangle of the body that holds it
   CollidingIndices indices;
   std::size_t sparse = 0;              ///< points that are undecided for want of density, not among `undecided`
   DistanceResult closest;              ///< its pair: records of the input and of the obstacle
@@ -45,24 +46,25 @@ struct Answer {
   struct Unseen {
     std::size_t count = 0;                 ///< unseen at some pose, and of no graver verdict at any
     std::vector<std::size_t> at_poses;     ///< at each
-    std::optional<std::size_t> first_pose; ///< with any
+    std::optional<std::size_t> first_pose; ///< the first pose with any
     std::vector<double> angles;            ///< of each scan: the angle within which its beams count, in radians
-    std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, which; empty where none are
+    std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, per record; empty: none
     std::vector<UnseenKinds> kinds;        ///< kinds of these
 
-    // In shadow no beam passed the place itself; all else is in the skin, where beams passed but not by the margin.
+    // In shadow no beam passed the place itself. All other unseen records are in the skin: beams passed, but not by the
+    // margin.
     std::size_t in_shadow = 0;                ///< of `count`: in shadow at some pose
     std::vector<std::size_t> shadow_at_poses; ///< of `at_poses`
     std::vector<bool> shadow;                 ///< per record: whether it is in shadow at some pose
 
     std::size_t inSkin() const { return count - in_shadow; } ///< of `count`, at no pose in shadow
 
-    /// At each pose, the volume of a solid's cubes whose middles are in shadow; cubes cover what it encloses. They
-    /// collide with nothing, and are at least 1/48 of its longest side.
+    /// At each pose, the volume of cubes that collide with nothing and whose middles are in shadow. The cubes cover the
+    /// inside of the obstacle, a solid. Their edges are at least 1/48 of its longest side.
     std::vector<double> inside;
 
-    /// Adds the answer of the next pose. @param gravest of all poses, one per record. @param of markUnseen(); without
-    /// `in_shadow` nothing is in shadow
+    /// Adds the answer of the next pose. @param gravest the gravest verdict of each record at all poses before: updated
+    /// @param of the kinds from markUnseen(); without `in_shadow` nothing is in shadow
     void addPose(const std::vector<Verdict>& found, bool with_places, std::vector<Verdict>& gravest,
                  UnseenKinds of = {});
   };
@@ -74,7 +76,7 @@ struct Answer {
   std::vector<Warning> warnings;
 };
 
-/// Builds what is not built yet.
+/// Answers a question. Hierarchies that are not built yet are built.
 /// @throws InvalidInput as checkOptions() and Shape::hierarchy() do, and the queries; InvalidOption for a density
 ///   guard of an input that is a surface. Cancelled
 Answer ask(const Question& question, Shape& input, Shape& obstacle);

@@ -28,7 +28,7 @@ std::vector<Numbers> allPairs(std::uint32_t obstacles)
 /// @param shapes whose hierarchies are built. @param questions about each
 std::vector<Numbers> nearPairs(const std::vector<Shape>& shapes, const std::vector<Question>& questions)
 {
-  std::vector<std::uint32_t> numbers; // of those that are somewhere
+  std::vector<std::uint32_t> numbers; // of obstacles with finite records
   std::vector<Extent> boxes;
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
     const Box3 shape = boxOf(shapes[i].hierarchy());
@@ -50,7 +50,8 @@ std::vector<Numbers> nearPairs(const std::vector<Shape>& shapes, const std::vect
   return near;
 }
 
-/// The area of a surface of an obstacle in another, which is asked about as the question says.
+/// Returns the area of an obstacle's surface within another, if that is a solid.
+/// @param between poses of both
 std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
 {
   if (!between.solid || !surface.isSurface()) return std::nullopt;
@@ -145,7 +146,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
 
   if (asked.size() > 1) of_one.threads = 1; // of each pair
 
-  std::function<bool(double)> report; // of what comes after all else
+  std::function<bool(double)> report; // all else is done: this comes last
   if (question.progress) report = [&](double) { return question.progress(1.0); };
   Progress progress(report);
   progress.begin(1.0, asked.size());

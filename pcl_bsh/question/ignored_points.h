@@ -53,14 +53,14 @@ struct IgnoredPoints {
 /// The points of a cloud that count.
 struct CountedPoints {
   std::vector<std::int32_t> records; ///< that count, in the view's order
-  std::vector<std::size_t> ignored;  ///< by each term; a point is of the first that it meets
-  std::size_t all = 0;               ///< that are ignored
+  std::vector<std::size_t> ignored;  ///< how many each term ignores; a point counts for the first term that it meets
+  std::size_t all = 0;               ///< how many are ignored
 };
 
 /// @param fields of the view's records. @param cloud its name in errors
-/// @throws InvalidInput for a field that is missing or holds several numbers a point, for a mask that is not read or is
-///   of another number of records, and for a value, a box, a plane or a mask that no point has, or that terms before it
-///   have all points of
+/// @throws InvalidInput for a field that is missing or holds several numbers a point, and for a mask that is not read
+///   or has another number of records. A value, box, plane or mask that ignores no point is refused, too: no point
+///   meets it, or earlier terms ignore all that do
 CountedPoints countedPoints(const PointsView& view, const std::vector<RecordField>& fields, const std::string& cloud,
                             const IgnoredPoints& ignored);
 

@@ -18,7 +18,7 @@ bool isNearer(double one, double other)
   return std::isnan(other) ? !std::isnan(one) : one < other;
 }
 
-/// The earlier of two numbers of poses, of which those below 0 are none.
+/// Returns the earlier of two poses, given by number; a number below 0 is no pose.
 std::int32_t earlier(std::int32_t one, std::int32_t other)
 {
   if (one < 0 || other < 0) return std::max(one, other);
@@ -101,7 +101,7 @@ ObstaclesAnswer JoinedAnswers::finish(bool moves)
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
-  auto& perhaps = all.indices.undecided_a; // of one obstacle, what collides with another
+  auto& perhaps = all.indices.undecided_a; // of records that collide with another obstacle
   perhaps.erase(std::remove_if(perhaps.begin(), perhaps.end(),
                                [&](std::int32_t record) {
                                  return std::binary_search(all.indices.a.begin(), all.indices.a.end(), record);

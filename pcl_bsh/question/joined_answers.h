@@ -17,23 +17,23 @@ namespace pcl_bsh {
 /// Joins the answers about obstacles, one after another.
 class JoinedAnswers {
 public:
-  /// @param records of the input. @param wanted which the caller keeps
+  /// @param records of the input. @param wanted must outlive this
   JoinedAnswers(std::size_t records, const Wanted& wanted) : records_(records), wanted_(wanted) {}
 
   /// Adds the answer about an obstacle, whose number is at least that of the last one. Vectors may be empty.
   void add(std::uint32_t obstacle, const Answer& answer);
 
-  /// Adds the answer about collisions with an obstacle that is told of some records alone.
+  /// Adds collisions with an obstacle that are told for some records alone.
   /// @param records of the input, ascending, to which the entries of `found` belong; all others are free
   void add(std::uint32_t obstacle, const std::vector<std::int32_t>& records, const TrajectoryResult& found);
 
-  /// Tells of the obstacle that was added last where it is nearest, if nothing collides with it.
+  /// Sets the smallest distance of the obstacle that was added last, for an obstacle that nothing collides with.
   void setClosest(const DistanceResult& closest, std::int32_t pose);
 
   /// Adds an obstacle that is not asked about.
   void skip() { joined_.each.emplace_back().asked = false; }
 
-  /// The answer has an entry for each record also where nothing was asked about the obstacles one by one.
+  /// Gives the wanted vectors their entries, also where no obstacle's answer has any.
   void fill(std::size_t poses);
 
   /// @param moves whether there is a path
@@ -50,13 +50,16 @@ private:
   ObstaclesAnswer joined_;
 };
 
-/// The smallest distance of what collides along a path, as it is told, with its pair: of several, the first record's.
+/// Returns the smallest told distance of records that collide along a path, with its pair. Among equal distances it is
+/// the first record's.
 DistanceResult closestOf(const TrajectoryResult& found);
 
 /// Refuses paths of obstacles that do not belong together. @throws InvalidInput
 void requirePaths(const Question& question, const std::vector<PlacedShape>& obstacles);
 
-/// The interval of a smallest distance holds those of all that may have it. @param all as it begins, nothing is known
+/// Turns the interval of the least of several distances into that with one more: the least lower and the least upper
+/// end.
+/// @param all an infinite lower end: nothing is known yet
 void widen(Interval& all, const Interval& one);
 
 /// The smallest distance at any of the poses, and the first pose that has it. Motion between poses does not count.
@@ -65,8 +68,8 @@ std::pair<DistanceResult, std::int32_t> closestAlong(const Placed& input, const 
                                                      const std::vector<Eigen::Isometry3d>& poses,
                                                      double most = std::numeric_limits<double>::infinity());
 
-/// Whether a query about any collision at the one pose may spare the rest: nothing but what collides is told of the
-/// records.
+/// Whether anyCollision() is worth asking first: collisions at one pose are wanted, without `seen`, `density` or an
+/// early stop. Where nothing collides, no other query about collisions is needed.
 bool mayAskAny(const Question& question);
 
 } // namespace pcl_bsh

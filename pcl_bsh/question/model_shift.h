@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scan whose pose is uncertain, its scanners and its beams move together: among them a model moves, the other way.
+// A scan with an uncertain pose moves together with its scanners and beams: relative to them, a model moves the other
+// way.
 #pragma once
 
 #include <pcl_bsh/geometry/ball_about_box.h>
@@ -27,7 +28,7 @@ struct CornerBox {
   BoxBall ball = {{0, 0, 0}, 0.0}; ///< about it
 };
 
-/// By how much any point of the model, at most. @param of_scan in the scan's frame
+/// Returns how far any point of the model may move relative to the scan. @param of_scan in the scan's frame
 inline double shiftOf(const PoseUncertainty& of_scan, const CornerBox& model, const Eigen::Isometry3d& T_scan_model)
 {
   if (of_scan.isZero() || model.box.isEmpty()) return 0.0;

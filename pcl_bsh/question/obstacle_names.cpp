@@ -16,7 +16,7 @@ bool isEscape(const char* text)
   return *text == '\\' && (text[1] == ':' || text[1] == '*' || text[1] == '\\');
 }
 
-/// @param pattern where * stands for any letters, none among them
+/// @param pattern where * stands for any letters, or for none
 bool matches(const char* pattern, const char* name)
 {
   if (*pattern == '\0') return *name == '\0';

@@ -20,7 +20,7 @@ inline constexpr auto kInputName = "input";
 /// @throws InvalidInput for two obstacles of one name, one without a name, and one that has the input's
 void checkObstacleNames(const std::vector<std::string>& names);
 
-/// Whether one of the patterns, as those of IgnoredPairs, fits each name.
+/// Returns for each name whether one of the patterns fits it. Patterns are those of IgnoredPairs.
 /// @param option that has the patterns. @throws InvalidInput for a pattern that no name matches
 std::vector<bool> fittingNames(const char* option, const std::vector<std::string>& patterns,
                                const std::vector<std::string>& names);
@@ -30,8 +30,9 @@ class IgnoredPairs {
 public:
   IgnoredPairs() = default; ///< none
 
-  /// @param texts FIRST:SECOND each, where * stands for any letters. Before a colon or a star within a name a backslash
-  ///   is written; a backslash is itself, or doubled before one of the three. @param obstacles all their names
+  /// @param texts FIRST:SECOND each, where * stands for any letters. A backslash before a colon, a star or a backslash
+  ///   makes it a letter of the name; before any other letter the backslash is one itself. @param obstacles all their
+  ///   names
   /// @throws InvalidInput for another text, and for a pattern that no name matches
   IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& obstacles);
 

@@ -26,7 +26,8 @@ namespace pcl_bsh {
 /// An obstacle of several. Members without a value are those of the question.
 struct PlacedShape {
   Shape shape;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape: the question's poses stand before it
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape: poses of the question are multiplied
+                                                          ///< by it
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {}; ///< of its points and, where that is not 0, of its pose
@@ -48,10 +49,10 @@ struct ObstacleAnswer {
   std::size_t undecided = 0; ///< records of the input
   std::size_t sparse = 0;    ///< records of the input
   std::size_t unseen = 0;    ///< records of the obstacle
-  /// With Wanted::closest: the smallest distance. Along a path it is that of what collides; of an obstacle that nothing
-  /// collides with, that at the poses, however far.
+  /// With Wanted::closest: the smallest distance. Along a path it is that of records that collide. Where nothing
+  /// collides with the obstacle, it is the smallest at any pose, however great.
   DistanceResult closest;
-  std::int32_t closest_pose = -1; ///< of the path, at which that is; -1: there is no path
+  std::int32_t closest_pose = -1; ///< the pose of the path that has `closest`; -1: there is no path
 };
 
 /// The answer about all obstacles, together and one by one.
@@ -70,33 +71,35 @@ struct ObstaclesAnswer {
 /// where nothing collides with the obstacle.
 using AnswerOf = std::function<void(std::size_t obstacle, const Question& question, Answer& answer)>;
 
-/// Asks about each obstacle. All obstacles share the hierarchy of the input. Where poses alone are asked about, an
-/// obstacle that anyCollision() finds free costs no more than that and its smallest distance.
+/// Asks about each obstacle. All obstacles share the hierarchy of the input. Among several obstacles at one pose, one
+/// that anyCollision() finds free costs no more than that query and its smallest distance.
 /// @throws InvalidInput for no obstacle, and for paths that are not all as long; as ask() of one does
 ObstaclesAnswer ask(const Question& question, Shape& input, std::vector<PlacedShape>& obstacles,
                     const AnswerOf& told = nullptr);
 
-/// Two obstacles as they stand to each other, by their numbers.
+/// The answer about two obstacles, which are given by their numbers.
 struct ObstaclePair {
   std::uint32_t first = 0, second = 0;
   double clearance = 0.0; ///< the greater of theirs
   Verdict verdict = Verdict::free;
   DistanceResult closest;         ///< records of the first and of the second
-  std::int32_t first_pose = -1;   ///< of their paths, at which the verdict is first; -1: none, or it is free
-  std::int32_t closest_pose = -1; ///< of their paths, at which they are closest; -1: they have none
-  /// With Wanted::overlap, areaWithin() of its surface in the other; none where that is no solid, or it no surface.
+  std::int32_t first_pose = -1;   ///< the first pose of their paths with the verdict; -1: no paths, or it is free
+  std::int32_t closest_pose = -1; ///< the pose of their paths at which they are closest; -1: no paths
+  /// With Wanted::overlap, areaWithin() of the first's surface in the second; none where the second is no solid or the
+  /// first no surface.
   std::optional<Interval> first_within = {};
-  std::optional<Interval> second_within = {}; ///< the same the other way
+  std::optional<Interval> second_within = {}; ///< of the second's surface in the first
 };
 
-/// askBetween() leaves out pairs of more obstacles that are free.
+/// Where obstacles are more than this, askBetween() leaves out pairs that are free.
 inline constexpr std::size_t most_obstacles_with_free_pairs = 32;
 
 /// Asks about obstacles against each other, at their poses. A path of the question moves all of them together, so that
-/// it does not count. Paths of their own do: two obstacles stand at poses of one number, the gravest verdict counts,
-/// and areas are those of the closest pose. Pairs are shared out among the threads. Where obstacles are many, pairs are
-/// asked about whose boxes come within the clearance, and those of them are told that are not free.
-/// @param wanted whether a pair counts, by its numbers; called by the thread that asks, for pairs that are asked about
+/// it does not count. Paths of the obstacles' own count: both stand at their k-th poses at once, the gravest verdict
+/// counts, and areas are those of the closest pose. Pairs are shared out among the threads. With more than
+/// `most_obstacles_with_free_pairs`, only pairs whose boxes come within the clearance are asked about, and only pairs
+/// that are not free are told.
+/// @param wanted whether a pair counts, by its numbers; called in the caller's thread, before any pair is asked about
 /// @throws as ask() does
 std::vector<ObstaclePair> askBetween(const Question& question, const std::vector<PlacedShape>& obstacles,
                                      const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);

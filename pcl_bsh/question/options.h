@@ -53,7 +53,7 @@ struct QuestionOption {
   QuestionKind kind;
   const char* value;         ///< stands for the value in help texts; empty for a switch
   const char* unit;          ///< m: a length in the clouds' unit; or empty
-  std::optional<Input> code; ///< of errors; where no other row has it, the core's are about this option
+  std::optional<Input> code; ///< of its errors; errors of the core with it are about this option if no other row has it
   const char* doc;           ///< one sentence, without a full stop
   OptionRange range = OptionRange::from_zero;
   bool required = false;                ///< of questions of its kind alone
@@ -87,7 +87,7 @@ private:
 std::string optionOf(const InvalidInput& error, const Question& question);
 
 /// Sets an option as text has it: numbers, true or false, or what the option's type parses. Faces whose users name
-/// options have them all by this, and no word of their own.
+/// options set all of them by this function, without code for each.
 /// @throws InvalidInput for an unknown name and for a text that is no value of the option
 void setOption(Question& question, const std::string& name, const std::string& text);
 

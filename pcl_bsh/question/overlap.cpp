@@ -16,7 +16,8 @@ namespace {
 constexpr double kOpenShare = 0x1p-8; ///< of the upper end
 constexpr std::size_t kMostOpenParts = std::size_t{1} << 18;
 constexpr int kMostHalvings = 40;
-/// Times the greatest coordinate: more than these halvings move a corner. Each rounds three coordinates by 2^-53 of it.
+/// Times the greatest coordinate: a bound of how far kMostHalvings halvings move a corner by rounding. Each halving
+/// rounds three coordinates by 2^-53 of it.
 constexpr double kCornerError = 0x1p-44;
 /// A pose is rigid within 1e-6, and doubles of lengths are off by far less.
 constexpr double kRigid = 1.0 + 0x1p-18;
@@ -110,7 +111,7 @@ Interval areaWithin(const Question& question, Shape& surface, Shape& solid)
     std::vector<TrianglePart> still;
     double open_area = 0.0;
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const double reach = reachOf(open[i], places[i]); // a part is on one side as a whole if that is nearer
+      const double reach = reachOf(open[i], places[i]); // a part farther from the surface is on one side as a whole
       if (distances[i] < -reach) add(open[i], inside);
       if (!(std::abs(distances[i]) <= reach)) continue;
       still.push_back(open[i]);

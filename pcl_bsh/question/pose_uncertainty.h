@@ -31,13 +31,13 @@ struct PoseUncertainty {
     return length == other.length && angle == other.angle && about == other.about;
   }
 
-  /// Returns the greatest way of a place in the ball about a point when the body turns by the angle; rounded upward.
+  /// Returns how far a place in the ball about a point moves at most when the body turns by the angle; rounded upward.
   double turned(const Point3& point, double radius) const;
 
   /// Returns the uncertainty of normal errors.
   /// @param covariance of x y z and of a rotation vector about them, in that order, the rotation in radians: symmetric,
-  ///   positive semidefinite. @param sigmas that the pose is sure to be within: the greatest deviation in any
-  ///   direction, of the shift and of the rotation each. @param about the place that the covariance is about
+  ///   positive semidefinite. @param sigmas how many standard deviations the pose is off at most. Length and angle are
+  ///   each so many times the greatest deviation in any direction. @param about the place that the covariance is about
   /// @throws InvalidInput naming the value
   static PoseUncertainty of(const Eigen::Matrix<double, 6, 6>& covariance, double sigmas,
                             const Point3& about = {0, 0, 0});

@@ -40,7 +40,7 @@ struct Wanted {
   bool both_ways = false;     ///< distances also of the obstacle's points, at one pose
   bool within = false;        ///< which points of the input have a distance within the limits, at one pose
   bool intervals = false;     ///< distances that an early stop leaves open are answers, too: their intervals tell
-  bool unseen_places = false; ///< with `seen`: which of the obstacle are unseen at each pose
+  bool unseen_places = false; ///< with `seen`: which records of the obstacle are unseen at each pose
   bool overlap = false;       ///< of askBetween(): how much of each surface lies within the other, a solid
   bool spacings = false;      ///< how far points are apart, for the warning of holes: builds a few voxels
 
@@ -48,14 +48,14 @@ struct Wanted {
   {
     return flags || obstacle_flags || any || indices || obstacle_indices || contacts || poses || first_poses;
   }                                                     ///< whether a clearance counts
-  bool measures() const { return distances || within; } ///< whether all distances do
+  bool measures() const { return distances || within; } ///< whether the distance of each record is wanted
   bool oneWay() const
   {
     return measures() && !both_ways && !collisions() && !closest;
   } ///< whether all that is asked is how far records of the input are from the obstacle
 };
 
-/// Both inclusive, and compared exactly.
+/// Limits of distances, both inclusive, and compared exactly.
 struct DistanceLimits {
   double least = 0.0;
   double most = std::numeric_limits<double>::infinity();
@@ -67,20 +67,21 @@ struct Question : Effort {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_input_obstacle; rigid within 1e-6
   /// T_world_input, where `pose` and `path` are those of the obstacle in a world: no product of poses is rounded.
   Eigen::Isometry3d pose_of_input = Eigen::Isometry3d::Identity();
-  std::optional<std::vector<Eigen::Isometry3d>> path = {}; ///< instead: such poses, one after another; not empty
+  std::optional<std::vector<Eigen::Isometry3d>> path = {}; ///< in place of `pose`: such poses, in order; not empty
   double swept = 0.0; ///< > 0: the motion between the poses of the path counts, too, to this tolerance
   std::optional<double> clearance = {}; ///< points collide up to it, inclusive; none: 0, and no warning speaks of it
   Uncertainty uncertainty = {}, obstacle_uncertainty = {};
   PoseUncertainty pose_uncertainty = {};       ///< of every pose, in the obstacle's frame
   PoseUncertainty input_pose_uncertainty = {}; ///< of the input's own, in its frame
-  double sigmas = 1.0;                         ///< times those of both uncertainties, where they are fields
+  double sigmas = 1.0;                         ///< multiplies `sigmas` of both uncertainties, where they are fields
   bool density = false;                        ///< the density guard (FlagsRequest::spacings_of_b)
   std::optional<double> widest_gap = {};       ///< of the guard; none: usualGap()
-  bool seen = false;                       ///< what is free and nobody saw is unseen: of the obstacle (Answer::unseen)
-  ScanOrigins origin = {};                 ///< where the input was scanned from
-  std::optional<double> seen_angle = {};   ///< SeenOptions::angle
-  std::optional<double> seen_beyond = {};  ///< ScanBeams::misses_beyond; none: beams without a return say nothing
-  std::optional<double> max_distance = {}; ///< greater distances are not told
+  bool seen = false;                           ///< free records of the obstacle are unseen where nobody saw
+                                               ///< (Answer::unseen)
+  ScanOrigins origin = {};                     ///< where the input was scanned from
+  std::optional<double> seen_angle = {};       ///< SeenOptions::angle
+  std::optional<double> seen_beyond = {};      ///< ScanBeams::misses_beyond; none: beams without a return say nothing
+  std::optional<double> max_distance = {};     ///< greater distances are not told
   DistanceLimits limits = {};
   bool solid = false;       ///< the obstacle counts with what its faces enclose: they must close
   bool input_solid = false; ///< the input counts with what its faces enclose: they must close

@@ -26,7 +26,7 @@ std::string textOf(const Point3& p)
   return textOfNumbers(p[0], p[1], p[2]);
 }
 
-/// Subsets of a cloud, and what they are of.
+/// Records of the subsets of a cloud, and what keeps the cloud alive.
 struct Subsets {
   std::shared_ptr<const void> points;
   std::vector<std::vector<std::int32_t>> records;

@@ -31,7 +31,7 @@ struct Shape::Built {
 
 namespace {
 
-/// Points that count, and what keeps the others alive.
+/// Memory that a view of the points that count keeps alive: their list, and the cloud.
 struct Counted {
   std::shared_ptr<const CountedPoints> points;
   std::shared_ptr<const void> cloud;

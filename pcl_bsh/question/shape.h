@@ -38,8 +38,8 @@ public:
   /// Points or triangles that their owner could change, but must not. Every question compares a checksum of
   /// coordinates, corners and uncertainties. It takes some 20 instructions a point, a tenth or less of the cost of
   /// building.
-  /// @param points and @param fields are called for each question, and keep alive what they tell of; a view of
-  ///   triangles is the same each time
+  /// @param points and @param fields are called for each question, and keep alive the memory that they return; a view
+  ///   of triangles is the same each time
   /// @throws what `points` does
   Shape(std::string name, std::function<PointsView()> points, std::function<std::vector<RecordField>()> fields);
 
@@ -57,7 +57,7 @@ public:
   /// Which of its points do not count from now on. Another choice than before builds all anew.
   void ignore(const IgnoredPoints& ignored);
 
-  const IgnoredPoints& ignored() const noexcept { return ignored_; } ///< which do not
+  const IgnoredPoints& ignored() const noexcept { return ignored_; } ///< points that do not count
 
   /// The points that count, once hierarchy() was called.
   const CountedPoints* counted() const noexcept { return counted_.get(); } ///< null where all count

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances of what solids hold: negative, the depth to the surface.
+// Distances of records that solids hold: the negative depth to the surface.
 #include <pcl_bsh/question/solids.h>
 
 #include <pcl_bsh/depths/depths_along.h>
@@ -76,7 +76,7 @@ void Solids::turn(DistanceResult& closest, const Eigen::Isometry3d& pose) const
            question_.threads);
 }
 
-/// Records of the queried thing of which a path may make depths.
+/// Returns the records of the queried thing that the solid may hold somewhere along the path.
 Solids::Records Solids::mayBeDeep(const Pairing& pair, const FirstPoses& first, const TrajectoryResult& found) const
 {
   Records records;
@@ -88,7 +88,7 @@ Solids::Records Solids::mayBeDeep(const Pairing& pair, const FirstPoses& first, 
   const bool between = question_.swept > 0.0;
   for (std::uint32_t i = 0; i < first.possible.size(); ++i) {
     bool may = first.possible[i] != kNothing;
-    if (pair.queried.isSurface() || between) { // what no pose holds may cross the surface
+    if (pair.queried.isSurface() || between) { // a record that is inside at no pose may cross the surface
       if (!found.distance.empty())
         may |= static_cast<double>(found.distance[i]) <= question_.swept;
       else

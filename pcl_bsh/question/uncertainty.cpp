@@ -22,7 +22,7 @@ InvalidInput refusal(const std::string& cloud, const std::string& wrong, const s
   return InvalidInput(Input::uncertainty, cloud, wrong, remedy);
 }
 
-/// No less than the product; infinity where no float is.
+/// Returns a float no less than the product; infinity where no finite float is.
 float productUpward(double x, double y)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();

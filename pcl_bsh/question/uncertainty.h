@@ -47,11 +47,11 @@ struct Uncertainty {
   Uncertainty(double of_all_points) : length(of_all_points) {} // NOLINT: a length is the common one
 
   /// @param of_sigmas the field that holds each point's standard deviation, in the cloud's unit; finite and >= 0 where
-  ///   the point is finite. @param times of it a point is sure to be within; finite and >= 0
+  ///   the point is finite. @param times how many of these deviations a point is off at most; finite and >= 0
   Uncertainty(std::string of_sigmas, double times) : field(std::move(of_sigmas)), sigmas(times) {}
 
   double length = 0.0;
-  std::string field; ///< empty: `length` counts; else this does
+  std::string field; ///< of each point's sigma; empty: `length` counts
   double sigmas = 1.0;
   PoseUncertainty pose = {}; ///< on top: all points may move together
 
@@ -75,7 +75,7 @@ struct RecordField {
 /// Refuses numbers that are not finite and >= 0. @param cloud its name in errors. @throws InvalidInput
 void checkUncertainty(const std::string& cloud, const Uncertainty& uncertainty);
 
-/// The view with uncertainties of its points on top of what it has, kept alive beside what it kept before.
+/// Returns the view with these uncertainties added to those that it has. It keeps alive what it kept before, too.
 /// @param fields of the view's records. @param cloud its name in errors
 /// @throws InvalidInput naming the value, the point or the field: a number that is negative or not finite, a field that
 ///   is missing or holds more than one number a point

@@ -42,7 +42,7 @@ void Answer::Unseen::addPose(const std::vector<Verdict>& found, bool with_places
 
 namespace {
 
-/// The inside of a solid, in cubes, each in a ball.
+/// The inside of a solid as cubes of a grid, each within a ball.
 class Enclosed {
 public:
   Enclosed(Shape& obstacle, const CornerBox& bounds, const Question& question)
@@ -63,7 +63,7 @@ public:
     const float radius = roundUp(0.5 * std::sqrt(3.0) * edge_ * (1.0 + 0x1p-20));
     const SphereHierarchy all(viewOf(middles.front().data(), middles.size()));
     const LabelsResult found = labelPoints({all}, {obstacle.solid().whole()}, question.threads);
-    FlagsRequest near; // what is inside of a cube that no surface meets tells its middle
+    FlagsRequest near; // a cube that no surface meets has all of it on the side of its middle
     near.clearance = static_cast<double>(radius);
     near.threads = question.threads;
     const FlagsResult meets = collisionFlags({all}, {surface}, near);
@@ -89,8 +89,8 @@ public:
   }
 
 private:
-  /// Cubes reach beyond the bounds, where nothing of the solid is. The ball about the place that is nearest to the
-  /// middle holds all of the cube that is within them.
+  /// Returns the place within the bounds that is nearest to a cube's middle. Cubes reach beyond the bounds, the solid
+  /// does not. The ball about this place holds all of the cube that is within the bounds.
   static Point3 inBounds(const Point3& middle, const Eigen::AlignedBox3d& bounds)
   {
     const Eigen::Vector3d place = Eigen::Vector3d(middle.data()).cwiseMax(bounds.min()).cwiseMin(bounds.max());

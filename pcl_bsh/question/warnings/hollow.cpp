@@ -23,7 +23,7 @@ constexpr std::size_t most_records = 256; // of a pose
 constexpr std::size_t most_samples = 8;   // of all poses that are looked at, or one of each
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns numbers of places spread over a list, `most` at most.
+/// Returns up to `most` indices, spread evenly over a list of `count` entries.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most)
 {
   std::vector<std::size_t> places;
@@ -32,7 +32,7 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t most)
   return places;
 }
 
-/// Records of the queried thing that are in the surface's box, at most so many.
+/// Returns records of the queried thing that are in the surface's box, out of some `most_records` that are looked at.
 std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const SphereHierarchy& queried,
                                      const Eigen::Isometry3d& T_surface_queried)
 {
@@ -64,12 +64,12 @@ std::vector<std::uint32_t> recordsIn(const Eigen::AlignedBox3d& box, const Spher
 
 /// A place of the queried thing.
 struct Sample {
-  Point3 given, at; ///< at: as the surface sees it, rounded: what is deep inside stays so
+  Point3 given, at; ///< at: in the surface's frame, rounded: a place deep inside stays inside
   int turns = 0;    ///< of the surface round it
   bool touches = false;
 };
 
-/// How often the triangles wind round each sample: all are looked at once, few of them closely.
+/// Adds up how often the triangles wind round each sample. Boxes sort out nearly all triangles before the exact test.
 void windRound(std::vector<Sample>& samples, const TrianglesView& triangles)
 {
   const Winding winding(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), 0);
@@ -192,7 +192,7 @@ std::vector<Warning> warningsOfHollow(const Question& question, double nearest, 
       warnings.push_back(warningOfHollow(surface.name(), option, queried.name(), *place));
   };
   look(obstacle, question.solid, "solid", input, true);
-  if (!question.wanted.oneWay()) // which it would change nothing of
+  if (!question.wanted.oneWay()) // one-way distances do not depend on `input_solid`
     look(input, question.input_solid, "input_solid", obstacle, false);
   return warnings;
 }

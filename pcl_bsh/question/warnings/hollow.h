@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The warning that faces of one of two things close round places of the other, which count as free. A hint, by samples:
-// places that are few among others may be overlooked.
+// The warning that faces of one of two things close round places of the other, which count as free. It is a hint, by
+// samples: a few such places among many others may be overlooked.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -13,11 +13,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// A place of some points or triangles that the faces of a surface wind round, where these close. At up to 16 of the
-/// poses, of voxels that meet the surface's box, some 256 records are looked at, 511 at most, and 8 are samples, or one
-/// of each pose. The first question about a surface passes all of its triangles, which takes some 160 instructions
-/// each; the second finds out whether they close. Where they are known not to, nothing is looked at.
-/// @param T_surface_queried where the queried thing is, of one pose or more @return in the queried thing's own frame
+/// Returns a place of the queried thing that the closed faces of a surface wind round, or nothing. Up to 16 of the
+/// poses are looked at. At each, some 256 records, 511 at most, are looked at in voxels that meet the surface's box.
+/// Samples are 8 of these in all, or one of each pose. The first question about a surface passes all of its triangles,
+/// which takes some 160 instructions each; the second finds out whether they close. Where they are known not to close,
+/// nothing is looked at.
+/// @param T_surface_queried where the queried thing is: one pose or more
+/// @returns it in the queried thing's own frame
 /// @pre hierarchy() of the surface was called, and isSurface()
 std::optional<Point3> placeWithin(Shape& surface, const SphereHierarchy& queried,
                                   const std::vector<Eigen::Isometry3d>& T_surface_queried);

@@ -18,7 +18,7 @@ using Box = Eigen::AlignedBox3d;
 using Objects = std::vector<NamedObject>;
 using Clouds = std::map<std::string, NamedCloud>;
 
-constexpr int instants = 100; // at which an object's box is taken: a box about all of them is meant
+constexpr int instants = 100; // at which an object's box is taken; the box about all of them counts
 constexpr int looks = 16;     // instants at which what is inside of an object is looked for
 
 /// The box about an object as it stands in its own frame.
@@ -44,7 +44,7 @@ Box boxOf(const NamedObject& object, const Clouds& clouds, double duration)
   return boxAlong(boxOf(object, clouds), posesOf(object, duration, instants));
 }
 
-/// Whether a point of the one cloud may meet a point of the other: those of two objects, not both of which are fixed.
+/// Whether a point of the one cloud may meet a point of the other: the clouds are of two objects, not both fixed.
 bool mayMeet(const Objects& objects, const std::string& a, const std::string& b)
 {
   const auto has = [](const NamedObject& object, const std::string& cloud) {
@@ -176,7 +176,7 @@ private:
         const Eigen::Isometry3d of_surface = at(poses_[i], k) * part.pose, of_queried = at(poses_[j], k) * other.pose;
         const auto place = placeWithin(surface, queried, {of_surface.inverse() * of_queried});
         if (!place) continue;
-        if (isNear(surface, of_surface, queried, of_queried)) return std::nullopt; // which its effects tell of
+        if (isNear(surface, of_surface, queried, of_queried)) return std::nullopt; // its effects tell of this
         return warningOfHollow("'" + objects_[i].name + "'", "solid", "'" + objects_[j].name + "'", *place);
       }
     }
@@ -207,7 +207,7 @@ std::vector<std::string> warningsOf(const Objects& objects, const Clouds& clouds
   warnOfDensity(objects, clouds, clearance, told);
   const std::size_t before = told.size();
   warnOfFrames(objects, clouds, clearance, duration, told);
-  if (told.size() == before) warnOfUnits(objects, clouds, told); // else units were named
+  if (told.size() == before) warnOfUnits(objects, clouds, told); // a warning of frames names units, too
   return told;
 }
 

@@ -19,7 +19,7 @@ namespace pcl_bsh {
 struct NamedObject {
   /// One of its clouds.
   struct Part {
-    std::string cloud;                                      ///< which
+    std::string cloud;                                      ///< its name among the clouds
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_object_cloud
     bool solid = false;                                     ///< a mesh that counts with what it encloses
   };
@@ -31,8 +31,8 @@ struct NamedObject {
   Motion motion;
 };
 
-/// Warnings on a scene whatever its results are, a line each. They are of its clouds, of the two whose points lie
-/// farthest apart, of the two whose sizes differ most, and of objects that are nowhere near the others.
+/// Returns the warnings about a scene that do not depend on its results, a line each. They are about its clouds, the
+/// two clouds with the widest holes, the two whose sizes differ most, and objects that are nowhere near the others.
 /// @param clouds by the names that objects know them by: all that objects have
 /// @param duration of all motion, seconds; none: nobody knows, so what moves by itself may be anywhere
 std::vector<std::string> warningsOf(const std::vector<NamedObject>& objects,
