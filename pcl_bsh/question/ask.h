@@ -45,7 +45,7 @@ struct Answer {
   /// With `seen`: points of the obstacle, or triangles where it is a surface, that are unseen.
   struct Unseen {
     std::size_t count = 0;                 ///< unseen at some pose, and of no graver verdict at any
-    std::vector<std::size_t> at_poses;     ///< at each
+    std::vector<std::size_t> at_poses;     ///< how many at each pose
     std::optional<std::size_t> first_pose; ///< the first pose with any
     std::vector<double> angles;            ///< of each scan: the angle within which its beams count, in radians
     std::vector<std::vector<bool>> where;  ///< with Wanted::unseen_places: at each pose, per record; empty: none

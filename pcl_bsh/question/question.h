@@ -76,8 +76,7 @@ struct Question : Effort {
   double sigmas = 1.0;                         ///< multiplies `sigmas` of both uncertainties, where they are fields
   bool density = false;                        ///< the density guard (FlagsRequest::spacings_of_b)
   std::optional<double> widest_gap = {};       ///< of the guard; none: usualGap()
-  bool seen = false;                           ///< free records of the obstacle are unseen where nobody saw
-                                               ///< (Answer::unseen)
+  bool seen = false;                           ///< free records of the obstacle may be unseen (Answer::unseen)
   ScanOrigins origin = {};                     ///< where the input was scanned from
   std::optional<double> seen_angle = {};       ///< SeenOptions::angle
   std::optional<double> seen_beyond = {};      ///< ScanBeams::misses_beyond; none: beams without a return say nothing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bodies of a solid: what of it hangs together.
+// The bodies of a solid: its connected parts.
 #pragma once
 
 #include <pcl_bsh/base/made_once.h>
@@ -21,14 +21,14 @@ public:
   /// Costs nothing until it is asked. @param solid borrowed
   explicit SolidBodies(const Solid& solid) : solid_(solid) {}
 
-  /// One of them. Where there is only one, its solid is the whole.
+  /// One body. Where there is only one, its solid is the whole.
   struct Body {
     std::vector<std::uint32_t> triangles; ///< of the whole, ascending
     std::vector<Triangle> corners;        ///< of these; empty where it is the whole
     std::unique_ptr<const Solid> own;
   };
 
-  /// By their first triangles, ascending. Made once, by whichever thread comes first.
+  /// Returns the bodies, in the order of their first triangles. Made once, by whichever thread comes first.
   const std::vector<Body>& all() const;
 
   const Solid& whole() const noexcept { return solid_; }

@@ -10,8 +10,8 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr std::uint32_t kSmallest = 8; ///< triangles of a bundle that has none below it
-constexpr std::uint32_t kFewest = 16;  ///< each part has at least this share of a bundle's triangles
+constexpr std::uint32_t kSmallest = 8; ///< a bundle of at most so many triangles has none below it
+constexpr std::uint32_t kFewest = 16;  ///< each part has at least 1 / kFewest of a bundle's triangles
 
 /// How often the ray upward from the origin crosses a triangle whose corners are within `error` per axis of these; 0
 /// where it passes. Unknown where that differs among such triangles.
@@ -51,7 +51,7 @@ int crossingsOf(const Triangle3& t, double error, bool above)
 
 } // namespace
 
-/// A triangle by its corners, of which the first is the same one in triangles that lie alike.
+/// The corners of a triangle, in turn, beginning with its lowest: so corners correspond in triangles that lie alike.
 struct Bundles::Alike {
   float corners[9];
   std::uint32_t triangle;
@@ -110,7 +110,7 @@ void Bundles::bundle(Alike* first, Alike* last, std::uint32_t begin, const Float
   const std::size_t index = bundles_.size();
   bundles_.push_back(own);
   if (own.count > kSmallest) {
-    // Halves of as many would mix different kinds again and again.
+    // Halves of equal numbers would mix different kinds again and again.
     const float between = own.corners[widest / 3][widest % 3];
     Alike* middle = std::partition(first, last, [&](const Alike& l) { return l.corners[widest] < between; });
     const auto below = static_cast<std::uint32_t>(middle - first);

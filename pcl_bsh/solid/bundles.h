@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of which many lie alike, as those of shells inside each other do: a tree of bundles, so that a ray crosses
-// a bundle as a whole.
+// A tree of bundles of triangles that lie nearly alike, as those of nested shells do: a ray crosses a bundle as a
+// whole.
 #pragma once
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
@@ -13,8 +13,8 @@
 
 namespace pcl_bsh {
 
-/// The corners of a bundle's triangles are near those of one of them. How a ray crosses that one tells it of all,
-/// unless it passes its edges as near, or begins as near to it.
+/// The corners of a bundle's triangles are within a reach of those of a middle triangle. A ray crosses all of them as
+/// it crosses the middle one, unless it passes its edges as near, or begins as near to it.
 ///
 /// Error bound, with E per axis for the corners as seen from the place. A side errs by less than E times the sum of its
 /// four coordinates, and 2 E^2. The volume errs by less than E times the sum of its cofactors, 2 E^2 times the sum of
@@ -38,10 +38,10 @@ public:
 private:
   struct Bundle {
     FloatBox box;               ///< of all
-    float corners[3][3];        ///< in the middle of theirs
-    float reach;                ///< theirs are within it, per axis
+    float corners[3][3];        ///< of the middle triangle
+    float reach;                ///< how far corners of its triangles are from these at most, per axis
     std::uint32_t begin, count; ///< triangles
-    std::uint32_t next;         ///< bundle after all that are below this one; those follow it
+    std::uint32_t next;         ///< the first bundle after this one and all below it
   };
 
   struct Alike;

@@ -10,8 +10,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// Edges that pass the sweep in one direction, by their ordinals: of these some are left, the least, and the others are
-/// cancelled.
+/// Edges of one direction at the sweep's place, by ordinal: the first ones are left, the others are cancelled.
 class Passing {
 public:
   using Key = std::pair<std::size_t, std::size_t>; ///< ordinal, edge
@@ -29,7 +28,7 @@ public:
 
   std::size_t size() const { return left_.size() + cancelled_.size(); }
 
-  /// From a place on so many are left.
+  /// Leaves the first `count` edges from a place on.
   void leave(std::size_t count, const Point3& at)
   {
     while (left_.size() > count) cancelLast(at);
@@ -40,7 +39,7 @@ public:
     }
   }
 
-  /// Visits what was left up to a place, and is not from there on.
+  /// Visits the parts that end at a place: their edges were left up to there, and are not from there on.
   template <class Visit>
   void visitClosed(const Point3& at, const Visit& visit)
   {
@@ -69,7 +68,7 @@ private:
   }
 
   std::set<Key> left_, cancelled_;
-  std::map<Key, Point3> closed_; ///< at the place where the sweep is, and since when each was left
+  std::map<Key, Point3> closed_; ///< edges no longer left from the sweep's place on, and where each part began
   std::vector<Point3>& since_;
 };
 

@@ -10,15 +10,15 @@
 
 namespace pcl_bsh {
 
-/// An edge on a line along which places ascend, by the first coordinate that differs.
+/// An edge on a line. Places on it are ordered by the first coordinate that differs.
 struct EdgeOnLine {
   Point3 low, high;    ///< low < high
   bool rises;          ///< it goes from low to high
-  std::size_t ordinal; ///< of edges that could be left in each other's stead, those with the least are
+  std::size_t ordinal; ///< where there is a choice, the edges with the least ordinals are left
 };
 
-/// Calls visit(i, low, high) for each part of edge i that is left, for each as long as it can be. Where n more edges go
-/// one way than the other, n of them are left.
+/// Calls visit(i, low, high) for each part of edge i that is left, each as long as possible. Where n more edges go one
+/// way than the other, n of them are left.
 ///
 /// A sweep over the places where edges begin and end: n log n for n edges, however they lie.
 void cancelAlongLine(const std::vector<EdgeOnLine>& edges,

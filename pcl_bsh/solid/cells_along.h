@@ -6,12 +6,12 @@
 
 namespace pcl_bsh {
 
-/// A triangle is put into cells that it misses by this share of their width, which is far above what double arithmetic
-/// gets wrong.
+/// A triangle is also put into cells that it misses by up to this share of their width: far more than double arithmetic
+/// errs.
 inline constexpr double kCellPad = 0x1p-12;
 
-/// The cell that holds x, of `count` that begin at `low`, `per` for each unit; the first and the last stand for what
-/// lies beyond, and the first for what is not a number.
+/// Returns the number of the cell that holds x. There are `count` cells from `low` on, `per` for each unit of length.
+/// The first and the last also hold what lies beyond them, and NaN is in the first.
 inline std::uint32_t cellAlong(double x, double low, double per, std::uint32_t count) noexcept
 {
   const double i = (x - low) * per;

@@ -36,13 +36,14 @@ double perUnit(double cells, double length)
   return per < kInfinity ? per : 0.0;
 }
 
-/// For a few finer grids, so that what is there need not move.
+/// Adds room for a few finer grids, so that making them moves nothing.
 std::size_t withRoom(std::size_t size)
 {
   return size + size / 8;
 }
 
-/// The middle of most triangles, whatever lies far off: what is near it has the most precise boxes.
+/// Returns the median of sampled corners, per axis. Triangles far off do not shift it, and boxes near it are most
+/// precise.
 Point3 middleOf(const TrianglesView& view)
 {
   constexpr std::size_t kMostSampled = 1023;
@@ -70,7 +71,7 @@ struct Columns::Shadows {
   std::size_t count = 0;
   double extent = 0.0, area = 0.0, boxes = 0.0; ///< sums
 
-  /// Adds a triangle along the axes x and y: so much of its width and height counts.
+  /// Adds a triangle's shadow on the axes x and y. @param width, height the part of its extent that counts
   void add(const Triangle3& t, std::size_t x, std::size_t y, double width, double height)
   {
     const double twice = (t[1][x] - t[0][x]) * (t[2][y] - t[0][y]) - (t[1][y] - t[0][y]) * (t[2][x] - t[0][x]);
@@ -223,8 +224,8 @@ void Columns::sample(const Look& look) const
     }
 }
 
-/// In place of all grids: bundles. @return false where a ray looks at more than `most` triangles on the mean, for few
-/// of them lie alike
+/// Makes bundles in place of all grids. @return false, and none are made, where a ray looks at more than `most`
+/// triangles on the mean: few of them lie alike
 bool Columns::makeBundles(const Range& triangles, double most)
 {
   constexpr double kOfBundle = 1.5; // a look at one takes as long as at so many triangles
@@ -242,8 +243,8 @@ bool Columns::makeBundles(const Range& triangles, double most)
   return false;
 }
 
-/// In place of the first grid: one column, in strips. @return false where a ray meets more than `most` of them on the
-/// mean, for they lie in all directions
+/// Makes one column, in strips, in place of the first grid. @return false, and none is made, where a ray meets more
+/// than `most` triangles on the mean: they lie in all directions
 bool Columns::makeStrips(const Range& triangles, double most)
 {
   std::copy(triangles.begin(), triangles.end(), entries_.append(triangles.size()));
@@ -298,8 +299,8 @@ void Columns::forEachCell(const Grid& grid, std::uint32_t triangle, const Visit&
   }
 }
 
-/// Gives crowded columns strips where triangles are long for them, and finer grids elsewhere, the most crowded first,
-/// as far as memory goes; strips where it does not.
+/// Gives crowded columns finer grids, the most crowded first, as far as memory goes. Where there is no memory, or
+/// triangles are too long for a finer grid, columns of more than kTooCrowded entries get strips.
 void Columns::refine()
 {
   const std::size_t most = mostBytes(view_.count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that a ray along an axis may meet: a grid of columns over their shadows, finer where they crowd. Where
-// they are long for it, they are in strips, and in bundles where they are large and lie alike.
+// Finds the triangles that a ray along an axis may meet, by a grid of columns over their shadows, finer where they
+// crowd. Triangles that are long for a column are in strips, large ones that lie alike in bundles.
 //
 // A point's winding number needs the triangles of its own column only. Beside the grid stands a coarse one of cubes
 // that tells where the surface surely is not.
@@ -26,7 +26,7 @@ namespace pcl_bsh {
 /// covers the rounding.
 class Columns {
 public:
-  /// Makes columns of the finite triangles. The axis is the one along which their boxes cast the least shadow.
+  /// Makes columns of the finite triangles. The axis is the one along which the shadows of their boxes overlap least.
   explicit Columns(const TrianglesView& triangles);
 
   /// Whether there is no finite triangle.
@@ -41,7 +41,7 @@ public:
     return {q[axes_[0]] - origin_[axes_[0]], q[axes_[1]] - origin_[axes_[1]], q[axes_[2]] - origin_[axes_[2]]};
   }
 
-  /// A triangle's box, as seen, rounded outward. Its place above decides many crossings.
+  /// A triangle's box, as seen, rounded outward. Being above a place decides many crossings.
   const FloatBox& box(std::uint32_t triangle) const noexcept { return boxes_[triangle]; }
 
   Triangle3 seenTriangle(std::uint32_t triangle) const noexcept
@@ -53,19 +53,20 @@ public:
   /// Triangles, each once.
   struct Range {
     const std::uint32_t *first, *last;
-    int turns = 0;             ///< how often the ray surely crosses others, fronts less backs
-    std::uint64_t bundles = 0; ///< that were looked at
+    int turns = 0;             ///< how often the ray surely crosses triangles not in the range, fronts less backs
+    std::uint64_t bundles = 0; ///< how many bundles were looked at
     const std::uint32_t* begin() const noexcept { return first; }
     const std::uint32_t* end() const noexcept { return last; }
     std::size_t size() const noexcept { return static_cast<std::size_t>(last - first); }
   };
 
-  /// All triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps others. Not
-  /// those of bundles that it surely crosses, whose turns are told.
-  /// @param several memory for those of several columns, where the place may be in more than one, and of bundles
+  /// Returns all triangles that a ray from a place within `error` of `at`, per axis, may meet or begin on; perhaps
+  /// others. Triangles of bundles that it surely crosses are left out, and counted in `turns`.
+  /// @param several memory of the range where it is of several columns, of strips or of bundles
   Range above(const Point3& at, double error, std::vector<std::uint32_t>& several) const;
 
-  /// All triangles that may come within `error` of the line along the ray's axis through a place; perhaps others.
+  /// Returns all triangles that may come within `error` of the line along the ray's axis through a place; perhaps
+  /// others.
   Range along(const Point3& at, double error, std::vector<std::uint32_t>& several) const
   {
     return bundles_ ? Range{entries_.begin(), entries_.end()} : above(at, error, several);
@@ -97,10 +98,10 @@ private:
   /// A range of entries_, or a finer grid, or strips.
   struct Cell {
     static constexpr std::uint32_t kGrid = ~std::uint32_t{0}, kStrips = kGrid - 1;
-    std::uint32_t begin, end; ///< kGrid or kStrips and its number, where there is one
+    std::uint32_t begin, end; ///< of entries_; or kGrid or kStrips, and the number of the grid or the strips
   };
 
-  /// Strips of a column's entries, which are in their order.
+  /// Strips of a column. Its entries are in the order of the strips.
   struct Stripped {
     std::uint32_t begin;
     Strips strips;

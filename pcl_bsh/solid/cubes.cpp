@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// Parts of a cube's width, of which corners may be anywhere in one.
+/// Parts of a cube's width. Corners in one part count as equal.
 constexpr std::uint32_t kParts = 8;
-constexpr std::size_t kManyLong = 1024;   ///< of these each is marked by itself
-constexpr std::uint32_t kLatelyBits = 12; ///< of the number of those that are remembered
+constexpr std::size_t kManyLong = 1024;   ///< the first long triangles, each of which is marked by itself
+constexpr std::uint32_t kLatelyBits = 12; ///< of the number of later ones that are remembered
 
 } // namespace
 
@@ -40,7 +40,7 @@ Cubes::Rough Cubes::roughOf(const Triangle3& triangle) const noexcept
   return rough;
 }
 
-/// Whether a triangle with its corners in the same parts was marked, as far as it is remembered; it is now.
+/// Whether a triangle with its corners in the same parts is remembered as marked. Remembers this one.
 bool Cubes::wasMarked(const Triangle3& triangle)
 {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -62,12 +62,12 @@ void Cubes::mark(const Triangle3& triangle)
     is_long = is_long || cubeOf(most, k) - cubeOf(least, k) > 2;
   }
   if (!is_long || ++long_ones_ <= kManyLong) return mark(triangle, kCellPad);
-  // Each place of another such triangle is within a part of the one at the same shares of its corners.
+  // Triangles with corners in the same parts are nowhere farther from this one than a part's width per axis.
   if (!wasMarked(triangle)) mark(triangle, 1.0 / kParts + 2 * kCellPad);
 }
 
-/// Marks cubes of each slab along the first axis, and of each row of it along the second: the triangle's part there
-/// reaches them along the last axis. It may miss a cube by `share` of the cube's width.
+/// Marks cubes that a triangle meets, or misses by at most `share` of a cube's width. The triangle is clipped to each
+/// slab of cubes along the first axis, then to each row along the second: what is left tells the cubes along the last.
 void Cubes::mark(const Triangle3& t, double share)
 {
   Point3 pad;

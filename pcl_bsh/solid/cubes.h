@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the surface of a mesh surely is not: a coarse grid of cubes over its box, those that it may meet marked.
+// A coarse grid of cubes over the box of a mesh. Cubes that the surface may meet are marked; it surely meets no others.
 #pragma once
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
@@ -18,8 +18,8 @@ public:
   /// @param low, high of all triangles
   Cubes(const Point3& low, const Point3& high);
 
-  /// Marks the cubes that a triangle may meet. Long triangles that begin and end at nearly equal places are marked
-  /// once, and somewhat wider. @param triangle finite, within the box
+  /// Marks the cubes that a triangle may meet. Once many long triangles were marked, those with nearly equal corners
+  /// are marked once, and somewhat wider. @param triangle finite, within the box
   void mark(const Triangle3& triangle);
 
   /// Whether surely no triangle meets the cube of the places within `reach` of `at`, per axis. False where the cube is

@@ -92,7 +92,7 @@ std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isom
   const LabelsResult labels = labelPoints({near, T_world_queried}, {solid.whole(), T_world_solid});
   if (work) *work += labels.work;
   const std::vector<SolidBodies::Body>& bodies = solid.all();
-  std::vector<std::int32_t> within; // a hollow of the solid is inside some of its bodies, too
+  std::vector<std::int32_t> within; // the whole solid: a hollow of it is inside some of its bodies, too
   for (const std::int32_t place : places) {
     const std::uint8_t label = labels.labels[static_cast<std::size_t>(place)];
     // On the face of one body a place may be inside of another.

@@ -35,9 +35,9 @@ public:
   /// Places of these records, ascending.
   std::vector<std::int32_t> placesOf(const std::vector<std::uint32_t>& records) const;
 
-  const std::vector<std::uint32_t>& triangles() const noexcept { return triangles_; } ///< whose corners these are
+  const std::vector<std::uint32_t>& triangles() const noexcept { return triangles_; } ///< finite ones of a surface
 
-  /// A triangle of each of its shells, which share vertices by number. @pre isSurface()
+  /// Returns a triangle of each shell. Triangles that share a vertex, by number, are of one shell. @pre isSurface()
   const std::vector<std::uint32_t>& shells() const noexcept { return shells_; }
 
 private:
@@ -67,8 +67,8 @@ std::vector<std::uint32_t> holdersOf(const SolidBodies& solid, const Eigen::Isom
 std::uint32_t holderOf(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
                        const Eigen::Isometry3d& T_world_queried, std::uint32_t enclosed, Work* work = nullptr);
 
-/// Whether the solid holds anything, where its surface is known to touch no triangle of the queried thing: so of each
-/// shell one corner is looked at, and of points the first that is found.
+/// Finds a record that the solid holds, where its surface is known to touch no triangle of the queried thing: so one
+/// triangle of each shell is looked at. Among points it is the smallest record.
 /// @return a record of the queried thing that is enclosed, and a triangle of a body that holds it. @throws as
 /// enclosedBy()
 std::optional<PointPair> findEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid,
@@ -81,9 +81,9 @@ std::vector<std::uint32_t> certainlyEnclosed(const std::vector<std::uint32_t>& e
                                              const std::vector<Verdict>& of_queried);
 
 /// Turns the verdicts of two surfaces into those of a solid and a queried thing. Enclosed records collide, and so do
-/// the triangles of holdersOf(). With uncertain places what is undecided stays so, and of the solid collides what
-/// certainly holds something; what else may hold something is undecided.
-/// @param of_queried one per record, or empty where not asked for: not so where places are uncertain
+/// the triangles of holdersOf(). With uncertain places, undecided records stay undecided. Triangles of bodies that
+/// certainly hold something collide, and triangles of other bodies that may hold something are undecided.
+/// @param of_queried one per record, or empty where not asked for; not empty where places are uncertain
 /// @param of_solid one per triangle, or empty
 void addEnclosed(const SolidBodies& solid, const Eigen::Isometry3d& T_world_solid, const QueriedRecords& queried,
                  const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& enclosed, bool uncertain,

@@ -37,9 +37,9 @@ public:
   /// The label of a child of a node above the voxels.
   Whole ofTop(const Node& node, std::uint32_t child) { return of(top_, cloud_.frame.unit, node, child); }
 
-  /// Tells the receiver of all points of a voxel that are not outside: inside(first, last) of records, or one(record,
-  /// label). Asks it before: wants(smallest record) tells whether it cares about any such points; expect(first, last)
-  /// names records that it may be told of soon.
+  /// Labels the points of a voxel. The receiver gets all that are not outside: inside(first, last) with a range of
+  /// records, or one(record, label). Before, wants(smallest record) asks it whether it needs any points of a node, and
+  /// expect(first, last) names records that may follow soon.
   template <class Receiver>
   void labelVoxel(std::uint32_t index, Receiver& receiver)
   {
@@ -76,7 +76,7 @@ private:
     if (!(reach < std::numeric_limits<double>::infinity())) return Whole::unknown;
     if (labels_.columns().isBeyond(at, reach)) return Whole::outside;
     if (!labels_.columns().isClear(at, reach)) return Whole::unknown;
-    const std::optional<Label> of_center = labels_.labelAround(at, frame.error); // points are anywhere in memory
+    const std::optional<Label> of_center = labels_.labelAround(at, frame.error); // needs no point's memory
     const Label label = of_center ? *of_center : labelOf(frame, node.lowest[child]);
     return label == Label::outside ? Whole::outside : Whole::inside;
   }
@@ -90,8 +90,7 @@ private:
     if (label != Label::outside) receiver.one(record, label);
   }
 
-  /// Labels a point by its stored place where that decides: the given one lies anywhere in memory. By the given one
-  /// elsewhere.
+  /// Labels a point by its stored place where that decides, else by its given place, which lies anywhere in memory.
   template <class Receiver>
   void labelStored(const Voxel& voxel, const PointLabels::Frame& frame, std::uint32_t i, Receiver& receiver)
   {

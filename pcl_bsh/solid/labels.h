@@ -4,9 +4,9 @@
 //   LabelsResult found = labelPoints({scan}, {tank, T_world_tank});
 //   if (found.labels[record] == labelOf(Label::inside)) ...
 //
-// Labels are those of exact arithmetic on the given numbers and poses. Points that surely do not meet the surface
-// together have one label, found for one of them: whole nodes of the cloud are labelled at once. A point is labelled
-// where it was measured, and by its centre where it is a ball. Points that are not finite are outside.
+// Labels are those of exact arithmetic on the given numbers and poses. A node of the cloud that surely does not meet
+// the surface has one label, found for one of its points: whole nodes are labelled at once. A point is labelled where
+// it was measured, and by its centre where it is a ball. Points that are not finite are outside.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -22,7 +22,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// As it stands among labels.
+/// Returns the label as a number, as LabelsResult::labels has it.
 constexpr std::uint8_t labelOf(Label label) noexcept
 {
   return static_cast<std::uint8_t>(label);

@@ -19,7 +19,7 @@ namespace {
 
 using Id = std::uint32_t;
 constexpr Id kNone = ~Id{0};
-constexpr std::size_t kMostIds = std::size_t{1} << 31; ///< twice one, and 1 more, is an Id
+constexpr std::size_t kMostIds = std::size_t{1} << 31; ///< 2 id + 1 is an Id, too
 
 std::size_t hashOf(const Point3& p)
 {
@@ -31,8 +31,8 @@ std::size_t hashOf(const Point3& p)
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
-/// Gives equal places one number, in the order in which they come. Open addressing: of a number, only the place it
-/// stands for is kept.
+/// Numbers places in the order in which they first come: equal places have one number. Open addressing: slots hold
+/// numbers, and a number only its place.
 class Joined {
 public:
   Id operator()(const Point3& p)
@@ -119,9 +119,9 @@ private:
     std::fill(left, end, kNone);
   }
 
-  std::vector<Id> edges_; ///< by their lower numbers: twice the higher one, and 1 more where the edge comes from there
-  std::vector<Id> ends_;  ///< of those of each lower number
-  std::vector<Id> taken_; ///< of the edges that are alike, at the first one
+  std::vector<Id> edges_; ///< by their lower ends: twice the higher end, and 1 more where the edge begins there
+  std::vector<Id> ends_;  ///< end of the edges of each lower end
+  std::vector<Id> taken_; ///< how many of equal edges are taken, at the first of them
   std::uint64_t count_ = 0;
 };
 
@@ -168,8 +168,8 @@ public:
         if (left.take(numbers_[i][k], numbers_[i][(k + 1) % 3])) edges_.push_back(static_cast<Id>(3 * i + k));
   }
 
-  /// Whether they cancel along their lines. On a line they do if and only if at each place as many begin as end. Passes
-  /// one way less those the other way change there by begins less ends, and far out they are 0.
+  /// Whether they cancel along their lines. On a line they do if and only if at each place as many begin as end. For
+  /// passes one way less passes the other way change at a place by begins less ends, and far out they are 0.
   bool cancel() const
   {
     if (edges_.empty()) return true;
@@ -190,7 +190,7 @@ public:
     return true;
   }
 
-  /// Visits the parts of them that are left open, by the edges' numbers. @param visit called with triangle, from, to
+  /// Visits the open parts of these edges, in the order of the edges. @param visit called with triangle, from, to
   template <class Visit>
   void forEachOpen(const Visit& visit) const
   {

@@ -15,14 +15,14 @@ namespace pcl_bsh {
 /// Edges, or parts of them, that nothing cancels. Several triangles may share an edge: what is left over of them
 /// counts.
 struct OpenEdges {
-  std::uint64_t count = 0;   ///< of an edge, parts that do not touch count each
+  std::uint64_t count = 0;   ///< open parts: parts of an edge that do not touch count each
   std::size_t triangle = 0;  ///< the first that has an open edge, if there is one
-  Point3 from = {}, to = {}; ///< what is open of that edge, in the triangle's direction
+  Point3 from = {}, to = {}; ///< the first open part of that edge, in the triangle's direction
 
   bool closed() const noexcept { return count == 0; }
 };
 
-/// One of them. Its ends are corners, of its triangle or of others on the same line.
+/// An open part of an edge. Its ends are corners, of its triangle or of others on the same line.
 struct OpenEdge {
   std::size_t triangle;
   Point3 from, to;
@@ -41,9 +41,9 @@ struct OpenEdge {
 /// @throws std::invalid_argument for 2^32 edges or 2^31 places
 PCL_BSH_EXPORT_INTERNAL bool closes(const TrianglesView& triangles);
 
-/// Open edges. Where several edges pass a place in one direction and some of them are cancelled there, the first are
-/// open.
-/// @param all gets each open edge, by their triangles, where it is not null
+/// Finds the open edges. Where several edges pass a place in one direction and some of them cancel, those of the first
+/// triangles are open.
+/// @param all gets each open part, in the order of triangles, where it is not null
 /// @pre, @throws as closes()
 PCL_BSH_EXPORT_INTERNAL OpenEdges openEdgesOf(const TrianglesView& triangles, std::vector<OpenEdge>* all = nullptr);
 

@@ -14,13 +14,13 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kFrameError = 1024 * kDoubleUnit;
-constexpr std::uint64_t kManyExact = 64; ///< decisions of a place, after which the gap about it is kept
+constexpr std::uint64_t kManyExact = 64; ///< exact decisions for a place; from so many on, the gap about it is kept
 constexpr std::size_t kMostGaps = 8;     ///< that are kept
 
 /// How a ray from the origin crosses a triangle.
 enum class Crossing : std::uint8_t { none, front, back, unknown };
 
-/// By double arithmetic, of corners that are off by `error` per axis; the ray goes along the last axis.
+/// Decides by double arithmetic, for corners that are off by `error` per axis. The ray goes along the last axis.
 ///
 /// Error bound. m is the largest coordinate across the ray, M of all, and E the error. A product of two coordinates
 /// errs by less than m (2.25 E + 4 v m) where 4 E <= m; where E is larger, nothing is sure. A side errs by less than m
@@ -101,7 +101,7 @@ PointLabels::Frame PointLabels::frameAt(const Point3& origin, double reach) cons
 }
 
 /// How often the surface winds round a place. @param decide called with each triangle that double arithmetic cannot
-/// tell of, returns its share; nothing ends it all
+/// decide: returns its turns, or nothing, which is then the result
 template <class Decide>
 std::optional<int> PointLabels::turnsAt(const Point3& at, double error, const Decide& decide)
 {
@@ -138,15 +138,15 @@ const PointLabels::Gap* PointLabels::gapAt(const Point3& at, double error)
   return &*gap;
 }
 
-/// Between the triangles that are next above and below a place, within a little of its ray. Where a ray passes by many
-/// edges and corners, as on the axis of a shape that is round, other points are on it, too. Nothing is kept where they
-/// are not.
+/// Keeps the gap between the triangles that are next above and below a place, within a little of its ray. Where a ray
+/// passes by many edges and corners, as on the axis of a round shape, other points are often on it, too. Where gaps
+/// turn out to serve no other points, none are kept.
 void PointLabels::addGap(const Point3& at, double error, Label label)
 {
   if (label == Label::surface || gaps_made_ > gaps_met_ + kMostGaps) return;
   if (!(error < 0x1p900)) return; // nothing below leaves the range of double
   constexpr double kEndless = std::numeric_limits<double>::infinity();
-  // The error has room for a rounding of any coordinate: so 64 of it have, for what clipping makes of them.
+  // The error exceeds a rounding of any coordinate, and 64 times it the roundings of clipped coordinates.
   const double off = 65.0 * error, aside = 2.0 * off, clipped = 2.0 * aside;
   Gap gap{{at[0] - aside, at[1] - aside, -kEndless}, {at[0] + aside, at[1] + aside, kEndless}, label};
   const UpwardRay line({at[0], at[1], -std::numeric_limits<double>::max()}, clipped);
@@ -174,7 +174,7 @@ std::optional<Label> PointLabels::labelAround(const Point3& at, double error)
 {
   if (!std::isfinite(at[0] + at[1] + at[2] + error)) return std::nullopt;
   if (const Gap* const gap = gapAt(at, error)) return gap->label;
-  // A ray in doubt about a gap's would pass by as many edges.
+  // A ray so close to a gap's ray would pass by as many edges.
   if (std::any_of(gaps_.begin(), gaps_.end(), [&](const Gap& gap) { return gap.touches(at, error); }))
     return std::nullopt;
   const std::optional<int> turns = turnsAt(at, error, [](std::uint32_t) { return std::nullopt; });

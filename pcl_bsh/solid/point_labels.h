@@ -15,8 +15,8 @@
 
 namespace pcl_bsh {
 
-/// Double arithmetic decides crossings where its error bound lets it, Winding all others: of the same ray, so that both
-/// may decide crossings of one point.
+/// Double arithmetic decides crossings where its error bound allows, and Winding decides all others exactly. Both use
+/// the same ray, so each may decide some crossings of one point.
 ///
 /// Error bound. A place is R (p - o) + g, where o is near it in the cloud. Here g = Rb^-1 s and s = Ra o + ta - tb - Rb
 /// ob. Entries are at most 1 + 1e-6 and v = 2^-53. Cofactors and determinant of Rb err by 4 v and 20 v, its inverse by
@@ -28,17 +28,17 @@ class PointLabels {
 public:
   PointLabels(const Eigen::Isometry3d& pose_a, const PlacedSolid& b);
 
-  /// A cloud near one of its places, as the solid sees it.
+  /// The rigid map from the cloud's frame, near one origin, to where the solid's columns see its places.
   struct Frame {
     Point3 origin; ///< in the cloud's own frame
-    Point3 shift;  ///< where it is
+    Point3 shift;  ///< where the origin is seen
     double error;  ///< of seen(), per axis, in both the place and the solid's corners; infinite where nothing is known
   };
 
   /// @param reach at least |p - origin| per axis, of all points that are seen from this frame
   Frame frameAt(const Point3& origin, double reach) const;
 
-  /// Where a place of the cloud, given less the frame's origin, is seen.
+  /// Returns where a place of the cloud is seen. @param from_origin the place less the frame's origin
   Point3 seen(const Frame& frame, const Point3& from_origin) const noexcept
   {
     Point3 at;
@@ -56,7 +56,7 @@ public:
   /// The label of all places within `error` of `at`, per axis, as seen; nothing where double arithmetic cannot tell.
   std::optional<Label> labelAround(const Point3& at, double error);
 
-  /// Takes over those that others at the same poses have found.
+  /// Copies the gaps that another PointLabels has found. @pre both have the same poses
   void takeGaps(const PointLabels& other) { gaps_ = other.gaps_; }
 
 private:

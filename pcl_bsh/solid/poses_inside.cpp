@@ -33,7 +33,7 @@ public:
   {
   }
 
-  /// The children of a node above the voxels, at some poses of the walks.
+  /// Labels the children of a node above the voxels, at some poses. @param base the pose of the first walk
   void sortOut(std::vector<LabelWalk>& walks, std::uint32_t index, const Poses& poses, std::uint32_t base)
   {
     const SphereHierarchy::Storage& storage = cloud_.hierarchy().storage();

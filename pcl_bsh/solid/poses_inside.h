@@ -21,8 +21,8 @@ struct PosesInside {
   Work work;              ///< of one label each where a node has one; as LabelsResult has it
 };
 
-/// At each pose of the solid. A node of the cloud is visited only for the poses at which it may meet the surface, and
-/// for none after the first that holds all of it. No voxel is built.
+/// Finds the first pose of the solid that holds each point. A node of the cloud is visited only for the poses at which
+/// it may meet the surface, and for none after the first that holds all of it. No voxel is built.
 /// @param T_world_solid fewer than 2^32 - 1. @param threads 0: all of the machine's
 /// @throws std::invalid_argument when a pose is not rigid
 PosesInside findPosesInside(const Placed& cloud, const Solid& solid, const PoseList& T_world_solid,

@@ -29,13 +29,13 @@ struct Direction {
   double x = 1.0, y = 0.0;
 };
 
-/// Sums up lines, either way along them.
+/// Sums up the directions of lines; opposite directions are alike.
 struct Lines {
   double xx = 0.0, xy = 0.0, yy = 0.0;
 
   void add(double x, double y) { xx += x * x, xy += x * y, yy += y * y; }
 
-  /// Along which they go most: half the angle of the doubled angles' mean.
+  /// Returns their mean direction: half the angle of the doubled angles' mean.
   Direction mean() const
   {
     const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy);
@@ -47,11 +47,11 @@ constexpr std::uint32_t kBelow = 16; ///< strips below a strip, or triangles
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-constexpr std::size_t kSamples = 64; ///< that tell how many lie
+constexpr std::size_t kSamples = 64; ///< needles that tell how all of them lie
 
 /// The keys that the order is sorted by.
 struct Needles {
-  struct Needle {       // in a unit that floats have squares in
+  struct Needle {       // in a unit in which squares are floats
     float x, y;         ///< its middle
     float way_x, way_y; ///< along its longest side
   };
@@ -63,8 +63,8 @@ struct Needles {
   std::vector<Needle> needles;
   std::vector<Keyed> order;
 
-  /// Brings [begin, end) into halves, each of whole blocks, until a block is left: by where needles are across their
-  /// mean direction, or by how they turn from it, whichever widens their strip by more.
+  /// Splits [begin, end) into halves of whole blocks, and these again, down to kBelow needles. The key is a needle's
+  /// place across their mean direction, or its turn from it, whichever widens their strip by more.
   void sort(std::size_t begin, std::size_t end, std::size_t block)
   {
     if (end - begin <= kBelow) return;

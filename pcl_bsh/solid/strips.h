@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles that are long for the column which they are in, by strips across the ray: a tree of them, so that a ray in
-// the column is compared with few.
+// A tree of strips across the ray, over triangles that are long for their column: a ray in the column is compared with
+// few of them.
 #pragma once
 
 #include <pcl_bsh/geometry/triangle/triangle3.h>
@@ -13,8 +13,8 @@
 
 namespace pcl_bsh {
 
-/// Over the shadows of triangles along the last axis. A strip is what lies between two parallel lines: a needle is in a
-/// narrow one, however it lies, and so are neighbours among needles that meet at one end or lie side by side.
+/// Strips over the shadows of triangles along the last axis. A strip lies between two parallel lines. A needle is in a
+/// narrow one, however it lies; so are neighbours among needles that meet at one end or lie side by side.
 class Strips {
 public:
   /// @param first, last numbers of the triangles; brought into the tree's order @param seen the corners of one

@@ -24,7 +24,8 @@ namespace pcl_bsh {
 std::vector<std::uint8_t> labelTriangles(const TrianglesView& triangles, const Eigen::Isometry3d& T_world_triangles,
                                          const PlacedSolid& solid, unsigned threads = 1);
 
-/// A finite triangle of each connected shell, the first, ascending: triangles that name the same vertex are in one.
+/// Returns the first finite triangle of each connected shell, ascending. Triangles that name the same vertex are of one
+/// shell.
 /// @throws InvalidInput for a view that viewOf() refuses
 std::vector<std::uint32_t> firstOfShells(const TrianglesView& triangles);
 

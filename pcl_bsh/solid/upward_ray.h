@@ -11,19 +11,19 @@
 
 namespace pcl_bsh {
 
-/// Both corners are in it.
+/// A box, both corners included.
 struct FloatBox {
   float low[3], high[3];
 };
 
-/// A column holds some tens of boxes, of which the ray meets one or two: what is compared with one at a time is told by
-/// branches that nobody can foretell. So it is all of a box at once, by vectors as the compiler has them everywhere.
+/// A column holds some tens of boxes, of which the ray meets one or two. Comparing one number at a time takes branches
+/// that cannot be foretold. So all numbers of a box are compared at once, by the compiler's vectors.
 class UpwardRay {
 public:
   /// @param at finite @param error per axis
   UpwardRay(const Point3& at, double error)
   {
-    float low[3], high[3]; // the place is between these: rounded, no number comes to the other side of a float
+    float low[3], high[3]; // the place is between these: rounding takes no number past a box's float
     for (std::size_t k = 0; k < 3; ++k)
       low[k] = static_cast<float>(at[k] - error), high[k] = static_cast<float>(at[k] + error);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -50,7 +50,7 @@ private:
   using Floats = float __attribute__((vector_size(16)));
   using Words = std::int64_t __attribute__((vector_size(16)));
 
-  Floats most_, least_; ///< of a box's low corner, and of its high one
+  Floats most_, least_; ///< bounds of the low and of the high corner of a box that the ray may meet
   float highest_;       ///< of where it begins
 };
 
