@@ -6,9 +6,9 @@
 //   found.depths[0].depth.upper // of the first record that the tank holds, or that meets its surface
 //
 // The depth of a point is its distance to the surface. The depth of a triangle is the greatest distance to the surface
-// of its places that are inside. The depth of a ball whose middle is enclosed is that of its middle and its radius: how
-// far the ball has to move at least until none of it is inside. So it goes on from the distance of a ball outside,
-// which is that of its middle less the radius.
+// of its places that are inside. The depth of a ball whose middle is enclosed is the depth of its middle plus its
+// radius: how far the ball has to move at least until none of it is inside. It continues the distance of a ball
+// outside, which is that of its middle less its radius.
 #pragma once
 
 #include <pcl_bsh/pairs/closest_pair.h>
@@ -53,8 +53,8 @@ std::vector<std::uint32_t> recordsIn(const DeepSolid& solid, const QueriedRecord
                                      const Eigen::Isometry3d& T_world_queried, unsigned threads, Work& work);
 
 /// The depth of each record of recordsIn().
-/// @param deepest of others than the deepest, no more is found out than that they are not deeper: their intervals hold
-///   their depths all the same
+/// @param deepest true: other records than the deepest are measured only until they are known not to be deeper; their
+///   intervals hold their depths all the same
 /// @param threads 0: all of the machine's. @throws std::invalid_argument when a pose is not rigid
 DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, const Eigen::Isometry3d& T_world_queried,
                       unsigned threads = 1, bool deepest = false);
@@ -62,8 +62,8 @@ DepthsResult depthsIn(const DeepSolid& solid, const QueriedRecords& queried, con
 /// The greatest depth; of several equal ones, that of the first record. Nothing where no record is deeper than 0.
 const Depth* deepestOf(const std::vector<Depth>& depths);
 
-/// The smallest distance of the two becomes the depth of the deepest record, less than 0, where the solid holds
-/// anything; of several the first. Its interval holds the depths of all.
+/// Turns the smallest distance of the two into the negative depth of the deepest record, where the solid holds
+/// anything. Among equally deep records it is the first. Its interval holds the depths of all.
 /// @param solid_is_b whether pairs are (queried record, solid's triangle), or the other way round
 void deepen(DistanceResult& closest, const DeepSolid& solid, bool solid_is_b, const QueriedRecords& queried,
             const Eigen::Isometry3d& T_world_queried, unsigned threads = 1);
@@ -73,8 +73,8 @@ std::vector<Depth> depthsOf(const DeepSolid& solid, const QueriedRecords& querie
                             const Eigen::Isometry3d& T_world_queried, const std::vector<std::uint32_t>& records,
                             unsigned threads, bool deepest, Work& work);
 
-/// A view of the same points of which each radius is less than 0 by as much as it was greater: distances of these are
-/// depths. For RecordDistance alone. @param radii are written, and must last as long as the view
+/// Returns a view of these points with all radii negated: distances of these balls are depths. For RecordDistance
+/// alone. @param radii are written, and must last as long as the view
 PointsView sunk(PointsView balls, std::vector<float>& radii);
 
 } // namespace pcl_bsh

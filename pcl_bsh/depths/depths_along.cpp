@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// While a record goes by a way w relative to the solid, its depth changes by no more than w: taken as less than 0
-// outside, by the distance to the surface. So a record that was this deep at one pose needs no measure at poses near
-// it. On a motion of length w from depth s to depth t, a record is nowhere deeper than (s + t + w) / 2.
+// While a record goes by a way w relative to the solid, its depth changes by no more than w. Outside, the depth is the
+// negative distance to the surface. So a record need not be measured where its last depth plus its way since then is no
+// more than its greatest depth. On a motion of length w from depth s to depth t, a record is nowhere deeper than (s + t
+// + w) / 2.
 #include <pcl_bsh/depths/depths_along.h>
 
 #include <pcl_bsh/base/invalid_input.h>
@@ -62,18 +63,18 @@ public:
   }
 
 private:
-  /// Where a record was seen by the solid when it was measured, and how deep it was at most.
+  /// Where a record was, in the solid's frame, when it was last measured, and how deep it was at most.
   struct Last {
     double upper = 0.0;
     std::vector<Point3> places;
   };
 
-  /// Part of a motion: less than 0 is outside.
+  /// A record on a part of a motion, which goes from 0 to 1. Depths less than 0 are outside.
   struct Span {
     std::uint32_t record;
     double from, to;
-    double first, last; ///< depths at both ends, at most
-    double speed;       ///< the way goes by no more per unit of the motion
+    double first, last; ///< upper bounds of the depths at both ends
+    double speed;       ///< upper bound of its way on the whole motion
   };
 
   std::pair<DeepSolid, Eigen::Isometry3d> placed(const Eigen::Isometry3d& pose) const
@@ -125,7 +126,7 @@ private:
   /// A ball's radius: its depth is that of its middle, plus the radius.
   double radiusOf(std::uint32_t record) const { return part_.queried().thing().view().ownRadius(record); }
 
-  /// Depths at most of some records at an instant; of a place outside, less than 0. Notes records inside.
+  /// Returns upper bounds of the depths of some records at an instant; less than 0 outside. Notes records inside.
   std::map<std::uint32_t, double> depthsAt(const std::vector<std::uint32_t>& records, const Eigen::Isometry3d& at,
                                            std::uint32_t pose)
   {
@@ -140,7 +141,7 @@ private:
     return depths;
   }
 
-  /// Depths at most of all records of a queried thing, by their numbers; minus infinity if farther outside than
+  /// Returns upper bounds of the depths of all records of a queried thing; minus infinity if farther outside than
   /// `reach`.
   std::vector<double> depthsOfAll(const QueriedRecords& queried, const Eigen::Isometry3d& at, std::uint32_t pose,
                                   double reach)
@@ -189,7 +190,8 @@ private:
   }
 
   /// The motion from a pose to the next.
-  /// @param first, last depths at most at both; minus infinity: farther outside than `reach`, the way of any record
+  /// @param first, last upper bounds of depths at both; minus infinity: farther outside than `reach`, the longest way
+  ///   of any record
   void sweep(std::uint32_t k, const std::vector<double>& first, const std::vector<double>& last, double reach)
   {
     const RigidMotion motion = motionFrom(k);
@@ -217,7 +219,8 @@ private:
     }
   }
 
-  /// Keeps a span that may be deeper than known by more than half the tolerance. Shorter parts than that tell no more.
+  /// Keeps a span on which the record may be deeper than known by more than half the tolerance. Spans with a way of a
+  /// quarter of the tolerance or less are not divided any more.
   void keepOpen(const Span& span, std::vector<Span>& open)
   {
     const double way = span.speed * (span.to - span.from), upper = 0.5 * (span.first + span.last + way);

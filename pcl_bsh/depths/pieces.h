@@ -12,7 +12,7 @@
 
 namespace pcl_bsh {
 
-/// s at a place, which may lie off its triangle by rounding.
+/// The value of s at a place, which may lie off its triangle by rounding.
 struct Sample {
   double low, high, rounded;
   std::uint32_t nearest;
@@ -36,7 +36,7 @@ inline Point3 between(const Point3& p, const Point3& q, double share)
   return at;
 }
 
-/// The greatest of what is smaller of two linear functions, which are given at the corners of a triangle.
+/// Returns the greatest value, on a triangle, of the smaller of two linear functions, which are given at its corners.
 inline double smallerOfTwo(const std::array<double, 3>& f, const std::array<double, 3>& g)
 {
   double greatest = 0.0, sum = 0.0;

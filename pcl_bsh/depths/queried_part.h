@@ -16,7 +16,7 @@ namespace pcl_bsh {
 class PCL_BSH_EXPORT_INTERNAL QueriedPart {
 public:
   /// Coordinates, radii and uncertainties are copied. @param thing need not outlive this
-  /// @param records of its view, ascending: those that are no points, or no triangles, are none here either
+  /// @param records of its view, ascending: records that are not finite are not finite here either
   QueriedPart(const SphereHierarchy& thing, std::vector<std::uint32_t> records);
   QueriedPart(const QueriedPart&) = delete;
   QueriedPart& operator=(const QueriedPart&) = delete;

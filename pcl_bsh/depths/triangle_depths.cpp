@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The depth of a triangle is the greatest value of s on it: the distance to the surface, less than 0 outside. s changes
-// by no more than the way that one goes. On a piece of the triangle
+// The depth of a triangle is the greatest value of s on it: the distance to the surface, less than 0 outside. From
+// place to place, s changes by no more than the way between them. On a piece of the triangle
 //
 //   s <= s(corner) + the way from there,
-//   s <= the distance to any one triangle of the solid, which is convex: no more than between its values at corners.
+//   s <= the distance to any one triangle of the solid, which is convex: at most linear between its values at corners.
 //
-// The smaller distance to two of these triangles counts everywhere: over a piece, the smaller of the two is
-// greatest at a corner, or where they meet on an edge. There pieces are cut, so that ridges of s, halfway between two
-// walls, and seams between faces that lie in one plane become edges of pieces. A piece that crosses the surface is cut
-// where it does; then pieces outside are apart from the surface, which is how they are known.
+// At each place the smaller of two such linear bounds counts. Over a piece, it is greatest at a corner, or where the
+// two are equal on an edge. There pieces are cut, so that ridges of s, halfway between two walls, and seams between
+// faces that lie in one plane become edges of pieces. A piece that crosses the surface is cut where it does; then
+// pieces outside are apart from the surface, which is how they are known.
 #include <pcl_bsh/depths/triangle_depths.h>
 
 #include <pcl_bsh/base/float_environment.h>
@@ -159,7 +159,7 @@ private:
 
   static double flatness(const Search& search) { return 32.0 * search.error; } ///< what counts for no depth
 
-  /// Bounds of new pieces; those that are known well enough are done.
+  /// Bounds new pieces. Pieces that are known well enough are done.
   void bound()
   {
     const DefaultFloatEnvironment environment;
@@ -203,8 +203,8 @@ private:
     return upper;
   }
 
-  /// Pieces of which no corner is inside, and which are apart from the surface, are outside. So they are where they are
-  /// apart once they are pushed off by hardly more than rounding: they are no deeper than that.
+  /// Pieces with no corner inside that are apart from the surface are outside. Pieces that are apart and outside once
+  /// pushed off by hardly more than rounding are no deeper than this push.
   void leaveOutApart()
   {
     std::vector<Point3> vertices;
@@ -332,7 +332,8 @@ private:
     return wayBetween(places_[piece.corners[(k + 1) % 3]], places_[piece.corners[(k + 2) % 3]]);
   }
 
-  /// Where on an edge what is nearest to its one end becomes farther than what is nearest to the other.
+  /// Returns the share of an edge at which the triangle nearest to its one end becomes farther than the one nearest to
+  /// its other end.
   std::optional<double> meetingOf(const Piece& piece, unsigned k, unsigned l) const
   {
     const Sample &p = samples_[piece.corners[k]], &q = samples_[piece.corners[l]];
@@ -343,7 +344,7 @@ private:
     return a / (a + b);
   }
 
-  /// About, for where to cut.
+  /// Returns the distance about as it is: it tells only where to cut.
   double distanceTo(const Point3& place, std::uint32_t triangle) const
   {
     const Eigen::Vector3d seen = solid_.pose.inverse() * (pose_ * Eigen::Vector3d(place[0], place[1], place[2]));

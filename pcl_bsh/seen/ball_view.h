@@ -11,8 +11,8 @@
 
 namespace pcl_bsh {
 
-/// A direction lies between beams that are at most this many angles from it. It is the angle, from the middle of a cell
-/// of directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
+/// A direction lies between beams that are at most this many angles from it. It is the sum of the angle, from the
+/// middle of a cell of directions (direction_cells.h), and half the diagonal of a cell, less than 0.18 of the angle.
 inline constexpr double kBetweenOfAngle = 1.2;
 
 /// All directions up to this many angles from a seen one lie between beams. It is half a step of an even grid: a corner
@@ -41,8 +41,8 @@ inline constexpr double kBallViewSlack = 0x1p-46;
 
 /// A ball, seen from the origin of a scan. Where a length is rounded, the ball grows.
 struct BallView {
-  /// @param center rounded from terms of at most `magnitude`. @param guard slacks on top of the radius: with 8, what is
-  ///   not left open of this ball is not of those in it
+  /// @param center rounded from terms of at most `magnitude`. @param guard slacks on top of the radius: with 8, a beam
+  ///   that leaves nothing of this ball open leaves nothing open of any ball in it
   BallView(const Point3& origin, const Eigen::Vector3d& center, double magnitude, double ball, double guard = 0.0)
   : way(center - Eigen::Vector3d(origin.data())),
     distance(way.norm()),
@@ -60,7 +60,7 @@ struct BallView {
   Eigen::Vector3d direction;
   double farthest; ///< a beam that is empty up to here leaves nothing open
 
-  /// Whether its squares have not overflown; if so, it is not seen.
+  /// Whether no square overflows; a ball with one that does is not seen.
   bool isMeasured() const { return std::isfinite(farthest * farthest); }
 
   /// Half the angle of its cone, at least. @pre not around
@@ -73,8 +73,9 @@ inline double chordOf(double angle)
   return 2.0 * std::sin(0.5 * angle) * (1.0 + 0x1p-40);
 }
 
-/// Whether a beam counts for a direction in which something may be in the ball. The nearest such direction to the
-/// ball's centre is the beam's own, turned towards the centre by at most the reach. It leaves the ball last.
+/// Whether a beam leaves it open that something is in the ball: it counts for a direction that leaves the ball where
+/// the beam is not surely empty. It suffices to test the direction nearest to the ball's centre, which leaves the ball
+/// last. This is the beam's own, turned towards the centre by at most the reach.
 /// @param beam not 0; its length does not matter. @param empty how far it went, of which `speaks.sure` counts
 inline bool leavesOpen(const BallView& ball, const Eigen::Vector3d& beam, double empty, const BeamAngle& speaks)
 {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Chords to the nearest beams above, below, left and right of one that are no farther than `reach`; the greater one of
-/// the nearer two of each pair.
+/// Returns the greater of two chords: to the nearest beam above or below, and to the nearest one left or right, both no
+/// farther than `reach`. Infinity where there is no such pair.
 double stepAt(const BeamTree& beams, const Beam& beam, double reach)
 {
   const Eigen::Vector3d at = beam.direction();

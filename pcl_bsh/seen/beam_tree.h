@@ -29,7 +29,7 @@ struct BeamNode {
   Eigen::Vector3d center() const { return Eigen::Vector3f(x, y, z).cast<double>(); }
 };
 
-/// The record of a beam among the returns, then the misses.
+/// A beam of a scan. Its record numbers the returns first, then the misses.
 struct BeamEnd {
   Eigen::Vector3d way; ///< from the origin; 0: it is no beam
   double empty;        ///< up to here

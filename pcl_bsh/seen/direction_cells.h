@@ -16,7 +16,7 @@ inline constexpr std::size_t kCubeFaces = 6;
 
 /// Where a direction meets the cube [-1, 1]^3.
 struct FacePlace {
-  std::size_t face; ///< twice the axis, and 1 where it is negative
+  std::size_t face; ///< twice the axis, plus 1 where it is negative
   double u, w;      ///< along the two axes after it
 };
 
@@ -54,7 +54,7 @@ struct DirectionCell {
     return directionOf({face, -1.0 + half * (2 * u + 1), -1.0 + half * (2 * w + 1)});
   }
 
-  /// One after the other around it.
+  /// Returns the corners, in order around the cell.
   std::array<Eigen::Vector3d, 4> corners() const
   {
     const double edge = std::ldexp(2.0, -static_cast<int>(level));
@@ -90,7 +90,7 @@ struct Cone {
   {
   }
   Eigen::Vector3d direction;
-  double sine; ///< the greatest of its angles
+  double sine; ///< the greatest sine of its angles
   double cosine, chord;
 
   bool isApartFrom(const CellSphere& cell) const
@@ -109,15 +109,15 @@ struct Cone {
 /// the place is in a triangle of such beams, and great circles are straight lines there.
 inline constexpr std::size_t kBeamSides = 8;
 
-/// A beam is in a sector by this length at least, on the cube; twice as far on u + w and u - w. More than what
-/// directions are off as stored, at up to 70 degrees from the middle of a face.
+/// A beam counts for a sector if it is within it by this length, on the cube, and by twice as much along u + w and u -
+/// w. This is more than the error of stored directions, at up to 70 degrees from the middle of a face.
 inline constexpr double kBesideCell = 0x1p-19;
 
 /// Levels of the cells in which beams of an angle are judged: an edge of a cell is at most a quarter of the angle.
 unsigned cellLevels(double angle);
 
-/// Up to this angle a beam is near a cell's middle: less than its own by rounding and by what directions are off as
-/// stored.
+/// Returns the angle up to which a beam counts as near a cell's middle: the given one, less rounding and the error of
+/// stored directions.
 inline double cellAngle(double angle)
 {
   return angle * (1.0 - 0x1p-10) - 0x1p-22;

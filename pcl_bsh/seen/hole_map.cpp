@@ -27,7 +27,8 @@ using Sides = std::array<std::uint64_t, kBeamSides>;
 /// Tells on which sides of each cell of a tile a beam lies (direction_cells.h).
 class BeamSides {
 public:
-  /// @param x, y where it is, and @param off by how much it is beside a cell at least; lengths of a cell's edge
+  /// @param x, y where the beam meets the tile's face. @param off how far beside a cell it must be. All in edges of a
+  ///   cell
   BeamSides(double x, double y, double off)
   : east_(static_cast<int>(std::floor(x - off))),
     west_(static_cast<int>(std::ceil(x + off))),
@@ -40,7 +41,7 @@ public:
   {
   }
 
-  /// Adds the cells of one row, among these.
+  /// Adds the beam to its sides of these cells of one row.
   void add(int row, std::uint64_t cells, Sides& sides) const
   {
     const std::array<std::uint64_t, kBeamSides> half_planes = {

@@ -45,8 +45,8 @@ private:
   const BeamTree* beams_ = nullptr; ///< while it is built
   double angle_;                    ///< cellAngle()
   unsigned levels_;
-  unsigned root_level_;     ///< trees are built side by side
-  std::vector<Tree> trees_; ///< of its cells that have holes
+  unsigned root_level_;     ///< of the trees' cells; trees are built in parallel
+  std::vector<Tree> trees_; ///< of cells of that level that have holes
 };
 
 } // namespace pcl_bsh

@@ -13,13 +13,13 @@ namespace {
 
 constexpr unsigned kLevel = 8; ///< cells of some 6 milliradians
 
-/// Cones narrower than some cells are not divided.
+/// Nodes with cones no wider than this, some cells, are not opened.
 constexpr double kNarrow = 0.02;
 
 /// Beams up to this many angles from a ball say whether it is seen.
 constexpr double kNeededOfAngle = std::max(kReachOfAngle, kMarginOfAngle + kBetweenOfAngle);
 
-/// For what cones, cells and beams are rounded by.
+/// Room for the roundings of cones, cells and beams.
 constexpr double kSlack = 0x1p-20;
 
 std::size_t numberOf(const DirectionCell& cell)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The beams of a scan that say something of a model at its poses: those in directions near the model. A SeenSpace of
-// these gives the answers of one of all beams, if it holds two beams of the scan, where there are two.
+// these beams gives the answers that one of all beams gives. It must have two beams if the scan has two.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -17,12 +17,12 @@ public:
   /// @param angle that beams speak for. @throws std::invalid_argument as SeenSpace does
   LookedAt(const Point3& origin, double angle);
 
-  /// The model is asked about at this pose, too, with balls of its points' radii and uncertainties and the clearance. A
-  /// ball about the origin needs all beams.
+  /// Adds the directions near a model at a pose: those of balls about its points, of their radii and uncertainties and
+  /// the clearance. A ball that holds the origin needs all beams.
   void add(const Placed& model, double clearance);
 
   bool holds(const Point3& end) const;                       ///< whether a beam that ended there counts
-  bool holdsSome(const Point3& center, double radius) const; ///< whether one may that ended in this ball
+  bool holdsSome(const Point3& center, double radius) const; ///< whether a beam may that ended in it
 
 private:
   class Walk;

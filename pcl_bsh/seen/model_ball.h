@@ -12,7 +12,7 @@
 
 namespace pcl_bsh {
 
-/// A place of the model's frame in that of the scans, and how large the terms were that it was computed of.
+/// A place of the model, in the frame of the scans, and the magnitude of the terms that it was summed from.
 struct PosedPlace {
   PosedPlace(const Eigen::Isometry3d& pose, const Point3& place)
   {
@@ -24,7 +24,7 @@ struct PosedPlace {
   double magnitude = 0.0;
 };
 
-/// Where the point may be, and the clearance about that.
+/// All places where the point may be, and the clearance about these.
 struct ModelBall {
   ModelBall(const Placed& model, std::uint32_t record, double clearance)
   : place(model.pose, model.hierarchy().view().point(record))

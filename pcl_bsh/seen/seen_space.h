@@ -13,14 +13,15 @@
 // within a third of the angle (0.334) of them, lies between beams. Also, each beam that counts for a direction of the
 // cone has to be empty up to where the direction leaves the ball. One scanner that sees the whole ball suffices.
 //
-// For which worlds that holds. In a direction between beams a plane that they met, at any slant, is no nearer than the
-// nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes nearer by
-// less than the angle's share under these conditions. A sphere: the beams round the direction are within the angle of
-// it. An edge of a right angle or blunter: within 0.87 angles. A corner of three right angles: within two thirds. Beams
-// of an even grid are so near, at the measured angle. Beams have to meet things. A scanner sees a thing at least two
-// angles wide, also at its corners: then a beam of an even grid meets it beside each of its places. Single beams of the
-// grid may be lost: a right angle then holds another beam within 1.5 angles. A corner that hangs over the last row, or
-// into a gap, by more than half a step meets a beam of that row; by less, it is within the third of the angle.
+// This holds for the following worlds. In a direction between beams a plane that they met, at any slant, is no nearer
+// than the nearest place where they met it, less 1 - cos(1.2 angles). A surface that bulges towards the scanner comes
+// nearer by less than the angle's share under these conditions. A sphere: the beams round the direction are within the
+// angle of it. An edge of a right angle or blunter: within 0.87 angles. A corner of three right angles: within two
+// thirds. Beams of an even grid are so near, at the measured angle. Beams have to meet things. A scanner sees a thing
+// at least two angles wide, also at its corners: then a beam of an even grid meets it beside each of its places. Single
+// beams of the grid may be lost: a right angle then holds another beam within 1.5 angles. A corner that hangs over the
+// last row, or into a gap, by more than half a step meets a beam of that row; by less, it is within the third of the
+// angle.
 //
 // Seen is certain: what rounding leaves open is not seen. Not seen has tolerances: directions are judged in cells of a
 // grid over the sphere, with edges of a quarter of the angle at most. A cell lies between beams if each of eight
@@ -74,7 +75,7 @@ public:
 
   std::size_t size() const noexcept;             ///< scans
   double angle(std::size_t scan) const noexcept; ///< in use; radians. 0: it has less than two beams, and sees nothing
-  std::size_t beams(std::size_t scan) const noexcept; ///< that say something
+  std::size_t beams(std::size_t scan) const noexcept; ///< how many beams count
 
   class Storage; ///< for the queries
   const Storage& storage() const noexcept { return *storage_; }

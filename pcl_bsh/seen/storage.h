@@ -10,7 +10,7 @@
 
 namespace pcl_bsh {
 
-/// A scan whose beams speak for an angle.
+/// One scan of a SeenSpace. Its beams count for directions within kReachOfAngle times its angle of their own.
 class SeenScan {
 public:
   /// @param angle 0: measured
@@ -20,10 +20,10 @@ public:
   double angle() const { return angle_; }
   std::size_t size() const { return beams_.beams().size(); }
 
-  /// Whether nothing is open in the ball: it is seen.
+  /// Whether the scan sees the whole ball: nothing in it is left open.
   bool sees(const BallView& ball, std::uint64_t& tested) const;
 
-  /// Whether it sees no ball about a place in this one. @param ball of places. @param least radius of balls about them
+  /// Whether it surely sees none of the balls about the places in a ball. @param least radius of the balls about them
   bool seesNoneIn(const BallView& ball, double least, std::uint64_t& tested) const;
 
   /// Whether no beam passed a place: it is in a hole, or all beams that count for its direction ended before it.

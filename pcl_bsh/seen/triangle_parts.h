@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether all places of a record are seen: of a point in one ball, of a triangle in balls about parts of it, as small
-// as need be; and where a triangle is not.
+// Whether all places of a record are seen: a point by one ball, a triangle by balls about its parts, as small as need
+// be. Also tells where a triangle is not seen.
 #pragma once
 
 #include <pcl_bsh/geometry/given_sphere.h>
@@ -15,13 +15,14 @@
 
 namespace pcl_bsh {
 
-/// A triangle's balls go down to this share of the ball about each of its places, and to this many halvings: what is
-/// not seen then counts as unseen.
+/// A triangle is halved down to balls of this share of the ball about each of its places, and this many times at most:
+/// a part that is not seen then counts as unseen.
 inline constexpr double kSmallestPart = 0.125;
 inline constexpr int kMostHalvings = 14;
 
 /// The unseen part of a triangle is told in parts with no more halvings than this, or as small as the ball about a
-/// place. Parts of one piece share two boxes: one of its shadow, one of its skin.
+/// place. Parts of one piece, which is a triangle after kPieceHalvings halvings, share two boxes: one of its shadow,
+/// one of its skin.
 inline constexpr int kPartHalvings = 10;
 inline constexpr int kPieceHalvings = 6;
 
@@ -46,7 +47,7 @@ public:
     return seesPart(view_.triangles->triangle(record), kMostHalvings);
   }
 
-  /// Whether a record that is not seen is in shadow: a point, or a part of a triangle by its middle.
+  /// Whether a record that is not seen is in shadow: a point, or the middle of an unseen part of a triangle.
   /// @param shadow at(PosedPlace) tells that of a place. all(PosedPlace, radius) and none(PosedPlace, radius) may tell
   ///   it of all places of a ball; where they do not know, they are false
   /// @param parts null: not wanted; else gets where a triangle is unseen, unless that is all of it, and of one kind
@@ -163,7 +164,7 @@ private:
   const PointsView& view_;
   const double clearance_;
   const Sees& sees_;
-  mutable double least_ = 0.0; ///< of a ball about a place of the record
+  mutable double least_ = 0.0; ///< radius of the ball about a place of the record
 };
 
 } // namespace pcl_bsh

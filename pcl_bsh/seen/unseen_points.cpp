@@ -52,7 +52,8 @@ public:
   UnseenResult result;
 
 private:
-  /// Which scans may see something in the sphere but not all; none left: it is settled, except for its kind.
+  /// seen: one scan sees all of the sphere. in_shadow and unseen: no scan sees any of it; unseen if its kind is wanted
+  /// and not known. open: some scans may see part of it.
   enum class State : std::uint8_t { seen, in_shadow, unseen, open };
 
   State look(const GivenSphere& sphere, const Scans& scans, Scans& left)
@@ -111,7 +112,7 @@ private:
     enterNode(&voxel, 0, scans);
   }
 
-  /// Counts of unseen places, and of those in shadow.
+  /// Marks all free records below a child as unseen and, if kinds are wanted, as in shadow.
   void markBelow(const Voxel* voxel, const Node& node, std::uint32_t child)
   {
     const auto mark_all = [this](std::uint32_t record) {
@@ -187,7 +188,7 @@ private:
   std::vector<Verdict>& verdicts_;
   std::vector<std::uint8_t>& in_shadow_;
   Scans all_;
-  const SeenScan* last_ = nullptr; ///< that saw something
+  const SeenScan* last_ = nullptr; ///< the last one that saw something
   WorkPulse pulse_{result.work};
 };
 

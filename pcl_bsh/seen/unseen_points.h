@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which points of what is placed into scans lie where no scanner saw that the space about them is empty?
+// Which points of a model that is placed into scans lie where no scanner saw that the space about them is empty?
 #pragma once
 
 #include <pcl_bsh/base/cancelled.h>
@@ -33,19 +33,19 @@ struct UnseenRequest {
   std::optional<Eigen::Isometry3d> frame = {}; ///< of the parts' boxes: T_frame_model. None: the model's pose
 };
 
-/// A part of a triangle, or several that are neighbours, in which it is unseen.
+/// A box about a part of a triangle, or several neighbouring parts, in which it is unseen.
 struct UnseenPart {
   std::uint32_t record;
   bool in_shadow; ///< else in the skin
   Point3 low, high;
 };
 
-/// Where nobody saw that there is nothing is shadow or skin. A place is in shadow if no beam passed it: for each
-/// scanner, its direction lies between no beams, or all beams within 1.2 angles of it ended before it. All else that is
-/// unseen is skin: beams passed the place, but the ball about it is too near to a border or a surface to be seen.
+/// Unseen places are in shadow or in the skin. A place is in shadow if no beam passed it: for each scanner, its
+/// direction lies between no beams, or all beams within 1.2 angles of it ended before it. All else that is unseen is
+/// skin: beams passed the place, but the ball about it is too near to a border or a surface to be seen.
 struct UnseenKinds {
-  /// One per record: whether it is unseen and in shadow. A point by its place; a triangle if a part of it is that is
-  /// unseen and whose middle is in shadow. Its parts have a radius of at most the clearance and its uncertainty, or ten
+  /// One per record: whether it is unseen and in shadow. A point counts by its place. A triangle is in shadow if the
+  /// middle of any unseen part of it is. Its parts have a radius of at most the clearance and its uncertainty, or ten
   /// halvings.
   std::vector<bool> in_shadow;
   /// With `parts`, by record: where triangles are unseen, at most 64 boxes of shadow and 64 of skin each. A triangle
@@ -61,7 +61,7 @@ struct UnseenResult {
   Work work;                 ///< node_pairs: spheres of the model, and of directions, that were tested
 };
 
-/// Makes Verdict::free of a point Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. All
+/// Turns Verdict::free of a point into Verdict::unseen where no scanner saw the ball about it. Other verdicts stay. All
 /// places of a triangle must be seen, each by one scanner. It is halved until balls about its parts are seen, down to
 /// an eighth of the clearance and its uncertainty, and to 14 times.
 /// @param model at T_scans_model. @param verdicts one per record of its view, such as FlagsResult::b
