@@ -74,7 +74,7 @@ void add(Clash& clash, std::uint32_t record, std::size_t entry, const PointsView
   ++clash.points;
   if (found.flags[entry] == Verdict::colliding) ++clash.certain_points;
   const Extent extent = extentOf(scan, record);
-  for (std::size_t k = 0; k < 3; ++k) { // of -0 and 0 the latter, so that boxes tell no order of points
+  for (std::size_t k = 0; k < 3; ++k) { // -0 becomes 0: boxes do not depend on the order of points
     clash.low[k] = std::min(clash.low[k], extent.low[k] + 0.0);
     clash.high[k] = std::max(clash.high[k], extent.high[k] + 0.0);
   }

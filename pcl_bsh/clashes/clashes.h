@@ -16,10 +16,11 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Against an earlier list of clashes; without one, all are fresh. An earlier clash that is not found again is resolved
-/// if the run looked there. It did not where the path does not come near the place any more (not_visited), nothing at
-/// all of the scan lies near it (not_scanned), or the model is in shadow there, unseen: see FormerPlaces. A place that
-/// is unseen and was no clash before has an entry of its own (findUnseenPlaces()).
+/// The status of a clash against an earlier list of clashes; without one, all are fresh. An earlier clash that is not
+/// found again is resolved if the run looked there. FormerPlaces tells where it did not look there: the path does not
+/// come near the place any more (not_visited), nothing at all of the scan lies near it (not_scanned), or the model is
+/// in shadow there (unseen). A place that is unseen and was no clash before has an entry of its own
+/// (findUnseenPlaces()).
 enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
 inline constexpr std::size_t clash_statuses = 6; ///< how many there are
 
@@ -46,14 +47,14 @@ struct Clash {
   Point3 place = {};                ///< where its point of the closest pair is; of a triangle, its middle
   double distance = 0.0; ///< the smallest, less radii; negative of what a solid holds: the greatest depth. NaN
                          ///< of what is unseen and was no clash
-  /// Where a solid makes it negative, or may: holds it for certain. Else both NaN.
+  /// Certainly holds the distance where a solid makes that negative, or may; else both ends are NaN.
   Interval interval = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   std::uint32_t scan_point = 0;  ///< the pair that realises it; of several, that of the smallest record of the scan
   std::uint32_t model_point = 0; ///< at the closest pose
   std::int32_t first_pose = 0;
   std::int32_t closest_pose = 0;
 
-  /** And what is known of each. */ void clearRecords()
+  /** Clears the records, and what is known of each. */ void clearRecords()
   {
     records.clear();
     distances.clear();
@@ -97,7 +98,7 @@ std::vector<Clash> findClashes(const PointsView& scan, const TrajectoryResult& f
 std::vector<Clash> findClashes(const PointsView& scan, const CollidingRecords& colliding, double cluster_distance);
 
 /// Gives clashes their ids and puts the most severe first, as findClashes() does: for those that were found in parts.
-/// @param clashes in the order of their smallest records, which decides nothing but which of two with one box is first
+/// @param clashes in the order of their smallest records, which decides the order of clashes with equal boxes alone
 /// @param cluster_distance finite, > 0
 void nameClashes(std::vector<Clash>& clashes, double cluster_distance);
 

@@ -51,7 +51,7 @@ public:
   /// Whether scan() of points within this box may tell anything.
   bool mayScan(const Extent& box) const;
 
-  /// Gives those that were not visited, or else are unseen, or else not scanned, that status.
+  /// Sets the status of each resolved clash that was not visited, or else is unseen, or else was not scanned.
   void judge();
 
 private:

@@ -15,14 +15,14 @@ public:
   explicit NearBoxes(std::vector<Extent> boxes);
 
   /// Calls visit(i) for each box i within `nearness` of this one along each axis, in no particular order.
-  /// @param visit true: the box is not asked for any more
+  /// @param visit returns true to take box i out: no later call visits it
   template <typename Visit>
   void visitNear(const Extent& box, double nearness, const Visit& visit)
   {
     if (!nodes_.empty()) visitNode(0, box, nearness, visit);
   }
 
-  std::size_t left() const { return nodes_.empty() ? 0 : nodes_.front().left; } ///< boxes that are still asked for
+  std::size_t left() const { return nodes_.empty() ? 0 : nodes_.front().left; } ///< boxes that are not taken out
 
   std::uint64_t compared = 0; ///< boxes and nodes, by all questions so far
 
@@ -34,12 +34,12 @@ private:
     Extent box;
     std::uint32_t begin = 0, end = 0;
     std::uint32_t second = 0; ///< 0: a leaf
-    std::uint32_t left = 0;   ///< boxes that are still asked for
+    std::uint32_t left = 0;   ///< boxes that are not taken out
   };
 
   void build(std::uint32_t begin, std::uint32_t end);
 
-  /// @return how many of its boxes are not asked for any more
+  /// @return how many of its boxes were taken out
   template <typename Visit>
   std::uint32_t visitNode(std::uint32_t number, const Extent& box, double nearness, const Visit& visit)
   {

@@ -75,7 +75,7 @@ bool touch(const Extent& a, const Extent& b)
   return true;
 }
 
-/// Cells of a grid, joined.
+/// Cells of a grid, joined into sets (union-find).
 class Cells {
 public:
   explicit Cells(double edge) : edge_(edge) {}

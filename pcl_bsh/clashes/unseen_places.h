@@ -28,15 +28,14 @@ struct UnseenAlong {
 /// of another triangle whose boxes touch. The cells are as long as the smallest power of two that is at least the
 /// cluster distance. Most points first, then by id.
 ///
-/// Sets of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `place`, the middle of its
-/// box; `first_pose`; and no distance (NaN). `closest_pose` is the first at which most of its records are unseen;
-/// `points` counts these, and `points_in_shadow` those of them in shadow.
+/// Sets these members of each: `id` as findClashes() makes them, with U instead of C; `low` and `high`; `place`, the
+/// middle of its box; `first_pose`; and no distance (NaN). `closest_pose` is the first at which most of its records are
+/// unseen; `points` counts these, and `points_in_shadow` those of them in shadow.
 /// @param cluster_distance finite, > 0
 /// @throws std::invalid_argument for another distance
 std::vector<Clash> findUnseenPlaces(const UnseenAlong& along, double cluster_distance);
 
-/// Tells which of the former places the model was at in shadow. In the skin beams passed the place: there the run
-/// looked.
+/// Tells `former` where the model was in shadow. In the skin beams passed the place: there the run looked.
 /// @param former before it judges
 void tellUnseen(FormerPlaces& former, const UnseenAlong& along);
 

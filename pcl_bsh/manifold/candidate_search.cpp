@@ -27,19 +27,19 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Two lanes, and the sphere of the probe's.
+/// A pair of nodes, as lanes of their parents, and the sphere of the probe's node in the world.
 struct WaitingNodes {
   LanePair lanes;
   Eigen::Vector3d middle;
   double radius, slack, least_gap;
-  bool is_measured = false; ///< leaves, whose points bound the gap
+  bool is_measured = false; ///< leaves whose points have bounded the gap
   bool is_opened = false;
 };
 struct WaitingRecords {
   PointPair pair;
   Eigen::Vector3d place;
   double least_gap;
-  bool is_known; ///< that is the gap
+  bool is_known; ///< least_gap is the gap
   bool is_beyond = false;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
@@ -75,7 +75,7 @@ public:
     walk_(channel.probe, channel.surface),
     most_gap_(most_gap),
     thickness_(thickness),
-    // Rounded distances less the thickness are no greater than the gap only within this.
+    // A rounded distance, less the thickness, is no greater than the greatest gap only within this.
     reach_(std::nextafter(most_gap + thickness + 0x1p-50 * (most_gap + thickness), kInfinity)),
     pairs_(channel.probe, channel.surface, reach_),
     nodes_(scratch.nodes),
@@ -123,7 +123,8 @@ private:
   {
     const double bound = goal.bound(nodes.middle, nodes.radius, nodes.slack, nodes.least_gap);
     if (bound == -kInfinity || !goal.hasEndedPatches() || !walk_.haveSlabs(nodes.lanes.a, nodes.lanes.b)) return bound;
-    // A leaf of a flat face reaches as far across its patch as the patch is high, but hardly along the patch's normal.
+    // A leaf of a flat face may reach farther across its patch than the patch is high, but hardly along the patch's
+    // normal.
     const WorldSlab slab = worldSlabOf(walk_, walk_.a, nodes.lanes.a, nodes.radius);
     if (slab.normal.isZero(0.0)) return bound;
     const double margin = static_cast<double>(kSlabMargin) * nodes.radius;
@@ -160,7 +161,7 @@ private:
     const double size = middle.norm(), radius = double{node.r[of]} * frame.unit * (1.0 + 0x1p-18);
     middle = walk_.a.pose * middle;
     const double slack = kDoubleMargin * (size + walk_.a.pose.translation().norm() + middle.norm() + radius);
-    // An edge may lie beyond the other one: how far is not known from how far they are apart.
+    // An edge may lie beyond the other one, with a gap less than 0: the distance of the spheres does not bound it.
     const double least = channel_.isOfEdges() ? -most_gap_ - 2 * thickness_ : down(lanes.key - thickness_);
     nodes_.push_back({lanes, middle, radius, slack, least});
   }
@@ -199,7 +200,8 @@ private:
   bool measures() const { return !walk_.haveTriangles() && !pairs_.haveRadii(); }
 
   /// Bounds the gap of two leaves by that of their points in floats. Most leaves are as near as the best candidate by
-  /// their spheres and slabs, but none of their points is; those are never made records. @return whether any is near
+  /// their spheres and slabs, but none of their points is: pairs of such points never become records.
+  /// @return whether any points may be within the reach
   bool measure(WaitingNodes& leaves_waiting)
   {
     const ComparedLeaves leaves = walk_.compare(leaves_waiting.lanes, reach_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The best candidate of a channel by a goal, for one goal after another: what was opened for one is kept for the next.
+// Finds the best candidate of channels for one goal after another. Nodes that were opened for one goal are not opened
+// again for the next.
 #pragma once
 
 #include <pcl_bsh/manifold/collider_parts.h>
@@ -22,14 +23,14 @@ struct Channel {
   std::uint8_t number = 0; ///< 0: places of a against b, 1: places of b against a, 2: edges of a against edges of b
   Placed probe, surface;
   const std::vector<SharpEdge>*sharp_probe = nullptr, *sharp_surface = nullptr; ///< of channel 2
-  std::vector<std::uint8_t> enclosed; ///< not 0: of probes that the other side holds; empty: it holds none
-  std::vector<Candidate> inside;      ///< these, without scores
+  std::vector<std::uint8_t> enclosed; ///< one per probe, not 0 where the other side holds it; empty: it holds none
+  std::vector<Candidate> inside;      ///< candidates of the enclosed probes, without scores
 
   bool isOfEdges() const { return sharp_probe != nullptr; }
 };
 
-/// Where edges come nearest to each other, both within: nothing where they are parallel, or at an end of one. The
-/// unit normal from the surface's edge to the probe's is outside of both.
+/// The nearest places of two edges, both within their edges. The unit normal points out of the surface, and reversed
+/// out of the probe. crossingOf() returns nothing where edges are parallel, or nearest at an end of one.
 struct EdgeCrossing {
   Eigen::Vector3d on_probe, on_surface, normal;
 };
@@ -42,8 +43,8 @@ inline Eigen::Vector3d probePlace(const Channel& channel, std::uint32_t record)
   return channel.probe.pose * Eigen::Vector3d(p[0], p[1], p[2]);
 }
 
-/// The place in a heap of one of a search's nodes or records. Here, and not where code is compiled for each
-/// instruction set, because heaps of the standard library are not.
+/// An entry of a search's heap: a pair of nodes, or of records. It is defined here because the standard library's heaps
+/// are not compiled for each instruction set.
 struct SearchTurn {
   double bound;
   std::pair<std::size_t, bool> of; ///< its number, whether it is a record
@@ -53,7 +54,7 @@ struct SearchTurn {
 /// Searches channels.
 class CandidateSearch {
 public:
-  /// Makes `best` the best candidate, where one is before it.
+  /// Sets `best` to the best candidate of the channels, if that is before `best`.
   virtual void seek(const PatchGoal& goal, Candidate& best, Work& work) = 0;
 
 protected:

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> trianglesIn(const PointsView& view)
   return all;
 }
 
-/// The first vertex at the place of each.
+/// Returns for each vertex the first one at its place.
 std::vector<std::uint32_t> firstOfPlaces(const TrianglesView& mesh)
 {
   std::vector<std::uint32_t> order(mesh.vertices.count), first(mesh.vertices.count);
@@ -74,7 +74,8 @@ std::vector<HalfEdge> halfEdgesOf(const TrianglesView& mesh, const std::vector<s
   return all;
 }
 
-/// Six times what the triangles enclose, as doubles sum it.
+/// Returns the sign of the volume that the triangles enclose, as doubles sum it: -1 where they are turned inward, else
+/// 1.
 double windingSign(const TrianglesView& mesh, const std::vector<std::uint32_t>& triangles)
 {
   double sum = 0.0;

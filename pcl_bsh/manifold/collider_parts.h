@@ -17,7 +17,8 @@ inline Eigen::Vector3d vectorOf(const Point3& p)
   return {p[0], p[1], p[2]};
 }
 
-/// An edge of two triangles that is no flat one: what is outside lies within the arc between both normals.
+/// An edge of two triangles that are not in one plane. Directions that point outward from it lie on the arc between
+/// both normals.
 struct SharpEdge {
   std::array<std::uint32_t, 2> ends;      ///< vertices
   std::array<std::uint32_t, 2> triangles; ///< ascending
@@ -37,7 +38,8 @@ struct Collider::Parts {
   NormalField normals;
   double spacing = 0.0;
 
-  /// These and the next are a surface's. Otherwise places are the thing's.
+  /// The corners of a surface. This and the next members are of surfaces alone; of clouds, the thing's own points are
+  /// the places.
   std::optional<const SphereHierarchy> corners;
   std::vector<std::uint32_t> triangle_of; ///< of each vertex the first triangle
   std::vector<SharpEdge> sharp;           ///< by their ends

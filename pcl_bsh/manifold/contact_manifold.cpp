@@ -41,7 +41,7 @@ void check(const PlacedCollider& a, const PlacedCollider& b, const ManifoldReque
   if (request.same_within) checkLength("way of a contact that lives on", *request.same_within);
 }
 
-/// Places of a channel that the solid of the other side holds, with depths.
+/// Adds candidates for the places of a channel that the solid of the other side holds, by their depths.
 void addEnclosed(const Solid* solid, double thickness, Channel& channel, Work& work)
 {
   if (!solid) return;
@@ -199,7 +199,8 @@ private:
     contacts_.push_back(contact);
   }
 
-  /// The nearest two of the contacts before and now are one, then the nearest of those left.
+  /// Pairs contacts before with contacts now: the nearest two, then the nearest two of those left. Pairs keep the id
+  /// before, other contacts get new ids.
   void giveIds()
   {
     const double within = request_.same_within.value_or(2.0 * (request_.margin + made_.thickness));

@@ -11,10 +11,10 @@
 namespace pcl_bsh {
 namespace {
 
-/// Shares of an edge, or of a triangle, below this are none: a place is at the border.
+/// A place with a share below this of a triangle counts as being at the border.
 constexpr double kBorder = 1e-9;
 
-/// Beside a triangle's size, distances below this have no direction.
+/// Distances below this share of a triangle's size have no direction.
 constexpr double kNoDirection = 1e-12;
 
 /// Whether a place of a triangle is at none of its borders.
@@ -65,7 +65,8 @@ Neighborhood around(const Placed& placed, std::uint32_t record, double radius, N
   return all;
 }
 
-/// The plane of b's points about the contact, or the way between both places where these have none.
+/// Returns the normal of a plane fitted to b's points about the contact, or the direction between both places where
+/// they have no plane.
 SurfaceNormal fittedNormal(const Channel& channel, const Candidate& of, const Eigen::Vector3d& way, double fit,
                            Neighbors& scratch)
 {

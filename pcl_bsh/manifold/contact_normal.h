@@ -14,7 +14,8 @@ struct SurfaceNormal {
   double residual = 0.0;                            ///< of a fitted plane
 };
 
-/// For a channel of places against triangles: out of the surface where it holds the probe, else towards it.
+/// Returns the normal for a channel of places against triangles. It points out of the surface where that encloses the
+/// probe, else towards the probe.
 /// @param nearest place of the triangle, in the world
 SurfaceNormal normalOfTriangle(const Channel& channel, const Candidate& of, const Eigen::Vector3d& nearest);
 

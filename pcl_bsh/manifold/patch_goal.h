@@ -51,7 +51,7 @@ class PlaneHull {
 public:
   using Point = Eigen::Vector2d;
 
-  /// Above 0: a point is to the left of the way between two others, by twice the area of their triangle.
+  /// Returns twice the area of a triangle; above 0 where the last point is to the left of the way between the others.
   static double turn(const Point& from, const Point& to, const Point& at)
   {
     const Point way = to - from, other = at - from;
@@ -92,17 +92,18 @@ public:
   void add(const Eigen::Vector3d& place) { hull_.add(flat(place)); }
   void end();
 
-  /// Minus infinity: no candidate. The greatest is the next. It falls with the gap.
+  /// Returns the score of a place; minus infinity: it is no candidate. The candidate with the greatest score is the
+  /// next. Scores fall with the gap.
   double score(const Eigen::Vector3d& place, double gap) const;
 
-  /// No candidate within the sphere that has at least this gap has a greater score. @param slack what the sphere's
-  /// middle and radius may be off by
+  /// Returns a bound: no candidate within the sphere that has at least this gap has a greater score. @param slack what
+  /// the sphere's middle and radius may be off by
   double bound(const Eigen::Vector3d& middle, double radius, double slack, double least_gap) const;
 
   bool hasEndedPatches() const { return !ended_.empty(); }
 
-  /// Whether a patch that was ended holds all places about a middle that reach( normal ) bounds: how far they reach
-  /// from it along a patch's normal.
+  /// Whether a patch that was ended holds all of some places about a middle.
+  /// @param reach called with a patch's normal: returns how far these places reach along it from the middle at most
   template <class Reach>
   bool isTaken(const Eigen::Vector3d& middle, double slack, const Reach& reach) const
   {
