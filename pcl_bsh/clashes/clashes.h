@@ -17,9 +17,9 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// The status of a clash against an earlier list of clashes; without one, all are fresh. An earlier clash that is not
-/// found again is resolved if the run looked there. FormerPlaces tells where it did not look there: the path does not
-/// come near the place any more (not_visited), nothing at all of the scan lies near it (not_scanned), or the model is
-/// in shadow there (unseen). A place that is unseen and was no clash before has an entry of its own
+/// found again is resolved if the run looked there. It did not look there where the path does not come near the place
+/// any more (not_visited), or nothing at all of the scan lies near it (not_scanned). Nor did it where the model is in
+/// shadow there (unseen): see FormerPlaces. A place that is unseen and was no clash before has an entry of its own
 /// (findUnseenPlaces()).
 enum class ClashStatus : std::uint8_t { fresh, persisting, resolved, not_visited, not_scanned, unseen };
 inline constexpr std::size_t clash_statuses = 6; ///< how many there are

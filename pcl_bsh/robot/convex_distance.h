@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far two convex bodies are from each other that tell how far they reach in a direction; after Gilbert, Johnson and
-// Keerthi. Every direction n proves that they are at least min n.a - max n.b apart; every place that is found, at most.
+// The distance of two convex bodies that are given by their support functions, after Gilbert, Johnson and Keerthi.
+// Every direction n proves a lower bound, min n.a - max n.b; every place that is found proves an upper bound.
 #pragma once
 
 #include <pcl_bsh/query/result.h>
@@ -15,7 +15,7 @@
 
 namespace pcl_bsh::robots {
 
-/// Up to four places, of which the nearest to the origin is asked for.
+/// Up to four corners. Finds the place between them that is nearest to the origin.
 class Simplex {
 public:
   void add(const Eigen::Vector3d& p) { at_[size_++] = p; }
@@ -24,7 +24,7 @@ public:
     return std::find(at_.begin(), at_.begin() + size_, p) != at_.begin() + size_;
   }
 
-  /// How far around the origin all is within them, if it is.
+  /// The radius of the ball about the origin that is within the tetrahedron; 0: the origin is not.
   double depth() const { return depth_; }
 
   /// The place that is nearest to the origin; keeps only the corners that it lies between.
@@ -106,10 +106,10 @@ private:
   double depth_ = 0.0;
 };
 
-/// Bounds of their distance. Where they meet, minus how far they may move and still do, at least, is above; nothing is
-/// known below. Rounding of double moves the bounds by a few units of what coordinates
-/// are. @param a, b give the place that is farthest in a direction
-/// @param isEnough of bounds that need not be nearer to each other. The upper one may be infinite
+/// Returns bounds of the distance. Where the bodies are found to overlap, the bounds are minus infinity and -d: they
+/// surely still meet after any move of up to d. Doubles move the bounds by a few roundings of the coordinates.
+/// @param a, b return the place that is farthest in a direction
+/// @param isEnough(bounds) whether bounds need not come nearer to each other. The upper one may be infinite
 /// @param from_b about the way from b to a
 template <class SupportA, class SupportB, class IsEnough>
 Interval convexDistance(const SupportA& a, const SupportB& b, const IsEnough& isEnough, const Eigen::Vector3d& from_b)

@@ -73,8 +73,8 @@ const std::vector<double>& checkedUncertainties(const std::vector<double>& of_jo
   return of_joints;
 }
 
-/// How far an edge of the one and the other triangle may move, at least, until it pierces that no more: until it meets
-/// the triangle's rim, or the triangle one of its ends.
+/// Returns a lower bound of how far an edge of a that pierces b moves until it pierces b no more: until it meets b's
+/// rim, or one of its ends meets b. It is 0 where no edge of a pierces b.
 double pierced(const TriangleDistance& distance, const Triangle3& a, const Triangle3& b)
 {
   double best = 0.0;
@@ -96,14 +96,14 @@ double pierced(const TriangleDistance& distance, const Triangle3& a, const Trian
 /// The row of the corner that is farthest along a direction.
 Eigen::Index farthest(const Eigen::MatrixX3d& corners, const Eigen::Vector3d& along)
 {
-  // The maximum first, then where it is: both at once compare number by number.
+  // First the maximum, then its row: a search for both would compare number by number.
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCorners, 1> heights(corners.rows());
   heights = corners.col(0) * along.x() + corners.col(1) * along.y() + corners.col(2) * along.z();
   const auto most = std::find(heights.begin(), heights.end() - 1, heights.maxCoeff());
   return most - heights.begin();
 }
 
-/// The nearest records of their measured places, or any within the limit, and their distance.
+/// Returns the records whose measured places are nearest, or any two within the limit, and their distance.
 DistanceResult pairWithin(const Placed& a, const Placed& b, double limit, bool any)
 {
   if (!any) {
@@ -303,7 +303,7 @@ double Gaps::error(const RobotState& largest) const
   for (const Obstacle& obstacle : obstacles()) {
     const double placed = obstacle.pose.translation.norm();
     double error = kOfGaps * (placed + obstacle.mostUncertain());
-    // The way back of a rotation that is not quite one, and lengths in the obstacle's frame.
+    // The transpose of a rotation that is rigid only within kRigid, and lengths in the obstacle's frame.
     if (!obstacle.pose.rotation.isIdentity(0.0))
       error += 4.0 * kRigid * (away + reach + parts.extent + placed + options.clearance);
     of_obstacles = std::max(of_obstacles, error);

@@ -12,7 +12,7 @@
 
 namespace pcl_bsh::robots {
 
-/// The gap between a piece and all obstacles, and which of these its records are of.
+/// The gap between a piece and all obstacles, and the obstacles that its two records are of.
 struct ObstacleGap : Gap {
   std::size_t of_record = 0, of_possible = 0;
 };
@@ -30,7 +30,7 @@ public:
   /// @throws InvalidInput for another number of poses, and for one that is not rigid
   void setObstacles(std::vector<Obstacle> obstacles, const std::vector<Eigen::Isometry3d>& T_world_obstacle);
 
-  /// Places of a body's parts are in the world.
+  /// T_world_body of each body.
   using Poses = std::vector<Kinematics::Pose>;
 
   Eigen::Vector3d centerOf(const Ball& ball, const Poses& poses) const { return poses[ball.body] * ball.center; }
@@ -42,32 +42,34 @@ public:
                        [&](const Obstacle& obstacle) { return obstacle.isBeyond(place, limit); });
   }
 
-  /// How far the places that the ball's motion is about may be off, seen from the body `rest`, by uncertain joints.
+  /// Returns how far uncertain joints may move the places of a ball that count (Ball::spread), seen from the body
+  /// `rest`.
   double doubt(const Ball& ball, std::size_t rest) const;
 
   /// The gap between what a ball without parts holds, with its padding, and all obstacles, up to the limit.
-  /// @param any of a patch it need not be the least: within the limit is enough
+  /// @param any for patches: any gap within the limit will do, not the least alone
   ObstacleGap toObstacles(const Ball& ball, const Poses& poses, double limit, bool any = false) const;
 
-  /// The gap of a record that is measured within the limit of the mesh that a ball holds; or no record.
+  /// Returns the gap of any record whose measured place is within the limit of the mesh that a ball holds; or no
+  /// record.
   ObstacleGap anyOfMesh(const Ball& ball, const Poses& poses, double limit) const;
 
   /// The gap between the pieces of two balls, with their paddings. Beyond the limit the upper bound may be infinite.
-  /// @param common the body that neither moves against (LinkPair)
-  /// @param any of meshes it need not be the least: within the limit is enough
+  /// @param common the last body that both hang on (LinkPair)
+  /// @param any for meshes: any gap within the limit will do, not the least alone
   Interval between(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double limit,
                    bool any = false) const;
 
-  /// At least how far the pieces of two balls are apart by the hulls of meshes.
-  /// @param least, enough whether they are apart by more than these is told, no more
+  /// Returns a lower bound of how far the pieces of two balls are apart, by the hulls of meshes.
+  /// @param least, enough the bound tells whether they are apart by more than each of these, no more
   double hullsApart(const Ball& a, const Ball& b, std::size_t common, const Poses& poses, double least,
                     double enough) const;
 
-  /// @param for_certain what is nearest for certain; else what may be
+  /// @param for_certain names the record with the least upper bound; else the one with the least lower bound
   Meeting meetingOf(const Ball& ball, const ObstacleGap& gap, bool for_certain) const;
   Meeting meetingOf(const Ball& a, const Ball& b) const;
 
-  /// At least how far a computed gap is off, at values up to these.
+  /// Returns an upper bound of the error of computed gaps, at values of joints up to these.
   double error(const RobotState& largest) const;
 
   /// @param several what errors call it, with its number: a state, or a motion; null: it is the only one

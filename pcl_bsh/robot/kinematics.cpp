@@ -56,7 +56,7 @@ void requireJoint(const Joint& joint, std::size_t link)
     refuse(subject, "slides without limits", "give it finite ones");
 }
 
-/// The value of a joint, and how far along mimicked ones it comes from.
+/// A joint's value as multiplier * v + offset, v being the value of the link's joint, which mimics no other.
 struct Source {
   std::size_t link = 0;
   double multiplier = 1.0, offset = 0.0;
@@ -223,7 +223,7 @@ std::vector<double> Kinematics::axisDistances(std::size_t of, const Eigen::Vecto
     const double tilt = direction.isZero(0.0) ? radius : radius * body.axis.cross(direction).norm();
     double low = std::min(middle[0], middle[1]) - tilt, high = std::max(middle[0], middle[1]) + tilt;
     if (body.kind == Joint::Kind::prismatic) {
-      // Does not turn what it carries: a ball that holds it all, and its ways.
+      // It does not turn what it carries: a ball holds all of that, and moves between the limits.
       const Eigen::Vector3d mean = 0.5 * (ends[0] + ends[1]);
       radius = (ends[0] - mean).norm() + radius;
       ends[0] = mean + body.lower * body.axis;

@@ -74,23 +74,23 @@ public:
     /** The way back. */ Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
   };
 
-  /// A joint that moves, and what hangs on it up to the next ones. Body 0 is what stands still.
+  /// A joint that moves, and the links that hang on it, up to the next such joints. Body 0 stands still.
   struct Body {
     std::size_t link = 0;                  ///< its first
     std::size_t parent = 0;                ///< a body
     std::size_t variable = 0;              ///< of a state
     double multiplier = 1.0, offset = 0.0; ///< its value is multiplier * variable + offset
-    Joint::Kind kind = Joint::Kind::fixed; ///< of body 0 alone
+    Joint::Kind kind = Joint::Kind::fixed; ///< fixed: body 0 alone
     Pose origin;                           ///< T_parent_body at 0
     Eigen::Matrix3d sine, versine;         ///< origin's rotation times K and K^2
     Eigen::Vector3d axis, origin_axis;     ///< in its own frame, and in its parent's
-    double lower = 0.0, upper = 0.0;       ///< of what it slides
-    double reach = 0.0;                    ///< what is at x in its frame is at most this and |x| from the robot's root
+    double lower = 0.0, upper = 0.0;       ///< limits of a joint that slides
+    double reach = 0.0;                    ///< a point x of its frame is at most this plus |x| from the robot's root
   };
 
   /// @throws InvalidInput naming the link or joint. Parents come before their children, poses are rigid within 1e-12,
-  ///   axes of length 1, limits an interval. Sliding joints have finite limits. Mimicked joints are there, and no
-  ///   cycle. Paddings are finite and >= 0, sizes of shapes above 0
+  ///   axes of length 1, limits an interval. Sliding joints have finite limits. Mimicked joints exist, without a cycle.
+  ///   Paddings are finite and >= 0, sizes of shapes above 0
   explicit Kinematics(const Robot& robot);
 
   const std::vector<Body>& bodies() const noexcept { return bodies_; }          ///< parents first
@@ -110,14 +110,15 @@ public:
   void twists(const RobotState& slopes, const std::vector<Pose>& poses, std::size_t count,
               std::vector<Twist>& twists) const;
 
-  /// How far a point can be from the axis of each body on the chain to its own, which comes last. 1 for what slides.
+  /// Returns how far a point of a body can be from the axis of each body on the chain to it, itself the last; 1 for
+  /// bodies that slide.
   /// @param spread how far the point is from `center`, in the body's frame
   std::vector<double> axisDistances(std::size_t body, const Eigen::Vector3d& center, double spread) const;
 
   /// The bodies of the chain, in the order of axisDistances().
   std::vector<std::size_t> chain(std::size_t body) const;
 
-  /// At least how far a computed point is from the exact one.
+  /// Returns an upper bound of how far a computed point is from the exact one.
   /// @param largest values of joints are at most these
   /// @param extent how far the point is from its body's origin
   /// @param base how far body 0 is from the origin
@@ -133,9 +134,8 @@ private:
 /// T_root_link of every link. @throws InvalidInput as Kinematics and Robot::requireValues() do
 std::vector<Eigen::Isometry3d> linkPoses(const Robot& robot, const JointValues& values);
 
-/// Pairs of links that the robot is held against itself by: not a link and its parent, nor links of one body, nor those
-/// that are disabled. The lower number comes first. @throws InvalidInput for a disabled pair of links that are not
-/// there
+/// Returns the pairs of links that are compared with each other: not a link and its parent, nor links of one body, nor
+/// disabled pairs. The lower number comes first. @throws InvalidInput for a disabled pair of links that are not there
 std::vector<std::array<std::size_t, 2>> comparedLinks(const Robot& robot, const Kinematics& kinematics);
 
 /// Roundings of each joint of a chain that Kinematics::error() counts.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kOfTwists = 1e-12; ///< their error, as a share of the greatest speed
 
-/// Radii that a ball goes in a time that is too long for its parts, too.
+/// A ball that goes farther than this many radii waits for shorter times before it is split.
 constexpr double kLong = 0.5;
 
 } // namespace
@@ -85,7 +85,8 @@ double MotionSearch::bendOf(std::uint32_t index, std::size_t rest)
   return bend;
 }
 
-/// How far any of the places that the ball's motion is about goes in the time h, seen from the body `rest`.
+/// Returns how far any place of a ball that counts (Ball::spread) goes in the time h at most, seen from the body
+/// `rest`.
 double MotionSearch::way(std::uint32_t index, const Eigen::Vector3d& center, std::size_t rest, double h)
 {
   const Ball& ball = gaps_.parts.balls[index];
@@ -100,17 +101,17 @@ double MotionSearch::way(std::uint32_t index, const Eigen::Vector3d& center, std
   return kOutward * h * (speed + 0.5 * h * bendOf(index, rest));
 }
 
-/// @param gap now. @param moved how much it can change in the time
+/// @param gap at the instant. @param moved how much it can change in the time about it
 MotionSearch::Outcome MotionSearch::outcomeOf(const Interval& gap, double clearance, double moved) const
 {
   if (gap.lower > clearance + moved + error_) return Outcome::free;
   if (gap.upper + error_ <= clearance) return Outcome::colliding;
-  // Not free now, nor colliding for so long: shorter times would not tell more.
+  // Not certainly free now, nor certainly colliding anywhere in the time: shorter times would not tell more.
   const bool stays = gap.lower <= clearance + error_ && gap.upper - moved + error_ > clearance;
   return moved > gaps_.options.tolerance && !stays ? Outcome::open : Outcome::undecided;
 }
 
-/// @param gapOf(any) the least gap, or any within the limit; infinite above where nothing is
+/// @param gapOf(any) returns the least gap, or any within the limit; its upper end is infinite where nothing is near
 template <class GapOf>
 MotionSearch::Outcome MotionSearch::outcomeBy(const GapOf& gapOf, double clearance, double moved) const
 {
@@ -131,13 +132,13 @@ MotionSearch::Outcome MotionSearch::ofBall(std::uint32_t index, double h)
   const Eigen::Vector3d center = gaps_.centerOf(ball, s_.poses);
   const double moved = way(index, center, 0, h), still = ball.radius + clearance + doubt, needed = moved + error_;
   if (gaps_.areBeyond(center, still + needed)) return Outcome::free;
-  // Neither free for so long nor anything but free now: nothing nearer would tell more.
+  // Free now, but not certainly for so long: a closer look would not tell more.
   const bool parts = ball.count > 0;
   if (moved > (parts ? kLong * ball.radius : gaps_.options.tolerance) && gaps_.areBeyond(center, still + error_))
     return Outcome::open;
   ObstacleGap gap;
   if (parts && ball.piece != kNoPart && h > 0.0) {
-    // One that collides now settles the motion, before its patches' times are halved.
+    // A mesh that collides now settles the motion, before the times of its patches are halved.
     gap = gaps_.anyOfMesh(ball, s_.poses, clearance);
     if (gap.record != kNothing && gap.upper + error_ <= clearance) {
       meeting_ = gaps_.meetingOf(ball, gap, true);

@@ -2,8 +2,8 @@
 // A robot at an instant and about it: what is certainly free for some time, what collides, what has to be looked at
 // again.
 //
-// A ball whose gap is above the clearance, the way that it goes in the time h (kinematics.h) and the error of doubles
-// is free for as long. Others are split: first into the balls that it holds, then the time in halves.
+// A ball is free for a time h if its gap is above the sum of the clearance, its way in that time (kinematics.h) and the
+// error of doubles. Others are split into the balls that they hold; then the time is halved.
 #pragma once
 
 #include <pcl_bsh/base/pulse.h>
@@ -24,7 +24,7 @@ struct MotionScratch {
     std::size_t ball_begin, ball_end, pair_begin, pair_end, bodies;
   };
 
-  /// How much a ball's way bends, seen from a body: computed once a motion.
+  /// The bound A of a ball's acceleration (kinematics.h), seen from a body: computed once a motion.
   struct Bend {
     std::uint64_t motion = 0;
     double bend = 0.0;
@@ -38,7 +38,7 @@ struct MotionScratch {
   std::vector<LinkPair> pairs, open_pairs;
   std::vector<Task> tasks;
   std::vector<Bend> bends;  ///< of each ball, from each body
-  std::uint64_t motion = 0; ///< they are counted
+  std::uint64_t motion = 0; ///< number of the current motion
 
   std::size_t bytes() const noexcept
   {
@@ -52,13 +52,13 @@ public:
   /// @pre states that Gaps::requireState() lets pass
   MotionSearch(const Gaps& gaps, const RobotState& from, const RobotState& to, MotionScratch& scratch);
 
-  /// At the start alone.
+  /// Checks the start alone.
   StateCheck atStart();
 
-  /// All of the motion, breadth first: what collides is found soon.
+  /// Checks the whole motion, breadth first: collisions are found soon.
   MotionCheck all();
 
-  /// How far it is certainly free.
+  /// Returns up to which fraction the motion is certainly free.
   double lastValid();
 
   /// Adds the balls that hold each piece at all instants [m - h, m + h].
@@ -66,7 +66,7 @@ public:
 
 private:
   using Task = MotionScratch::Task;
-  /// open: to be asked again of shorter times; parted: of what the ball holds.
+  /// open: to be asked again for shorter times; parted: to be asked again of the balls that a ball holds.
   enum class Outcome : std::uint8_t { free, parted, open, colliding, undecided };
 
   Task roots(double m, double h);
@@ -84,7 +84,7 @@ private:
 
   const Gaps& gaps_;
   MotionScratch& s_;
-  double error_ = 0.0, speed_ = 0.0; ///< of gaps; no place is faster
+  double error_ = 0.0, speed_ = 0.0; ///< error of gaps; speed of the fastest place, at most
   double valid_ = 0.0;
   Meeting meeting_; ///< of the last outcome that is colliding or undecided
   Pulse pulse_;

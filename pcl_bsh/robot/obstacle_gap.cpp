@@ -125,10 +125,11 @@ struct PointProbe {
   }
 };
 
-/// A triangle between planes: its own, and those through its edges and across it. Their normals have length 1.
+/// The planes that bound a triangle: its own, and those through its edges at right angles to it. Their normals have
+/// length 1.
 class Planes {
 public:
-  /// Whether they are known: those of a narrow triangle turn as it is rounded.
+  /// Sets the planes. @return whether they are known: rounding turns those of a narrow triangle too far
   bool set(const Triangle3& triangle, const Kinematics::Pose& pose)
   {
     // Coordinates are off by 2^-50 of their size, so an edge by less than 2^-35 of its length, and normals turn by less
@@ -152,7 +153,8 @@ public:
     return true;
   }
 
-  /// A point is no nearer to the triangle. @param turned how far rounding moves it from a plane
+  /// Returns a lower bound of a point's distance from the triangle. @param turned how far off its distance from a plane
+  /// is
   double atLeast(const Eigen::Vector3d& p, double turned) const
   {
     const Eigen::Vector4d beyond =

@@ -20,7 +20,7 @@ namespace pcl_bsh::robots {
 
 /// Bounds of a gap: of a distance less radii.
 struct Gap : Interval {
-  std::uint32_t record = kNothing;   ///< the nearest, whose upper bound is least; none: all are beyond the limit
+  std::uint32_t record = kNothing;   ///< the nearest, whose upper bound is least; kNothing: all are beyond the limit
   std::uint32_t possible = kNothing; ///< the one whose lower bound is least
 
   bool isBeyond(double limit) const noexcept { return record == kNothing || lower > limit; }
@@ -56,15 +56,16 @@ public:
   /// The gap of a point. Beyond the limit: from that to infinity. Expects the DefaultFloatEnvironment.
   Gap gap(const Eigen::Vector3d& point, double limit) const;
 
-  /// The gap of a solid that stands there.
+  /// The gap of a solid at a pose in the world.
   Gap gap(const Solid& solid, const Kinematics::Pose& pose, double limit) const;
 
-  /// The gap of triangles whose mesh stands there. @param any it need not be the least: within the limit is enough
+  /// The gap of a patch, whose mesh is at a pose in the world.
+  /// @param any any gap within the limit will do, not the least alone
   Gap gap(const Patch& patch, const Kinematics::Pose& pose, double limit, bool any = false) const;
 
 private:
   const SphereHierarchy* hierarchy_;
-  std::optional<double> radius_; ///< of all points, where they are as uncertain as each other
+  std::optional<double> radius_; ///< of all points, where their radii and uncertainties are alike
 };
 
 } // namespace pcl_bsh::robots

@@ -5,11 +5,11 @@
 
 namespace pcl_bsh::robots {
 
-/// How far a rotation may be from one.
+/// Poses are rigid within this.
 inline constexpr double kRigid = 1e-12;
 
 /// Factor of bounds that are made once or are sums of a few terms. Pays for their rounding, and for rotations that are
-/// not quite.
+/// rigid only within kRigid.
 inline constexpr double kOutward = 1.0 + 1e-9;
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -81,7 +81,7 @@ public:
   }
 
 private:
-  /// A turn moves a place by no more than its angle times the distance from the axis. Beyond the joint's limits a slide
+  /// A turn moves a place by no more than its angle times the distance from the axis. A slide beyond the joint's limits
   /// adds to the distances from the axes before it.
   std::vector<double> doubtsOf(const Ball& ball) const
   {
@@ -151,7 +151,7 @@ private:
     return balls;
   }
 
-  /// Balls about triangles that are near to each other. @param like what all have
+  /// Balls about triangles that are near to each other. @param like gives the members that all have
   std::vector<Ball> patchesOf(std::vector<Corners> triangles, const Ball& like)
   {
     const std::size_t most = std::max(kPatchTriangles, (triangles.size() + kPatches - 1) / kPatches);
@@ -209,11 +209,11 @@ private:
     return all;
   }
 
-  /// One ball that holds all; what it holds is added.
+  /// Returns one ball that holds all. The balls that it holds are added to the parts.
   Ball root(std::vector<Ball> balls)
   {
     if (balls.size() == 1) return balls[0];
-    // Halves along the longest axis, until there are so few parts as a ball has children.
+    // Halves along the longest axis, until there are as many parts as a ball has children.
     std::vector<std::pair<std::size_t, std::size_t>> ranges = {{0, balls.size()}};
     while (ranges.size() < std::min(kChildren, balls.size())) {
       const auto widest = std::max_element(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) {

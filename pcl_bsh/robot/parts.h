@@ -22,25 +22,27 @@ struct Piece {
   const SphereHierarchy* surface = nullptr;
   Kinematics::Pose pose; ///< T_body_piece
   std::size_t link = 0, shape = 0;
-  Eigen::MatrixX3d corners = {}; ///< of a mesh: all of it is in their hull. None where there are many
+  Eigen::MatrixX3d corners = {}; ///< of a mesh: all of it is in their hull. Empty: more than kMostCorners
 };
 
 /// Holds a piece, a patch of a mesh, or other balls of its body.
 struct Ball {
   Eigen::Vector3d center; ///< in the body's frame
   double radius = 0.0;    ///< with the link's padding
-  double spread = 0.0;    ///< how far from the centre are the places that its motion is about: 0 of a sphere
+  double spread = 0.0;    ///< radius of the places whose motion counts: 0 of a sphere, its centre alone
   std::size_t body = 0;
   std::uint32_t piece = kNoPart;         ///< it holds this or a patch of it; none: more than one
-  bool is_sphere = false;                ///< the piece is no more than this
+  bool is_sphere = false;                ///< the piece is this ball, less the padding
   double padding = 0.0;                  ///< of the piece
   std::uint32_t first = 0, count = 0;    ///< balls that it holds, one after another
-  std::uint32_t record = 0, records = 0; ///< of a patch: in the list of all
+  std::uint32_t record = 0, records = 0; ///< of a patch: range of Parts::records
   std::vector<double> axis_distances;    ///< from the axes of the chain (kinematics.h)
-  std::vector<double> doubts; ///< how far these places may be off by joints of the chain from each on; empty: by none
+  std::vector<double> doubts; ///< per joint of the chain: how far uncertain joints from it on move the places that
+                              ///< count; empty: not at all
 };
 
-/// Two links to be held against each other, by the balls that hold them, and the body that neither moves against.
+/// Two links to be compared, by the balls that hold them, and the last body that both hang on: motions are seen from
+/// it.
 struct LinkPair {
   std::uint32_t a = 0, b = 0;
   std::size_t common = 0;
@@ -54,7 +56,7 @@ struct Parts {
   std::vector<Piece> pieces;
   std::vector<Ball> balls;
   std::vector<std::uint32_t> records;           ///< of meshes, patch by patch
-  std::vector<std::uint32_t> of_bodies;         ///< the balls that hold what each body has
+  std::vector<std::uint32_t> of_bodies;         ///< of each body the ball that holds all, or kNoPart
   std::vector<LinkPair> pairs;                  ///< of links
   std::vector<std::vector<std::size_t>> chains; ///< of each body
   double extent = 0.0;                          ///< nothing is farther from the origin of its body

@@ -109,7 +109,8 @@ struct Robot {
   void requireValues(const JointValues& values) const;
 };
 
-/// The rigid pose that is nearest to one of few digits: robots and worlds take poses that are rigid within 1e-12.
+/// Returns the nearest rigid pose to one that was given with few digits: robots and worlds take poses that are rigid
+/// within 1e-12.
 inline Eigen::Isometry3d rigidPose(Eigen::Isometry3d pose)
 {
   pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();

@@ -24,7 +24,7 @@ std::vector<Obstacle> obstaclesOf(const std::vector<const SphereHierarchy*>& hie
   return obstacles;
 }
 
-/// The answers of answer(i), of some at a time.
+/// Returns answer(i) for all i below `count`. A thread takes some at a time.
 template <class Answer>
 auto answerAll(std::size_t count, const Effort& effort, const Answer& answer)
 {
@@ -55,7 +55,7 @@ void requireLimit(double limit)
     throw InvalidInput(Input::max_distance, "limit", "is not a number", "give a length, or infinity");
 }
 
-/// The least gap of all that it is shown.
+/// Finds the least gap of a state: of balls against obstacles, and of pairs of links.
 class LeastGap {
 public:
   LeastGap(const Gaps& gaps, const RobotState& state, double limit) : gaps_(gaps), limit_(limit)

@@ -66,8 +66,8 @@ struct MotionCheck {
 };
 /// How far a state is from all that it may meet.
 struct ClearanceResult {
-  Interval gap;                   ///< the least one, less all radii and paddings; negative inside of solids. Two
-                                  ///< solids that meet are at most at its upper end
+  Interval gap;                   ///< the least one, less all radii and paddings; negative inside of solids. Where two
+                                  ///< solids meet, its lower end may be minus infinity
   std::optional<Meeting> meeting; ///< none: nothing is for certain within the limit
 };
 
@@ -103,7 +103,8 @@ public:
   /// Moves the whole robot.
   void setBase(const Eigen::Isometry3d& T_world_root);
 
-  /// A link of its own that moves with another and is not held against that nor against `ignored`. Its name is new.
+  /// Adds a link that moves with another one. It is compared neither with that nor with links of `ignored`. Its name
+  /// must be new.
   void attach(const std::string& name, std::size_t link, std::vector<Shape> shapes,
               const std::vector<std::size_t>& ignored = {});
   void detach(const std::string& name); ///< @throws InvalidInput for a name that is not attached

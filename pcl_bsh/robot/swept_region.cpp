@@ -82,7 +82,7 @@ bool SweptRegion::isNear(const unsigned char* point, const std::array<std::size_
   for (std::size_t k = 0; k < 3; ++k) {
     std::memcpy(&p[k], point + offset[k], sizeof(T));
     const float at = (static_cast<float>(p[k]) - low_[static_cast<Eigen::Index>(k)]) * cubes_per_m_;
-    if (!(at >= 0.0f && at < static_cast<float>(count_[k]))) return false; // no number is not
+    if (!(at >= 0.0f && at < static_cast<float>(count_[k]))) return false; // also where it is NaN
     cube += cubes * static_cast<std::size_t>(static_cast<int>(at));
     cubes *= count_[k];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All shapes that are no meshes by one name. Each has a leaf of its own beside this.
+// One type for all shapes that are no meshes. Each shape has a header of its own beside this one.
 #pragma once
 
 #include <pcl_bsh/robot/robot.h>
@@ -19,7 +19,7 @@ inline double signedDistance(const Solid& solid, const Eigen::Vector3d& point)
   return std::visit([&](const auto& form) { return signedDistance(form, point); }, solid);
 }
 
-/// It is all that is within this of its core.
+/// Returns the radius of rounding: the solid is all places within it of its core.
 inline double roundness(const Solid& solid)
 {
   return std::visit([](const auto& form) { return roundness(form); }, solid);
