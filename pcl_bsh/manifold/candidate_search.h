@@ -63,7 +63,8 @@ protected:
 
 inline constexpr std::size_t kMostChannels = 3; ///< of a manifold
 
-/// Calls `choose` with a search of these channels, which lasts as long as that. Expects the DefaultFloatEnvironment.
+/// Calls `choose` with a search of these channels, which is valid during this call. Expects the
+/// DefaultFloatEnvironment.
 /// @param most_gap that candidates have @param thickness taken from gaps
 void searchCandidates(const std::vector<Channel>& channels, double most_gap, double thickness,
                       const std::function<void(CandidateSearch&)>& choose);

@@ -199,7 +199,7 @@ private:
     request.clearance = measures && wanted_.distances ? *question_.max_distance : question_.clearance.value_or(0.0);
     const bool flags = wanted_.flags || wanted_.contacts || wanted_.poses;
     request.flags = flags || !solids_->none();                                // addToPath() counts by them
-    const bool closest = wanted_.closest && !question_.accuracy.stopsEarly(); // an early stop knows none
+    const bool closest = wanted_.closest && !question_.accuracy.stopsEarly(); // an early stop has no distance
     request.distances = request.closest_poses = wanted_.contacts || wanted_.distances || closest;
     request.first_poses = wanted_.contacts || wanted_.first_poses;
     request.pose_summaries = wanted_.poses && question_.swept == 0.0;

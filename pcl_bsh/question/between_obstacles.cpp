@@ -51,7 +51,7 @@ std::vector<Numbers> nearPairs(const std::vector<Shape>& shapes, const std::vect
 }
 
 /// Returns the area of an obstacle's surface within another, if that is a solid.
-/// @param between poses of both
+/// @param between the question about both
 std::optional<Interval> overlapOf(const Question& between, const DistanceResult& closest, Shape& surface, Shape& solid)
 {
   if (!between.solid || !surface.isSurface()) return std::nullopt;

@@ -101,7 +101,7 @@ ObstaclesAnswer JoinedAnswers::finish(bool moves)
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
-  auto& perhaps = all.indices.undecided_a; // of records that collide with another obstacle
+  auto& perhaps = all.indices.undecided_a; // less records that collide with another obstacle
   perhaps.erase(std::remove_if(perhaps.begin(), perhaps.end(),
                                [&](std::int32_t record) {
                                  return std::binary_search(all.indices.a.begin(), all.indices.a.end(), record);

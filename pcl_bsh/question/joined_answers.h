@@ -69,7 +69,7 @@ std::pair<DistanceResult, std::int32_t> closestAlong(const Placed& input, const 
                                                      double most = std::numeric_limits<double>::infinity());
 
 /// Whether anyCollision() is worth asking first: collisions at one pose are wanted, without `seen`, `density` or an
-/// early stop. Where nothing collides, no other query about collisions is needed.
+/// early stop. Where its verdict is free, no other query about collisions is needed.
 bool mayAskAny(const Question& question);
 
 } // namespace pcl_bsh

@@ -30,9 +30,8 @@ class IgnoredPairs {
 public:
   IgnoredPairs() = default; ///< none
 
-  /// @param texts FIRST:SECOND each, where * stands for any letters. A backslash before a colon, a star or a backslash
-  ///   makes it a letter of the name; before any other letter the backslash is one itself. @param obstacles all their
-  ///   names
+  /// @param texts FIRST:SECOND each, where * stands for any letters. A colon, a star or a backslash of a name has a
+  ///   backslash before it; before any other letter a backslash is itself. @param obstacles all their names
   /// @throws InvalidInput for another text, and for a pattern that no name matches
   IgnoredPairs(const std::vector<std::string>& texts, const std::vector<std::string>& obstacles);
 

@@ -75,7 +75,7 @@ struct RecordField {
 /// Refuses numbers that are not finite and >= 0. @param cloud its name in errors. @throws InvalidInput
 void checkUncertainty(const std::string& cloud, const Uncertainty& uncertainty);
 
-/// Returns the view with these uncertainties added to those that it has. It keeps alive what it kept before, too.
+/// Returns the view with these uncertainties added to those that it has. It also keeps alive what the given view keeps.
 /// @param fields of the view's records. @param cloud its name in errors
 /// @throws InvalidInput naming the value, the point or the field: a number that is negative or not finite, a field that
 ///   is missing or holds more than one number a point

@@ -63,7 +63,7 @@ public:
     const float radius = roundUp(0.5 * std::sqrt(3.0) * edge_ * (1.0 + 0x1p-20));
     const SphereHierarchy all(viewOf(middles.front().data(), middles.size()));
     const LabelsResult found = labelPoints({all}, {obstacle.solid().whole()}, question.threads);
-    FlagsRequest near; // a cube that no surface meets has all of it on the side of its middle
+    FlagsRequest near; // a cube that no surface meets is as a whole where its middle is
     near.clearance = static_cast<double>(radius);
     near.threads = question.threads;
     const FlagsResult meets = collisionFlags({all}, {surface}, near);
