@@ -240,7 +240,7 @@ std::uint64_t compareWithEarlier(std::vector<Clash>& clashes, const std::vector<
     if (there_still[j] || earlier[j].wasNoClash()) continue;
     clashes.push_back(earlier[j]);
     clashes.back().status = ClashStatus::resolved;
-    clashes.back().clearRecords(); // of an earlier scan
+    clashes.back().clearRecords(); // these are records of an earlier scan
   }
   return now.compared;
 }

@@ -153,7 +153,7 @@ private:
     PointDistances found = pointDistances({queried.thing(), of_queried}, {solid.surface, solid.pose}, near);
     work_ += found.work;
     std::vector<double> depths = std::move(found.distance);
-    for (double& depth : depths) // of a ball outside, too: its middle is so far outside, less its radius
+    for (double& depth : depths) // of a ball outside, too: minus the distance of its middle less its radius
       depth = std::isnan(depth) ? -std::numeric_limits<double>::infinity() : -std::nextafter(depth, -1.0);
     const std::vector<std::uint32_t> inside = recordsIn(solid, queried, of_queried, path_.threads, work_);
     for (const Depth& depth : depthsOf(solid, queried, of_queried, inside, path_.threads, false, work_)) {

@@ -27,7 +27,7 @@ namespace pcl_bsh {
 /// body that holds them.
 struct Answer {
   /// Flags, contacts (distance, first_pose, closest_pose, closest_point: a record of the obstacle), poses, and how many
-  /// points collide or are undecided; at one pose alike. Along a path, distances are in `distance` and `closest_pose`,
+  /// points collide or are undecided; also at one pose. Along a path, distances are in `distance` and `closest_pose`,
   /// too. Swept, an entry of `poses` is about the motion from its pose to the next, and the last entry about the last
   /// pose.
   TrajectoryResult collisions;

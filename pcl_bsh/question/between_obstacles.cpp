@@ -144,7 +144,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
       std::remove_if(asked.begin(), asked.end(), [&](const Numbers& pair) { return !wanted(pair.first, pair.second); }),
       asked.end());
 
-  if (asked.size() > 1) of_one.threads = 1; // of each pair
+  if (asked.size() > 1) of_one.threads = 1; // each pair has one
 
   std::function<bool(double)> report; // all else is done: this comes last
   if (question.progress) report = [&](double) { return question.progress(1.0); };
@@ -154,7 +154,7 @@ std::vector<ObstaclePair> askBetween(const Question& question, const std::vector
   parallelFor(asked.size(), threadCount(question.threads), [&](std::size_t p) {
     if (progress.stopped()) return;
     const std::uint32_t i = asked[p].first, k = asked[p].second;
-    Shape first = shapes[i], second = shapes[k]; // which share what is built
+    Shape first = shapes[i], second = shapes[k]; // copies that share what is built
     pairs[p] = pairAlong(of_one, questions[i], first, questions[k], second);
     pairs[p].first = i;
     pairs[p].second = k;

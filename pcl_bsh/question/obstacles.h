@@ -26,8 +26,7 @@ namespace pcl_bsh {
 /// An obstacle of several. Members without a value are those of the question.
 struct PlacedShape {
   Shape shape;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape; it is asked about at question.pose *
-                                                          ///< pose
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); ///< T_obstacles_shape; applied before the question's pose
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {}; ///< of its points and, where that is not 0, of its pose

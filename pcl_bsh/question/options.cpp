@@ -118,7 +118,7 @@ std::optional<double> numberOf(const QuestionOption& option, const Question& que
           return question.*member;
         else if constexpr (std::is_same_v<Value, Uncertainty>)
           return (question.*member).length;
-        else if constexpr (std::is_same_v<Value, bool> || is_text_option<Value>) // which queries check
+        else if constexpr (std::is_same_v<Value, bool> || is_text_option<Value>) // queries check these
           return std::nullopt;
         else
           return static_cast<double>(question.*member);

@@ -215,7 +215,7 @@ NamedCloud Shape::facts(bool spacing) const
     facts.spacing = measured_->spacing;
   }
   if (facts.spacing) return facts;
-  facts.spacing = spacingOf(*hierarchy_); // by two threads at once rather than by one while another waits
+  facts.spacing = spacingOf(*hierarchy_); // not locked: two threads may measure at once, neither waits
   const std::lock_guard lock(measured_->one_at_a_time);
   measured_->spacing = facts.spacing;
   return facts;

@@ -54,7 +54,7 @@ public:
   /// Returns a copy with another name.
   Shape named(std::string name) const;
 
-  /// Which of its points do not count from now on. Another choice than before builds all anew.
+  /// Sets which of its points do not count from now on. After another choice than before, all is built anew.
   void ignore(const IgnoredPoints& ignored);
 
   const IgnoredPoints& ignored() const noexcept { return ignored_; } ///< points that do not count

@@ -132,7 +132,7 @@ void lookAround(const Question& question, Shape& input, Shape& obstacle, Answer&
     if (question.progress && !question.progress(1.0)) throw Cancelled(); // all but this is done
     const Eigen::Isometry3d in_scan = is_moved ? from_world * poses[k] : poses[k];
     double moves = shiftOf(question.input_pose_uncertainty, bounds, in_scan);
-    if (is_moved) // by rounding
+    if (is_moved) // the product of poses is rounded
       moves += 0x1p-44 * (in_scan.translation().lpNorm<1>() + bounds.ball.radius +
                           Eigen::Vector3d(bounds.ball.center.data()).lpNorm<1>() + poses[k].translation().lpNorm<1>() +
                           question.pose_of_input.translation().lpNorm<1>());

@@ -106,7 +106,7 @@ void Bundles::bundle(Alike* first, Alike* last, std::uint32_t begin, const Float
     const double off = 0x1p-23 * std::max(std::abs(least), std::abs(most)) + 0x1p-140;
     reach = std::max(reach, std::max(most - static_cast<double>(middle), static_cast<double>(middle) - least) + off);
   }
-  own.reach = reach < 0x1p60 ? roundUp(reach) : kEndless; // of endless ones nothing is known
+  own.reach = reach < 0x1p60 ? roundUp(reach) : kEndless; // with an endless reach nothing is known
   const std::size_t index = bundles_.size();
   bundles_.push_back(own);
   if (own.count > kSmallest) {

@@ -94,7 +94,7 @@ std::optional<Warning> warningOfFrames(const std::string& a, const Eigen::Aligne
   if (box_a.isEmpty() || box_b.isEmpty()) return std::nullopt;
   const double apart = std::sqrt(box_a.squaredExteriorDistance(box_b));
   const double size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
-  const bool have_size = size > 1e-12 * apart; // of single places there is no more than rounding
+  const bool have_size = size > 1e-12 * apart; // a single place has no size but rounding
   const bool is_far = have_size && apart > clearance && apart > far_apart * size;
   if (!is_far) return std::nullopt;
   return Warning{WarningKind::apart,
@@ -111,7 +111,7 @@ std::optional<Warning> warningOfUnits(const NamedCloud& a, const NamedCloud& b)
   const double size_a = a.box.diagonal().norm(), size_b = b.box.diagonal().norm();
   const bool is_a_larger = size_a > size_b;
   const auto [small, large] = std::minmax(size_a, size_b);
-  const bool have_sizes = small > 1e-9 * large; // of single places there is no more than rounding
+  const bool have_sizes = small > 1e-9 * large; // a single place has no size but rounding
   if (!have_sizes || large < far_larger * small) return std::nullopt;
   return Warning{WarningKind::units,
                  plainText((is_a_larger ? a : b).name, " is ", std::round(large / small), " times as large as ",
