@@ -18,8 +18,8 @@ struct ObstacleGap : Gap {
 };
 
 /// A robot in one place among obstacles. Gaps hold for all values of joints and all places of points within their
-/// uncertainties at once: what is measured is certainly no nearer than the lower bound, and certainly no farther than
-/// the upper one. Expects the DefaultFloatEnvironment.
+/// uncertainties at once. A piece is certainly no nearer than the lower bound, and certainly no farther than the upper
+/// one. Expects the DefaultFloatEnvironment.
 class Gaps {
 public:
   Gaps(Robot robot, std::vector<Obstacle> obstacles, const WorldOptions& options);
