@@ -344,7 +344,7 @@ private:
     return a / (a + b);
   }
 
-  /// Returns the distance about as it is: it tells only where to cut.
+  /// Returns the distance roughly: it tells only where to cut.
   double distanceTo(const Point3& place, std::uint32_t triangle) const
   {
     const Eigen::Vector3d seen = solid_.pose.inverse() * (pose_ * Eigen::Vector3d(place[0], place[1], place[2]));

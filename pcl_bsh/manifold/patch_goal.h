@@ -51,7 +51,8 @@ class PlaneHull {
 public:
   using Point = Eigen::Vector2d;
 
-  /// Returns twice the area of a triangle; above 0 where the last point is to the left of the way between the others.
+  /// Returns twice the signed area of a triangle: above 0 where the last point is to the left of the way between the
+  /// others.
   static double turn(const Point& from, const Point& to, const Point& at)
   {
     const Point way = to - from, other = at - from;

@@ -24,7 +24,7 @@ public:
     return std::find(at_.begin(), at_.begin() + size_, p) != at_.begin() + size_;
   }
 
-  /// The radius of the ball about the origin that is within the tetrahedron; 0: the origin is not.
+  /// The radius of the ball about the origin that is within the tetrahedron; 0: the origin is not in it.
   double depth() const { return depth_; }
 
   /// The place that is nearest to the origin; keeps only the corners that it lies between.

@@ -110,8 +110,8 @@ public:
   void twists(const RobotState& slopes, const std::vector<Pose>& poses, std::size_t count,
               std::vector<Twist>& twists) const;
 
-  /// Returns how far a point of a body can be from the axis of each body on the chain to it, itself the last; 1 for
-  /// bodies that slide.
+  /// Returns for each body on the chain to `body`, the last, how far a point of `body` can be from its axis; 1 where it
+  /// slides.
   /// @param spread how far the point is from `center`, in the body's frame
   std::vector<double> axisDistances(std::size_t body, const Eigen::Vector3d& center, double spread) const;
 
