@@ -11,11 +11,11 @@ namespace pcl_bsh::files {
 /// The space that output will need.
 struct WantedSpace {
   std::filesystem::path place; ///< a file or folder, which need not be there yet
-  std::uint64_t bytes = 0;     ///< beside what is there now, as that of a file that is replaced only in the end
+  std::uint64_t bytes = 0;     ///< beside those in use now: a file that is replaced keeps its own until the end
 };
 
-/// Refuses what does not fit: of several outputs on one disk, their sum. File systems that report no size, as some of
-/// networks, refuse nothing.
+/// Refuses outputs that do not fit on their disks. Several outputs on one disk must fit together. File systems that
+/// report no size, as some of networks, refuse nothing.
 /// @throws FileError that says how much is needed, and how much is free
 void requireSpace(const std::vector<WantedSpace>& wanted);
 

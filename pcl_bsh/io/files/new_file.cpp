@@ -50,7 +50,7 @@ private:
 NewFile::NewFile(const std::filesystem::path& path) : path_(path)
 {
   const auto lock = lockUnfinished();
-  // Listed first: should the list not grow, there is no file yet. O_EXCL: nobody's file is written to.
+  // The name is listed first: if the list cannot grow, no file has been made. O_EXCL: no existing file is written to.
   addUnfinished(path_);
   try {
     const Descriptor made(path_, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);

@@ -30,8 +30,8 @@ public:
   /// Replaces the first bytes, all of which are there. @throws FileError
   void replaceHead(std::string_view bytes);
 
-  /// From now on the file stays; again has no effect. Under lockUnfinished(), as FileReplacement::commit() calls its
-  /// function: so all files are kept in one moment.
+  /// Keeps the file from now on; a second call has no effect. @pre lockUnfinished() is held, as it is while
+  /// FileReplacement::commit() calls its function: so all files are kept at one moment
   void keep();
 
 private:
@@ -40,8 +40,8 @@ private:
   bool kept_ = false;
 };
 
-/// Brings all files of the disk that holds a folder to that disk: for thousands of them in a tenth of the time that
-/// each by itself takes. @throws FileError
+/// Flushes all files of the file system that holds a folder to the disk. For thousands of files it takes a tenth of the
+/// time that one by one would take. @throws FileError
 void syncDisk(const std::filesystem::path& folder);
 
 } // namespace pcl_bsh::files

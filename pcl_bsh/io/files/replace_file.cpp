@@ -126,7 +126,8 @@ void FileReplacement::takeOver()
   struct stat old = {};
   if (stat(destination_.c_str(), &old) != 0) return;
   mode_t mode = old.st_mode & 0777;
-  // The owner is the superuser's to give, the group also a member's. Another group gets no more than all others have.
+  // Only the superuser may give the owner; a member of the group may give the group. Where the group stays another, it
+  // gets no more rights than all others have.
   constexpr auto as_it_is = static_cast<uid_t>(-1);
   if (fchown(descriptor_, old.st_uid, old.st_gid) != 0 && fchown(descriptor_, as_it_is, old.st_gid) != 0)
     mode &= ((mode & 07) << 3) | ~mode_t{070};

@@ -7,9 +7,9 @@
 
 namespace pcl_bsh::files {
 
-/// Removes the temporary file of every FileReplacement that is under way, which then fails, and every folder of an
-/// OutputFolder that is empty then. While the returned lock lives, no other replacement begins or ends. For programs
-/// that are told to stop.
+/// Removes all listed files and empty folders: the temporary file of every FileReplacement that is under way, which
+/// then fails, every NewFile that is not kept, and folders of every OutputFolder. While the returned lock lives, no
+/// other replacement begins or ends. For programs that are told to stop.
 std::unique_lock<std::mutex> discardUnfinished();
 
 /// To be held while a listed file or folder is made or removed: the disk and the list change together.

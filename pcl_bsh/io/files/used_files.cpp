@@ -4,7 +4,7 @@
 namespace pcl_bsh::files {
 namespace {
 
-/// The fault of two names of one file; empty where they are no fault.
+/// The message about two names of one file; empty where they are allowed together.
 std::string wrongWith(const UsedFile& file, const UsedFile& other, bool is_stream)
 {
   if (file.use == Use::read) {
@@ -24,7 +24,7 @@ std::optional<FileClash> findClash(const std::vector<UsedFile>& files)
   for (const UsedFile& file : files) identities.emplace_back(file.path, file.use);
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t k = 0; k < files.size(); ++k) {
-      const bool once = files[i].use != files[k].use || k < i; // of two alike, the later one is told
+      const bool once = files[i].use != files[k].use || k < i; // of two names with one use, the later is told
       if (k == i || !once || !(identities[i] == identities[k]) || identities[i].isDevice()) continue;
       const std::string wrong = wrongWith(files[i], files[k], identities[i].isStream());
       if (!wrong.empty()) return FileClash{i, k, wrong};

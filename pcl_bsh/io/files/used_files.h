@@ -23,12 +23,12 @@ struct UsedFile {
 /// Two names of one file.
 struct FileClash {
   std::size_t file;  ///< the one to choose another name for: written, or a pipe
-  std::size_t other; ///< never the same
+  std::size_t other; ///< never equal to `file`
   std::string wrong; ///< `is the file of OTHER, which is read: choose another name`
 };
 
-/// Whether two names that stand for one file would be in each other's way: one is written and the other read or
-/// written; or both are read and it is a pipe. Devices such as /dev/null never are.
+/// Finds two names of one file that are in each other's way: one is written and the other read or written; or both are
+/// read, and the file is a pipe. Devices such as /dev/null are never in the way.
 /// @return of several, the first by `file`, then by `other`
 /// @throws FileError for a link that leads back to itself
 std::optional<FileClash> findClash(const std::vector<UsedFile>& files);

@@ -30,7 +30,7 @@ Json orNull(const std::string& text);
 /// Indented; bytes that are no UTF-8, as file names may hold, are replaced.
 std::string printed(const Json& json);
 
-/// In a file, or on standard output as `-`. @throws files::FileError
+/// Writes to a file, or to standard output for `-`. @throws files::FileError
 void writeJson(const std::filesystem::path& file, const Json& json);
 
 } // namespace pcl_bsh::io

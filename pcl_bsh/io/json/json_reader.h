@@ -50,8 +50,8 @@ public:
   std::vector<double> numbers(std::size_t count) const;
   Eigen::Vector3d vector() const;
 
-  /// x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row. A matrix that few printed digits
-  /// have left with |R'R - I| from 1e-6 to 1e-4 stands for its nearest rotation; `warnings` gets a line then.
+  /// x y z roll pitch yaw (radians), or the 12 or 16 numbers of a matrix, row by row. The nearest rotation replaces a
+  /// matrix with |R'R - I| from 1e-6 to 1e-4, as few printed digits leave it; `warnings` gets a line then.
   Eigen::Isometry3d pose(std::vector<std::string>& warnings) const;
 
 private:

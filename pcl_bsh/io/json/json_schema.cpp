@@ -98,7 +98,7 @@ const Json& JsonSchema::resolved(const Json& schema) const
 /// @param noun, remedy where the schema has no title
 void JsonSchema::failAs(const JsonReader& value, const Json& schema, std::string noun, std::string remedy) const
 {
-  if (schema.contains("title") && &schema != &schema_) { // the title of all is for editors
+  if (schema.contains("title") && &schema != &schema_) { // the whole schema's title is for editors
     noun = schema["title"].get<std::string>();
     remedy = schema["description"].get<std::string>();
   }
@@ -135,7 +135,7 @@ void JsonSchema::checkObject(const JsonReader& value, const Json& schema) const
   for (const auto& [key, member] : value.members()) {
     if (properties.contains(key))
       check(member, properties[key]);
-    else if (schema.contains("additionalProperties")) // of a closed one there are no others
+    else if (schema.contains("additionalProperties")) // a boolean forbids other keys: there are none here
       check(member, schema["additionalProperties"]);
   }
 }

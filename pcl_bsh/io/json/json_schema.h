@@ -13,7 +13,7 @@ namespace pcl_bsh::io {
 /// maxProperties, items, minItems, maxItems, minimum, maximum, exclusiveMinimum, minLength, enum (of texts), oneOf, and
 /// $ref into #/definitions. `pattern` is for editors: the code that reads the text has to check it.
 ///
-/// An error about a value of a definition that has a title uses that and the description: of {"title": "pair",
+/// An error about a value of a definition that has a title says the title and the description: of {"title": "pair",
 /// "description": "two names", ...}, "[1] is no pair: give two names".
 class JsonSchema {
 public:

@@ -169,8 +169,8 @@ std::vector<Eigen::Isometry3d> parsePoses(std::string_view text, std::vector<std
   if (areWaypoints(text)) return posesAlong(parseWaypoints(text));
   std::vector<Eigen::Isometry3d> poses;
   std::size_t columns = 0;
-  std::size_t replaced = 0; // matrices that others took the place of
-  double worst = 0;         // deviation of these
+  std::size_t replaced = 0; // matrices that the nearest rotation replaced
+  double worst = 0;         // the greatest deviation of these
   TextCursor cursor(text, '#');
   std::optional<PoseColumns> named = columnsInComments(text);
   for (bool first = true; cursor.nextLine(); first = false) {

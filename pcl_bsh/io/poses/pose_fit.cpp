@@ -18,7 +18,7 @@ namespace pcl_bsh::io {
 namespace {
 
 constexpr std::size_t least_pairs = 3;
-constexpr double narrow = 1e-3; // of the length of what lies on a line
+constexpr double narrow = 1e-3; // greatest width of places on a line, as a share of their length
 constexpr double other_size = 2.0;
 constexpr auto forms_of_a_pair = "give x y z of the obstacle and x y z of the input, a pair to a line";
 

@@ -29,8 +29,8 @@ struct PoseFit {
   std::string text() const; ///< one line of how well it fits
 };
 
-/// Places on one line leave open how the body is turned about it. They are where they differ from a line by no more
-/// than a thousandth of their length, or than the fit's residuals.
+/// Fits a pose. Places on one line do not determine the turn about this line. Places count as on one line if they
+/// differ from it by no more than a thousandth of their length, or than the fit's residuals.
 /// @throws FormatError for less than three pairs, for places on one line, and where one side is twice the other's size
 PoseFit fitPose(const std::vector<PlacePair>& pairs);
 
@@ -38,7 +38,7 @@ PoseFit fitPose(const std::vector<PlacePair>& pairs);
 /// line
 std::vector<PlacePair> parsePairs(std::string_view text);
 
-/// Fits those of a file. @param scale from the body's lengths in the file to those of the scan
+/// Fits the pairs of a file. @param scale from the body's lengths in the file to those of the scan
 /// @throws files::FileError naming it
 PoseFit readPoseFit(const std::filesystem::path& path, const LengthScale& scale = {});
 

@@ -15,8 +15,8 @@ namespace pcl_bsh::io {
 class TextCursor;
 
 /// All numbers of the cursor's line: separated by blanks, by tabs, by commas or by semicolons, but not by several of
-/// them, for `1,5;2,5` may be two numbers or four. Only rows of four, as of a matrix, may be separated by semicolons
-/// and their numbers otherwise. @throws FormatError naming the line
+/// them, for `1,5;2,5` may be two numbers or four. As an exception, semicolons may separate rows of four numbers, as of
+/// a matrix, and another separator the numbers. @throws FormatError naming the line
 std::vector<double> numbersOfLine(TextCursor& text);
 
 /// All numbers of a text, line by line. @throws FormatError

@@ -20,7 +20,8 @@ double deviationOf(const Eigen::Matrix3d& matrix)
   return (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).norm();
 }
 
-/// The scale that leaves a determinant of 1 or -1; 0 where a matrix is singular to a millionth. @pre it is finite
+/// The scale by which a matrix must be divided for a determinant of 1 or -1. 0 where it is singular to a millionth.
+/// @pre it is finite
 double scaleOf(const Eigen::Matrix3d& matrix)
 {
   const double largest = matrix.cwiseAbs().maxCoeff();

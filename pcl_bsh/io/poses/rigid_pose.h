@@ -11,7 +11,8 @@
 
 namespace pcl_bsh::io {
 
-/// How far from rigid, |R'R - I|, a printed matrix may be: what four digits leave, far below a scale meant as one.
+/// The greatest |R'R - I| of a printed matrix that is not refused. Four digits leave no more, and an intended scale
+/// leaves far more.
 inline constexpr double printed_rigidity = 1e-4;
 
 /// The linear part of a transform by that rule.
@@ -35,11 +36,11 @@ struct RigidPose {
   double deviation = 0; ///< |R'R - I| of the given matrix where another one took its place, otherwise 0
 };
 
-/// The pose as it is where a query takes it, and where not even printed_rigidity holds, for the query to refuse; in
-/// between, with the rotation that is nearest to the given matrix.
+/// Returns the given pose where a query takes it, and where it is too far from rigid, so that the query refuses it.
+/// Otherwise the nearest rotation replaces its linear part.
 RigidPose nearestRigid(const Eigen::Isometry3d& given);
 
-/// One line that says so.
+/// A warning of one line that the nearest rotation took the place of a matrix.
 std::string nearestRotationWarning(double deviation);
 
 } // namespace pcl_bsh::io

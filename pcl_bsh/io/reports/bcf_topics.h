@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Topics of BCF, the BIM Collaboration Format: what people said of a clash, which goes on from list to list.
+// Topics of BCF, the BIM Collaboration Format: what people said of a clash. It is carried from list to list.
 #pragma once
 
 #include <map>
@@ -30,7 +30,7 @@ struct BcfContents {
 /// The GUID that a name has in every file: by SHA-1 (RFC 4122, version 5).
 std::string bcfGuid(const std::string& name);
 
-/// The list's place in an archive of version 3, and in one of version 2.1.
+/// The list's name in an archive: bcfListDocument() in version 3, bcf_list_file in version 2.1.
 std::string bcfListDocument();
 inline constexpr auto bcf_list_file = "clashes.json";
 

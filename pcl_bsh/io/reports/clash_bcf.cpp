@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double snapshot_pixels = 1.5; ///< of a unit of the drawing: more take long
+constexpr double snapshot_pixels = 1.5; ///< per unit of the drawing: more take long
 constexpr auto bcf_author = "pcl_bsh", open_topic = "Open", closed_topic = "Closed", snapshot_file = "snapshot.png";
 
 /// As XML can hold it: UTF-8 without control characters.
@@ -106,7 +106,7 @@ private:
     return clash.status == ClashStatus::fresh || !earlier || earlier->status.empty() ? open_topic : earlier->status;
   }
 
-  /// Its name among several, or its file's.
+  /// The obstacle's name where obstacles have names, else the name of its file.
   std::string obstacleName() const
   {
     return report_->name.empty() ? fileName(report_->question.obstacle) : report_->name;
@@ -235,7 +235,8 @@ private:
     addText(reference, "Description", "all clashes, for --previous");
   }
 
-  /// The names of both things. One that is named by a GlobalId of IFC is found by it.
+  /// Adds the names of the input and the obstacle. A name that is a GlobalId of IFC becomes the IfcGuid of its
+  /// component, too.
   void addComponents(pugi::xml_node root, const Clash& clash)
   {
     std::string input = report_->question.input,

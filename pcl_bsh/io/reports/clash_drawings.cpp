@@ -62,7 +62,7 @@ std::string obstacleAbout(const ClashReport& report, const Clash& clash, const V
     if (model.triangles) {
       const std::array<Point3, 3> corners = model.triangles->triangle(record);
       const Eigen::Vector3d a = posed(corners[0]), b = posed(corners[1]), c = posed(corners[2]);
-      const bool turns_left = (b - a).cross(c - a).z() >= 0; // all turn alike, so that one fills what another does
+      const bool turns_left = (b - a).cross(c - a).z() >= 0; // all wind alike, so that overlapping triangles fill
       path += 'M' + drawn(a) + 'L' + drawn(turns_left ? b : c) + 'L' + drawn(turns_left ? c : b) + 'z';
     }
     else {
@@ -95,7 +95,7 @@ double ClashDrawings::shareOf(double distance) const
 }
 
 /// Some of its points, evenly picked, as circles. These are too many to be data of the template.
-/// @param x, y where the clash's record of a number lies in the drawing
+/// @param x, y give the place in the drawing of a record of the clash, by its index in `records`
 template <typename X, typename Y>
 std::string ClashDrawings::dotsOf(const Clash& clash, const X& x, const Y& y) const
 {

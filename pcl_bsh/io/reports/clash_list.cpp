@@ -31,7 +31,8 @@ std::optional<Extent> boxOrNone(const JsonReader& box)
   return box.json().is_null() ? std::nullopt : std::optional(boxFrom(box));
 }
 
-/// The point of the closest pair; lists of earlier versions have it of clashes that were there, else the box's middle.
+/// The point of the closest pair. Lists of earlier versions give it for clashes that were there; for others it is the
+/// box's middle.
 Point3 placeFrom(const JsonReader& entry, const Clash& clash)
 {
   if (entry.has("place")) return pointFrom(entry.at("place"));
@@ -134,7 +135,7 @@ std::string checksumOf(const std::vector<Eigen::Isometry3d>& poses)
   std::uint64_t sum = 0xcbf29ce484222325ULL;
   for (const Eigen::Isometry3d& pose : poses) {
     for (Eigen::Index i = 0; i < 12; ++i) {
-      const double number = pose.matrix()(i / 4, i % 4) + 0.0; // of -0 and 0 the latter
+      const double number = pose.matrix()(i / 4, i % 4) + 0.0; // -0 becomes 0
       std::uint64_t bits = 0;
       std::memcpy(&bits, &number, sizeof bits);
       for (int byte = 0; byte < 8; ++byte, bits >>= 8) sum = (sum ^ (bits & 0xff)) * 0x100000001b3ULL;
@@ -179,7 +180,8 @@ Survey::Survey(const std::vector<Eigen::Isometry3d>& all_poses, const std::optio
 
 namespace {
 
-/// The clashes of obstacles with names: each has its obstacle's name before its id.
+/// Adds the clashes to their lists. If obstacles have names, a clash's id begins with its obstacle's name, which is
+/// removed.
 void addClashes(const JsonReader& reader, std::vector<ClashList>& lists)
 {
   std::set<std::string> ids;

@@ -18,7 +18,7 @@
 
 namespace pcl_bsh::io {
 
-/// A question with a clearance. A list that was read states its options alone.
+/// A question with a clearance. Read from a list, it has the options that the list states, and no others.
 struct ClashQuestion : Question {
   std::string input, obstacle; ///< file names
 };
@@ -29,10 +29,11 @@ struct SourcePoint {
   std::uint32_t record = 0;
 };
 
-/// A length, or `K x field NAME`; with that of poses behind it.
+/// An uncertainty as text: a length or `K x field NAME`, then the uncertainty of poses, if any.
 std::string uncertaintyText(const Uncertainty& uncertainty);
 
-/// A length, or a field and how many of its sigmas count, or an object of one of them and that of poses.
+/// An uncertainty in JSON: a length; or an object of a length, or of a field and how many of its sigmas count, with the
+/// uncertainty of poses, if any.
 Json uncertaintyJson(const Uncertainty& uncertainty);
 
 /// Where a run looked.
@@ -56,10 +57,10 @@ struct ClashList {
   BcfTopics topics = {}; ///< of a BCF file
 };
 
-/// A list in JSON, of its own file or of BCF.
+/// A list in JSON, from a file of its own or from a BCF file.
 struct ListText {
   std::string list;
-  std::string name; ///< of its place, for errors
+  std::string name; ///< file, and entry in a BCF file, for errors
   BcfTopics topics = {};
 };
 
@@ -83,15 +84,15 @@ std::vector<ClashList> parseClashLists(std::string_view text, const std::string&
 const ClashList* findList(const std::vector<ClashList>& lists, const std::string& name, const ClashQuestion& question);
 
 /// Whether the earlier list, read from `path`, can tell what is new now.
-/// @return warnings, a line each: names of other clouds, except of inputs that differ in numbers, months or weekdays
-///   alone, as from week to week; motion between poses tested in one run only, a list of an earlier version
+/// @return warnings, a line each: clouds of other names; motion between poses tested in one run only; a list of an
+///   earlier version. Names of inputs may differ in numbers, months and weekdays, as from week to week
 /// @throws files::FileError when options differ that decide which points collide: clashes would seem new or resolved
 ///   that are not. These are all options except swept motion and `seen`, whose places are listed apart
 std::vector<std::string> requireComparable(const std::filesystem::path& path, const ClashList& earlier,
                                            const ClashQuestion& now);
 
 /// Whether the two runs looked at the same places.
-/// @param nearness boxes of scans whose sides differ by no more are the same
+/// @param nearness boxes of scans are equal if their sides differ by no more than this
 /// @return warnings, a line each: another path, a scan of another extent
 std::vector<std::string> surveyWarnings(const std::filesystem::path& path, const ClashList& earlier, const Survey& now,
                                         double nearness);

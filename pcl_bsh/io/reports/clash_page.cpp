@@ -97,7 +97,7 @@ private:
     return any([](const ClashReport& report) { return report.question.isUncertain(); });
   }
 
-  /// Certain ones first.
+  /// How many clashes there are, the certain ones first.
   std::string headline() const
   {
     const std::size_t perhaps = isUncertain() ? lists_.perhaps() : 0;

@@ -25,7 +25,7 @@ Json toJson(const std::optional<Extent>& box)
   return box ? Json{{"min", box->low}, {"max", box->high}} : Json();
 }
 
-/// Where a solid makes the distance negative, or may.
+/// The interval of the distance where a solid makes this negative, or may; else null.
 Json intervalOf(const Clash& clash)
 {
   if (std::isnan(clash.interval.lower)) return nullptr;

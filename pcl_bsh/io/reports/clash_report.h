@@ -39,7 +39,7 @@ struct ClashReport {
   std::string coordinate_system = {};       ///< of the input, where its file names one; else empty
   std::optional<std::string> previous = {}; ///< file name
   BcfTopics topics = {};                    ///< comments and states that people gave its clashes
-  const Obstacle* surface = nullptr;        ///< the obstacle, where it is one; `model` are its triangles
+  const Obstacle* surface = nullptr;        ///< the obstacle, if it is a surface; `model` are its triangles
   const Answer::Unseen* unseen = nullptr;   ///< of a question with `seen` and `unseen_places`
   /// The source of a point of `scan`, where the input is several files.
   std::function<SourcePoint(std::uint32_t)> source_of = nullptr;
@@ -64,7 +64,7 @@ struct ClashReport {
     return countIf([&](const Clash& clash) { return clash.status == status; });
   }
 
-  /// Whether a clash is drawn, as far as there is room: it is there now, and so are its points.
+  /// Whether a clash can be drawn: it is there now, and the report has its points.
   bool draws(const Clash& clash) const { return isPresent(clash.status) && kept == nullptr; }
 
   /// Clashes that are there now.
@@ -110,7 +110,7 @@ struct ClashLists {
   std::vector<BetweenObstacles> between = {};
 
   ClashLists() = default;
-  /** One alone. */ ClashLists(ClashReport report) { obstacles.push_back(std::move(report)); }
+  /** The list of one obstacle. */ ClashLists(ClashReport report) { obstacles.push_back(std::move(report)); }
 
   /// Whether obstacles have names, and clashes tell these.
   bool haveNames() const { return !obstacles.front().name.empty(); }
@@ -177,7 +177,7 @@ std::string clashBcf(const ClashLists& lists, bool is_version_3);
 /// @throws files::FileError
 std::vector<std::string> writeClashes(const std::filesystem::path& path, const ClashLists& lists);
 
-/// @throws files::FileError when writeClashes() knows no such extension. As reportDate()
+/// @throws files::FileError when writeClashes() knows no such extension; as reportDate() does
 void requireClashFormat(const std::filesystem::path& path);
 
 /// Counts the clashes in a line, as programs print it: "3 clashes, 140 perhaps, 2 resolved".
@@ -199,7 +199,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
 std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::filesystem::path& file,
                                         const std::vector<ClashList>& earlier);
 
-/// As above, of a report about these hierarchies.
+/// The function above, where `look` shows these hierarchies.
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const SphereHierarchy& scan,
                                          const SphereHierarchy& model);

@@ -36,7 +36,7 @@ struct ComparedObstacle {
 };
 
 /// Asks about the only obstacle, or about several with names. Where collisions are asked for, each of several keeps the
-/// question about it and its answer. The only one has no more than `all`.
+/// question about it and its answer. The answer about the only one is in `all` alone.
 /// @param shapes those of `obstacles`
 /// @throws as ask() does
 ObstaclesAnswer askAbout(const Question& question, Shape& input, std::vector<PlacedShape>& shapes,
@@ -54,7 +54,7 @@ std::vector<BetweenObstacles> askBetween(const Question& question, std::vector<P
 Json obstacleJson(const ComparedObstacle& one, const std::string& input,
                   const std::optional<SourcePoint>& nearest = std::nullopt);
 
-/// One line for each of several obstacles, and for two of them. @param part a record of the input
+/// One line for each of several obstacles, and for each two in `between`. @param part name of a record of the input
 std::string summaryOf(const std::vector<ComparedObstacle>& obstacles, const std::vector<BetweenObstacles>& between,
                       const char* part);
 
@@ -74,21 +74,22 @@ struct ClashListing {
   /// @throws as readClashLists() and requireComparable() do
   void readEarlier(const std::vector<ComparedObstacle>& obstacles, std::vector<std::string>& warnings);
 
-  /// Takes over the answers about obstacles that are not asked about. To be called after readEarlier(), with `unit` and
-  /// `coordinate_system`. @pre some are kept
+  /// Gives obstacles that are not asked about the answers of the earlier list. To be called after readEarlier(), with
+  /// `unit` and `coordinate_system`. @pre some are kept
   /// @param scan box of the input. @param warnings gets a line
   /// @throws as KeptObstacles::requireSame() does
   void keep(std::vector<ComparedObstacle>& obstacles, const IgnoredPairs& ignored, const std::optional<Extent>& scan,
             std::vector<std::string>& warnings) const;
 
-  /// The list of an obstacle that was taken over. Borrows it.
+  /// The list of an obstacle whose answer is of the earlier list. Borrows it.
   ClashReport keptReport(ComparedObstacle& one, double distance, const std::optional<Extent>& scan) const;
 
   /// Compares the list of an obstacle with its earlier one, where there is one. @param compared calls compareWithList()
   void compare(ClashReport& list, const std::function<std::vector<std::string>(const ClashList&)>& compared,
                std::vector<std::string>& warnings) const;
 
-  /// Adds what is no obstacle's alone: to be called when the lists of all obstacles are there.
+  /// Adds `between`, and warnings about obstacles that only the earlier list has. To be called when the lists of all
+  /// obstacles are there.
   void complete(ClashLists& lists, std::vector<std::string>& warnings) const;
 };
 

@@ -42,7 +42,7 @@ private:
     return number(value);
   }
 
-  /// None of none.
+  /// The count with its noun; false for a count of 0.
   static Data countedIfAny(std::size_t count, const char* one, const char* many)
   {
     return count > 0 ? Data(counted(count, one, many)) : Data(false);
@@ -155,7 +155,7 @@ private:
 
   std::string colorOf(double distance) const { return shade(distance / scale_); }
 
-  /// The class of colours of a record: those that have no distance are the farthest.
+  /// The number of the colour of a record, from 0 for near ones. Records without a distance have the last colour.
   std::size_t shadeOf(const DistanceSide& from, std::uint32_t record) const
   {
     const double distance = from.found.distance[record];
@@ -163,7 +163,7 @@ private:
     return static_cast<std::size_t>(std::clamp(distance / scale_, 0.0, 1.0) * (shades - 1));
   }
 
-  /// Evenly picked records that are points, and all that are farthest of a place.
+  /// At most most_dots finite records, evenly picked.
   static std::vector<std::uint32_t> shownOf(const DistanceSide& from)
   {
     std::vector<std::uint32_t> finite;

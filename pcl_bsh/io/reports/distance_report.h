@@ -21,8 +21,8 @@ struct DistanceQuestion {
   std::string input, obstacle; ///< file names
   std::string unit;            ///< of the clouds' lengths; empty: not known
   PointDistancesRequest request;
-  std::optional<double> beyond;       ///< places have points farther than this; none: than 95 of 100 points, or 0
-  const Obstacle* surface = nullptr;  ///< the obstacle, where it is one: its records are triangles
+  std::optional<double> beyond;       ///< points farther than this form places; none: the 95th percentile, 0 at least
+  const Obstacle* surface = nullptr;  ///< the obstacle, if it is a surface: its records are triangles
   bool solid = false;                 ///< it counts with what it encloses
   std::string coordinate_system = {}; ///< of the input, where its file names one; else empty
 
@@ -84,7 +84,7 @@ inline constexpr std::size_t most_far_places = 20;
 /// @throws files::FileError
 void writeDistances(const std::filesystem::path& path, const DistanceReport& report);
 
-/// @throws files::FileError when writeDistances() knows no such extension. As reportDate()
+/// @throws files::FileError when writeDistances() knows no such extension; as reportDate() does
 void requireDistanceFormat(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

@@ -12,7 +12,7 @@ namespace pcl_bsh::io {
 /// point's clearance.
 std::string sectionDrawing(const GaugeReport& report, const GaugeSection& section);
 
-/// Smallest clearances, chainage across, and up what goes round the envelope: left, above, right, below.
+/// A map of smallest clearances. Chainage runs across; the way round the envelope runs up: left, above, right, below.
 std::string clearanceMap(const GaugeReport& report, std::size_t track, std::size_t envelope);
 
 /// The share of each sector's outline that beams crossed, by chainage. @pre the report has `seen`

@@ -87,7 +87,7 @@ ClashStatus statusOfGone(const GaugeReport& report, std::size_t of_track, const 
                                                                                           : ClashStatus::not_scanned;
 }
 
-/// Tells users how an earlier run of the same track was another one.
+/// Adds remarks on how the earlier run of a track differs from this one.
 void addRemarks(const GaugeReport& report, const Track& now, const ListedTrack& former,
                 std::vector<std::string>& remarks)
 {

@@ -28,7 +28,7 @@ struct ListedInfringement {
   double chainage_from = 0.0, chainage_to = 0.0;
   double chainage = 0.0, distance = 0.0; ///< of the worst point along the axis
   double offset = 0.0, height = 0.0;     ///< of it, too
-  std::uint64_t record = 0;              ///< the worst point among those of its scan
+  std::uint64_t record = 0;              ///< number of the worst point in the whole scan
 };
 
 /// A track of an earlier run.
@@ -47,7 +47,7 @@ struct GaugeList {
 
 /// The report's infringements with ids, in their order; all are new. An id tells the place, as findClashes() has it,
 /// behind the track's name, where it has one: `left:C12_-3_0`.
-/// @param points that infringementsOf() had
+/// @param points those that infringementsOf() was given
 std::vector<ListedInfringement> listedOf(const GaugeReport& report, const std::vector<Infringing>& points);
 
 /// @param limit of this run

@@ -26,7 +26,7 @@ struct TablePart {
   const Track& track;
   const GaugeTable& table;
   const SeenOutline* seen;            ///< null: beams are not known
-  std::size_t number, part, envelope; ///< of the track first
+  std::size_t number, part, envelope; ///< numbers of the track, its part and its envelope
   double chainage_from, chainage_to;  ///< at a jump it ends with the chainage before
   PartState state;
 

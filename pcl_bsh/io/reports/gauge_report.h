@@ -44,7 +44,7 @@ struct GaugeReport {
   std::vector<GaugeSection> sections = {};
   std::vector<ListedInfringement> listed = {}; ///< of listedOf(); then those that are gone
   std::string previous = {};                   ///< file name of the list that it is compared with, or empty
-  std::string origin_path = {};                ///< file name of where the scanner was; empty: beams are not known
+  std::string origin_path = {};                ///< file name of the scanner's path; empty: beams are not known
   double seen_spacing = 0.0;                   ///< of beams, for `seen`
   std::vector<SeenOutline> seen = {};          ///< of each track, where beams are known; else none
   OutsidePath outside = {};                    ///< points whose time the path does not have
@@ -56,21 +56,21 @@ struct GaugeReport {
   std::size_t partsUnseen() const;                             ///< those with a profile that is `unseen`
 };
 
-/// Whether a part of the axis has data of an envelope, and whether that is clear. Where beams are known, it is unseen
-/// rather than clear if no beam crossed one of its sectors; and it needs no point to be clear.
+/// Whether a part of the axis has data of an envelope, and whether it is clear. Where beams are known, a part is unseen
+/// rather than clear if no beam crossed one of its sectors, and a part without points can be clear.
 enum class PartState : std::uint8_t { no_data, clear, infringed, unseen };
 PartState stateOf(const GaugeReport& report, std::size_t track, std::size_t part, std::size_t envelope);
 const char* textOf(PartState state);
 
-/// A line for each part of each track and envelope that counts there: .csv. Cells without data are empty. @throws
-/// files::FileError
+/// Writes a .csv with a line for each part of each track and envelope that counts there. Cells without data are empty.
+/// @throws files::FileError
 void writeGaugeTable(const std::filesystem::path& path, const GaugeReport& report);
 
-/// A line for each listed infringement, the worst first, those that are gone last and without rank: .csv. @throws
-/// files::FileError
+/// Writes a .csv with a line for each listed infringement, the worst first, those that are gone last and without rank.
+/// @throws files::FileError
 void writeInfringements(const std::filesystem::path& path, const GaugeReport& report);
 
-/// All of that, null where there is no data.
+/// The whole report in JSON, null where there is no data.
 Json gaugeJson(const GaugeReport& report);
 
 /// A page that opens alone in a browser. @throws files::FileError

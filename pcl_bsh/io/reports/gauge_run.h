@@ -20,7 +20,7 @@
 
 namespace pcl_bsh::io {
 
-/// Points of a batch: what is read at once, and how much is done between two looks at whether to stop.
+/// Points of a batch. So many are read at once, and gauged between two checks whether to stop.
 inline constexpr std::size_t gauge_batch_points = std::size_t{1} << 18;
 
 /// Calls use(points, number of the first one) for each batch of a cloud, in order.
@@ -50,8 +50,7 @@ std::vector<SeenOutline> seenOf(const std::vector<Track>& tracks, const SeenCell
 /// A remark about points whose time a path does not have; empty where there are none.
 std::string outsideRemark(const OutsidePath& outside, const OriginPath& path);
 
-/// Gathers a report. The report is told the same, however its points are divided into batches, and in whatever order
-/// these come.
+/// Gathers a report. It does not depend on how points are divided into batches, nor on the order of batches.
 class GaugeRun {
 public:
   /// @param origins null: beams are not known; else the report has `seen`. Borrowed
@@ -62,12 +61,11 @@ public:
   {
   }
 
-  /// @param first number of the batch's first point among all @param numbers of each, rising; null: they
-  /// follow `first`
+  /// @param first number of the batch's first point among all points
+  /// @param numbers of each point, rising; null: they count on from `first`
   GaugedTracks add(const PointsView& points, std::uint64_t first, const std::uint64_t* numbers = nullptr);
 
-  /// Becomes the run of what several processes have added. Called by each of them, with `all` as GaugeTable::join()
-  /// takes it.
+  /// Joins the runs of several processes. Each of them calls it. @param all as GaugeTable::join() takes it
   template <class All>
   void join(const All& all)
   {
@@ -85,7 +83,7 @@ public:
     }
   }
 
-  /// After the last batch: infringements, with their names and states.
+  /// Finds infringements, with their names and states. To be called after the last batch.
   /// @param earlier the list in the file `previous`, where there is one @return remarks about that file
   std::vector<std::string> finish(const std::filesystem::path& previous, const std::optional<GaugeList>& earlier);
 

@@ -31,7 +31,7 @@ std::string textOrNone(const JsonReader& text)
   return text.json().is_null() ? std::string() : text.text();
 }
 
-/// A point of the input: its record, or the number that its source gets.
+/// A point of the input: its record or, if it has a source, its index in `sources`, to which it is added.
 std::uint32_t inputFrom(const JsonReader& point, std::vector<SourcePoint>& sources)
 {
   if (!point.json().is_object()) return recordFrom(point);
@@ -52,7 +52,7 @@ Verdict verdictFrom(const JsonReader& state)
   return Verdict::free;
 }
 
-/// The answer as obstacleJson() writes it.
+/// Reads an answer that obstacleJson() wrote.
 ObstacleAnswer answerFrom(const JsonReader& about, std::vector<SourcePoint>& sources)
 {
   ObstacleAnswer answer;
@@ -84,7 +84,7 @@ void addEntry(const JsonReader& entry, Clash& clash, KeptObstacle& kept)
   kept.places[clash.id] = pointFrom(obstacle.at("at"));
 }
 
-/// Its clashes as a run lists them that finds the same.
+/// Turns the clashes of an earlier list into those of a new run that finds the same.
 void takeOver(std::vector<Clash>& clashes)
 {
   clashes.erase(std::remove_if(clashes.begin(), clashes.end(),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles that are not asked about again: what an earlier list tells of them is listed once more, as a run would that
-// finds nothing changed.
+// Obstacles that are not asked about again. Their clashes in an earlier list are listed once more, as if a new run had
+// found them unchanged.
 #pragma once
 
 #include <pcl_bsh/io/reports/clash_list.h>
@@ -16,7 +16,7 @@
 namespace pcl_bsh::io {
 
 /// An obstacle as the earlier list tells of it. Clashes that were new persist, and resolved ones are left out; the
-/// others are as they were. Records of an input that is several files are numbers of `sources`.
+/// others are as they were. If the input is several files, its records are indices into `sources`.
 struct KeptObstacle {
   ClashList list;
   ObstacleAnswer answer;
@@ -34,8 +34,8 @@ struct KeptObstacles {
   std::string unit, coordinate_system; ///< empty: not known
   std::map<std::string, KeptObstacle> by_name;
 
-  /// Whether the list is of the question that is asked about an obstacle now. It must be of the same scan, as far as
-  /// lists tell: a scan of one name, extent, unit and coordinate system.
+  /// Requires that the list answers the question that is asked about an obstacle now, of the same scan. Lists tell
+  /// scans apart by name, extent, unit and coordinate system.
   /// @param ignores_input whether it is compared with other obstacles alone
   /// @throws files::FileError where it is not
   void requireSame(const std::string& name, const ClashQuestion& now, bool ignores_input, const Survey& survey,

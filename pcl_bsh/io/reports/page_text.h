@@ -50,7 +50,7 @@ inline std::string distanceText(double distance, int digits = 4)
   return distance < 0.0 ? number(-distance, digits) + " deep" : number(distance, digits);
 }
 
-/// A coordinate: millimetres if the unit is a metre.
+/// A coordinate with three decimals: to the millimetre if the unit is a metre.
 inline std::string coordinate(double value)
 {
   return numberText(value, std::chars_format::fixed, 3);

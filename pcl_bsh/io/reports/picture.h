@@ -9,7 +9,7 @@ namespace pcl_bsh::io {
 /// Whether this was built with librsvg.
 bool drawsPictures();
 
-/// The PNG of a drawing. @param pixels that a unit of the drawing is wide; texts have 11 units
+/// The PNG of a drawing. @param pixels per unit of the drawing; texts are 11 units high
 /// @pre drawsPictures(). @throws std::runtime_error where librsvg does not draw it
 std::string pngOf(const std::string& svg, double pixels);
 

@@ -17,7 +17,8 @@ std::string reportProgram();
 std::string reportDate();
 
 /// Returns the file's extension.
-/// @throws files::FileError for an extension that is not known. As reportDate(), before anything is done
+/// @throws files::FileError for an extension that is not known; as reportDate() does, so that a run fails before its
+///   work
 std::string formatOf(const std::filesystem::path& file, const std::vector<std::string>& known);
 
 } // namespace pcl_bsh::io

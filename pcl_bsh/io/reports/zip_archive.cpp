@@ -57,7 +57,7 @@ std::string contentOfEntry(zip_t* zip, zip_uint64_t index, const std::string& na
   }
 }
 
-/// As a zip has it: seven bits of years since 1980, then month and day.
+/// A date as zip files have it: seven bits of years since 1980, then month and day.
 zip_uint16_t dosDate(const std::string& date)
 {
   const auto part = [&](std::size_t at, std::size_t digits) { return std::stoi(date.substr(at, digits)); };

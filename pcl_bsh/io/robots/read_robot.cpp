@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Packages = std::map<std::string, fs::path>;
 
-/// Takes the errors that urdfdom would print, while it lives, and keeps the first. A process has one such place for
-/// them: other threads wait for their turn.
+/// While it lives, takes the errors that urdfdom would print, and keeps the first. A process has one handler of errors:
+/// other threads wait for their turn.
 class FirstComplaint : public console_bridge::OutputHandler {
 public:
   FirstComplaint() : turn_(turns()) { console_bridge::useOutputHandler(this); }
@@ -77,7 +77,7 @@ public:
     const FileBytes bytes(path_);
     FirstComplaint complaint;
     model_ = urdf::parseURDF(std::string(bytes.view()));
-    // urdfdom leaves out a body that it cannot read, and goes on: the robot would not be where that is
+    // urdfdom leaves out a body that it cannot read, and goes on: the robot would lack this body
     if (!complaint.text().empty()) fail("is refused by urdfdom: " + complaint.text(), "mend the URDF");
     if (!model_) fail("is no URDF", "mend the URDF");
     requireTree();
@@ -105,7 +105,7 @@ private:
     }
   }
 
-  /// With the links below it.
+  /// Adds a link, and the links below it.
   void add(const urdf::Link& from, std::size_t parent)
   {
     Link link;

@@ -11,10 +11,10 @@
 
 namespace pcl_bsh::io {
 
-/// Reads a URDF: its joints and, of each link, the bodies for collisions or, where there are none, those to look at.
-/// Joints are fixed, revolute, continuous or prismatic.
+/// Reads a URDF: its joints, and the collision bodies of each link. A link without collision bodies has its visual
+/// bodies. Joints are fixed, revolute, continuous or prismatic.
 /// @param packages where `package://NAME/...` leads: the folder of each package
-/// @param package_path where the others are looked for: folders as ROS_PACKAGE_PATH has them (ros_packages.h)
+/// @param package_path folders where other packages are looked for, as ROS_PACKAGE_PATH has them (ros_packages.h)
 /// @throws files::FileError where it cannot be read, is no tree of such joints, or names a mesh that is not there
 robots::Robot readRobot(const std::filesystem::path& urdf,
                         const std::map<std::string, std::filesystem::path>& packages = {},

@@ -34,7 +34,8 @@ struct LinkPart {
   Surface surface;
 };
 
-/// A surface that holds a shape: a polyhedron that is near to a larger round shape from within holds the smaller one.
+/// A surface that encloses a shape. For a round shape it is a polyhedron inside the shape enlarged by `excess`. It is
+/// nearer to that than `excess`, so it encloses the given shape.
 Surface holding(robots::Shape shape, double excess)
 {
   constexpr double share = 1.0 - 1e-6; // the rest is for rounding
@@ -162,7 +163,8 @@ private:
     }
   }
 
-  /// Parts of one link, and those whose links a robot is not held against itself by.
+  /// Makes pairs of parts adjacent, which are not compared: parts of one link, and of links that are not among
+  /// `compared`.
   static void addAdjacent(ObjectEntry& object, const std::vector<LinkPart>& parts,
                           const std::vector<std::array<std::size_t, 2>>& compared)
   {
@@ -172,7 +174,7 @@ private:
         if (!tested.contains({parts[a].link, parts[b].link})) object.adjacent.emplace_back(a, b);
   }
 
-  /// @return its name
+  /// Adds a cloud of the part. @return its name
   std::string newCloud(const ObjectEntry& object, LinkPart part)
   {
     CloudSource cloud;

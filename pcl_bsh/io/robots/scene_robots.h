@@ -9,9 +9,10 @@
 namespace pcl_bsh::io {
 
 /// Reads the robots of a scene's objects and makes a part of each link that has shapes, with a cloud of its own. Boxes,
-/// cylinders and spheres are solid; the meshes of a link that has both are a part of their own. Boxes and meshes are as
-/// they are, and polyhedra hold round shapes, which are at most SceneOptions::tolerance larger. Links move by straight
-/// lines in joint space from state to state, and rest before the first and after the last.
+/// cylinders and spheres are solid; the meshes of a link that has both are a part of their own. Boxes and meshes are
+/// taken as they are. A round shape becomes a polyhedron that encloses it, and is nowhere more than
+/// SceneOptions::tolerance outside it. Links move by straight lines in joint space from state to state, and rest before
+/// the first and after the last.
 /// @param package_path where `package://` leads, as readRobot() takes it
 /// @throws JsonError, files::FileError and std::invalid_argument naming the file that is wrong: as readRobot() does,
 /// for

@@ -14,7 +14,7 @@ namespace pcl_bsh::io {
 
 namespace {
 
-/// In how many sides a circle falls.
+/// The number of sides of the polygon within a circle that is at most `sagitta` away from it.
 std::uint32_t sidesOf(double radius, double sagitta)
 {
   constexpr double most = 100'000;
@@ -73,7 +73,7 @@ Surface triangulated(const robots::Sphere& ball, double sagitta)
   return surface;
 }
 
-/// Two halves of a ball and a tube between them: the ball's rows, and of these the lower ones moved down.
+/// Two halves of a ball and a tube between them: the upper rows of the ball are moved up, and the lower ones down.
 Surface triangulated(const robots::Capsule& pill, double sagitta)
 {
   Surface surface = triangulated(robots::Sphere{pill.radius}, sagitta);

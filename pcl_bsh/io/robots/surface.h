@@ -27,7 +27,7 @@ struct Surface {
 /// @throws files::FileError
 Surface readSurface(const std::filesystem::path& path);
 
-/// Returns a shape's surface in the link's frame. A polyhedron inside stands for a round shape.
+/// Returns a shape's surface in the link's frame. A round shape becomes a polyhedron inside it.
 /// @param sagitta greatest distance of the polyhedron from the round shape, m; > 0
 /// @pre sizes above 0
 /// @throws files::FileError for a mesh that cannot be read or has no faces; FormatError for a size that is too large

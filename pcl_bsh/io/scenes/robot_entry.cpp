@@ -8,7 +8,7 @@
 namespace pcl_bsh::io {
 namespace {
 
-/// Links move on no straight way in a step, as a response and the effects of motion take it.
+/// Refuses effects of motion and responses: they need straight motion within a step, and links move otherwise.
 void requireNoMotion(const JsonReader& robot, const SceneFile& file)
 {
   for (const Effect effect : {Effect::first_contact, Effect::swept, Effect::stop, Effect::slide, Effect::gravity})

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io {
 
-/// The number that stands there; `value` stays where none does.
+/// Reads the number `key` of an object; `value` stays where there is no such number.
 void read(const JsonReader& object, const char* key, std::optional<double>& value);
 
 /// The file that a text names. @param folder of relative names
@@ -21,7 +21,7 @@ CloudSource cloudFrom(const JsonReader& reader, const std::string& name, const s
 /// edges size. "cylinder": radius size.x, height size.y, along z; with size.z > 0 without its lids.
 std::vector<float> shapePoints(const std::string& shape, const Eigen::Vector3d& size, double spacing);
 
-/// How many that are, at most.
+/// The number of points that shapePoints() makes, at most.
 double shapePointCount(const std::string& shape, const Eigen::Vector3d& size, double spacing);
 
 } // namespace pcl_bsh::io

@@ -79,7 +79,7 @@ struct ObjectEntry {
   SceneBody body;                  ///< with the effect bodies
   std::optional<Wave> wave;        ///< with the effect deform
   std::optional<RobotEntry> robot; ///< whose links are its parts, once it is read
-  /// T_object_part of each at a time; null where they rest.
+  /// T_object_part of each part at a time; null where parts rest.
   std::function<std::vector<Eigen::Isometry3d>(double time)> part_poses;
   std::string place; ///< in the document
 };
@@ -130,7 +130,7 @@ struct SceneFile {
   }
 };
 
-/// Reads and checks a scene, but none of its clouds and robots: those must only be there.
+/// Reads and checks a scene, but none of its clouds and robots: their files must only exist.
 /// @throws JsonError for what the document has wrong, files::FileError for a file that cannot be read
 SceneFile readSceneFile(const std::filesystem::path& path);
 
@@ -140,7 +140,7 @@ SceneFile parseScene(const std::string& text, const std::filesystem::path& path)
 /// Gives a scene the file's rules about pairs; the objects are there already.
 void setRules(Scene& scene, const std::vector<RuleEntry>& rules);
 
-/// The scene itself, and what it looks at.
+/// The scene itself, and the clouds that its objects consist of.
 class SceneWorld {
 public:
   /// @param file its robots are read already
@@ -167,8 +167,8 @@ public:
   std::size_t points() const;                                            ///< of all clouds; of surfaces, triangles
   const std::vector<std::string>& warnings() const { return warnings_; } ///< of clouds, a line each
 
-  /// Puts robots' links and the points of waving objects where they are at this time; at first they are where they are
-  /// at 0.
+  /// Moves robots' links and the points of waving objects to where they are at this time. The constructor moves them to
+  /// where they are at 0.
   void setTime(double time);
 
 private:

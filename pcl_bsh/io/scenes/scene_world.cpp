@@ -90,7 +90,7 @@ PointsView uncertainView(const PointsView& view, const std::vector<pcl::PCLPoint
   }
 }
 
-/// Points of a cloud that have moved, as uncertain as they were: the cloud's own hierarchy keeps its uncertainties
+/// A view of a cloud's moved points, with the uncertainties of the measured ones. The cloud's own hierarchy keeps these
 /// alive.
 PointsView movedView(const std::vector<double>& now, const PointsView& measured)
 {
@@ -121,7 +121,7 @@ Obstacle shapeOf(Mesh mesh, const CloudSource& source, const SceneFile& file)
   }
 }
 
-/// With a hierarchy of its own: that of the scene is built only where effects go.
+/// A shape with a hierarchy of its own, because the hierarchy of the scene is built only where effects need it.
 Shape namedShape(const CloudSource& source, const PointsView& view)
 {
   return Shape(source.text(), std::make_shared<const SphereHierarchy>(view));

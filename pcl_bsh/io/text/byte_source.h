@@ -19,7 +19,7 @@ public:
   /// Copies `count` bytes from `at` on, all of which are there.
   virtual void read(std::uint64_t at, char* to, std::size_t count) = 0;
 
-  /// Reads bytes as a text. To be asked only for what size() holds.
+  /// Returns `count` bytes from `at` on. @pre all of them lie within size()
   std::string text(std::uint64_t at, std::size_t count)
   {
     std::string bytes(count, '\0');
@@ -40,7 +40,7 @@ private:
   std::string_view bytes_;
 };
 
-/// Opens a regular file, of which nothing is held.
+/// Opens a regular file. Its bytes are not held in memory.
 /// @throws files::FileError when it cannot be read, is empty, or is no regular file; read() does when the disk fails or
 ///   the file has become shorter meanwhile
 std::unique_ptr<ByteSource> openBytes(const std::filesystem::path& path);

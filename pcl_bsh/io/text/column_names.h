@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 /// The columns' names in their order. Empty: not given.
 using ColumnNames = std::vector<std::string>;
 
-inline constexpr std::string_view skipped_column = "_"; ///< the name of a column that is not read; PCL's of padding
+inline constexpr std::string_view skipped_column = "_"; ///< the name of a column that is not read; PCL names padding so
 
 /// Names as users give them: `x,y,z,intensity`, `_` for a column that is not read.
 /// @throws FormatError where one is empty or is given twice
@@ -28,19 +28,19 @@ ColumnNames withAxes(ColumnNames names);
 /// Whether files of that extension, with its dot and in small letters, are columns of text.
 bool isColumnText(std::string_view extension);
 
-/// The columns of each of several files, as a program is told.
+/// The columns of several files, as a program's user gives them.
 class ColumnChoice {
 public:
   /// @param text `x,y,z` for all columns of text, or `FILE=x,y,z` for that file
   /// @throws FormatError as columnNamesOf() does, and for a file that is given twice
   void add(const std::string& text);
 
-  /// Names for a reader of that file: those of the file itself, or of all files where it is columns of text or a
-  /// pipe.
+  /// Returns the names given for that file. Without them, returns the names given for all files, if the file is columns
+  /// of text or a pipe.
   ColumnNames of(const std::filesystem::path& file) const;
 
-  /// @throws FormatError where there are names of another file, or of all, and none of these is columns of text or a
-  /// pipe
+  /// @throws FormatError where names are given for a file that is not among these, or for all files and none of these
+  ///   is columns of text or a pipe
   void requireUsed(const std::vector<std::filesystem::path>& files) const;
 
 private:

@@ -15,13 +15,13 @@ namespace pcl_bsh::io {
 class FileBytes {
 public:
   /// @param path a file, a pipe, or `-` for standard input
-  /// @param most of its bytes are read
+  /// @param most the number of bytes that are read at most
   /// @throws files::FileError when it cannot be read or there is nothing in it
   explicit FileBytes(const std::filesystem::path& path, std::size_t most = std::numeric_limits<std::size_t>::max());
 
   std::string_view view() const noexcept { return {bytes_.get(), size_}; }
 
-  /// Whether that is all of the file.
+  /// Whether reading came to the end of the file: the bytes are all that it has.
   bool isWhole() const noexcept { return is_whole_; }
 
 private:

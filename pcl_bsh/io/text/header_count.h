@@ -19,7 +19,7 @@ struct HeaderCount {
   std::string one = "point", many = "points"; ///< nouns
 };
 
-/// The error where these differ.
+/// The error that tells both numbers, which differ.
 FormatError otherCount(const HeaderCount& count, std::uint64_t there);
 
 /// Refuses a file with fewer than its header counts. @throws FormatError
@@ -28,24 +28,24 @@ void requireNoFewer(const HeaderCount& count, std::uint64_t there);
 /// Refuses a file with more, of which some would not be read. @throws FormatError
 void requireNoMore(const HeaderCount& count, std::uint64_t there);
 
-/// Refuses more lines with a word behind the last that is counted; takes them. @throws FormatError
+/// Refuses lines with a word behind the last line that is counted. Reads the text to its end. @throws FormatError
 void requireNoMoreLines(const HeaderCount& count, TextCursor& text);
 
-/// Refuses bytes behind the last record that is counted: as many as another has, or more.
-/// @param left how many there are
-/// @param record bytes of one; at least, where `exact` is false
+/// Refuses bytes behind the last record that is counted, if they are enough for another record.
+/// @param left how many bytes are behind it
+/// @param record bytes of a record; the least that one has, where `exact` is false
 /// @throws FormatError
 void requireNoMoreBytes(const HeaderCount& count, std::uint64_t left, std::uint64_t record, bool exact = true);
 
-/// A sentence on such bytes for users, of a format whose files may have something else there: zeros are padding, as PCL
-/// writes them.
-/// @param first of the bytes that are left: most_padding of them, or all
+/// One sentence for users about bytes behind the last record that is counted, for formats that allow other data there.
+/// None where the bytes are too few for a record, or zeros: PCL writes these as padding.
+/// @param first the first bytes behind that record: most_padding of them, or all
 std::optional<std::string> remarkOnMoreBytes(const HeaderCount& count, std::uint64_t left, std::string_view first,
                                              std::uint64_t record);
 
-inline constexpr std::size_t most_padding = std::size_t{1} << 16; ///< bytes that are looked at
+inline constexpr std::size_t most_padding = std::size_t{1} << 16; ///< bytes that are searched for other values than 0
 
-/// For a format whose readers take all that is there: one sentence where the header counts another number.
+/// One sentence for users where the header counts another number than is there, for formats whose readers take all.
 std::optional<std::string> remarkOnCount(const HeaderCount& count, std::uint64_t there);
 
 } // namespace pcl_bsh::io

@@ -17,14 +17,15 @@ inline constexpr auto length_units = "mm, cm, m, ft or us-ft"; ///< as users wri
 /// @throws FormatError quoting another text
 LengthUnit lengthUnitOf(std::string_view text);
 
-/// As lengthUnitOf() reads it.
+/// The name that lengthUnitOf() reads as this unit.
 const char* nameOf(LengthUnit unit);
 
-/// The unit of that many metres, to the seven digits that files print at least; not known where no unit is.
+/// The unit that is so many metres long, to the seven digits that files print at least. None where no unit is so long.
 std::optional<LengthUnit> lengthUnitOfMetres(double metres);
 
-/// From one unit to another: times a whole number, then divided by one. Each of both rounds once, and dividing by 1 not
-/// at all: 1500 mm are the double 1.5, and 1 mm is the double nearest to 0.001.
+/// Converts lengths from one unit to another. A length is multiplied by a whole number, then divided by a whole number.
+/// Each of the two steps rounds once, and a division by 1 does not round: 1500 mm are the double 1.5, and 1 mm is the
+/// double nearest to 0.001.
 class LengthScale {
 public:
   LengthScale() = default; ///< all lengths stay as they are

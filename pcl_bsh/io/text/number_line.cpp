@@ -9,7 +9,7 @@ namespace pcl_bsh::io {
 
 namespace {
 
-/// A tab that separates is no blank.
+/// Skips blanks, and tabs unless they separate numbers.
 const char* skipBlanks(const char* at, const char* end, char separator)
 {
   while (at != end && (*at == ' ' || (*at == '\t' && separator != '\t'))) ++at;

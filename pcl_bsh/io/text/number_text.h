@@ -10,7 +10,7 @@ namespace pcl_bsh::io {
 /// The fewest digits that read back to the same bits; "nan" and "inf" for values that are not finite.
 std::string numberText(double value);
 
-/// In that format, with so many digits (general: that count, fixed: behind the point).
+/// The value in that format. @param digits significant digits for general, digits behind the point for fixed
 std::string numberText(double value, std::chars_format format, int digits);
 
 /// A text as a cell of CSV: in quotes where it needs them.

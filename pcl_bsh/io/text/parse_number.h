@@ -11,8 +11,8 @@
 
 namespace pcl_bsh::io {
 
-/// Whether decimal digits, which say a number that is too large or too small for its type, say one below 1. Not left to
-/// the C library, for it reads a decimal comma where the program's language has one.
+/// Whether the absolute value of a decimal number is below 1: a number out of its type's range is then too small, else
+/// too large. The C library is not asked, because it reads a decimal comma where the program's language has one.
 bool isBelowOne(std::string_view digits);
 
 /// The value of a word that says NaN or infinity where from_chars() reads none: 1.#QNAN, -1.#IND, 1.#SNAN, 1.#INF0 and
@@ -22,7 +22,7 @@ bool isBelowOne(std::string_view digits);
 std::optional<double> notFiniteNumber(std::string_view digits);
 
 /// The number nearest to what the word says; none when it says no number, or one that T cannot hold. Each word of a
-/// text becomes a number here, or by readNumberLine(), which reads fewer.
+/// text becomes a number here, or by readNumberLine(), which reads fewer forms of numbers.
 template <typename T>
 std::optional<T> numberOf(std::string_view word)
 {

@@ -103,7 +103,7 @@ public:
     return taken;
   }
 
-  /// Takes the next word if a separator stands where it would be, or the line's last separator is before it.
+  /// Takes the next word if it is empty: a separator stands in its place, or the line ends behind the last separator.
   /// @return whether it did
   bool takeEmptyWord() noexcept
   {
@@ -162,7 +162,8 @@ private:
 
   std::string named(const std::string& wrong) const { return "line " + std::to_string(line_number_) + " " + wrong; }
 
-  /// Whether a character of the line is a blank, or belongs to what joins two lines.
+  /// Whether a character of the line is a blank, or belongs to the join of two lines: a backslash, and the end of line
+  /// behind it.
   bool separates(std::string_view line, std::size_t at) const noexcept
   {
     if (isBlank(line[at])) return true;
@@ -171,7 +172,7 @@ private:
     return ends(at) || (line[at] == '\\' && ends(std::min(line.find_first_not_of(" \t", at + 1), line.size())));
   }
 
-  /// A tab that separates is no blank.
+  /// Skips blanks at the beginning of the line, and tabs unless they separate words.
   void skipBlanks() noexcept
   {
     while (!line_.empty() && separates(line_, 0) && (line_.front() != separator_ || separator_ == ' ')) {
@@ -189,7 +190,8 @@ private:
     return withoutQuotes(taken.substr(0, taken.find_last_not_of(" \t") + 1));
   }
 
-  /// Behind the quote that closes the word the line begins with; 0 where it begins with none, or none closes it.
+  /// The place behind the quote that closes a quoted word at the beginning of the line. 0 where the line begins with no
+  /// quote, or no quote closes it.
   std::size_t quotesEnd() const noexcept
   {
     if (!line_.starts_with('"')) return 0;
@@ -224,7 +226,7 @@ private:
     return comment_ != 0 ? line.substr(0, commentAt(line)) : line;
   }
 
-  /// From the first word of a line to its last; nothing at all where there are but blanks.
+  /// The line without the blanks and tabs at its end.
   static std::string_view withoutBlanksBehind(std::string_view line) noexcept
   {
     return line.substr(0, line.find_last_not_of(" \t") + 1);
@@ -269,8 +271,8 @@ private:
   std::string_view line_;
   bool ends_with_separator_ = false; ///< the word taken last is followed by nothing but a separator
   std::size_t end_ = 0;              ///< where the next line begins
-  std::size_t line_number_ = 0;      ///< of the line, or of the first that is joined to it
-  std::size_t lines_joined_ = 0;     ///< to that one
+  std::size_t line_number_ = 0;      ///< of the line; of joined lines, of the first
+  std::size_t lines_joined_ = 0;     ///< how many lines are joined to that one
 };
 
 } // namespace pcl_bsh::io

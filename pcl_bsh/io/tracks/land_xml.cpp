@@ -96,7 +96,7 @@ private:
     return {numbers[1], numbers[0]};
   }
 
-  /// 1 where it turns to the right.
+  /// 1 for a turn to the right, -1 for one to the left.
   double turn(const pugi::xml_node& node, const char* name) const
   {
     const std::string rot = node.attribute(name).value();
@@ -131,7 +131,7 @@ private:
     return all.front();
   }
 
-  /// Each element has its own start: what a file rounds does not add up.
+  /// Each element starts where the file says, so that rounding in the file does not add up.
   void readPlan(const pugi::xml_node& plan, const pugi::xml_node& alignment)
   {
     if (!plan) fail(alignment, "has no CoordGeom", "export its geometry");

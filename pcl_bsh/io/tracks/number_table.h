@@ -18,7 +18,7 @@ namespace pcl_bsh::io {
 /// Rows of the columns that are asked for, and where they stand.
 struct NumberTable {
   std::vector<std::vector<double>> rows; ///< a value per column; NaN for one that may be absent, and is
-  std::vector<TextCursor> lines;         ///< of each row, before its first word: it can say what is wrong there
+  std::vector<TextCursor> lines;         ///< cursors before the first word of each row, to name the line in errors
 };
 
 /// A column, by any of its names in small letters.
@@ -31,11 +31,13 @@ struct TableColumn {
 inline const TableColumn x_column = {{"x", "e", "east", "easting"}}, y_column = {{"y", "n", "north", "northing"}},
                          z_column = {{"z", "h", "height", "elevation"}};
 
-/// The first line names the columns. Where it is numbers, `unnamed` says what they are, or that is an error.
+/// Reads columns, which the first line names. If it has numbers instead, it is a row, and columns are in the order of
+/// `columns` where `unnamed` is true; else it is refused.
 /// @throws FormatError naming the line and the column
 NumberTable numberTable(std::string_view text, const std::vector<TableColumn>& columns, bool unnamed);
 
-/// The result of `read`; its errors name the file. @param form of such files, where an error has no better advice
+/// The result of `read`; its errors name the file. @param form advice on the form of such files, for errors without
+/// advice of their own
 template <class Read>
 auto namingFile(const std::filesystem::path& path, const char* form, const Read& read)
 {

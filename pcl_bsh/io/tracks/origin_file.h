@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a scanner that moves was at which time, from a file.
+// The path of a moving scanner, with times, from a file.
 #pragma once
 
 #include <pcl_bsh/track/origin_path.h>

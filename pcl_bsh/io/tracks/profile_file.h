@@ -19,7 +19,7 @@ namespace pcl_bsh::io {
 /// Reads the corners of a profile, in order round it. .dxf: one closed outline of LINE, LWPOLYLINE and POLYLINE among
 /// the entities, x to the right and y up, in the unit that $INSUNITS says. Others: a corner in each line, in columns
 /// offset and height, which a first line may name.
-/// @param unit how many of the cloud's units one of the file's is; none: as the drawing says, else 1
+/// @param unit the file's unit, in the cloud's units; none: as the drawing says, else 1
 /// @param remarks what users should know of how it was read, without the file's name
 /// @throws files::FileError naming the file, the line, the value, and what to do; also for an outline that crosses
 /// itself
@@ -36,7 +36,7 @@ struct WideningTable {
   Piecewise left, right;
 };
 
-/// Reads columns chainage, left and right; straight between lines, held beyond them.
+/// Reads columns chainage, left and right. Values are linear between lines, and constant beyond the first and the last.
 /// @throws files::FileError as readProfile() does, and for a chainage that the axis has not, or has twice
 WideningTable readWidening(const std::filesystem::path& path, const Axis& axis);
 
@@ -75,7 +75,8 @@ void namingTrack(const Track& track, const Ask& ask)
   }
 }
 
-/// Gives an envelope to each track that it counts on. @param remarks are replaced, the same for each track
+/// Gives an envelope to each track that it counts on. @param remarks are replaced by those of readEnvelope(), which are
+/// equal for each track
 /// @return its name; empty where it counts on none
 /// @throws as readEnvelope() does, naming the track
 std::string addEnvelope(const EnvelopeFiles& files, std::vector<Track>& tracks, std::optional<double> unit,
