@@ -27,13 +27,14 @@
 namespace pcl_bsh::io {
 
 /// Where the sensor stood, as PCD's VIEWPOINT line has it: tx ty tz qw qx qy qz. Points are not moved by it. All
-/// formats that hold it keep every bit, but the rotation of a PTX file, which is a matrix and comes back to within
+/// formats that hold it keep every bit, except the rotation of a PTX file: a matrix, which comes back to within
 /// rounding and sign.
 using Viewpoint = std::array<double, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
 /// The part of a LAS file beside its points: scale and offset, version, records of the coordinate system and others.
-/// For writeCloud(), which keeps it. It has the system alone where the file is no LAS; null where that is not known.
+/// For writeCloud(), which keeps it. Where the file is no LAS, it has the coordinate system alone; null where that is
+/// not known.
 struct LasHeader;
 using LasHeaderPtr = std::shared_ptr<const LasHeader>;
 
@@ -55,9 +56,9 @@ struct CloudFacts {
 ///             field with a count); of other elements only PCL's `camera`
 /// .obj .off   vertices with their colours and normals; x y z as float64
 /// .stl        the corners of the triangles, binary or ASCII, each place once; x y z as float32
-/// .las .laz   LAS 1.0 to 1.4, point formats 0 to 10, every field (las_fields.h); x y z as float64. LAZ by chunks,
-/// .copc.laz
-///             too: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1 to 4
+/// .las .laz   LAS 1.0 to 1.4, point formats 0 to 10, every field (las/fields.h); x y z as float64. LAZ, and
+///             .copc.laz, by chunks: points one by one (formats 0 to 5) and in layers (6 to 10), items of versions 1
+///             to 4
 /// .pts .ptx   Leica's scans (scan_text.h): intensity, colours; of PTX, all scans in their common frame, the scanner's
 ///             pose, and NaN where it saw nothing; x y z as float64
 /// .e57        ASTM E2807 (e57/reader.h): all scans in their common frame, Cartesian or spherical, every value but
@@ -69,8 +70,8 @@ struct CloudFacts {
 ///             that begins a line or stands behind a blank. Columns that float64 does not hold are whole numbers of 64
 ///             bits or text (column_kinds.h), which .csv has again as they were.
 ///
-/// From a pipe or standard input (`-`) without such a name, what begins as a PCD, PLY, OFF, LAS, LAZ or E57 file does,
-/// and columns otherwise.
+/// A pipe or standard input (`-`) without such a name is read as PCD, PLY, OFF, LAS, LAZ or E57 if it begins as such a
+/// file, and as columns otherwise.
 ///
 /// Fields have PCL's names and meaning: normal_x normal_y normal_z, and rgb or rgba packed from a byte per channel;
 /// what files call them, and what stays as it is, says layOutForPcl() in pcl_names.h. The cloud has float32 or float64
@@ -78,8 +79,8 @@ struct CloudFacts {
 /// it. A file that says it holds no points is an empty cloud.
 ///
 /// In another unit (ReadSettings::to_unit), x y z are float64. The cloud is then no longer what its LAS header says,
-/// and CloudFacts has none of it. A remark tells both units. It is refused where nobody tells the file's own.
-/// In another coordinate system (ReadSettings::to_crs) the same holds. PROJ transforms each point; remarks tell both
+/// and CloudFacts has no such header. A remark tells both units. It is refused where nobody tells the file's own. In
+/// another coordinate system (ReadSettings::to_crs) the same holds. PROJ transforms each point; remarks tell both
 /// systems, the accuracy and the grid scale. Directions (normals, the scanners' rotations) are not turned.
 /// @param facts if not null, set to what the file says beside its points
 /// @param settings columns of .xyz, .asc, .txt and .csv, whether transforms may scale, one of several scans, units,
@@ -92,7 +93,7 @@ struct CloudFacts {
 pcl::PCLPointCloud2 readCloud(const std::filesystem::path& path, CloudFacts* facts = nullptr,
                               const ReadSettings& settings = {}, unsigned threads = 0);
 
-/// A number of each triangle.
+/// A named number of each triangle.
 struct FaceValues {
   std::string name;
   std::vector<double> values; ///< NaN where the file gives none
@@ -103,8 +104,8 @@ struct Mesh {
   pcl::PCLPointCloud2 vertices;
   std::vector<Triangle> triangles;          ///< empty where the file has no faces
   std::vector<FaceValues> face_values = {}; ///< the properties of a .ply's faces that are numbers
-  /// Why its vertices alone are less than what the file says, where it has no triangles, but lines, edges, free-form
-  /// surfaces ...: what is wrong, to be followed by give_corners. Otherwise empty.
+  /// Says what is wrong where the file has no triangles, but lines, edges, free-form surfaces ...: its vertices alone
+  /// say less than the file. To be followed by give_corners in messages. Otherwise empty.
   std::string corners_alone = {};
 };
 
@@ -146,10 +147,10 @@ void writeMesh(const std::filesystem::path& path, const pcl::PCLPointCloud2& ver
                const std::vector<Triangle>& triangles, const std::vector<FaceField>& fields = {},
                const Viewpoint& viewpoint = no_viewpoint);
 
-/// Fails early where writeMesh() would for the path's sake. @throws files::FileError
+/// Fails early where writeMesh() would fail because of the path. @throws files::FileError
 void requireWritableMesh(const std::filesystem::path& path);
 
-/// Fails early, before hours of work, where writeCloud() would for the path's sake.
+/// Fails early, before hours of work, where writeCloud() would fail because of the path.
 /// @throws files::FileError
 void requireWritableCloud(const std::filesystem::path& path);
 

@@ -43,8 +43,8 @@ public:
 };
 
 /// Opens any file that readCloud() reads. LAS, LAZ, E57 and binary PCD are read batch by batch, the other formats at
-/// once, for which `memory`, in bytes, must hold the file and its cloud together.
-/// In another coordinate system all points are read once more, for their box.
+/// once, for which `memory`, in bytes, must hold the file and its cloud together. Where the settings want another
+/// coordinate system, all points are read once more, for their box.
 /// @param settings and @param threads as readCloud() has them
 /// @throws files::FileError as readCloud() does; for a pipe; for a file that `memory` cannot hold
 std::unique_ptr<CloudStream> openCloud(const std::filesystem::path& path, std::uint64_t memory,

@@ -14,10 +14,10 @@
 
 namespace pcl_bsh::io {
 
-/// The way of a file's points to the unit or the coordinate system that is wanted.
+/// Converts a file's points to the unit or the coordinate system that is wanted.
 class Conversion {
 public:
-  /// @param facts of the file: system, unit and remarks become those of what is converted
+  /// @param facts of the file: system, unit and remarks become those of the converted points
   /// @param box of the points as the file has them, where another system is wanted
   /// @throws FormatError as scaleOf(), systemOf() and SystemTransform do
   Conversion(CloudFacts& facts, const ReadSettings& settings, const Eigen::AlignedBox3d& box);
@@ -29,7 +29,7 @@ public:
   /// @throws FormatError as scaleLengths() and transformPlaces() do
   void operator()(pcl::PCLPointCloud2& records, std::uint64_t first = 0) const;
 
-  /// Changes where the file's scanners stood; a viewpoint at the origin says that it is not known.
+  /// Converts the places of the file's scanners. A place at the origin stays: it says that the place is not known.
   void moveScanners(CloudFacts& facts) const;
 
 private:

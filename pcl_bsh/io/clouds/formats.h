@@ -17,10 +17,10 @@ struct CloudFormat {
   std::string_view extension; ///< with its dot, in small letters
   bool has_faces = false;
   bool is_written = true;                           ///< as a cloud; see isWritten()
-  bool (*begins)(std::string_view bytes) = nullptr; ///< tells it from others, of a pipe; null: nothing does
+  bool (*begins)(std::string_view bytes) = nullptr; ///< whether bytes of a pipe begin so; null: no way to tell
 };
 
-/// In the order in which they are told. A file that begins as no other is a .txt.
+/// In the order of lists for users. A pipe that begins as no other format is a .txt.
 inline constexpr CloudFormat cloud_formats[] = {
     {".pcd", false, true,
      [](std::string_view bytes) {
@@ -40,7 +40,7 @@ inline constexpr CloudFormat cloud_formats[] = {
     {".asc"},
     {".txt"}};
 
-/// Null of any other extension.
+/// The format with that extension; null for any other.
 inline const CloudFormat* cloudFormat(std::string_view extension)
 {
   for (const CloudFormat& format : cloud_formats)
@@ -48,7 +48,7 @@ inline const CloudFormat* cloudFormat(std::string_view extension)
   return nullptr;
 }
 
-/// The extensions that are chosen, with `between` two of them, and `last` before the last one.
+/// The extensions of the chosen formats, with `between` as separator, and `last` before the last one.
 inline std::string extensionsOf(bool (*chosen)(const CloudFormat&), const std::string& between = " ",
                                 const std::string& last = " ")
 {

@@ -9,8 +9,8 @@
 
 namespace pcl_bsh::io {
 
-/// Reads the mask of each term that names one: a 0 or a 1 a line, in the order of the points. Empty lines, and what
-/// follows a #, say nothing.
+/// Reads the mask of each term that names one: a 0 or a 1 a line, in the order of the points. Empty lines and text
+/// after a # are ignored.
 /// @throws files::FileError for a file that cannot be read, and naming the line that has something else
 void readMasks(IgnoredPoints& ignored);
 

@@ -29,25 +29,26 @@ struct ReadSettings {
   ColumnNames columns;                  ///< of .xyz, .asc, .txt and .csv; empty: as the file says
   bool allow_scale = false;             ///< transforms of a .ptx may scale uniformly (rigid_pose.h)
   std::optional<std::size_t> scan = {}; ///< of a .ptx or .e57 only that one, from 0; of a .ptx as an organised cloud
-  bool beams = false; ///< directions of an .e57's beams without a return are read, to beam_field_names
+  bool beams = false; ///< directions of an .e57's beams without a return are read into the fields beam_field_names
 
-  /// The file's lengths have it; none: the coordinate system of a .las tells.
+  /// The unit of the file's lengths; none: as the coordinate system of a .las tells.
   std::optional<LengthUnit> unit = {};
-  /// Lengths are read in it: x y z and `length_fields`, which become float64, and places of scanners; none: they stay
-  /// as they are.
+  /// The unit into which lengths are converted: x y z and `length_fields`, which become float64, and places of
+  /// scanners. None: they stay as they are.
   std::optional<LengthUnit> to_unit = {};
   std::vector<std::string> length_fields = {}; ///< more fields that are lengths, such as radii and sigmas
 
   /// The coordinate system of the file, or no_system; empty: as a .las or .e57 names it.
   std::string crs = {};
-  /// Coordinates are read in it, as float64, and places of scanners; empty: they stay as they are. Not with units.
+  /// The system into which coordinates, which become float64, and places of scanners are transformed. Empty: they stay
+  /// as they are. Not together with units.
   std::string to_crs = {};
 
   bool converts() const { return unit || to_unit || !crs.empty() || !to_crs.empty(); }
   bool transforms() const { return !to_crs.empty() && crs != no_system; }
 };
 
-/// How lengths become those that are wanted. @param told unit that the file itself names
+/// The scale from the file's lengths to those that are wanted. @param told unit that the file itself names
 /// @param remarks gets a line where lengths change, and where the file names another unit than the settings
 /// @throws FormatError where a unit is wanted, and nobody tells the file's own
 LengthScale scaleOf(const ReadSettings& settings, std::optional<LengthUnit> told,

@@ -21,7 +21,7 @@ inline constexpr std::uint64_t max_points = 0x7fffffff;
 /// Appends a field right behind the last one. @throws FormatError when a record would grow beyond 4 GiB
 void addField(pcl::PCLPointCloud2& cloud, const std::string& name, std::uint8_t datatype, std::uint64_t count = 1);
 
-/// Leaves that many bytes of each record without a field. Throws as addField() does.
+/// Adds that many bytes without a field to each record. Throws as addField() does.
 void addPadding(pcl::PCLPointCloud2& cloud, std::uint64_t bytes);
 
 /// @throws FormatError beyond max_points
@@ -35,7 +35,8 @@ void requireBytes(std::uint64_t points, std::uint64_t least_bytes, std::uint64_t
 /// Gives the cloud width x height records, all bytes zero.
 void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height = 1);
 
-/// Resizes a cloud whose records are all written afterwards: its present bytes stay.
+/// Resizes a cloud whose records are all written afterwards. Its bytes stay if the capacity of `data` is enough; else
+/// all become zero.
 void resizeRecords(pcl::PCLPointCloud2& cloud, std::uint32_t width);
 
 /// Sets is_dense: no value of any floating-point field is NaN or infinite.

@@ -13,7 +13,7 @@ inline constexpr auto scan_field_name = "scan";
 bool isBeamField(const std::string& name);
 
 /// Where the scanners of a cloud stood, as its file has it: of each scan of a .ptx or .e57; else the viewpoint. Not
-/// known where that is the origin, which is what files say without one, or where it would stand for several scans.
+/// known where the viewpoint is the origin, as in files without a viewpoint, or where it would stand for several scans.
 ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts);
 
 } // namespace pcl_bsh::io

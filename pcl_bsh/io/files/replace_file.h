@@ -45,7 +45,7 @@ private:
   std::filesystem::path destination_; ///< without links
   std::filesystem::path name_;
   bool direct_ = false;
-  bool temporary_ = false; ///< there is one
+  bool temporary_ = false; ///< there is a temporary file
   int descriptor_ = -1;
   std::optional<DescriptorBuffer> buffer_;
   std::ostream stream_;

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io {
 
-inline constexpr std::size_t most_clash_pictures = 200; ///< beyond so many clashes, the most severe have drawings
+inline constexpr std::size_t most_clash_pictures = 200; ///< so many clashes have drawings, the most severe ones
 
 /// Draws the clashes of lists, all by one scale of distances. Borrows the lists.
 class ClashDrawings {
@@ -23,7 +23,8 @@ public:
   /// From deep red where clouds touch to pale yellow at the clearance.
   std::string colorOf(double distance) const;
 
-  /// A scale from the clearance (1) down to the lowest distance (0), which is negative where radii overlap.
+  /// The place of a distance on a scale, from 0 at lowest(), which is negative where radii overlap, to 1 at the
+  /// clearance.
   double shareOf(double distance) const;
 
   /// The inside of a drawing of 520 x 280: the clash from above. @pre the clash is present, here and below

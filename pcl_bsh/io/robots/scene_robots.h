@@ -15,8 +15,7 @@ namespace pcl_bsh::io {
 /// the first and after the last.
 /// @param package_path where `package://` leads, as readRobot() takes it
 /// @throws JsonError, files::FileError and std::invalid_argument naming the file that is wrong: as readRobot() does,
-/// for
-///   states that are none of the robot or out of its joints' limits, and for a robot without shapes
+///   for states that do not fit the robot or are out of its joints' limits, and for a robot without shapes
 void addRobots(SceneFile& file, const std::string& package_path = {});
 
 } // namespace pcl_bsh::io

@@ -109,7 +109,8 @@ E57Value e57ValueOf(const pugi::xml_node& node)
   return value;
 }
 
-/// Whether all values of a group are there: those whose name begins so and that are three columns from `first` on.
+/// Whether a scan has all three values of a group: those of the three columns from `first` on whose names have the
+/// prefix.
 bool isWhole(const E57Scan& scan, std::string_view prefix, E57Column first)
 {
   std::size_t count = 0;
@@ -117,10 +118,11 @@ bool isWhole(const E57Scan& scan, std::string_view prefix, E57Column first)
     const auto place = static_cast<std::size_t>(value.column) - static_cast<std::size_t>(first);
     if (place < 3 && value.name.starts_with(prefix)) ++count;
   }
-  return count >= 3; // a value that is there twice is refused then
+  return count >= 3; // four or more: sortValues() refuses a value that is there twice
 }
 
-/// The numbers that 0 and 255 stand for: of bytes themselves, else as the scan or the value says.
+/// The values of a colour that become 0 and 255: these themselves for bytes, else the limits of the scan or, without
+/// them, of the value.
 std::array<double, 2> colourLimits(const E57Value& value, const pugi::xml_node& limits)
 {
   if (value.kind == Kind::integer && value.minimum == 0 && value.maximum == 255) return {0, 255};

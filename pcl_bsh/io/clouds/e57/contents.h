@@ -24,9 +24,9 @@ struct E57Value {
 
   std::string name;                                 ///< of the file; `nor:normalX` of an extension
   Kind kind = Kind::unread;                         ///< texts and second coordinates are not read
-  std::int64_t minimum = 0, maximum = 0;            ///< of integers, which are stored as minimum + some bits
+  std::int64_t minimum = 0, maximum = 0;            ///< of integers: what is stored is the integer less `minimum`
   double scale = 1, offset = 0;                     ///< of scaled integers
-  std::optional<std::array<double, 2>> bounds = {}; ///< as the number may be, where that is said
+  std::optional<std::array<double, 2>> bounds = {}; ///< least and greatest number; none: a float without limits
   E57Column column = E57Column::none;
   std::string field = {}; ///< the cloud's; empty: none
 
@@ -36,7 +36,7 @@ struct E57Value {
     return static_cast<std::uint64_t>(maximum) - static_cast<std::uint64_t>(minimum);
   }
 
-  /// Stored for each point; 0: all are `minimum`, or unread.
+  /// Bits stored for each point; 0: all values are `minimum`, or are not read.
   unsigned bits() const noexcept
   {
     if (isInteger()) return static_cast<unsigned>(std::bit_width(range()));
@@ -46,7 +46,7 @@ struct E57Value {
 
 struct E57Scan {
   std::uint64_t points = 0;
-  std::uint64_t section_at = 0; ///< physical
+  std::uint64_t section_at = 0; ///< physical offset in the file
   std::vector<E57Value> values; ///< in the order of their streams
   bool is_spherical = false, has_colours = false, has_normals = false, has_pose = false;
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity(); ///< from the scanner's frame to the common one

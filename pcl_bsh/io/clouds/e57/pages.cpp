@@ -91,7 +91,7 @@ void E57Pages::fillWindow(std::uint64_t page)
   for (std::size_t i = 0; i < pages; ++i) {
     const char* const from = bytes.data() + i * page_;
     if (crc32c(reinterpret_cast<const std::uint8_t*>(from), payload()) !=
-        boost::endian::big_to_native(loaded<std::uint32_t>(from + payload()))) // as nothing else is stored
+        boost::endian::big_to_native(loaded<std::uint32_t>(from + payload()))) // nothing else is big-endian
       throw FormatError("is damaged: page " + std::to_string(page + i) + " has another checksum than it says");
     std::memmove(bytes.data() + i * payload(), from, payload());
   }

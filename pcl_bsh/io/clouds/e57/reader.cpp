@@ -147,8 +147,8 @@ void E57Reader::layOut(bool beams)
   cloud_.height = 1;
 }
 
-/// A point takes a bit at least, and its record no more than some hundred times its share of the file: with that,
-/// counts that lie ask for no memory.
+/// Refuses counts of points that the file has no room for, before memory is asked for. A point takes a bit of the file
+/// at least, and its record no more than most_growth times its share of the file.
 void E57Reader::requireRoom()
 {
   constexpr std::uint64_t most_growth = 512;
@@ -205,7 +205,7 @@ void E57Reader::beginScan()
       absent_.push_back(&cloud_.fields[f]);
 }
 
-/// Directions as the columns have them, before the scan's pose moves these.
+/// Writes directions of beams. Called before the scan's pose moves the columns of coordinates.
 void E57Reader::putBeams(std::uint8_t* records, std::size_t points)
 {
   const Eigen::Matrix3d rotation = contents_.scans[scan_].turn.toRotationMatrix();

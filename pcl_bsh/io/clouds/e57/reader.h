@@ -55,7 +55,7 @@ private:
   std::size_t scan_ = 0;
   std::optional<E57Streams> streams_;                      ///< of the scan, once it is begun
   std::optional<std::size_t> beams_at_;                    ///< in a record
-  std::vector<const pcl::PCLPointField*> fields_, absent_; ///< of each stream, or null; those that no stream has
+  std::vector<const pcl::PCLPointField*> fields_, absent_; ///< the field of each stream, or null; fields without stream
   std::array<std::vector<double>, static_cast<std::size_t>(E57Column::none)> columns_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The binary section of a scan in an E57 file: packets, in each of which every value of a point has a piece of its
-// stream of bits. Streams need not be in step, so each is followed by itself; a few packets are held.
+// The binary section of a scan in an E57 file: packets, each with a piece of the bit stream of every value of a point.
+// Streams need not be in step, so each is read by a cursor of its own; a few packets are held.
 #pragma once
 
 #include <pcl_bsh/io/clouds/e57/pages.h>
@@ -15,7 +15,7 @@ namespace pcl_bsh::io {
 
 class E57Streams {
 public:
-  /// @param section_at physical @param streams of the prototype
+  /// @param section_at physical offset @param streams number of values in the prototype
   /// @throws FormatError for another section
   E57Streams(E57Pages& pages, std::uint64_t section_at, std::size_t streams);
 
@@ -46,10 +46,10 @@ public:
 private:
   static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
 
-  /// A packet of data as it is in the file, and the packets before it that have none.
+  /// A packet of data as it is in the file, which is the first at a place or behind it: other packets are skipped.
   struct Packet {
-    std::uint64_t at = nowhere;      ///< logical; where it was asked for
-    std::uint64_t data_at = nowhere; ///< the packet of data
+    std::uint64_t at = nowhere;      ///< logical; the place from which it was looked for
+    std::uint64_t data_at = nowhere; ///< logical; where it is
     std::uint64_t next = 0;
     std::vector<std::uint32_t> starts; ///< of streams, in bytes, and the last one's end
     std::vector<std::uint8_t> bytes;   ///< with room behind, for bitsAt()

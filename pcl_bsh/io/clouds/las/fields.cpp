@@ -162,7 +162,7 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
   if (std::isnan(value)) {
     if (scaling.no_data) {
       stored = narrowed<T>(*scaling.no_data);
-      if (std::isnan(valueOf(stored, scaling))) return true; // else none of the type stands for no data
+      if (std::isnan(valueOf(stored, scaling))) return true; // else no value of the type stands for no data
     }
     if constexpr (std::is_floating_point_v<T>) stored = std::numeric_limits<T>::quiet_NaN();
     return std::is_floating_point_v<T>;
@@ -181,7 +181,8 @@ bool unscaled(double value, const LasScaling& scaling, const Read& read, T& stor
   }
   exact = read(valueOf(stored, scaling)) == read(value);
   if (exact || !std::isnan(valueOf(stored, scaling))) return true;
-  // It is what stands for no data: where the offset absorbs it, so it does its neighbour.
+  // The stored value stands for no data. A neighbour may be read as the same number, where the offset absorbs the
+  // difference.
   const T other = neighborOf(stored);
   exact = read(valueOf(other, scaling)) == read(value);
   if (exact) stored = other;

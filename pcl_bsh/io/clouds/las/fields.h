@@ -61,8 +61,8 @@ std::vector<LasField> lasFields(std::uint8_t format, const std::array<double, 3>
 
 /// Appends the extra bytes of a record. Bytes that `descriptors` (192 bytes each) describe become fields `extra_NAME`,
 /// or `extra_NAME_2` ... where a name is taken; blanks and letters outside ASCII become '_'. The rest becomes a field
-/// `extra_bytes` of bytes. A field with a scale, an offset or a value that means none is float64, others have their own
-/// type. Descriptors of more bytes than there are count for nothing (section 2.6.5 of the specification).
+/// `extra_bytes` of bytes. A field with a scale, an offset or a value that stands for no data is float64, others have
+/// their own type. Descriptors of more bytes than there are count for nothing (section 2.6.5 of the specification).
 /// @throws FormatError when a scale or an offset is no number, or a scale is 0
 void addExtraBytes(std::vector<LasField>& fields, std::string_view descriptors, std::size_t first_byte,
                    std::size_t record_length);

@@ -13,11 +13,11 @@ namespace pcl_bsh::io {
 /// Writes a cloud as LAS.
 ///
 /// With the header of the file that the points come from, everything in it is kept: version, point format, scale and
-/// offset, records before and behind the points, what they mean or not. Counts, bounds and places are made right;
-/// bounds that are right to within a scale stay as they are. A point that did not change keeps its integers; a
-/// coordinate that moved is rounded to the nearest. Where coordinates have no place at that scale and offset, the
-/// offset moves, and where that is not enough, both are chosen anew. A format without time, colour or infrared becomes
-/// the one that has it when the cloud has it.
+/// offset, records before and behind the points, whether their meaning is known or not. Counts, bounds and places are
+/// made right; bounds that are right to within a scale stay as they are. A point that did not change keeps its
+/// integers; a coordinate that moved is rounded to the nearest. Where coordinates have no place at that scale and
+/// offset, the offset moves, and where that is not enough, both are chosen anew. A format without time, colour or
+/// infrared becomes the one that has it when the cloud has it.
 ///
 /// Without one of a LAS file, it writes LAS 1.4, point format 6, 7 with a colour, 8 with nir. The scale is the same on
 /// all axes: the least power of ten for which the cloud's extent needs no more than 31 bits and whose multiples are

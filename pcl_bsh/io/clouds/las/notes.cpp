@@ -131,7 +131,7 @@ std::string nameOfKeys(const GeoKeys& keys)
   return name.empty() || height.empty() ? name + height : name + " + " + height;
 }
 
-/// GeoTIFF 1.0 has codes of datums for some systems of heights.
+/// EPSG's code of a system of heights. GeoTIFF 1.0 has codes of datums for some of these systems.
 unsigned heightSystem(unsigned code)
 {
   constexpr unsigned first_datum = 5101, last_datum = 5106, yellow_sea_datum = 5104, yellow_sea = 5736, apart = 600;
@@ -193,7 +193,7 @@ bool isOf(std::initializer_list<std::string_view> systems, const std::vector<std
   return depth > 1 && around[depth - 1] == "axis" && isAny(around[depth - 2], systems);
 }
 
-/// The record that counts: as text, or none where that of the keys does.
+/// The WKT of the coordinate system; empty where the record of GeoTIFF's keys counts instead.
 std::string wktOf(const LasHeader& header)
 {
   std::string wkt = projectionRecord(header, las_wkt_id);

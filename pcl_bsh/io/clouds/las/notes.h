@@ -20,7 +20,8 @@ namespace pcl_bsh::io {
 std::string coordinateSystemOf(const LasHeader& header);
 
 /// The system with its name and as PROJ reads it: the WKT, or EPSG's codes of the keys. It has no definition where the
-/// keys give a system without a code, and the file has no WKT. A code of heights counts in metres, which alone is sure.
+/// keys give a system without a code, and the file has no WKT. A code of heights is used only where heights are in
+/// metres, the only unit that is sure.
 CoordinateSystem systemOf(const LasHeader& header);
 
 /// The name of the whole system in WKT, in ASCII, too; or empty.
@@ -30,8 +31,8 @@ std::string nameOfWkt(std::string_view text);
 /// that has no name here, and where heights have another one than places.
 std::optional<LengthUnit> unitOfWkt(std::string_view text);
 
-/// The unit of its x, y and z: of that same record. Not known without such a record, for angles, for a unit
-/// without a name in length_unit.h, and where heights have another one than places.
+/// The unit of its x, y and z, by the record that names the coordinate system. Not known without such a record, for
+/// angles, for a unit without a name in length_unit.h, and where heights have another one than places.
 std::optional<LengthUnit> unitOf(const LasHeader& header);
 
 /// How many records behind the points the header does not count, if any.

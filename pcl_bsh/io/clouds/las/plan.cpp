@@ -111,7 +111,8 @@ bool names(const std::vector<LasField>& fields, const char* name)
   return std::any_of(fields.begin(), fields.end(), [&](const LasField& field) { return field.name == name; });
 }
 
-/// The header's format, or the least one that has what the header's points had not, and the cloud has.
+/// The header's format, or the least format that also has the time, colour or infrared which the cloud has and the
+/// header's points had not.
 /// @param given, given_fields of the header's points
 void chooseFormat(const LasPoints& points, std::uint8_t given, const std::vector<LasField>& given_fields,
                   bool packed_colour, LasPlan& plan)
@@ -203,7 +204,7 @@ public:
     if (std::any_of(plan_.targets.begin(), plan_.targets.end(), holds_colour)) {
       for (std::size_t i = 0; i < taken_.size(); ++i) {
         const pcl::PCLPointField& field = points_.fields()[i];
-        if (field.name == "rgb" && isPackedColour(field)) taken_[i] = true; // no more than these say
+        if (field.name == "rgb" && isPackedColour(field)) taken_[i] = true; // it says no more than they do
       }
     }
     plan_.record_length = lasRecordBytes(plan_.format);

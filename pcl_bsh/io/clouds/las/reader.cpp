@@ -124,7 +124,7 @@ std::size_t LasReader::read(std::uint8_t* records, std::size_t most)
 
 pcl::PCLPointCloud2 LasReader::readAll()
 {
-  colour_shift_ = 0; // no look at all points before: colours are packed anew where that is wrong
+  colour_shift_ = 0; // the points are not all looked at first: colours are packed anew where this is wrong
   pcl::PCLPointCloud2 cloud = CloudStream::readAll();
   const std::size_t step = cloud.point_step;
   const auto colour = std::find_if(fields_.begin(), fields_.end(),

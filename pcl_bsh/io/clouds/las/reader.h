@@ -22,9 +22,9 @@
 namespace pcl_bsh::io {
 
 /// LAS 1.0 to 1.4, point formats 0 to 10, and LAZ, as the LAS that was compressed (unpacked_laz.h). Places and lengths
-/// in the header are checked against the file's size before anything is read there. Counts of records that have no room
-/// before the points are taken for what has room, and bounds are not looked at; the points themselves must all be
-/// there.
+/// in the header are checked against the file's size before anything is read there. If a header counts more records
+/// than have room before the points, those with room are taken. Bounds are not looked at; the points themselves must
+/// all be there.
 class LasReader : public CloudStream {
 public:
   /// @param threads that unpack LAZ; 0: as many as the caller's oneTBB arena has

@@ -112,7 +112,7 @@ private:
     if (extended) at = std::min(at, block.extended_at);
     if (waves) at = std::min(at, block.waveforms_at);
     LasBlock packed = block;
-    packed.points = 0; // which end where what is behind them begins
+    packed.points = 0; // else endOfPoints() would add the length of unpacked points
     std::uint32_t left_out = 0;
     if (extended) {
       for (const LasExtendedRecord& record : lasExtendedRecords(*file_, packed)) {
@@ -129,7 +129,8 @@ private:
     if (waves) setLasNumber(head_, las_at::waveforms, placeOf(block.waveforms_at));
   }
 
-  /// Where what is there in the compressed file, behind its points, is unpacked; beyond all of it: the end.
+  /// The place in the unpacked file of a place behind the points in the compressed file. A place behind all kept ranges
+  /// becomes the end.
   std::uint64_t placeOf(std::uint64_t packed) const
   {
     std::uint64_t place = points_end_;

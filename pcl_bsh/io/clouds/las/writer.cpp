@@ -205,7 +205,7 @@ void writeLas(std::ostream& out, const pcl::PCLPointCloud2& cloud, const LasHead
       use(records);
     });
   };
-  if (compressor) { // their size tells what lies behind them
+  if (compressor) { // their size tells where the records behind them are
     forEachBatch([&](const std::string& batch) { compressor->add(batch); });
     compressed = compressor->finish(points_at);
   }

@@ -180,7 +180,7 @@ ColumnKinds::ColumnKinds(const TextCursor& rows, bool whole, Fields& values)
     ++count;
     for (std::size_t i = 0; i <= texts.back(); ++i) longest[i] = std::max(longest[i], text.word().size());
   } while (nextRow(text));
-  constexpr std::size_t most_growth = 32; // bytes of texts for a byte of the file
+  constexpr std::size_t most_growth = 32; // bytes of texts per byte of the file
   std::size_t width = 0;
   for (const std::size_t i : texts) width += longest[i] + 1;
   if (width > most_growth * (bytes + 1) / count) {

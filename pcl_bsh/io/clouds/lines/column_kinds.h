@@ -16,17 +16,17 @@ namespace pcl_bsh::io {
 /// Goes to the next line that is no comment of the // kind. False when there is no such line.
 bool nextRow(TextCursor& text);
 
-/// Whether float64 says as many digits of a number as the word does, so that these are not lost.
+/// Whether float64 keeps all digits of the number in a word.
 bool float64Holds(std::string_view word);
 
-/// Whether a field is a column of words: INT8, more than one, each ends with a zero.
+/// Whether a field has the type of a column of words: INT8, with a count above 1. Each word ends with a zero.
 bool isTextField(const pcl::PCLPointField& field);
 
-/// Text of a record's field. @throws FormatError where its bytes are none
+/// Text of a record's field. @throws FormatError where its bytes are no text
 std::string_view textOf(const pcl::PCLPointField& field, const char* bytes);
 
-/// Whether a word can stand between separators, and is read as it was; between commas within quotes where it has
-/// separators. @param separator ' ': blanks
+/// Whether a word can be written between separators and is read back unchanged. Between commas it may have commas or
+/// semicolons, which need quotes. @param separator ' ': blanks
 bool canBeColumn(std::string_view word, char separator);
 
 /// Finds the columns that are not float64, except coordinates, colours and those that are not read. Whole numbers
@@ -36,7 +36,8 @@ struct ColumnKinds {
   /// @param rows at the first row
   /// @param whole false: these are not all rows
   /// @param values gets their types and counts
-  /// @throws FormatError where texts would take much more room than the file, or `whole` is false and more rows tell
+  /// @throws FormatError where texts would take much more room than the file, or where `whole` is false and further
+  ///   rows may change the kinds
   ColumnKinds(const TextCursor& rows, bool whole, Fields& values);
 
   std::vector<std::string> remarks; ///< for users, on columns that are kept as text

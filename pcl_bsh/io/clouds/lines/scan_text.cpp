@@ -149,7 +149,7 @@ struct PtxScan {
   bool has_header = false;
   std::uint64_t columns = 0, rows = 0;
   Eigen::Matrix<double, 4, 3> transform = Eigen::Matrix<double, 4, 3>::Zero(); ///< (x y z 1) times this
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< the scanner's, once the transform is taken
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< the scanner's rotation, after takeTransform()
 };
 
 /// Refuses points behind the last that a scan's header counts. The text is at the line behind that.
@@ -196,7 +196,8 @@ bool readPtxScan(TextCursor& text, PtxScan& scan)
   return true;
 }
 
-/// Makes the transform the motion that it stands for. @return how far the given one was off, where that is another one
+/// Replaces the linear part of a transform by that of rigidPart(), and sets the scanner's rotation.
+/// @return |R'R - I| of the given transform where another takes its place, else 0
 /// @throws FormatError for one that is no rigid motion
 double takeTransform(PtxScan& scan, std::size_t number, bool allow_scale)
 {
@@ -211,7 +212,7 @@ double takeTransform(PtxScan& scan, std::size_t number, bool allow_scale)
   return part.deviation;
 }
 
-/// Transforms that others took the place of.
+/// Counts the transforms that the nearest rotation replaced.
 struct ReplacedTransforms {
   std::size_t count = 0, worst = 0;
   double deviation = 0; ///< of the worst
@@ -240,7 +241,7 @@ Viewpoint scannerPose(const PtxScan& scan)
   return {at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
-/// Into the common frame, and NaN where the scanner saw nothing.
+/// Moves a point into the common frame, or makes it NaN where the scanner saw nothing.
 void place(const PtxScan& scan, std::size_t intensity, std::vector<double>& numbers)
 {
   const Eigen::RowVector3d point(numbers[0], numbers[1], numbers[2]);
@@ -284,7 +285,7 @@ struct PtxContents {
   }
 };
 
-/// From column by column to row by row.
+/// Reorders points from column by column to row by row.
 void transpose(pcl::PCLPointCloud2& cloud, const PtxScan& scan)
 {
   const auto columns = static_cast<std::size_t>(scan.columns), rows = static_cast<std::size_t>(scan.rows);
@@ -311,7 +312,7 @@ pcl::PCLPointCloud2 parsePts(std::string_view file, std::vector<std::string>* re
   TextRows rows(line.values);
   rows.reserveLines(text.rest());
   PointReader reader(line, "where a column holds no numbers, name all columns in a first line, as x y z name");
-  std::uint64_t points = 0, all_promised = 0, all_points = 0; // of the block, of blocks that promise some
+  std::uint64_t points = 0, all_promised = 0, all_points = 0; // in this block; in blocks with a count
   const auto endBlock = [&] {
     if (!promised) return;
     requireNoFewer({*promised}, points);

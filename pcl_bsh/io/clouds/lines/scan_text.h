@@ -54,15 +54,15 @@ std::vector<pcl::PCLPointField> fieldsForScans(const pcl::PCLPointCloud2& cloud,
 
 /// A line with the number of points, then a line for each: x y z, intensity, r g b, where the cloud has them; columns
 /// that parsePts() could not name, as it numbers them. Points without finite coordinates are left out.
-/// @throws FormatError when there is a field but those
+/// @throws FormatError when the cloud has other fields
 void writePts(std::ostream& out, const pcl::PCLPointCloud2& cloud);
 
 /// One scan, or one for each run of points with the same value of a field `scan`. Points that are not finite are "no
 /// return". An organised cloud keeps its columns and rows; others have a column for each point.
 /// @param viewpoint the scanner's pose: points are written as it sees them, which rounds their coordinates a few times
 ///   in float64. no_viewpoint: as they are
-/// @throws FormatError when there is a field but those of writePts() and `scan`; for a point that PTX takes for no
-///   return
+/// @throws FormatError when the cloud has other fields than those of writePts() and `scan`; for a point that PTX takes
+///   for no return
 void writePtx(std::ostream& out, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
 
 } // namespace pcl_bsh::io

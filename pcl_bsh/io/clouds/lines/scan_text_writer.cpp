@@ -26,8 +26,8 @@ std::optional<pcl::PCLPointField> take(Fields& fields, const std::string& name)
   return field;
 }
 
-/// The values in a point's line behind x y z. Readers tell by the number of values what they are, so only those can be
-/// written whose number says the same.
+/// The values in a point's line behind x y z. Readers tell the meaning of values by their number, so values are written
+/// only where their number gives the right meaning.
 struct LineFields {
   std::optional<pcl::PCLPointField> intensity, scan;
   Fields values; ///< in the line's order
@@ -77,7 +77,7 @@ void appendNumbers(std::string& text, const Eigen::Vector3d& p)
   }
 }
 
-/// As the cloud has them, so that float32 gets no more digits than it has.
+/// Appends x y z in the type that the cloud has, so that float32 gets no more digits than it holds.
 void appendCoordinates(std::string& text, const PointsView& view, std::size_t i)
 {
   const std::uint8_t type = view.scalar == Scalar::float32 ? pcl::PCLPointField::FLOAT32 : pcl::PCLPointField::FLOAT64;

@@ -78,7 +78,8 @@ struct Columns {
   std::vector<std::string> remarks;
 };
 
-/// Gives the numbers of each row, from this one on, to `use`, until that says no. What is no number is NaN.
+/// Calls `use` with the numbers of each row, from this one on, until it returns false. A word that is not a number
+/// becomes NaN.
 template <typename Use>
 void forEachRow(TextCursor text, std::size_t columns, const Use& use)
 {
@@ -212,7 +213,7 @@ void takeCount(TextCursor& text, Columns& columns)
   columns.at_row = nextRow(text);
 }
 
-/// Example of names for columns of which some are no numbers: a name for each, `_` for those. Empty: all are.
+/// An example of names for all columns, with `_` for columns that are no numbers. Empty where all columns are numbers.
 std::string exampleOf(TextCursor row, const Columns& columns)
 {
   std::string example;

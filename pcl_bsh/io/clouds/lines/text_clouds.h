@@ -25,15 +25,15 @@ namespace pcl_bsh::io {
 /// or UINT64. Words that are no number, or have more digits than float64 holds, are INT8 of a count: the bytes of the
 /// text and zeros behind them (column_kinds.h).
 /// @param given names of all columns, whatever the file says
-/// @param remarks if not null, what was taken for granted is appended, and where the first of four or more columns
-///   without a name counts the rows
+/// @param remarks if not null, gets a line where columns without names were taken for a colour or a normal, and where
+///   the first of four or more columns without a name counts the rows
 /// @throws FormatError
 pcl::PCLPointCloud2 parseColumns(std::string_view file, const ColumnNames& given = {},
                                  std::vector<std::string>* remarks = nullptr);
 
 /// Only the fields that parseColumns() makes. Rows are looked at where they tell whether columns are a colour.
 /// @param whole false: this is the file's beginning
-/// @throws FormatError, also where rows tell, and these are not all
+/// @throws FormatError, also where the fields depend on all rows, and `whole` is false
 pcl::PCLPointCloud2 parseColumnNames(std::string_view file, bool whole = true, const ColumnNames& given = {});
 
 /// .obj: the `v` lines, with their colours; the `vn` lines where there is one for each vertex, and no face says
@@ -63,7 +63,7 @@ std::vector<pcl::PCLPointField> fieldsForObj(const pcl::PCLPointCloud2& cloud);
 
 /// A `v` line per point, with the three or four channels of its colour as shares of 1, after a `vn` line if it has a
 /// normal.
-/// @throws FormatError when there is a field but those
+/// @throws FormatError when the cloud has other fields
 void writeObj(std::ostream& out, const pcl::PCLPointCloud2& cloud);
 
 } // namespace pcl_bsh::io

@@ -43,7 +43,7 @@ inline bool isByte(std::string_view word)
   return number && isByte(*number);
 }
 
-/// Records of the values of lines. No point yet.
+/// Collects records from the values of lines. It begins without a point.
 class TextRows {
 public:
   explicit TextRows(Fields values) : values_(std::move(values)), offsets_(layOutForPcl(values_, cloud_))
@@ -55,7 +55,7 @@ public:
 
   std::size_t size() const { return cloud_.data.size() / cloud_.point_step; }
   void reserve(std::size_t points) { cloud_.data.reserve(points * cloud_.point_step); }
-  /// Room for as many rows as a text has lines, but no more than it can hold rows.
+  /// Reserves room for as many rows as a text has lines, and for no more rows than the text can hold.
   void reserveLines(std::string_view text)
   {
     const std::size_t most = text.size() / (2 * values_.size()) + 1; // a digit and a separator each
@@ -92,7 +92,7 @@ public:
     }
   }
 
-  /// Whether doubles say all values of a row: none is a text, or a whole number that they do not hold.
+  /// Whether doubles hold all values of a row: no value is a text or a 64-bit integer.
   bool takesDoubles() const
   {
     return std::none_of(values_.begin(), values_.end(), [](const pcl::PCLPointField& value) {
@@ -134,7 +134,7 @@ public:
   }
 
 private:
-  /// Sets a value that is a text; zeros stand behind it. @pre one of them at least
+  /// Sets a value that is a text. The bytes behind it stay zero, the last one at least.
   void putText(std::size_t record, std::size_t i, std::string_view word)
   {
     std::memcpy(at(record, i), word.data(), std::min<std::size_t>(word.size(), values_[i].count - 1));

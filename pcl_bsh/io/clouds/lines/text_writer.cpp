@@ -20,7 +20,7 @@ struct TextValue {
   pcl::PCLPointField field;
   std::string before;
   bool share = false; ///< a byte, as a share of 1
-  char text = 0;      ///< what separates columns, where it is a text
+  char text = 0;      ///< of a text: the separator of columns; 0: a number
 };
 
 void appendShare(std::string& text, std::uint8_t byte)

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io {
 
-/// One kind of that.
+/// One kind of such elements.
 struct LeftOut {
   std::string one, many;   ///< nouns: "line (l)", "lines (l)"
   std::uint64_t count = 0; ///< at least 1
@@ -35,7 +35,7 @@ public:
 private:
   std::vector<LeftOut> kinds_;
   bool joins_ = false;
-  std::uint64_t others_ = 0; ///< of kinds beyond those
+  std::uint64_t others_ = 0; ///< elements of further kinds
 };
 
 inline constexpr auto give_corners =

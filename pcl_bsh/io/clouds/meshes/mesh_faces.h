@@ -30,7 +30,7 @@ std::optional<std::uint64_t> objPromise(std::string_view file, std::string_view 
 /// @throws FormatError
 Polygons parseObjFaces(std::string_view file, std::vector<std::string>* remarks = nullptr);
 
-/// The rows behind the vertices. @throws FormatError
+/// Reads the faces of an .off, the rows behind its vertices. @throws FormatError
 Polygons parseOffFaces(std::string_view file);
 
 } // namespace pcl_bsh::io

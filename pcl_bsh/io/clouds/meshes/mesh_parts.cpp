@@ -23,7 +23,7 @@ constexpr std::uint32_t nameless = std::numeric_limits<std::uint32_t>::max();
 /// Triangles by the names that stand before them.
 class NamedTriangles {
 public:
-  /// @param unique whether a name may stand once alone
+  /// @param unique whether each name may stand only once
   void begin(std::string_view name, bool unique)
   {
     const auto [entry, is_new] = numbers_.try_emplace(std::string(name), static_cast<std::uint32_t>(numbers_.size()));

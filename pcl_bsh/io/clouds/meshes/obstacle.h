@@ -71,7 +71,7 @@ private:
 std::string promiseOf(const Obstacle& surface, bool solid);
 
 /// Reads a mesh like readMesh(), without faces where the settings take a mesh for its vertices. Arguments and errors
-/// are its.
+/// are those of readMesh().
 Mesh readMesh(const std::filesystem::path& path, const SurfaceSettings& settings, CloudFacts* facts,
               const ReadSettings& reading, unsigned threads);
 
@@ -93,8 +93,8 @@ std::vector<Obstacle> obstaclesOf(const MeshParts& parts, const pcl::PCLPointClo
 /// Whether files of that name's extension may have faces.
 bool mayHaveFaces(const std::filesystem::path& path);
 
-/// Whether readMesh() finds triangles in a file, which it reads where a beginning cannot tell. Throws as it does, also
-/// for a file of which nothing but corners would be compared.
+/// Whether readMesh() finds triangles in a file. Reads the whole file where its beginning cannot tell. Throws as
+/// readMesh() does, also for a file of which nothing but corners would be compared.
 bool hasFaces(const std::filesystem::path& path);
 
 } // namespace pcl_bsh::io

@@ -41,8 +41,8 @@ private:
   LeftOuts left_out_;
 };
 
-/// The triangles that addTriangles() adds.
-/// @param values gets what is known of the polygons, for each of their triangles
+/// The triangles that addTriangles() (hierarchy/polygon_triangles.h) makes of the polygons.
+/// @param values gets the values of polygons, repeated for each of their triangles
 /// @throws FormatError when a polygon names a vertex that is not there, or has more than 4096 corners and is not convex
 std::vector<Triangle> trianglesOf(const Polygons& polygons, const PointsView& vertices,
                                   std::vector<FaceValues>& values);

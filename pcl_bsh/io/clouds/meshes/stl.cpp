@@ -74,7 +74,7 @@ std::string keyword(TextCursor& text)
   return word == "end" ? word + next() : word;
 }
 
-/// Less the bytes that some programs end a text with: zeros, and the sign that DOS ends files with.
+/// The text without the bytes that some programs write at its end: zeros, and the mark that ends files of DOS.
 std::string_view withoutEndMarks(std::string_view text)
 {
   constexpr std::string_view marks("\0\x1a", 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCL's own format, version 0.7 and its elders.
+// PCL's own format, version 0.7 and those before.
 #pragma once
 
 #include <pcl_bsh/io/clouds/cloud_file.h>
@@ -30,7 +30,7 @@ struct PcdBody {
 PcdBody findPcdBody(std::string_view beginning);
 
 /// The header of a binary file, behind which the records of `fields` stand side by side.
-/// @param padded its length, with blanks in its first line where it would be shorter; 0: as short as it can be
+/// @param padded least length of the header: blanks in its first line fill it; 0: as short as it can be
 std::string binaryPcdHeader(const std::vector<pcl::PCLPointField>& fields, std::uint32_t points,
                             std::size_t padded = 0);
 

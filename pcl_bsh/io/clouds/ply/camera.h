@@ -34,9 +34,9 @@ class PlyCamera {
 public:
   void take(const std::string& name, std::uint8_t datatype, const std::uint8_t* bytes);
 
-  /// no_viewpoint without a position, or with one that float32 cannot hold; not turned without a rotation, or by nine
-  /// zeros.
-  /// @param in_full what a comment says, which holds where it rounds to this camera
+  /// The pose of the camera. It is no_viewpoint where the position is missing, or float32 cannot hold it. It is not
+  /// turned where the rotation is missing, or is nine zeros.
+  /// @param in_full the viewpoint of a comment, which is returned where it rounds to this camera
   /// @param remarks gets a line where the nearest rotation took the place of the camera's
   /// @throws FormatError for what is no rigid motion (rigid_pose.h)
   Viewpoint viewpoint(const std::optional<Viewpoint>& in_full, std::vector<std::string>& remarks) const;
@@ -45,7 +45,7 @@ private:
   std::array<std::optional<double>, 12> values_; ///< the first of ply_camera_values
 };
 
-/// The line of the header. Ends with a line break.
+/// The header's comment with the viewpoint in full. Ends with a line break.
 std::string cameraComment(const Viewpoint& viewpoint);
 
 /// A camera's bytes, in this machine's byte order.

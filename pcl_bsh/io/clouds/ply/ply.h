@@ -15,8 +15,7 @@ namespace pcl_bsh::io {
 /// The vertices, with PCL's names and packed colours (pcl_names.h).
 /// @param viewpoint set to what an element `camera` says, as PCL's writer has it, or to no_viewpoint
 /// @param faces if not null, gets the polygons of elements `face` and the numbers beside their corners, the triangles
-/// of
-///   `tristrips`, and what other elements there are
+///   of `tristrips`, and the other elements of the file
 /// @param remarks if not null, gets what users should know of how it was read
 /// @throws FormatError; for a camera that is no rigid motion, too
 pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygons* faces = nullptr,
@@ -25,7 +24,7 @@ pcl::PCLPointCloud2 parsePly(std::string_view file, Viewpoint& viewpoint, Polygo
 /// The vertices' fields and the number of them that the header promises, without the points. @throws FormatError
 pcl::PCLPointCloud2 parsePlyHeader(std::string_view file);
 
-/// Whether a header that is there to its end names elements of points alone: vertices, and what says nothing of a
+/// Whether the bytes have a whole header, with elements of points alone: vertices, and elements that say nothing of a
 /// shape.
 bool isPlyOfPoints(std::string_view beginning);
 

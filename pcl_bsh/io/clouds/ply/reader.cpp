@@ -45,7 +45,8 @@ std::uint64_t readLength(Rows& rows, const Property& property)
   return static_cast<std::uint64_t>(length);
 }
 
-/// Their lines may have more values than the header says, which do not count: MeshLab writes such ones.
+/// Whether an element has faces. Lines of faces may have more values than the header says, as MeshLab writes them:
+/// these are ignored.
 bool isFaces(const Element& element)
 {
   return element.name == "face" || element.name == "tristrips";
@@ -189,7 +190,7 @@ bool isCorners(const Property& property)
   return property.length_type && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// Whether each row is one polygon, of which its other properties tell something.
+/// Whether each row is one polygon, so that the other properties of the row are of this polygon.
 bool tellsOfPolygons(const Element& element, const Polygons& before)
 {
   return element.name == "face" && before.size() == 0 &&

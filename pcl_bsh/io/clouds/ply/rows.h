@@ -61,7 +61,7 @@ public:
   void skip(std::uint8_t datatype, std::uint64_t count) { take(count * sizeOf(datatype)); }
   void end() {}
 
-  /// Requires that no row follows. @param record bytes of a row; at least, where `exact` is false
+  /// Requires that no row follows. @param record bytes of a row; the least that one has, where `exact` is false
   void requireNoMore(const HeaderCount& last, std::uint64_t record, bool exact) const
   {
     requireNoMoreBytes(last, bytes_.size(), record, exact);

@@ -7,7 +7,7 @@
 
 namespace pcl_bsh::io {
 
-/// Settings name it for coordinates that are in no system, whatever their file says.
+/// The name that settings give for coordinates in no system, whatever their file says.
 inline constexpr auto no_system = "none";
 
 struct CoordinateSystem {
@@ -34,7 +34,7 @@ std::string wkt1Of(const CoordinateSystem& system);
 std::optional<bool> areOneSystem(const CoordinateSystem& a, const CoordinateSystem& b);
 
 /// Refuses clouds of different systems.
-/// @param a how messages call the first, by its file say
+/// @param a name of the first in messages, such as its file
 /// @param remedy told where both are different
 /// @return a warning where both have systems, and whether they are the same is not known
 /// @throws FormatError about b

@@ -31,13 +31,14 @@ public:
     proj_log_func(get(), &said_,
                   [](void* said, int, const char* message) { *static_cast<std::string*>(said) = message; });
   }
-  ProjContext(const ProjContext&) = delete; // which PROJ writes to
+  ProjContext(const ProjContext&) = delete; // PROJ writes to its said_
   ProjContext& operator=(const ProjContext&) = delete;
 
   PJ_CONTEXT* get() const noexcept { return context_.get(); }
   const std::string& said() const noexcept { return said_; } ///< its last message
 
-  /// The system of codes or WKT, or null. PROJ would take words for the name of a system that is like them.
+  /// The system of codes or WKT, or null. Other texts give null, because PROJ would take them for the name of a system
+  /// with a similar name.
   ProjObject system(const std::string& definition) const
   {
     if (definition.find_first_of(":[{=") == std::string::npos) return nullptr;
@@ -46,13 +47,13 @@ public:
     return system;
   }
 
-  /// The system of places, of one with heights, too.
+  /// The system of places; of a system with heights, the part without them.
   ProjObject places(const PJ* system) const { return part(system, 0); }
 
   /// The system of heights, or null.
   ProjObject heights(const PJ* system) const { return part(system, 1); }
 
-  /// Without the way to WGS 84 that old WKT may have.
+  /// The system without the transformation to WGS 84 that old WKT may have.
   ProjObject plain(const PJ* system) const
   {
     if (proj_get_type(system) == PJ_TYPE_BOUND_CRS) return ProjObject(proj_get_source_crs(get(), system));

@@ -139,7 +139,7 @@ bool isInArea(const ProjContext& proj, const PJ* system, const Eigen::Vector2d& 
 {
   double west = 0, south = 0, east = 0, north = 0;
   if (!degrees.allFinite() || !proj_get_area_of_use(proj.get(), system, &west, &south, &east, &north, nullptr) ||
-      std::min({west, south, east, north}) < -360) // PROJ says so that it does not know
+      std::min({west, south, east, north}) < -360) // PROJ's sign for an area that it does not know
     return true;
   const bool is_east = degrees.x() >= west, is_west = degrees.x() <= east;
   const bool is_across = west > east; // the date line

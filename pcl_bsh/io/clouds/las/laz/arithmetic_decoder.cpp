@@ -17,7 +17,7 @@ constexpr unsigned bit_place_bits = 13, most_bit_count = 1U << bit_place_bits;
 
 void SymbolModel::prepare()
 {
-  constexpr unsigned bytes = 256; // of most models, which small chunks use for a few points
+  constexpr unsigned bytes = 256; // symbols of most models, which are copied: small chunks use them for a few points
   static const SymbolModel fresh = [] {
     SymbolModel model(bytes);
     model.start();
@@ -35,7 +35,7 @@ void SymbolModel::start()
 {
   const unsigned slot_bits = static_cast<unsigned>(std::bit_width(symbols_ - 1));
   slot_shift_ = place_bits - slot_bits;
-  // The interval is no multiple of its 2^15 parts: places reach 63 beyond.
+  // The interval's length is no multiple of its 2^15 parts: places reach up to 63 beyond 2^15.
   const std::size_t slots = (std::size_t{1} << slot_bits) + (std::size_t{63} >> slot_shift_) + 1;
   numbers_.assign(slotsAt() + slots, 1);
   numbers_[slotsAt() - 2] = std::numeric_limits<std::uint16_t>::max();

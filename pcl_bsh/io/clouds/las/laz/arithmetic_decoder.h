@@ -30,7 +30,7 @@ private:
   std::size_t slotsAt() const { return 2 * (std::size_t{symbols_} + 1); }
 
   /// For each symbol, where its part of 2^15 begins, and its count; one entry more, beyond all places. Then slots of
-  /// places: twice the symbol where each begins.
+  /// places: for each, twice the symbol at which it begins.
   std::vector<std::uint16_t> numbers_;
   unsigned symbols_, slot_shift_ = 0;
   unsigned total_ = 0, cycle_ = 0, until_update_ = 0;
@@ -48,7 +48,7 @@ private:
 
 class ArithmeticDecoder {
 public:
-  /// @param bytes stay where they are. @throws FormatError when no encoder begins so
+  /// @param bytes stay where they are. @throws FormatError when no encoder writes such a beginning
   explicit ArithmeticDecoder(std::string_view bytes);
 
   unsigned symbol(SymbolModel& model)
@@ -85,7 +85,7 @@ public:
     return bit;
   }
 
-  /// How many of the bytes have been read: all that the encoder has written, when all that it was given is read.
+  /// How many of the bytes have been read. These are all that the encoder has written, once all that it coded is read.
   std::size_t consumed() const { return at_; }
 
   /// Bits without a model. @param count 1 to 32

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A chunk of a LAZ file made records again. Chunks are independent of each other.
+// Decodes a chunk of a LAZ file into records. Chunks are independent of each other.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/laz/item.h>

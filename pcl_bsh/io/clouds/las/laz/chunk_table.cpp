@@ -16,7 +16,7 @@ constexpr auto remedy_for_cut = "write or copy the file again, to its end";
 
 /// Where the table is: told before the chunks, or, by a writer that could not go back there, in the last eight bytes.
 /// None where it could not go back, and did not write them either.
-/// @param end of the file, before which those are
+/// @param end of the file; becomes eight less where the last eight bytes tell the place
 std::optional<std::uint64_t> placeOfTable(ByteSource& file, const LasBlock& block, std::uint64_t& end)
 {
   const std::uint64_t first_chunk = block.points_at + place_bytes;

@@ -18,10 +18,10 @@ struct Chunk {
   std::uint64_t bytes;
 };
 
-/// Chunks of one size need no table: where it is missing, one stands for all that follow each other.
+/// Chunks of one size need no table: where it is missing, one entry stands for all chunks together.
 struct ChunkTable {
   std::vector<Chunk> chunks; ///< those that have points, which together have all of the header's
-  std::uint64_t end;         ///< of the points' data in the file, except for records that lie before
+  std::uint64_t end;         ///< of the file, less the last eight bytes where they have the place of the table
   std::uint64_t more = 0;    ///< points that chunks have at least, and the header does not count
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Red, green and blue by what their bytes differ: of RGB12 version 2, RGB14 and RGBNIR14.
+// Red, green and blue, coded by the differences of their bytes: of RGB12 version 2, RGB14 and RGBNIR14.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/laz/arithmetic_decoder.h>

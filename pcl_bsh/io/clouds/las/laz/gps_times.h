@@ -29,7 +29,7 @@ private:
   IntegerDecompressor differences_{32, 9};
   std::array<std::uint64_t, 4> times_{};          ///< the last of each sequence
   std::array<std::int32_t, 4> last_difference_{}; ///< of each sequence
-  std::array<unsigned, 4> extremes_{};            ///< how often in a row differences were far from the last
+  std::array<unsigned, 4> extremes_{};            ///< how often differences were far from the last, since a reset
   unsigned last_ = 0, newest_ = 0;                ///< sequences
 };
 

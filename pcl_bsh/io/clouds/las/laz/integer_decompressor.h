@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integers of LAZ: what a prediction lacks, as the number of its bits and the bits, the upper eight of them by models.
+// Integers of LAZ, coded as corrections of a prediction: the number of bits, then the bits, the upper eight of them by
+// models.
 #pragma once
 
 #include <pcl_bsh/io/clouds/las/laz/arithmetic_decoder.h>
@@ -11,7 +12,8 @@ namespace pcl_bsh::io::laz {
 
 class IntegerDecompressor {
 public:
-  /// @param bits of the integers: 8, 16 or 32. @param contexts that tell numbers of bits apart
+  /// @param bits of the integers: 8, 16 or 32
+  /// @param contexts number of contexts; each has a model of the number of bits
   explicit IntegerDecompressor(unsigned bits, unsigned contexts = 1)
   : bits_(bits),
     widths_(contexts, SymbolModel(bits + 1))
@@ -20,7 +22,7 @@ public:
     for (unsigned width = 1; width <= bits; ++width) upper_.emplace_back(1U << (width < modelled ? width : modelled));
   }
 
-  /// The integer: signed of 32 bits, otherwise from 0 to 2^bits - 1 where the prediction is
+  /// The integer: signed if it has 32 bits, else from 0 to 2^bits - 1
   std::int32_t read(ArithmeticDecoder& in, std::int32_t prediction, unsigned context = 0)
   {
     std::uint32_t value = static_cast<std::uint32_t>(prediction) + correction(in, context);

@@ -76,14 +76,14 @@ public:
 
 inline constexpr unsigned first_version_of_channels = 4;
 
-/// Items behind the first. A channel begins with the last item of the one before. One that is gone back to goes on from
-/// its own last item in version 4; in version 3 from that of the channel left, and changes it, with the models of the
-/// other.
+/// Items of a record behind the first. A new channel begins with the last item of the channel before. A channel that
+/// comes again goes on from its own last item in version 4. In version 3 it goes on, with its own models, from the last
+/// item of the channel before, and changes that item.
 /// @tparam Models their read(layers, last) makes the last item the next one
 template <class Models>
 class LayeredOf : public LayeredItem {
 public:
-  /// @param fresh of a channel
+  /// @param fresh models of a new channel
   LayeredOf(std::size_t size, std::size_t layers, unsigned version, Models fresh)
   : size_(size),
     layer_count_(layers),

@@ -42,7 +42,7 @@ constexpr std::array<std::array<std::uint8_t, Size>, Size> returnTable(Context c
   return table;
 }
 
-/// How many returns of the pulse are missing: 8 contexts.
+/// How far the number of a return is from the number of returns, 7 at most: 8 contexts.
 constexpr unsigned returnLevel(unsigned returns, unsigned number)
 {
   return std::min(returns > number ? returns - number : number - returns, 7U);

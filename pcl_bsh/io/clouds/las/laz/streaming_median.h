@@ -27,7 +27,8 @@ public:
   }
 
 private:
-  /// In place of the value at `hole`, of which others move up that lie behind the new one in that direction.
+  /// Drops the value at `hole` and inserts the new one in order. Values between the two places move by one towards
+  /// `hole`, which is against `step`.
   void insert(std::int32_t value, int hole, int step)
   {
     const auto at = [&](int i) -> std::int32_t& { return sorted_[static_cast<std::size_t>(i)]; };
