@@ -9,7 +9,7 @@
 
 namespace pcl_bsh::io {
 
-inline constexpr std::size_t most_clash_pictures = 200; ///< so many clashes have drawings, the most severe ones
+inline constexpr std::size_t most_clash_pictures = 200; ///< at most so many clashes have drawings: the most severe
 
 /// Draws the clashes of lists, all by one scale of distances. Borrows the lists.
 class ClashDrawings {

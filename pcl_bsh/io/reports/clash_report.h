@@ -199,7 +199,7 @@ std::vector<std::string> compareWithList(ClashReport& report, const std::filesys
 std::vector<std::string> warningsOfGone(const ClashLists& lists, const std::filesystem::path& file,
                                         const std::vector<ClashList>& earlier);
 
-/// The function above, where `look` shows these hierarchies.
+/// Calls the function above with a `look` that tells FormerPlaces these hierarchies.
 std::vector<std::string> compareWithList(ClashReport& report, const std::filesystem::path& file,
                                          const ClashList& earlier, const SphereHierarchy& scan,
                                          const SphereHierarchy& model);

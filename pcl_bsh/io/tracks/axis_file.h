@@ -22,7 +22,7 @@ std::optional<CantPivot> cantPivotOf(std::string_view word);
 
 struct AxisSettings {
   std::string alignment = {};                     ///< its name in LandXML; empty: the only one
-  std::optional<double> cant_unit = std::nullopt; ///< unit of cants, in lengths; none: 0.001 in LandXML, else 1
+  std::optional<double> cant_unit = std::nullopt; ///< unit of cants, in units of length; none: 0.001 in LandXML, else 1
   std::optional<double> gauge = std::nullopt;     ///< instead of the file's
   std::optional<CantPivot> pivot = std::nullopt;  ///< instead of the file's
   std::optional<double> fit = std::nullopt; ///< of points: few arcs within this distance; none: arcs through each point

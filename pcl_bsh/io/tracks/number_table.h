@@ -31,8 +31,8 @@ struct TableColumn {
 inline const TableColumn x_column = {{"x", "e", "east", "easting"}}, y_column = {{"y", "n", "north", "northing"}},
                          z_column = {{"z", "h", "height", "elevation"}};
 
-/// Reads columns, which the first line names. If it has numbers instead, it is a row, and columns are in the order of
-/// `columns` where `unnamed` is true; else it is refused.
+/// Reads columns, which the first line names. A first line of numbers is a row, and columns are in the order of
+/// `columns` then. It is refused unless `unnamed` is true.
 /// @throws FormatError naming the line and the column
 NumberTable numberTable(std::string_view text, const std::vector<TableColumn>& columns, bool unnamed);
 

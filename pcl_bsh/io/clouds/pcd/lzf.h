@@ -14,8 +14,8 @@
 
 namespace pcl_bsh::io {
 
-/// Codes fewer than 2^32 bytes. The stream is at most a 32nd longer than the bytes, rounded up, and depends on them
-/// alone.
+/// Compresses fewer than 2^32 bytes. The stream is at most a 32nd longer than the bytes, rounded up, and depends on
+/// them alone.
 std::string lzfOf(std::span<const std::uint8_t> bytes);
 
 /// Decodes a stream into `bytes`. @returns whether it is sound and fills them exactly
