@@ -37,7 +37,7 @@ double Axis::chainage(double distance) const
 
 std::vector<double> Axis::distancesAt(double chainage) const
 {
-  constexpr double doubt = 1e-9; // of a chainage that is another place's, computed
+  constexpr double doubt = 1e-9; // how far a chainage computed for an end may be off
   std::vector<double> found;
   const std::vector<Piecewise::Part>& parts = parts_->chainages.parts();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -131,13 +131,13 @@ AxisPlaces Axis::nearest(const Point3& point, const AxisReach& reach) const
   };
   Candidate best{0.0, none}, second{0.0, none};
   parts.forPiecesNear(x, y, reach.offset, [&](std::size_t i) {
-    // Each junction is one plane for both of its pieces: a zero of the distance's slope lies in one piece alone.
+    // Both pieces at a junction are divided by one plane, so that each zero of the distance's slope lies in one piece.
     const double ahead = parts.junctions[i].ahead(x, y), left_over = parts.junctions[i + 1].ahead(x, y);
     const bool last = i + 1 == parts.pieces.size();
     if (!(ahead >= 0.0) || !(last ? left_over <= 0.0 : left_over < 0.0)) return;
     const AxisPiece::Foot foot = parts.pieces[i].foot(x, y);
     if (!(std::abs(foot.left) <= reach.offset)) return;
-    const double along = parts.pieces[i].begin + parts.pieces[i].half + foot.t; // rounded, also beyond an end
+    const double along = parts.pieces[i].begin + parts.pieces[i].half + foot.t; // rounding may go beyond an end
     Candidate candidate{std::clamp(along, 0.0, parts.length), -foot.left};
     candidate.above = z - parts.heights(candidate.distance);
     if (!(candidate.above >= -reach.below && candidate.above <= reach.above)) return;

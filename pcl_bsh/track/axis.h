@@ -5,9 +5,9 @@
 //   const AxisPlaces found = axis.nearest({500120.0, 4000002.0, 31.5}, {});
 //   if (found.state == PlaceState::found) use(axis.chainage(found.best.distance), found.best.offset);
 //
-// A section is the vertical plane across the axis in plan. A point's distance is that of the place of the axis that is
-// nearest in plan; its offset is how far it is from there, and to the right it is positive. Its height is above the
-// axis' height there. Where there is cant, offset and height are those in the cant's plane.
+// A section is the vertical plane across the axis. A point's distance is measured in plan along the axis, from its
+// beginning to the place nearest to the point in plan. Its offset is how far it lies beside that place, positive to the
+// right. Its height is above that place. Where there is cant, offset and height turn with the section.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -32,8 +32,8 @@ struct AxisStart {
 struct PlanElement {
   double length = 0.0;                           ///< > 0
   double curvature_begin = 0.0;                  ///< 1 / radius; positive where it turns to the right
-  double curvature_end = 0.0;                    ///< the same at its end
-  std::optional<AxisStart> start = std::nullopt; ///< of the first always; others go on where the last one ends
+  double curvature_end = 0.0;                    ///< 1 / radius at its end
+  std::optional<AxisStart> start = std::nullopt; ///< the first needs one; others default to the end of the one before
 };
 
 /// Where two grades meet, and how long the vertical parabola is that rounds it.
@@ -52,11 +52,11 @@ struct AxisDescription {
   std::vector<GradeChange> grades = {};  ///< in order; none: height 0. Beyond the ends the grade goes on
   std::vector<Knot> heights = {};        ///< instead of grades: straight from knot to knot
   std::vector<Knot> cants = {};          ///< how much higher the left rail is; straight ramps; held beyond the ends
-  std::vector<Knot> chainages = {};      ///< at distances; none: the distance itself. Two at one distance: a jump
-  double gauge = 1.5;                    ///< between the rails' heads, whose heights cant tells
-  CantPivot pivot = CantPivot::low_rail; ///< height 0 is the low rail's; of centre, the middle of both
-  double most_gap = 0.01;                ///< how far a given start may be from where the last element ends
-  double most_kink = 1e-3;               ///< the same of its heading, in radians
+  std::vector<Knot> chainages = {};      ///< at distances; none: equal to the distance. Two at one distance: a jump
+  double gauge = 1.5;                    ///< distance between the rails' heads, where cant is measured
+  CantPivot pivot = CantPivot::low_rail; ///< heights are the low rail's; with centre, those of the middle between both
+  double most_gap = 0.01;                ///< how far a given start may be from the end of the element before
+  double most_kink = 1e-3;               ///< how much its heading may differ from the heading there, in radians
 };
 
 /// A point of a measured axis.
@@ -70,8 +70,8 @@ struct AxisPoint {
 struct AxisFit {
   double gap = 0.0, kink = 0.0; ///< the largest between elements
   double gap_at = 0.0;          ///< its distance
-  double deviation = 0.0; ///< of an axis through points the farthest from their polyline; of a fitted one from a point
-  double stretch = 0.0;   ///< of both: the largest |length / difference of chainage - 1| between two points
+  double deviation = 0.0;       ///< how far through() is at most from the points' polyline, fitted() from a point
+  double stretch = 0.0;         ///< of both: the largest |length / difference of chainage - 1| between two points
 };
 
 /// The axis' own directions at a place.
@@ -112,8 +112,8 @@ inline bool hasPlace(PlaceState state)
   return state == PlaceState::found || state == PlaceState::two_places;
 }
 
-/// The nearest place in plan, of two at one distance the first along the axis; and the second nearest, if there is one
-/// within reach. A place is one where the axis is nearest among its neighbours.
+/// The place of the axis that is nearest in plan, and the second nearest if it is within reach. Each is a local minimum
+/// of the distance in plan. The first along the axis is `best` where two are equally near.
 struct AxisPlaces {
   PlaceState state = PlaceState::too_far;
   AxisPlace best = {}, second = {};
@@ -121,31 +121,31 @@ struct AxisPlaces {
 
 /// Never changes. Copies share what they hold; several threads may ask one at once.
 ///
-/// Coordinates count from a place near the beginning, so that distances and offsets of points given as UTM's are within
-/// 1e-9 of the exact line. Positions are power series whose remainders are below 1e-14; the nearest place is found by
-/// bracketing the one zero of a function that falls, so no point has the wrong side or another place.
+/// Coordinates count from a place near the beginning, so that distances and offsets of points in UTM coordinates are
+/// within 1e-9 of the exact line. Positions are power series whose remainders are below 1e-14. The nearest place is the
+/// one zero of a falling function, and is found by bracketing. So no point gets the wrong side or another place.
 class Axis {
 public:
-  /// @throws InvalidInput for what is no axis, naming the distance
+  /// @throws InvalidInput where the description makes no axis, naming the distance
   explicit Axis(const AxisDescription& description);
 
-  /// Two arcs from each point to the next, without a kink; a circle through points on one. Heights and cant are
-  /// straight from point to point.
-  /// @param most_turn of the polyline at a point, in radians
+  /// Joins each point to the next by two arcs, without a kink. Points on a circle give that circle. Heights and cant
+  /// are straight from point to point.
+  /// @param most_turn the most that the polyline may turn at a point, in radians
   /// @throws InvalidInput where chainages do not rise, or the polyline turns more
   static Axis through(const std::vector<AxisPoint>& points, AxisDescription rest = {}, double most_turn = 0.2);
 
-  /// Few arcs near measured points that err, without a kink. Heights and cant are straight from point to point.
+  /// Fits few arcs, without a kink, to measured points with errors. Heights and cant are straight from point to point.
   /// @param tolerance finite, > 0: how far from the arcs a point may be in plan. Neighbours that err by more than that,
   ///   together, may be farther: fit().deviation tells
   /// @throws InvalidInput as through() does
   static Axis fitted(const std::vector<AxisPoint>& points, double tolerance, AxisDescription rest = {},
                      double most_turn = 0.2);
 
-  /// In plan.
+  /// The length in plan.
   double length() const;
 
-  /// The number that a distance along the axis has.
+  /// The chainage at a distance along the axis.
   double chainage(double distance) const;
 
   /// All distances with that chainage: none in a gap of the chainage, two where it repeats.
@@ -159,10 +159,10 @@ public:
   const AxisFit& fit() const;                 ///< how well it fits what it was made of
   const AxisDescription& description() const; ///< what it was made of
 
-  /// @throws InvalidInput when the reach is not one of this axis
+  /// @throws InvalidInput for a length of the reach not finite and > 0, and an offset above 0.8 of smallestRadius()
   void requireReach(const AxisReach& reach) const;
 
-  /// @pre requireReach()
+  /// The nearest places to a point within reach. @pre requireReach(reach) does not throw
   AxisPlaces nearest(const Point3& point, const AxisReach& reach) const;
 
 private:

@@ -19,12 +19,13 @@ struct FittedPlace {
   Plan at, direction;
 };
 
-/// Points of a window are fitted this much nearer than the tolerance, so that arcs between fits keep to it, too.
+/// Points of a window are within this share of the tolerance of their parabola, so that arcs between fitted places keep
+/// to the tolerance, too.
 constexpr double kShareOfTolerance = 0.7;
-constexpr std::size_t kSamples = 128; ///< of a window, evenly
+constexpr std::size_t kSamples = 128; ///< most points of a window that are fitted, evenly spaced
 
-/// The parabola of least squares through points, as seen from one of them along a chord; and how far points are from
-/// it.
+/// The parabola of least squares through the points from `first` to `last`, along their chord. `place` is where it
+/// passes point `of`; `residual` is how far it is from points, at most.
 struct Parabola {
   FittedPlace place;
   double residual = 0.0;
@@ -51,7 +52,7 @@ struct Parabola {
   }
 };
 
-/// By the widest window about the point whose points are near one parabola.
+/// The place and direction at a point, by the widest window about it whose points are near one parabola.
 FittedPlace fittedAt(const std::vector<Plan>& points, std::size_t i, double tolerance)
 {
   const auto windowOf = [&](std::size_t half) {
@@ -100,7 +101,7 @@ Axis Axis::fitted(const std::vector<AxisPoint>& points, double tolerance, AxisDe
   if (!(std::isfinite(tolerance) && tolerance > 0.0))
     throw InvalidInput(Input::trajectory, "tolerance", plainText("is ", tolerance), "give a finite length > 0");
   Plan origin;
-  const std::vector<Plan> plan = planOf(points, 4.0, origin); // the noise of near neighbours turns them anyhow
+  const std::vector<Plan> plan = planOf(points, 4.0, origin); // > pi: noise may turn near neighbours by any angle
   for (std::size_t i = 1; i + 1 < plan.size(); ++i)           // no parabola goes there, and back
     if (plan[i - 1] == plan[i + 1]) refusePoint(i, "its two neighbours lie at one place", "leave one of the three out");
   std::vector<FittedPlace> places;
@@ -111,7 +112,7 @@ Axis Axis::fitted(const std::vector<AxisPoint>& points, double tolerance, AxisDe
     if (turn > most_turn) refuseTurn(i, turn, points[i].chainage, most_turn);
   }
   const auto hold = [&](double distance, const AxisPoint& point) {
-    if (!rest.heights.empty() && !(distance > rest.heights.back().at)) return; // noise turned two neighbours round
+    if (!rest.heights.empty() && !(distance > rest.heights.back().at)) return; // noise put it before its neighbour
     rest.heights.push_back({distance, point.at[2]});
     rest.cants.push_back({distance, point.cant});
     rest.chainages.push_back({distance, point.chainage});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts that an axis holds: pieces in order, the planes between them, and boxes about ever more of them.
+// The data of an axis: its pieces in order, the planes between them, and a tree of boxes about them.
 #pragma once
 
 #include <pcl_bsh/track/axis.h>
@@ -12,7 +12,7 @@
 
 namespace pcl_bsh {
 
-/// How cant turns a section: by which angle, and where to it carries the middle between the rails.
+/// How cant turns a section: by which angle, and how far it moves the middle between the rails.
 struct CantTurn {
   double sine, cosine, right = 0.0, above = 0.0;
 
@@ -71,7 +71,7 @@ struct Axis::Parts {
   double length = 0.0;
   std::vector<AxisPiece> pieces;
   std::vector<PlanFrame> junctions;     ///< before each piece, and behind the last
-  std::vector<std::vector<Box>> levels; ///< of pieces, of two of these, ... of all
+  std::vector<std::vector<Box>> levels; ///< of each piece, of two boxes below, ... of all
   Piecewise heights, cants, chainages;  ///< heights above the origin
   double smallest_radius, smallest_radius_at = 0.0;
 

@@ -50,7 +50,7 @@ struct AxisPiece {
     }
   }
 
-  /// At most how far X and Y are off, within the piece.
+  /// An upper bound of the errors of X and Y within the piece.
   static double remainder(double half, double k, double c)
   {
     const double a = std::abs(k) * half, b = std::abs(c) * half * half;

@@ -28,7 +28,7 @@ std::vector<Plan> directionsAt(const std::vector<Plan>& points)
   return directions;
 }
 
-/// How far the axis is from a chord: at most in the middle of one of its arcs, or where they meet.
+/// At most how far two arcs are from their chord: in the middle of one of them, or where they meet.
 double awayFrom(const Plan& from, const Plan& to, const Biarc& arcs)
 {
   const Plan along = (to - from).normalized();

@@ -22,7 +22,7 @@ BesideArc PlanArc::beside(const Plan& place) const
 {
   const Plan way = place - from;
   const double x = direction.dot(way), y = crossOf(direction, way), k = curvature;
-  const double turned = std::atan2(k * x, 1.0 - k * y); // at the circle's middle
+  const double turned = std::atan2(k * x, 1.0 - k * y); // the angle at the circle's centre
   const double along = std::abs(turned) < 1e-9 ? x / (1.0 - k * y) : turned / k;
   return {along, (2.0 * y - k * (x * x + y * y)) / (1.0 + std::hypot(k * x, 1.0 - k * y))};
 }
@@ -72,7 +72,7 @@ void append(const Biarc& biarc, const Plan& origin, std::vector<PlanElement>& pl
 {
   plan.push_back(biarc.first.element(origin));
   plan.push_back(biarc.second.element(origin));
-  plan.back().start.reset(); // a joint is no given place: rounded to the given ones' last digit, it would be off
+  plan.back().start.reset(); // it begins exactly at the joint, which coordinates from far away would round
 }
 
 void refusePoint(std::size_t point, const std::string& wrong, const std::string& remedy)

@@ -33,10 +33,10 @@ struct PlanArc {
   /// @param direction of length 1, where it begins
   PlanArc(const Plan& from, const Plan& direction, const Plan& to);
 
-  /// Beside the whole circle or straight line.
+  /// Where a place is beside the whole circle, or straight line, that the arc is a part of.
   BesideArc beside(const Plan& place) const;
 
-  /// @param origin of its coordinates
+  /// The arc as an element of an axis. @param origin added to its coordinates
   PlanElement element(const Plan& origin) const;
 };
 
@@ -44,12 +44,13 @@ struct Biarc {
   Plan joint;
   PlanArc first, second;
 
-  /// Both arcs' tangents are as long. @param at_from, at_to directions of length 1
+  /// Chooses the joint at which the tangents of both arcs are equally long.
+  /// @param at_from, at_to directions of length 1
   Biarc(const Plan& from, const Plan& at_from, const Plan& to, const Plan& at_to);
 
   double length() const { return first.length + second.length; }
 
-  /// Beside one of its arcs.
+  /// Where a place is beside the first arc or, past its end, beside the second.
   BesideArc beside(const Plan& place) const;
 
 private:
@@ -57,14 +58,15 @@ private:
   Plan atJoint(const Plan& from, const Plan& at_from) const;
 };
 
-/// Adds both arcs to a plan. @param origin of their coordinates
+/// Adds both arcs to a plan. @param origin added to their coordinates
 void append(const Biarc& biarc, const Plan& origin, std::vector<PlanElement>& plan);
 
 /// @throws InvalidInput, with the point's number as its index
 [[noreturn]] void refusePoint(std::size_t point, const std::string& wrong, const std::string& remedy);
 [[noreturn]] void refuseTurn(std::size_t point, double turn, double chainage, double most_turn);
 
-/// Points of an axis in plan, from a place near the first. @throws InvalidInput naming the point that is wrong
+/// Points of an axis in plan, relative to a place near the first. @param origin gets that place
+/// @throws InvalidInput naming the point that is wrong
 std::vector<Plan> planOf(const std::vector<AxisPoint>& points, double most_turn, Plan& origin);
 
 } // namespace pcl_bsh

@@ -15,7 +15,7 @@ Eigen::Vector3d vectorOf(const Point3& p)
   return {p[0], p[1], p[2]};
 }
 
-/// How far along the axis, back (-1) or on (1), the other pivot is.
+/// How far along the axis the other pivot is, which is behind (`direction` -1) or ahead (1).
 double alongToPivot(const Axis& axis, double pivots, double from, double direction)
 {
   const auto refuse = [&](const std::string& wrong, double value) {

@@ -12,11 +12,11 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// Where the second pivot stands: behind the first along the axis, as far from it in space as `pivots` says.
+/// Distance along the axis of the second pivot, behind the first at `front`. They are `pivots` apart in space.
 /// @throws InvalidInput where the axis does not hold both
 double rearPivotOf(const Axis& axis, double pivots, double front);
 
-/// Where the first pivot stands, when the second one is at `rear`. @throws InvalidInput as rearPivotOf()
+/// Distance along the axis of the first pivot, when the second is at `rear`. @throws InvalidInput as rearPivotOf()
 double frontPivotOf(const Axis& axis, double pivots, double rear);
 
 /// The pose of the vehicle in the axis' coordinates. The vehicle's own frame has its origin midway between its pivots,
@@ -24,7 +24,7 @@ double frontPivotOf(const Axis& axis, double pivots, double rear);
 Eigen::Isometry3d poseOnPivots(const Axis& axis, double pivots, double front);
 
 /// Poses whose first pivots stand at the distances from `first` to `last`, `step` apart, and at `last`.
-/// @throws InvalidInput as rearPivotOf() does, and for a step that is no length
+/// @throws InvalidInput as rearPivotOf() does, for a step not above 0, for last < first, and for 10^7 steps or more
 std::vector<Eigen::Isometry3d> posesAlong(const Axis& axis, double pivots, double first, double last, double step);
 
 } // namespace pcl_bsh

@@ -44,13 +44,13 @@ struct EnvelopeDescription {
   std::vector<SectionPoint> corners;
   std::vector<ChainageRange> ranges = {};        ///< where it counts; none: everywhere
   Piecewise left = {}, right = {};               ///< widening at distances along the axis, >= 0
-  std::optional<Vehicle> vehicle = std::nullopt; ///< widens, too, by the axis' radius at each place
+  std::optional<Vehicle> vehicle = std::nullopt; ///< its overthrow at the axis' radius is added
 };
 
 /// Room about an axis that must stay free. Never changes.
 class Envelope {
 public:
-  /// @throws InvalidInput naming the envelope: its polygon as simplePolygon() has it, a widening below 0, a range that
+  /// @throws InvalidInput naming the envelope: a polygon that simplePolygon() refuses, a widening below 0, a range that
   ///   ends before it begins, a vehicle without meaning
   explicit Envelope(EnvelopeDescription description);
 
@@ -63,10 +63,10 @@ public:
   /// Whether a table or a vehicle widens it.
   bool widens() const;
 
-  /// How much at a distance along the axis: by its tables, and by its vehicle.
+  /// How much its tables and its vehicle widen it at a distance along the axis.
   Widening wideningAt(const Axis& axis, double distance) const;
 
-  /// The polygon at a distance, in `room` if it is another than corners().
+  /// The polygon at a distance along the axis: made in `room` if the envelope widens, else corners().
   const std::vector<SectionPoint>& outlineAt(const Axis& axis, double distance, std::vector<SectionPoint>& room) const;
 
   /// Where about the envelope a place is, going round its box from its lower left corner: [0, 1) at its left, [1, 2)

@@ -76,7 +76,7 @@ void GaugeTable::add(const GaugedPoints& found, const std::vector<Envelope>& env
       const double around = envelopes[e].aroundOf({place.offset, place.height});
       double& least =
           cells_[(part * envelopes_ + e) * cells_around + static_cast<std::size_t>(around * cells_of_sector)];
-      least = std::min(least, clearance + 0.0); // of 0 and -0, the order of points does not tell
+      least = std::min(least, clearance + 0.0); // no -0: std::min() of 0 and -0 depends on their order
     }
   }
 }
@@ -105,7 +105,7 @@ void addInfringing(const PointsView& points, const GaugedPoints& found, double l
 
 std::vector<Infringement> infringementsOf(const std::vector<Infringing>& list, double distance)
 {
-  std::map<std::uint32_t, std::vector<std::size_t>> of_tracks = {{0, {}}}; // which checks the distance of no point, too
+  std::map<std::uint32_t, std::vector<std::size_t>> of_tracks = {{0, {}}}; // also an empty list has `distance` checked
   for (std::size_t i = 0; i < list.size(); ++i) of_tracks[list[i].track].push_back(i);
   std::vector<Infringement> found;
   for (const auto& of_track : of_tracks) addInfringements(list, of_track.second, distance, found);

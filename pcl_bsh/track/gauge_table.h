@@ -18,7 +18,7 @@ enum class Sector : std::uint8_t { left, above, right, below };
 
 /// Cells of each sector of an envelope.
 inline constexpr std::size_t cells_of_sector = 12;
-/// Cells of all four.
+/// Cells of all four sectors.
 inline constexpr std::size_t cells_around = 4 * cells_of_sector;
 
 /// Smallest clearances in parts of an axis, gathered batch by batch. A part or a sector without points has no data, and
@@ -26,14 +26,14 @@ inline constexpr std::size_t cells_around = 4 * cells_of_sector;
 class GaugeTable {
 public:
   /// @param step length of a part; the last one may be shorter
-  /// @throws InvalidInput when it is no length, or makes more than 10^7 parts
+  /// @throws InvalidInput when it is no length, or makes more than 10^7 parts times envelopes
   GaugeTable(const Axis& axis, std::size_t envelopes, double step);
 
   /// Takes the answer of gauge() for some points. @param envelopes the same each time
   void add(const GaugedPoints& found, const std::vector<Envelope>& envelopes);
 
-  /// Becomes the table of what several processes have gathered. Called by each of them.
-  /// @param all gives a vector's values of all processes, one process after the other
+  /// Merges what several processes have gathered. Each process calls it, and then holds the table of all.
+  /// @param all takes this process' vector, and returns the vectors of all processes, one after the other
   template <class All>
   void join(const All& all)
   {
@@ -56,7 +56,7 @@ public:
   /// The part that a distance along the axis is in.
   std::size_t partOf(double distance) const;
 
-  /// Infinity where there is no data.
+  /// The smallest clearance in a cell, 0 <= around < cells_around; infinity where there is no data.
   double cell(std::size_t part, std::size_t envelope, std::size_t around) const
   {
     return cells_[(part * envelopes_ + envelope) * cells_around + around];
@@ -79,7 +79,7 @@ struct Infringing {
   std::uint64_t record = 0; ///< of the whole scan
   AxisPlace place = {};
   double clearance = 0.0;
-  std::int32_t envelope = -1; ///< of its track
+  std::int32_t envelope = -1; ///< its number in its track
   std::uint32_t track = 0;    ///< its number, where there are several
 };
 
@@ -91,8 +91,8 @@ struct Infringement {
 };
 
 /// Appends points whose clearance is at most `limit` to the list.
-/// @param first_record of the points among all of the scan
-/// @param track number of the one that was asked about
+/// @param first_record number in the whole scan of the view's record 0
+/// @param track number of the track that was gauged
 void addInfringing(const PointsView& points, const GaugedPoints& found, double limit, std::uint64_t first_record,
                    std::vector<Infringing>& list, std::uint32_t track = 0);
 

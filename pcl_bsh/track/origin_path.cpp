@@ -45,7 +45,7 @@ std::vector<Point3> originsOf(const PointsView& points, const TimeField& field, 
                               std::uint64_t first_record, OutsidePath& outside)
 {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  PointsView times = points; // a point of it has its time three times
+  PointsView times = points; // its points have the time as x, y and z
   times.offset = {field.offset, field.offset, field.offset};
   times.scalar = field.scalar;
   std::vector<Point3> origins(points.size(), {none, none, none});

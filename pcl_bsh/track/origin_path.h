@@ -17,13 +17,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// A place of a scanner. Times are in any unit, as those of the points.
+/// A place of a scanner. Times are in the unit of the points' times.
 struct TimedOrigin {
   double time = 0.0;
   Point3 at = {};
 };
 
-/// A scanner's places by time, straight and even between two of them. Never changes.
+/// A scanner's places by time; it goes straight, at constant speed, from one to the next. Never changes.
 class OriginPath {
 public:
   /// @throws InvalidInput, with the number of the place as its index: fewer than two, a value that is not finite, times
@@ -33,7 +33,7 @@ public:
   double from() const { return places_.front().time; } ///< the first time
   double to() const { return places_.back().time; }    ///< the last one
 
-  /// None before the first time, behind the last one, and for NaN.
+  /// The scanner's place at a time. None before the first time, after the last one, and for NaN.
   std::optional<Point3> at(double time) const;
 
 private:
@@ -46,15 +46,15 @@ struct TimeField {
   Scalar scalar = Scalar::float64;
 };
 
-/// Points at a time that a path does not have.
+/// Points whose time is before or after all times of a path.
 struct OutsidePath {
   std::size_t points = 0;
   std::uint64_t first = 0; ///< the number of the first one
   double time = 0.0;       ///< its time
 };
 
-/// Where the scanner stood for each point, NaN where the path does not tell.
-/// @param first_record of the points among all of the scan @param outside is added to
+/// Where the scanner was for each point; NaN where the path has no place at the point's time.
+/// @param first_record number in the whole scan of the view's record 0 @param outside such points are added to it
 std::vector<Point3> originsOf(const PointsView& points, const TimeField& field, const OriginPath& path,
                               std::uint64_t first_record, OutsidePath& outside);
 

@@ -47,10 +47,10 @@ public:
   /// In their order.
   const std::vector<Part>& parts() const { return parts_; }
 
-  /// 0 where there are no parts.
+  /// The value at a distance; 0 where there are no parts.
   double operator()(double at) const { return parts_.empty() ? 0.0 : partAt(at)(at); }
 
-  /// How fast it grows there.
+  /// The slope at a distance; 0 where there are no parts.
   double slope(double at) const
   {
     if (parts_.empty()) return 0.0;

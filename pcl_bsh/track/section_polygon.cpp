@@ -42,11 +42,11 @@ std::string textOf(const SectionPoint& p)
 
 } // namespace
 
-/// Error: a cross product errs by 8 v of its two terms' absolute sum, so a sign beyond that is sure. The others are
-/// computed exactly. A point whose foot is within an edge is w <= extent + distance from the edge's beginning. The
-/// distance cross / length then errs by 16 v w, and by 4 v of itself for square, sum, division and root. At an edge's
-/// ends both formulas differ by less than the foot's own error, 4 v w. Squares neither overflow nor underflow for sizes
-/// between 1e-140 and 1e140.
+/// Error: a cross product errs by 8 v of its two terms' absolute sum (v is kDoubleUnit), so a sign beyond that is sure.
+/// Other signs are computed exactly. A point whose foot is within an edge is w <= extent + distance from the edge's
+/// beginning. The distance cross / length then errs by 16 v w, and by 4 v of itself for square, sum, division and root.
+/// At an edge's ends both formulas differ by less than the foot's own error, 4 v w. Squares neither overflow nor
+/// underflow for sizes between 1e-140 and 1e140.
 double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoint& point, OutlinePlace* nearest)
 {
   constexpr double sure = 8 * kDoubleUnit;
@@ -86,7 +86,7 @@ double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoi
     const SectionPoint &a = outline[at_edge], &b = outline[(at_edge + 1) % outline.size()];
     *nearest = {{a.offset + foot * (b.offset - a.offset), a.height + foot * (b.height - a.height)}, at_edge, foot};
   }
-  const double distance = std::max(std::sqrt(least), std::numeric_limits<double>::min()); // not on the outline
+  const double distance = std::max(std::sqrt(least), std::numeric_limits<double>::min()); // > 0: not on the outline
   return inside ? -distance : distance;
 }
 

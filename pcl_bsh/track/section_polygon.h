@@ -25,7 +25,7 @@ struct OutlinePlace {
   double share = 0.0;   ///< of the edge
 };
 
-/// How far a distance may be off: so often the unit of roundings, 2^-53, times the polygon's extent and the distance.
+/// Error bound of signedDistance(), as a factor of the polygon's extent plus the distance.
 inline constexpr double section_distance_error = 64 * 0x1p-53;
 
 /// How far the point is from the outline: positive outside, negative inside, 0 exactly where it lies on the outline.
@@ -35,9 +35,7 @@ double signedDistance(const std::vector<SectionPoint>& outline, const SectionPoi
                       OutlinePlace* nearest = nullptr);
 
 /// @return the corners, without those that repeat the one before
-/// @throws InvalidInput naming the corners: fewer than three, one that is not finite, an outline that crosses or
-/// touches
-///   itself
+/// @throws InvalidInput naming the corners: fewer than three, one not finite, an outline that crosses or touches itself
 std::vector<SectionPoint> simplePolygon(std::vector<SectionPoint> corners);
 
 } // namespace pcl_bsh

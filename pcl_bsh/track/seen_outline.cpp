@@ -15,7 +15,7 @@ namespace pcl_bsh {
 namespace {
 
 constexpr std::size_t beams_of_block = 4096;
-constexpr double most_cells = 0x1p33; ///< a gigabyte
+constexpr double most_cells = 0x1p33; ///< a gigabyte, at a bit each
 constexpr std::size_t most_trials = 200;
 
 double crossOf(const SectionPoint& a, const SectionPoint& b)
@@ -50,8 +50,8 @@ void crossingsOf(const SectionPoint& from, const SectionPoint& to, const std::ve
 } // namespace
 
 /// Finds the cells that beams cross. Between two places of a beam, one inside of the outline and one outside, there is
-/// a crossing, however the axis bends and the profile widens. The search begins where the beam crosses as straight in
-/// section; what it overlooks is not seen.
+/// a crossing, however the axis bends and the profile widens. The search begins where the beam would cross if it were
+/// straight in section. A crossing that it overlooks counts as not seen.
 class SeenOutline::Beams {
 public:
   Beams(const SeenOutline& seen, const AxisReach& reach) : seen_(seen), axis_(seen.axis_), reach_(reach) {}
@@ -78,7 +78,7 @@ public:
   }
 
 private:
-  /// A place of the beam, as an outline has it there.
+  /// A place of the beam, and how far it is outside of the outline there.
   struct Trial {
     double share; ///< of the beam
     AxisPlace at;
@@ -109,7 +109,7 @@ private:
     return trial;
   }
 
-  /// The share of a beam that keeps within reach of a straight and level axis.
+  /// The share of the beam, from its origin, that would stay within reach if the axis were straight and level.
   double withinReach(const AxisPlace& first) const
   {
     double share = 1.0;
@@ -141,8 +141,8 @@ private:
     }
   }
 
-  /// Where a beam comes in or out, up to the tolerance: by secants, and by halving. None where it is its return, no
-  /// place of the axis is near, the envelope does not count, or the outline has a step.
+  /// Where the beam crosses the outline, up to the tolerance, by secants and halving. None where that is the beam's
+  /// return, no place of the axis is within reach, the envelope does not count, or the outline has a step.
   std::optional<Trial> crossingBetween(const Envelope& envelope, Trial from, Trial to, double guess)
   {
     const bool inside = from.isInside();
@@ -156,7 +156,7 @@ private:
       const double secant = (from.share * to.outside - to.share * from.outside) / (to.outside - from.outside);
       share = i % 3 == 2 ? 0.5 * (from.share + to.share) : secant + (is_before ? 0.25 : -0.25) * least_;
     }
-    const double near = 8.0 * seen_.tolerance_; // a section turns by at most five times as much, within reach
+    const double near = 8.0 * seen_.tolerance_; // within reach, a section moves at most 5 times as far as the beam
     if (to.share - from.share > 2.0 * least_ || std::abs(from.outside) > near || std::abs(to.outside) > near)
       return std::nullopt;
     if (to.share > 1.0 - 2.0 * least_ || !envelope.countsAt(axis_.chainage(to.at.distance))) return std::nullopt;
@@ -241,7 +241,7 @@ double SeenOutline::shareOf(std::size_t part, std::size_t envelope, const Counts
   const Outline& outline = outlines_[envelope];
   std::size_t all = 0, crossed = 0;
   for (std::size_t row = part * rows_of_part_; row < (part + 1) * rows_of_part_; ++row) {
-    if (edge_ * static_cast<double>(row) >= axis_.length()) break; // of the last part
+    if (edge_ * static_cast<double>(row) >= axis_.length()) break; // the last part may be shorter
     for (std::size_t column = 0; column < outline.columns.size(); ++column) {
       if (!counts(outline.columns[column].sector)) continue;
       ++all;

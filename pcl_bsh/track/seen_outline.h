@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of an envelope's outline a scanner that moves has seen: the cells of it that a beam crossed.
+// Which parts of an envelope's outline a moving scanner has seen: the cells that a beam crossed.
 //
 //   SeenOutline seen(axis, envelopes, {1.0, 0.1});
 //   seen.add(points, origins, {});                    // a beam from each origin to its point
@@ -7,8 +7,8 @@
 //
 // A beam is free from its origin up to its return. Where it crosses the outline, nothing was at that time. The outline
 // along the axis is a surface, which is cut into cells. Their edges are at most as long as the spacing, along the axis
-// and round the profile as it is before it widens. A thing that fills a whole cell stops all beams there, so it is not
-// in a cell that a beam crossed. A thing that reaches into the envelope over a square of twice the spacing fills one.
+// and round the profile as it is before it widens. A thing that fills a whole cell stops all beams there, so it fills
+// no cell that a beam crossed. A thing that reaches into the envelope over a square of twice the spacing fills one.
 //
 // Nothing is said of things that reach in between beams of one cell, or that float inside and touch no outline.
 #pragma once
@@ -41,8 +41,8 @@ public:
   /// @param origins one per point of the view, NaN where it has none
   void add(const PointsView& points, const std::vector<Point3>& origins, const GaugeRequest& request);
 
-  /// Becomes the outline that beams of several processes crossed. Called by each of them, with `all` as
-  /// GaugeTable::join() takes it.
+  /// Merges the cells that several processes have gathered. Each process calls it, with `all` as GaugeTable::join()
+  /// takes it.
   template <class All>
   void join(const All& all)
   {
@@ -57,14 +57,14 @@ public:
 
   /// The share of a sector's cells that beams crossed, in a part of the axis; NaN where the outline has none there.
   double share(std::size_t part, std::size_t envelope, Sector sector) const;
-  /// The share of all four.
+  /// The share of the cells of all four sectors.
   double share(std::size_t part, std::size_t envelope) const;
   /// Whether a sector of the outline has cells in a part, and none was crossed.
   bool isUnseen(std::size_t part, std::size_t envelope) const;
 
   std::size_t rows() const { return rows_; } ///< of cells along the axis
-  std::size_t columns(std::size_t envelope) const { return outlines_[envelope].columns.size(); } ///< round it
-  /** By a beam. */ bool isCrossed(std::size_t envelope, std::size_t row, std::size_t column) const
+  std::size_t columns(std::size_t envelope) const { return outlines_[envelope].columns.size(); } ///< of cells round it
+  /** Whether a beam did. */ bool isCrossed(std::size_t envelope, std::size_t row, std::size_t column) const
   {
     return crossed_[cellOf(outlines_[envelope], row, column)];
   }
@@ -74,13 +74,13 @@ public:
 private:
   struct Column {
     std::size_t edge;
-    double share; ///< of the edge, at its middle
+    double share; ///< of the edge, up to the column's middle
     Sector sector;
   };
   struct Outline {
     std::vector<Column> columns;
-    std::vector<std::size_t> first; ///< column of each edge, and of the end
-    std::size_t begin;              ///< of its cells among all
+    std::vector<std::size_t> first; ///< the first column of each edge, and the number of all
+    std::size_t begin;              ///< number of its first cell among the cells of all outlines
   };
   class Beams;
 

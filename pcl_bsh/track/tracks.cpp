@@ -10,7 +10,7 @@
 namespace pcl_bsh {
 namespace {
 
-/// The track that a point is told with; of a point without a place that of the best state.
+/// The track that a point is told with. For a point without a place, it is the one whose PlaceState is least.
 std::size_t toldTrack(const std::vector<GaugedPoints>& each, std::size_t point)
 {
   constexpr double last = std::numeric_limits<double>::infinity();

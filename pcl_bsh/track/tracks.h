@@ -32,8 +32,8 @@ struct GaugedTracks {
 
 /// A point counts at every track that it has a place at. It is told with the track where its clearance is smallest, of
 /// equal ones where it is nearer, by its offset, then with the first. A track where no envelope counts comes behind all
-/// others. A point without any place is told as before an axis, rather than
-/// behind one, rather than too far.
+/// others. A point without any place is told as `before` if it is before some axis, else as `behind` if it is behind
+/// some axis, else as `too_far`.
 /// @throws InvalidInput for no track, and as gauge() of one axis does
 GaugedTracks gauge(const PointsView& points, const std::vector<Track>& tracks, const GaugeRequest& request);
 
