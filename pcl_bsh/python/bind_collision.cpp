@@ -177,7 +177,7 @@ PythonQuestion collisionsAsked(const Cloud& a, const Cloud& b, double clearance,
   return asked;
 }
 
-/// Unseen are points of b alone: answers that do not have them must not hide them.
+/// Refuses `seen` for an answer without verdicts of b's points: only these can be unseen.
 void refuseSeen(const PythonQuestion& asked)
 {
   if (asked.question.seen)

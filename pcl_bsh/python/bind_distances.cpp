@@ -129,7 +129,7 @@ HausdorffDistance hausdorffDistanceOf(const Cloud& a, const Cloud& b, const Pose
   PythonQuestion asked(a, pose_a, b, pose_b);
   const HausdorffRequest request{accuracyOf(accuracy), threads, progressOf(progress)};
   return asked.answer([&] { return hausdorffDistance(asked.a, asked.b, request); },
-                      [](const HausdorffDistance&) { return 0.0; }); // which has nothing to do with what is inside
+                      [](const HausdorffDistance&) { return 0.0; }); // 0: no warning about hollow surfaces
 }
 
 std::optional<py::array_t<double>> intervalArray(const py::object& self)

@@ -168,7 +168,7 @@ Envelope envelopeOf(std::string name, const ArrayLike& corners, const std::vecto
   return Envelope(std::move(description));
 }
 
-/// An answer, and what it is about.
+/// The answer of gauge(), with its axis and envelopes, and the chainage of each point.
 struct GaugedRun {
   Axis axis;
   std::vector<Envelope> envelopes;

@@ -165,7 +165,7 @@ int traverse(PyObject* self, visitproc visit, void* arg)
   return kept ? kept->traverse(visit, arg) : 0;
 }
 
-/// The collector ends a cycle at the array, which forgets its attributes: tp_clear is not needed.
+/// The collector breaks a cycle at the array, by clearing its attributes: tp_clear is not needed.
 void setUpCollection(PyHeapTypeObject* heap_type)
 {
   PyTypeObject& type = heap_type->ht_type;

@@ -258,7 +258,8 @@ std::pair<double, double> partingAlong(const PyCollider& a, const PyCollider& b,
   }));
 }
 
-/// A read-only property: the array of a member of all contacts. @param columns of numbers; 0: one, (k,)
+/// A read-only property: the array of a member of all contacts. @param columns numbers of each contact; 0:
+/// one, in an array (k,)
 template <py::ssize_t columns = 0, class Data>
 auto ofContacts(const Data& data)
 {

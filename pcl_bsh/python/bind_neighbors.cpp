@@ -99,7 +99,7 @@ bool isOnePoint(py::handle queries)
 }
 
 using Point = As<"Sequence[float]", isOnePoint>;
-using Points = As<"npt.NDArray[Any]">; // an array of one point is told from others when it is there
+using Points = As<"npt.NDArray[Any]">; // its type does not tell one point from many: `accepts` does
 
 using Found = std::pair<py::array_t<std::int32_t>, py::array_t<float>>;
 

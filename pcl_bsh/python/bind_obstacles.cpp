@@ -77,12 +77,12 @@ using LengthsByName = As<"Optional[Mapping[str, float]]">;
 using SwitchesByName = As<"Optional[Mapping[str, bool]]">;
 using PatternsLike = As<"Optional[Sequence[str]]">;
 
-/// An obstacle of several, as it stands to the input.
+/// The answer about one of several obstacles, with its name.
 struct NamedAnswer : ObstacleAnswer {
   std::string name;
 };
 
-/// Two of them.
+/// A pair of obstacles, with their names.
 struct NamedPair : ObstaclePair {
   std::string first_name, second_name;
 };

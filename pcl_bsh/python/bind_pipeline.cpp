@@ -60,7 +60,7 @@ struct PipelineRun {
   py::dict metadata;
 };
 
-/// As JSON; what JSON has no word for by NumPy's tolist(), or as a text.
+/// A document as JSON. Values that JSON lacks become lists by NumPy's tolist(), or texts.
 std::string textOf(const py::object& document)
 {
   if (py::isinstance<py::str>(document)) return document.cast<std::string>();
@@ -78,7 +78,7 @@ py::dict dictOf(const StageProgress& stage)
                   "seconds"_a = stage.seconds, "finished"_a = stage.finished, "stages"_a = stage.stages);
 }
 
-/// Stages run for long without a word, so another thread runs them, and this one listens for Ctrl-C.
+/// Stages may run for long without a report, so another thread runs them, and this one listens for Ctrl-C.
 PipelineResult runUntilInterrupted(Pipeline& pipeline)
 {
   std::future<PipelineResult> run = std::async(std::launch::async, [&] { return pipeline.run(); });
@@ -92,7 +92,7 @@ PipelineResult runUntilInterrupted(Pipeline& pipeline)
     if (PyErr_CheckSignals() == 0) continue;
     const py::error_already_set interrupt;
     {
-      const Unlocked unlocked; // for a callback that waits for it
+      const Unlocked unlocked; // a callback may wait for the lock
       pipeline.cancel();
       run.wait();
     }

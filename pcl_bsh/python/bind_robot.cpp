@@ -178,7 +178,7 @@ py::array_t<double> limitsOf(const RobotModel& model)
   return limits;
 }
 
-/// Columns of a state.
+/// For the name of each group of joints, their columns in a state.
 py::dict groupsOf(const RobotModel& model)
 {
   const Names joints = jointsOf(model);

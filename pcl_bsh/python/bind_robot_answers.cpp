@@ -37,7 +37,7 @@ auto columnOf(const Read& read)
   };
 }
 
-/// -1 where nothing meets, or it has none.
+/// A property: an array of a number in each row's meeting; -1 where nothing meets, or the meeting lacks the number.
 template <class Answer, class Read>
 auto columnOfMeetings(const Read& read)
 {

@@ -197,8 +197,9 @@ ValueError
     A name that a link has; a link that is not there; a shape without a size.
 )";
 
-/// Asks the world as it is now, without the interpreter's lock. A state takes a microsecond, and the lock up to five
-/// milliseconds where other threads want it: without `progress` only unlocked() asks for Ctrl-C, after many states.
+/// Asks the world as it is now, without the interpreter's lock. A state takes a microsecond, but the lock takes up to
+/// five milliseconds where other threads want it. So without `progress` only unlocked() asks for Ctrl-C, after many
+/// states.
 template <class Ask>
 auto askWorld(const PyWorld& world, unsigned threads, const ProgressLike& progress, const Ask& ask)
 {

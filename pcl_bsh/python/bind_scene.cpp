@@ -69,7 +69,7 @@ using MotionLike = As<"Union[None, VelocityMotion, CircularMotion, WaypointMotio
 using CloudLike = As<"Union[SphereHierarchy, Sequence[Union[Tuple[str, SphereHierarchy], "
                      "Tuple[str, SphereHierarchy, npt.ArrayLike]]]]">;
 
-/// Scenes are not for several threads at once.
+/// A scene, with a mutex because only one thread at a time may use it.
 struct SharedScene {
   explicit SharedScene(const SceneOptions& options) : scene(options) {}
   Scene scene;

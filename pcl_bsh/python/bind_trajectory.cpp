@@ -123,7 +123,7 @@ TrajectoryRun collideAlongOf(const Cloud& scan, const Cloud& model, const ArrayL
   request.progress = progressOf(progress);
   const auto find = [&] {
     TrajectoryRequest wanted = request;
-    wanted.flags = flags || solid || input_solid; // which what is held is counted by
+    wanted.flags = flags || solid || input_solid; // addEnclosed() counts by them
     TrajectoryResult found = collideAlong(asked.a, model, list, wanted);
     addEnclosed(asked.question, asked.input, asked.obstacle, found, request.pivot);
     return found;
@@ -151,7 +151,7 @@ auto contact(std::optional<FirstContact> TrajectoryResult::*of)
   };
 }
 
-/// A property for one of the result's vectors; None where nothing was asked for.
+/// A property for one of the result's vectors; None where, by `asked`, the request did not ask for it.
 template <class T, class PythonQuestion>
 auto columnWhere(std::vector<T> TrajectoryResult::*values, PythonQuestion asked)
 {

@@ -72,7 +72,7 @@ void bindWords(py::module_& module)
       "spacing there of a point, so not scanned densely enough, 4 free, but seen by no scanner.";
   module.attr("Verdict") = verdicts();
 
-  py::register_exception_translator([](std::exception_ptr error) { // as Python says of arguments
+  py::register_exception_translator([](std::exception_ptr error) { // a TypeError, as Python's for arguments
     try {
       std::rethrow_exception(error);
     }

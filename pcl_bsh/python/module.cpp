@@ -81,7 +81,7 @@ std::string described(const std::string& doc)
 {
   std::istringstream lines(doc);
   std::string text, line;
-  const QuestionOption* option = nullptr; // of the last line
+  const QuestionOption* option = nullptr; // that the last line names
   while (std::getline(lines, line)) {
     if (line.rfind("**options of ", 0) == 0) {
       if (option) text += sentenceOf(*option) + '\n';
@@ -97,7 +97,7 @@ std::string described(const std::string& doc)
   return text;
 }
 
-/// Hides the types of a module's functions, or of a class.
+/// Takes types out of the docstrings of functions of a module or a class.
 void hideTypes(const py::object& scope)
 {
   for (const auto& [name, member] : py::dict(scope.attr("__dict__"))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Things prepared from clouds, for one query after another: once more after the clouds' points have moved.
+// Something prepared from clouds for many queries, and prepared again after points of the clouds have moved.
 #pragma once
 
 #include <pcl_bsh/python/python_question.h>
@@ -24,7 +24,8 @@ public:
 
   const Clouds& clouds() const noexcept { return clouds_; }
 
-  /// As the points are now: to be called while this thread computes, without the interpreter's lock. @throws as `make`
+  /// The result of `make` for the points as they are now. To be called while this thread computes, without the
+  /// interpreter's lock. @throws as `make`
   std::shared_ptr<const Made> now() const
   {
     std::size_t changes = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python's clouds, what is asked of two of them, and what the answer does not say by itself, as Python's warnings.
+// Python's clouds, questions about two of them, and the warnings of an answer as Python's warnings.
 #pragma once
 
 #include <pcl_bsh/python/arrays/array_input.h>
@@ -22,10 +22,10 @@ public:
   using SphereHierarchy::SphereHierarchy;
   Cloud(Cloud&&) = delete;
 
-  /// By the name of an argument.
+  /// This cloud as a shape of a question, with the name of an argument.
   Shape named(std::string name) const { return shape_.named(std::move(name)); }
 
-  /// Its points are about to move: what was measured of them counts no more. While none computes, with the
+  /// Drops what was measured of its points, as they are about to move. To be called while no thread computes, with the
   /// interpreter's lock.
   void forget()
   {
@@ -33,7 +33,7 @@ public:
     ++changes_;
   }
 
-  /// How often its points have moved, or nearly. While this thread computes.
+  /// How often forget() was called. To be read while this thread computes.
   std::size_t changes() const noexcept { return changes_; }
 
 private:
@@ -42,17 +42,17 @@ private:
   std::size_t changes_ = 0;
 };
 
-/// Whether a question about hierarchies has an option: not what decides how they are built.
+/// Whether a question about hierarchies has an option. Options that decide how hierarchies are built are left out.
 bool isOfHierarchies(const QuestionOption& option, QuestionKind kind);
 
-/// Options by their names in the table, of a kind of question: faces have them without a word of their own.
+/// Sets options of a question by their names in the table of options. @param kind an option must be one of this kind
 /// @throws py::type_error for an unknown name or a wrong value
 void setOptions(Question& question, const py::kwargs& options, QuestionKind kind);
 
-/// Two clouds by the names of arguments, where they are in the world, and what is asked. A planner asks about the same
-/// clouds thousands of times: how far their points are apart is measured once.
+/// Two clouds with the names of arguments, their poses in the world, and the question. A planner asks about the same
+/// clouds thousands of times, so the spacings of their points are measured once.
 struct PythonQuestion {
-  /// The second cloud is where the question says.
+  /// Leaves the pose of the second cloud to the caller: it goes along a path, or has many poses.
   PythonQuestion(const char* name_a, const Cloud& cloud_a, const PoseLike& pose_a, const char* name_b,
                  const Cloud& cloud_b);
 
@@ -65,7 +65,8 @@ struct PythonQuestion {
   /// The answer of ask(), computed without the interpreter's lock; its warnings are told.
   Answer answer();
 
-  /// The answer of a query that no question has. @param nearest its nearest pair, as nearestOf() has it
+  /// The answer of a query that Question does not have; its warnings are told.
+  /// @param nearest returns the smallest distance that the answer tells, as nearestOf() does
   template <class Query, class Nearest>
   auto answer(Query&& query, const Nearest& nearest)
   {

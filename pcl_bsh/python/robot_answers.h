@@ -16,12 +16,12 @@ namespace pcl_bsh::python {
 template <class Answer>
 struct Answers {
   std::vector<Answer> rows;
-  bool is_one = false; ///< arrays have no dimension for it
+  bool is_one = false; ///< asked about a single one: arrays lack the dimension of rows
 };
 
 using FreeOnes = As<"Union[bool, npt.NDArray[np.bool_]]">;
 
-/// Which are free for certain.
+/// Which rows are certainly free.
 template <class Answer>
 FreeOnes freeOnes(const Answers<Answer>& answers)
 {

@@ -19,7 +19,7 @@
 
 namespace pcl_bsh::python {
 
-/// Its files say this; it is checked.
+/// A robot as its files describe it, checked.
 struct RobotModel {
   RobotModel(robots::Robot read, io::RobotGroups of) : robot(std::move(read)), groups(std::move(of)), kinematics(robot)
   {

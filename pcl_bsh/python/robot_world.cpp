@@ -59,7 +59,7 @@ void warnOfObstacles(const PyWorld& world)
   for (const std::string& text : texts) warn(text);
 }
 
-/// @param change of a world of the robot alone
+/// Replaces the robot by a changed one. @param change is called with a world of the robot alone
 template <class Change>
 void changeRobot(PyWorld& world, const Change& change)
 {

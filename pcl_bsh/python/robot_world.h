@@ -26,7 +26,7 @@ struct PyWorld {
   Obstacles obstacles;
   robots::WorldOptions options;
   std::vector<Eigen::Isometry3d> poses; ///< of obstacles; none: they stand where they are given
-  std::shared_ptr<const Placed> placed; ///< replaced with the interpreter's lock
+  std::shared_ptr<const Placed> placed; ///< replaced while the interpreter's lock is held
 };
 
 /// @throws as robots::RobotWorld does

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python's objects of any kind, of which the module's signatures say the type: what the package's stubs are made from.
+// Python objects whose types the module's signatures name. The package's stubs are made from these signatures.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -24,8 +24,9 @@ inline bool isAny(py::handle /*object*/)
   return true;
 }
 
+/// Any Python object, of a type that signatures name.
 /// @tparam type in the words of Python's typing, and of numpy.typing as npt
-/// @tparam accepts of an argument, what chooses this overload of a function
+/// @tparam accepts whether an overload with this parameter takes an argument
 template <TypeText type, bool (*accepts)(py::handle) = isAny>
 class As : public py::object {
 public:
@@ -44,7 +45,7 @@ using ProgressLike = As<"Optional[Callable[[float], Any]]">;
 using PathLike = As<"Union[str, os.PathLike[str]]">;
 using Records = As<"npt.NDArray[np.void]">;
 
-/// A text, or what os.fspath() takes.
+/// The path in a text, or in anything that os.fspath() takes.
 inline std::string pathOf(const PathLike& path)
 {
   return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();

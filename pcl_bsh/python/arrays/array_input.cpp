@@ -31,7 +31,7 @@ Eigen::Isometry3d poseFromRows(const std::string& name, const double* rows, py::
   return pose;
 }
 
-/// Whoever asks the view for its arrays still finds them.
+/// The view with a pose's uncertainty added. arraysOf() still finds its arrays.
 PointsView withPose(const PointsView& view, const std::string& name, const PoseUncertainty& pose)
 {
   if (pose.isZero()) return view;
@@ -47,7 +47,7 @@ bool isPoseShape(const py::array& array, py::ssize_t first)
   return (array.shape(first) == 3 || array.shape(first) == 4) && array.shape(first + 1) == 4;
 }
 
-/// Without what the pose's uncertainty adds.
+/// The view of the points, without what the pose's uncertainty adds.
 PointsView keptViewOf(const std::string& name, const PointsInput& input)
 {
   auto kept = makeOwner<KeptArrays>();
@@ -91,7 +91,8 @@ int KeptArrays::traverse(visitproc visit, void* arg) const
   std::vector<PyObject*> references;
   if (points) references.push_back(points.ptr());
   for (const auto& lock : locks_) lock->addReferences(references);
-  // Arrays do not tell the collector of their bases. The reference of one that nobody else has is as good as ours.
+  // Arrays do not tell the collector of their bases. If all references to an array are ours, so is its own reference to
+  // its base.
   const bool tell_themselves = PyType_HasFeature(py::detail::npy_api::get().PyArray_Type_, Py_TPFLAGS_HAVE_GC);
   for (std::size_t i = 0; i < references.size() && !tell_themselves; ++i) {
     PyObject* const array = references[i];
@@ -113,7 +114,7 @@ PointsView viewOfTriangles(const PointsInput& vertices, std::vector<Triangle> tr
 {
   const PointsView corners = keptViewOf("vertices", vertices);
   PointsView view = viewOf(trianglesOf(corners, std::make_shared<const std::vector<Triangle>>(std::move(triangles))));
-  view.owner = std::shared_ptr<const void>(view.owner, corners.owner.get()); // who asks for the arrays finds them
+  view.owner = std::shared_ptr<const void>(view.owner, corners.owner.get()); // arraysOf() finds the arrays
   return withPose(view, "triangles", vertices.pose);
 }
 
@@ -136,7 +137,7 @@ MovedView movedView(const PointsView& before, PointsInput input)
       triangles.push_back(before.triangles->cornersOf(static_cast<std::uint32_t>(i)));
     return {before, viewOfTriangles(input, std::move(triangles))};
   }
-  // The arrays of before end with its hierarchy's view.
+  // Copies: the arrays of `before` end when the hierarchy gets its new view.
   const auto stays = [&](py::object& now, const float* values) {
     if (now.is_none() && values) now = py::array_t<float>(static_cast<py::ssize_t>(before.count), values);
   };
@@ -220,7 +221,7 @@ py::array_t<float> floatsOf(const std::string& name, const py::object& values, s
     throw InvalidInput(Input::points, name, "have shape " + shapeOf(array),
                        "give one for each of the " + counted(count, "point"));
   if (count > 1 && array.strides(0) != sizeof(float)) return py::array_t<float, py::array::c_style>::ensure(array);
-  return py::reinterpret_borrow<py::array_t<float>>(array); // not a view of it: what is given is to be locked
+  return py::reinterpret_borrow<py::array_t<float>>(array); // the array itself, no view of it: keep() locks it
 }
 
 std::vector<double> rowsOf(const std::string& name, const py::object& values, py::ssize_t columns)

@@ -55,7 +55,7 @@ public:
   PoseUncertainty pose = {};
   const void* keep(const py::array& array);
 
-  /// As PyTypeObject::tp_traverse, for whoever alone has this object.
+  /// As PyTypeObject::tp_traverse, to be called by the only owner of this object.
   int traverse(visitproc visit, void* arg) const;
 
 private:
@@ -82,7 +82,7 @@ PointsView viewOfPoints(const std::string& name, const PointsInput& input);
 /// and uncertainties of their own
 PointsView viewOfTriangles(const PointsInput& vertices, std::vector<Triangle> triangles);
 
-/// Points that have moved, and where they were: what is last to hold these needs the interpreter's lock.
+/// Views of points before and after they moved. The last copy of each is to be released with the interpreter's lock.
 struct MovedView {
   PointsView before, now;
 };
@@ -90,8 +90,8 @@ struct MovedView {
 /// The owner of the arrays of a view of viewOfPoints() or viewOfTriangles(); else null.
 const KeptArrays* arraysOf(const PointsView& view);
 
-/// `input` has no subset and no uncertainty of all points, those of the points before stay, as do radii and
-/// uncertainties that it does not have. For triangles, it has their vertices.
+/// The points of `before` at new places. They keep their subset, the uncertainty of all points, and the radii and
+/// uncertainties that `input` lacks. @param input without subset and uncertainty of all points; for triangles vertices
 MovedView movedView(const PointsView& before, PointsInput input);
 
 /// A view for the time of a call: nothing is locked. `kept` has what must live as long as the view.
@@ -112,7 +112,7 @@ PoseUncertainty poseUncertaintyOf(const py::object& uncertainty);
 /// A text for Accuracy::parse(), or an Accuracy; None: exact.
 Accuracy accuracyOf(const py::object& accuracy);
 
-/// (n,) float32, not locked.
+/// The values as (n,) float32, n being `count`. The array is not locked.
 py::array_t<float> floatsOf(const std::string& name, const py::object& values, std::size_t count);
 
 /// Rows of `columns` numbers, one after the other; of one column (n,).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where in memory NumPy's arrays have coordinates: as a view reads them, or as a copy does where no view can.
+// Where in memory the coordinates of NumPy's arrays are: in place where a PointsView can read them, else in a copy.
 #pragma once
 
 #include <pcl_bsh/base/invalid_input.h>
@@ -17,10 +17,10 @@ namespace py = pybind11;
 std::string shapeOf(const py::array& array);
 std::string nameOfType(const py::dtype& type);
 
-/// As numpy.asarray(): an array stays what it is.
+/// As numpy.asarray(): an array is returned as it is. @throws InvalidInput for masked arrays, and for what is no array
 py::array asArray(const std::string& name, const py::object& object, Input input = Input::points);
 
-/// None of integers, and of numbers in the other order of bytes.
+/// The scalar of a dtype; none unless that is float32 or float64 in this machine's byte order.
 std::optional<Scalar> scalarOf(const py::dtype& type);
 
 /// The view of rows, or of records with fields x, y, z. Errors call them `name`. The array becomes the copy, where one

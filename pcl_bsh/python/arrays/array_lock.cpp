@@ -36,8 +36,8 @@ std::pair<const char*, const char*> extentOf(const py::array& array)
   return {first, last + array.itemsize()};
 }
 
-/// Whether two arrays have no byte in common: they lie apart, or in other parts of rows of one length. No Python: the
-/// collector may not come between.
+/// Whether two arrays have no byte in common: they lie apart, or in other parts of rows of one length. Calls no Python,
+/// so that the garbage collector does not run meanwhile.
 bool areApart(const py::array& a, const py::array& b)
 {
   const auto [first_a, last_a] = extentOf(a);
@@ -72,7 +72,7 @@ ArrayLock::ArrayLock(const py::array& array) : array_(array)
   for (const py::object& object : shown) {
     if (!py::isinstance<py::array>(object)) continue;
     const auto held = py::reinterpret_borrow<py::array>(object);
-    if (held.writeable()) locked_.push_back(held); // else another lock has it, or its owner wants it so
+    if (held.writeable()) locked_.push_back(held); // else another lock cleared it, or its owner
   }
   locksByRoot().emplace(root_, this);
   for (const py::array& held : locked_) setWriteable(held, false);

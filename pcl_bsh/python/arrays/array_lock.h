@@ -25,8 +25,8 @@ private:
   bool reads(const pybind11::array& array) const;
 
   pybind11::array array_;
-  const PyObject* root_ = nullptr;      ///< what the memory belongs to
-  std::vector<pybind11::array> locked_; ///< those of which this lock will set the flag, or pass that on
+  const PyObject* root_ = nullptr;      ///< the last base, which the memory belongs to
+  std::vector<pybind11::array> locked_; ///< arrays whose flag this lock sets again, or has another lock set
 };
 
 /// The object whose memory an array, or another object between arrays, shows; null: no other object.

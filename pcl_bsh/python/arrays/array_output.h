@@ -23,7 +23,7 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
-/// As they stand in arrays: verdicts as bytes; records, which are below 2^31, as int32, and so none as -1.
+/// Values as arrays have them: verdicts as bytes; records, which are below 2^31, as int32, so that kNothing is -1.
 template <class T>
 const auto* numbersIn(const T* values)
 {
@@ -48,8 +48,8 @@ ArrayOf<T> arrayFrom(std::vector<T>&& values)
   return ArrayOf<T>(static_cast<py::ssize_t>(held.size()), numbersIn(held.data()), free);
 }
 
-/// A read-only array of any shape in the memory of an object, which it keeps alive. @param strides in bytes; none: one
-/// number stands behind the other
+/// A read-only array of any shape in the memory of an object, which it keeps alive. @param strides in bytes; none:
+/// the numbers are contiguous
 template <class T>
 ArrayOf<T> arrayIn(const py::handle& object, const T* data, std::vector<py::ssize_t> shape,
                    std::vector<py::ssize_t> strides = {})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Between queries, which run without the interpreter's lock, and what Python wants to be told.
+// How queries, which run without the interpreter's lock, report to Python and hear of Ctrl-C and of changes.
 #pragma once
 
 #include <pcl_bsh/hierarchy/sphere_hierarchy.h>
@@ -17,7 +17,7 @@ namespace pcl_bsh::python {
 
 namespace py = pybind11;
 
-/// Whether a callback returned a value that ends its caller: Python's False or NumPy's. None and all else let it go on.
+/// Whether a callback's answer stops the query: Python's False or NumPy's does. None and all others let it go on.
 inline bool isFalse(const py::object& answer)
 {
   static PyObject* numpys = nullptr; // guarded by the interpreter's lock
@@ -58,7 +58,7 @@ auto unlocked(Compute&& compute)
   return compute();
 }
 
-/// Where a hierarchy's points are; other threads may change it meanwhile.
+/// The view of a hierarchy, read while no other thread changes it.
 inline PointsView viewNow(const SphereHierarchy& hierarchy)
 {
   return unlocked([&] { return hierarchy.view(); });
@@ -73,8 +73,8 @@ inline std::size_t& changesBegun()
 }
 
 /// Changes points of a hierarchy: while no query runs, and none begins.
-/// @param prepare what is passed to `change`, which outlives that; may call Python
-/// @param change without the interpreter's lock
+/// @param prepare called with the interpreter's lock. Its result is passed to `change`, and destroyed with the lock
+/// @param change called without the interpreter's lock
 template <class Prepare, class Change>
 auto whileNoneComputes(Prepare&& prepare, Change&& change)
 {
@@ -89,7 +89,7 @@ auto whileNoneComputes(Prepare&& prepare, Change&& change)
   }
   const auto prepared = prepare();
   const Unlocked unlocked;
-  struct Ends { // before this thread wants the interpreter's lock, which it may not get
+  struct Ends { // ends the turn before this thread waits for the interpreter's lock, which it may not get
     ~Ends() { turn.reset(); }
     std::optional<Changing>& turn;
   } const ends{turn};

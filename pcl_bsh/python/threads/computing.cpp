@@ -29,8 +29,8 @@ Turns& turns()
   return *all;
 }
 
-/// How long a query lets changes go first that wait already. No longer: it may be what a callback waits for, in a query
-/// for whose end the change waits.
+/// How long a new query lets waiting changes go first. The limit ends a deadlock: a change waits for a running query,
+/// and that query's callback may wait for the new query.
 constexpr std::chrono::milliseconds kGivesWay{50};
 
 /// How long the interpreter's end waits for queries: they may wait in callbacks for what never comes.

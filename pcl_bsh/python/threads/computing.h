@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Queries of all of Python's threads, or one change of points, or a fork, or the interpreter's end: never two of these.
+// Turns of Python's threads. At any time there are queries, or one change of points, or a fork, or the interpreter's
+// end.
 #pragma once
 
 namespace pcl_bsh::python {
@@ -14,8 +15,8 @@ public:
   Computing& operator=(const Computing&) = delete;
 };
 
-/// While it lives, no other thread computes. It waits until those that do are done; later ones wait for it, and for a
-/// while let it go first. To be made without the interpreter's lock. Queries of this thread need not wait meanwhile.
+/// While it lives, no other thread computes. It waits until running queries end. Later queries let it go first for a
+/// while, and wait for its end. To be made without the interpreter's lock. Queries of this thread need not wait.
 class Changing {
 public:
   /// @throws std::runtime_error where this thread computes: in the callback of a query

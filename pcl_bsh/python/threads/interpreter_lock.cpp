@@ -19,7 +19,7 @@ std::atomic<std::thread::id> ending_thread; ///< none: the interpreter goes on
   for (;;) pause();
 }
 
-/// @param act takes the interpreter's lock; owns nothing
+/// Calls act(). Stops this thread where CPython unwinds it. @param act takes the interpreter's lock; owns nothing
 template <class Act>
 void orStop(Act&& act)
 {

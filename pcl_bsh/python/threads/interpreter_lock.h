@@ -35,10 +35,10 @@ private:
 /// Returns f(argument). Needs the interpreter's lock, which f may let go.
 pybind11::object called(const pybind11::object& f, const pybind11::object& argument);
 
-/// Whether another thread ends the interpreter: this one shall end what it does, and comes back to Python no more.
+/// Whether another thread is ending the interpreter. Then this thread shall end its work, and cannot return to Python.
 bool isEnding() noexcept;
 
-/// This thread ends the interpreter.
+/// Says that this thread is ending the interpreter.
 void setEnding() noexcept;
 
 } // namespace pcl_bsh::python
