@@ -91,7 +91,7 @@ ReadObstacle readObstacle(const Options& options, const fs::path& path, std::vec
   return obstacle;
 }
 
-/// States by the names of joints; those that are not named are at that of --state, or at 0.
+/// States, as values by the names of joints. Joints without a value have that of --state, or 0.
 std::vector<JointValues> valuesOf(const Options& options, const io::RobotGroups& groups)
 {
   JointValues rest;
@@ -107,7 +107,7 @@ std::vector<JointValues> valuesOf(const Options& options, const io::RobotGroups&
   return states;
 }
 
-/// A state or a motion, for programs and for people.
+/// The answer about a state or a motion, for programs and for people.
 struct Told {
   Json json;
   std::string line;
@@ -170,7 +170,7 @@ private:
   const std::vector<ReadObstacle>& obstacles_;
 };
 
-/// The answers about many, as a step of the program.
+/// The answers of ask(effort) about many states or motions, as a step of the program. @param all their number, in words
 template <class Ask>
 auto answered(const std::string& doing, const std::string& all, const Options& options, const Ask& ask)
 {
@@ -180,7 +180,7 @@ auto answered(const std::string& doing, const std::string& all, const Options& o
   return answers;
 }
 
-/// A row of the table; cells that say nothing are empty.
+/// A row of the table; cells without a value are empty.
 std::string rowOf(const char* what, std::size_t number, const Json& json)
 {
   const auto cell = [](const Json& value) {

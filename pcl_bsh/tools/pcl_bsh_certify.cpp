@@ -41,7 +41,7 @@ This program is under the GPL-3.0-or-later, because it contains CGAL's Bounding_
 Example: how tight are the spheres over a hall, by each way of fitting?
   pcl_bsh_certify hall.ply --report hall.json)";
 
-/// The fits by the names that users know them by.
+/// The fits, with the names that they have on the command line.
 const std::vector<std::pair<std::string, SphereFit>> fits = {
     {"box", SphereFit::box_center}, {"ritter", SphereFit::ritter}, {"minimal", SphereFit::minimal}};
 
@@ -63,7 +63,7 @@ Json toJson(const RadiusRatios& ratios)
     json["mean"] = ratios.mean();
     json["worst"] = ratios.worst;
   }
-  json["histogram"] = {{"below", RadiusRatios::edges}, {"spheres", ratios.histogram}}; // the last: all others
+  json["histogram"] = {{"below", RadiusRatios::edges}, {"spheres", ratios.histogram}}; // last: above all edges
   return json;
 }
 
@@ -176,7 +176,7 @@ SphereHierarchy build(const PointsView& view, SphereFit fit, const Options& opti
   return hierarchy;
 }
 
-/// @param seconds that certifying took
+/// @param seconds gets the time that certifying took
 Certificate certifyTold(const SphereHierarchy& hierarchy, CertifyOptions options, const std::string& name,
                         double& seconds)
 {
@@ -253,7 +253,7 @@ std::optional<Options> parse(int argc, char** argv)
             if (text == "all") text = std::to_string(CertifyOptions::all);
             return std::string();
           },
-          "")); // the last is the first to be called
+          "")); // CLI11 calls the one added last first
   cli::addThreads(app, options.certify.threads, "0: all of the machine's (default); any number gives the same result");
   cli::ReadOptions reading;
   reading.addTo(app);

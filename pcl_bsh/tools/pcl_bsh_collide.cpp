@@ -95,7 +95,7 @@ void write(const Options& options, const Scan& input, const Answer& answer, doub
   seconds += step.done(counted(std::size_t{cloud.width} * cloud.height, "point"));
 }
 
-/// Asks as a step of the program. @param ask of a question. @param done of the answer, for the step's end
+/// Asks as a step of the program. @param ask answers a question. @param done makes the step's last text of the answer
 template <typename Ask, typename Done>
 auto askInStep(const std::string& what, Question question, double& seconds, const Ask& ask, const Done& done)
 {
@@ -107,7 +107,7 @@ auto askInStep(const std::string& what, Question question, double& seconds, cons
 }
 
 /// Asks for collisions first, then for all distances. Each step tells how long it takes.
-/// @param ask of a question, for an Answer: of one obstacle, or of several together
+/// @param ask returns the Answer to a question, about one obstacle or several together
 template <typename Ask>
 void answer(const Ask& ask, bool lists_clashes, cli::CollisionReport& report)
 {
@@ -116,14 +116,14 @@ void answer(const Ask& ask, bool lists_clashes, cli::CollisionReport& report)
   const Wanted all = wanted;
   wanted.distances = wanted.both_ways = false;
   wanted.unseen_places = question.seen && lists_clashes;
-  wanted.spacings = !all.measures(); // at last, for it builds voxels
+  wanted.spacings = !all.measures(); // measured last, because that builds voxels
   report.answer = askInStep(question.path ? "Following " + counted(question.path->size(), "pose") : "Comparing",
                             question, report.seconds.query, ask, [](const Answer& found) {
                               return std::to_string(found.collisions.colliding) + " colliding";
                             });
   if (!all.measures()) return;
   wanted = {};
-  question.seen = false; // that is answered
+  question.seen = false; // already answered
   leaveOutWaiting(question);
   wanted.distances = wanted.spacings = true;
   wanted.both_ways = all.both_ways;
@@ -175,7 +175,7 @@ void check(const Options& options, const Question& question)
   files::requireWritable(*options.distance_page);
 }
 
-/// With the list of --previous. @param warnings gets those of the comparison
+/// The listing of clashes, with the earlier list of --previous. @param warnings gets those of the comparison
 /// @throws as io::ClashListing::readEarlier() does
 io::ClashListing listingOf(const Options& options, const Question& question, std::vector<std::string>& warnings)
 {
@@ -209,7 +209,7 @@ std::string listClashes(const Options& options, const SphereHierarchy& a,
   return io::clashCounts(lists);
 }
 
-/// From the input and its obstacles to all that is told of them.
+/// Asks about the input and its obstacles, and writes all results.
 int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListing& listing,
          cli::CollisionReport& report)
 {
@@ -236,7 +236,7 @@ int tell(const Options& options, const Scan& input, Shape& scan, io::ClashListin
     report.obstacle = {all[i].file, b.view().count, b.size()};
     if (const auto& counted = shapes.back().shape.counted()) report.obstacle.ignored = counted->all;
     if (b.size() == 0 && several)
-      shapes.back().shape = shapes.back().shape.named(all[i].name); // not the file, which may have more
+      shapes.back().shape = shapes.back().shape.named(all[i].name); // not by its file, which may have others
   }
   if (!several && all[0].loaded.isSurface()) {
     report.surface = all[0].loaded;
@@ -311,7 +311,7 @@ int collide(Options options)
   if (question.seen && question.origin.empty()) question.origin = io::originsOf(input.cloud(), input.facts);
   Shape scan = input.shape.shape(options.input.string());
   if (!scan.isSurface() && (options.keep == Keep::flagged || options.distances))
-    marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails now
+    marked(options.input, withoutRecords(input.cloud()), newFields(options, {}, {})); // fails before the query
   const auto warn_of = [&](const cli::ObstacleChoice& one, const io::CloudFacts& facts) {
     if (auto warning = warningOfSystems(options.input, input.facts, one.file, facts))
       report.warnings.push_back(std::move(*warning));

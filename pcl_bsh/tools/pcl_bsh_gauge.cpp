@@ -60,7 +60,7 @@ void readEnvelopes(const Options& options, std::vector<Track>& tracks)
   }
 }
 
-/// Behind a chainage: which track has it.
+/// A text to follow a chainage: the track that it belongs to; empty where the track has no name.
 std::string ofTrack(const Track& track)
 {
   return track.name.empty() ? "" : " of track " + track.name;
@@ -120,7 +120,7 @@ void fillSections(const Options& options, cli::GaugeScan& scan, io::GaugeReport&
     }
     step.share(batch.done);
   });
-  for (io::GaugeSection& section : report.sections) // in whatever order they came
+  for (io::GaugeSection& section : report.sections) // batches come in any order
     std::sort(section.points.begin(), section.points.end(), [](const SectionPoint& a, const SectionPoint& b) {
       return std::pair(a.offset, a.height) < std::pair(b.offset, b.height);
     });
@@ -196,7 +196,7 @@ void compare(const Options& options, std::vector<Track> tracks)
   }
   warnOfFile(options, options.input, scan->facts().remarks);
   GaugeFields fields(tracks);
-  if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails now
+  if (!options.output.empty()) withFields(withoutRecords(scan->whole()), fields.fields()); // fails before the run
   if (origins) origins->times = timesOf(options, scan->whole());
 
   io::GaugeReport report{options.input.string(),

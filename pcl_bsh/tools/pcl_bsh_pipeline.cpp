@@ -38,7 +38,7 @@ struct Options {
   std::filesystem::path metadata; ///< empty: none
   unsigned threads = 0;
   bool progress = false;
-  bool json = false; ///< what validation tells
+  bool json = false; ///< the result of --validate is told as JSON
 
   /// The name of the document in messages.
   std::string name() const { return document == "-" ? "standard input" : document.string(); }

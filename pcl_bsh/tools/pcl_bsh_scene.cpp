@@ -130,7 +130,7 @@ void writeClouds(const io::SceneFile& file, const cli::CloudNames& names, io::Sc
   }
 }
 
-/// Everything that can be known to fail is known before the first cloud is loaded.
+/// Refuses all that can be refused before the first cloud is loaded.
 void check(const io::SceneFile& file, const cli::CloudNames& names, const Options& options)
 {
   cli::requireBodies(file);

@@ -46,7 +46,7 @@ std::string rated(std::uint64_t points, double seconds)
          " million a second";
 }
 
-/// Shows each step of a making as one of the program's.
+/// Shows each step of site::makeSite() as a step of the program.
 class MakeSteps {
 public:
   bool operator()(site::MakeStep step, std::uint64_t done, std::uint64_t all)
@@ -176,7 +176,7 @@ int info(const Options& options)
   return 0;
 }
 
-/// @throws what says why it is not sound
+/// The site, with its tiles checked. @throws an error that tells why it is not sound
 site::Site checkedSite(const Options& options)
 {
   site::Site site = site::readSite(options.site);

@@ -45,7 +45,7 @@ void writeCsv(std::ostream& out, const Study& study)
   }
 }
 
-/// All that the others have.
+/// All that the other reports have.
 nlohmann::ordered_json toJson(const std::string& heading, const Subject& subject, const Study& study)
 {
   using Json = nlohmann::ordered_json;
@@ -98,10 +98,10 @@ void writeTable(std::ostream& out, const Study& study, const std::string& query)
   }
 }
 
-/// Where the frontier bends: farthest below the straight line between its ends, both axes logarithmic.
+/// The setting where the frontier bends: farthest below the straight line between its ends, both axes logarithmic.
 const Measurement* knee(std::vector<const Measurement*> best, double floor)
 {
-  while (!best.empty() && best.back()->certified_error <= floor) best.pop_back(); // exact has no place on such an axis
+  while (!best.empty() && best.back()->certified_error <= floor) best.pop_back(); // 0 has no logarithm
   if (best.size() < 3) return nullptr;
   const auto x = [](const Measurement* m) { return std::log(m->seconds.median); };
   const auto y = [](const Measurement* m) { return std::log(m->certified_error); };
@@ -123,7 +123,7 @@ const Measurement* bestWithin(const Study& study, const std::string& query, doub
   const Measurement* best = nullptr;
   for (const Measurement& m : study.measurements) {
     if (m.query != query || !m.certified || m.seconds.median > seconds) continue;
-    if (m.knob == "tolerance" && query != "distance") continue; // no share undecided, yet another question
+    if (m.knob == "tolerance" && query != "distance") continue; // undecides nothing, but asks another question
     if (!best || m.certified_error < best->certified_error ||
         (m.certified_error == best->certified_error && m.seconds.median < best->seconds.median))
       best = &m;

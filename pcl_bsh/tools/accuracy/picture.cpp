@@ -60,7 +60,7 @@ double errorOf(const Measurement& m, const View& view)
   return view.scale * (m.peer ? m.actual_error : m.certified_error);
 }
 
-/// The question whose times a series has.
+/// Which times a series has: of a query whose hierarchies were built before, or with all that is built for it.
 enum class Timing { again, once };
 
 vtk::ChartPoint pointOf(const Measurement& m, const View& view, Timing asked)
@@ -76,7 +76,7 @@ vtk::Series oursOf(const Study& study, const View& view, Timing asked)
       once ? "" : "pcl_bsh, guaranteed", vtk::distinctColor(0), vtk::Mark::circle, true, !once, once, {}};
   for (const Measurement* m : frontier(study, view.query, view.negligible / view.scale))
     series.points.push_back(pointOf(*m, view, asked));
-  std::reverse(series.points.begin(), series.points.end()); // exact has the first choice of a place for its label
+  std::reverse(series.points.begin(), series.points.end()); // exact comes first, so its label is placed first
   return series;
 }
 
@@ -100,13 +100,14 @@ vtk::Series peerOf(const Study& study, const View& view, const Way& way, Timing 
   return series;
 }
 
-/// How much sooner the exact answer is there than from PCL's exact tree.
+/// A span that tells how much faster the exact answer is than that of PCL's k-d tree.
 std::vector<vtk::Span> spansOf(const vtk::Series& ours, const vtk::Series& tree)
 {
   if (ours.points.empty() || tree.points.empty()) return {};
   const double from = ours.points.front().x, to = tree.points.front().x;
   if (!(to > 1.5 * from)) return {};
-  const double digits = std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // two digits are as many as last
+  const double digits =
+      std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // more than two digits change with each run
   return {{from, to, plainText(std::round(to / from / digits) * digits) + " x faster"}};
 }
 

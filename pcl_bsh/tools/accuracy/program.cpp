@@ -125,7 +125,7 @@ struct Box {
   }
 };
 
-/// The pose, then others about it: turned about the middle of B, so that far coordinates do not swing away.
+/// The pose, then others about it. They turn B about its middle, so that a B far from its origin does not swing away.
 std::vector<Eigen::Isometry3d> posesAbout(const Options& options, double diameter, const Eigen::Vector3d& middle)
 {
   std::mt19937_64 random(1);
@@ -181,7 +181,7 @@ int study(const char* program, const Options& options, Peers* measure_peers)
   };
   std::vector<Measurement> peers;
   if (measure_peers) peers = measure_peers(subject, std::min(options.repetitions, 3u), progress);
-  for (const Measurement& m : peers) // ours to the same error, beside those of the dial
+  for (const Measurement& m : peers) // tolerances with the errors of the peers
     if (m.query == "distance" && m.actual_error > 1e-6 * subject.diameter)
       subject.tolerances.push_back(roundLengthDown(m.actual_error));
   std::sort(subject.tolerances.begin(), subject.tolerances.end());

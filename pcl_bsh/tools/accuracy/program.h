@@ -6,7 +6,7 @@
 
 namespace pcl_bsh::accuracy {
 
-/// Measures other ways to the answers, at the poses of the subject.
+/// Measures how other libraries get the answers, at the poses of the subject.
 using Peers = std::vector<Measurement>(const Subject& subject, unsigned repetitions, const Progress& progress);
 
 /// Reads the command line, measures, writes the reports. @param measure_peers null: ours alone

@@ -77,8 +77,8 @@ public:
   void time(Query query, const Accuracy& accuracy, std::vector<std::vector<double>>& seconds) const
   {
     seconds.resize(subject_.poses.size());
-    // An earlier question, perhaps of another kind, has left other memory in the caches: no setting may lose by its
-    // predecessor. PCL's ways are repeated, too.
+    // Each query is asked once before it is timed, because an earlier query of another kind may have filled the caches
+    // with other memory. PCL's ways are repeated, too.
     for (const Eigen::Isometry3d& pose : subject_.poses) ask(query, accuracy, {a_}, {b_, pose});
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       const Stopwatch watch(threads_);
@@ -174,7 +174,8 @@ private:
   std::vector<Truth> truths_;
 };
 
-/// Tolerances from a millionth of the object up, levels until nothing is left open, budgets up to twice the exact time.
+/// The settings to measure: exact, tolerances from a millionth of the diameter up, levels until nothing is left open,
+/// and budgets of tests and of time, up to twice the exact time.
 std::vector<Accuracy> dialOf(Query query, const Laboratory& laboratory, const Subject& subject)
 {
   const double diameter = subject.diameter;

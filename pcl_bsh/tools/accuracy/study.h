@@ -17,7 +17,7 @@ struct Subject {
   std::vector<Eigen::Isometry3d> poses; ///< T_a_b
   double diameter = 0.0;                ///< of a's bounding box
   std::string unit;                     ///< of lengths, for titles; empty: not known
-  std::vector<double> tolerances = {};  ///< of the distance, to be measured beside those of the dial
+  std::vector<double> tolerances = {};  ///< of the distance, measured beside the usual settings
 };
 
 struct Spread {
@@ -27,9 +27,9 @@ struct Spread {
 /// One setting of one query, over all poses.
 struct Measurement {
   std::string query; ///< any, flags or distance
-  std::string knob;  ///< which of the dials, or which peer
+  std::string knob;  ///< which kind of accuracy is set, or which peer
   std::string setting;
-  bool peer = false; ///< not ours
+  bool peer = false; ///< another library's
   Spread seconds;    ///< of one query, all built before: spreadOfPoses()
   Spread once;       ///< of one query and of all that is built for it
   Work work;         ///< of all poses together
@@ -57,19 +57,19 @@ struct Study {
 /// Called with what is being measured and the share done.
 using Progress = std::function<void(const std::string&, double)>;
 
-/// Runs the dial over its range; repetitions are interleaved, so that a machine's moods meet all settings alike.
+/// Measures all settings. Repetitions are interleaved, so that disturbances of the machine meet all settings alike.
 Study runStudy(const Subject& subject, unsigned repetitions, unsigned threads, const Progress& progress);
 
 Spread spreadOf(std::vector<double> values);
 
-/// Over the poses, of the median of each: an interruption in one repetition moves nothing. For a single pose, over its
-/// repetitions. @param samples of each pose, one a repetition; neither may be empty
+/// The spread over the poses of each pose's median, which an interruption in one repetition does not move. For a single
+/// pose, the spread over its repetitions. @param samples for each pose a value of each repetition; no list may be empty
 Spread spreadOfPoses(const std::vector<std::vector<double>>& samples);
 
-/// The nearest of 1, 3 and 10 times a power of ten. @param length > 0
+/// The nearest of 1, 3 and 10 times a power of ten, by logarithms. @param length > 0
 double roundLength(double length);
 
-/// To two digits, and no more than it is. @param length > 0
+/// The length rounded down to two digits. @param length > 0
 double roundLengthDown(double length);
 
 } // namespace pcl_bsh::accuracy

@@ -42,7 +42,7 @@ void ClashOptions::requireConsistent() const
 void ClashOptions::addTo(CommandFiles& files) const
 {
   files.reads("--previous", previous.value_or(""));
-  for (const std::filesystem::path& list : clashes) files.writes("--clashes", list, "--previous"); // updated
+  for (const std::filesystem::path& list : clashes) files.writes("--clashes", list, "--previous"); // may replace it
 }
 
 void ClashOptions::requireWritable() const

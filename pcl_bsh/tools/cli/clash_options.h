@@ -21,7 +21,7 @@ struct ClashOptions {
   std::optional<std::filesystem::path> previous;
   std::string unit; ///< of the clouds, for reports; empty: not known
 
-  /// @param unit_of what the unit is told of
+  /// @param unit_of the outputs that tell the unit, for the help
   void addTo(CLI::App& app, const std::string& unit_of);
 
   /// @throws UsageError for an option without --clashes

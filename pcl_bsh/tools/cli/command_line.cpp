@@ -36,7 +36,7 @@ bool understood(CLI::App& app, const std::string& program, const std::function<v
     std::cout << version.what() << '\n';
     return false;
   }
-  catch (const CLI::ValidationError& error) { // of the checks below: says all
+  catch (const CLI::ValidationError& error) { // from a validator: the text is complete
     throw UsageError(error.what());
   }
   catch (const CLI::ParseError& error) {

@@ -12,7 +12,8 @@ namespace pcl_bsh::cli {
 /// first, while there is one thread: a thread of its own waits for the signals, all others never see them.
 void stopCleanlyOnSignals(const std::string& program);
 
-/// Sets the text about work that stays; empty before the first call. For work that another run continues.
+/// Sets the text about what stays when a signal ends the program, for work that another run continues. Before the first
+/// call it says that nothing unfinished was left behind.
 void setWhatStays(const std::string& what);
 
 /// Opens /dev/null for each standard stream that the caller has closed: the next file that is opened would otherwise

@@ -26,7 +26,7 @@ io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSe
 
 namespace {
 
-/// One file, or its parts. Remarks about a file of parts are in `facts` alone.
+/// Loads a file as one obstacle, or as one for each part. Remarks about a file of parts are in `facts` alone.
 std::vector<io::Obstacle> load(const ObstacleChoice& choice, const Question& question, const Loading& loading,
                                io::CloudFacts& facts, double& seconds)
 {

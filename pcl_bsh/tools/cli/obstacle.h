@@ -17,8 +17,8 @@
 
 namespace pcl_bsh::cli {
 
-/// Reads it, as a step of the program.
-/// @param seconds that it took are added
+/// Reads an obstacle, as a step of the program.
+/// @param seconds the time that it took is added
 /// @throws as io::readObstacle() does, whose last arguments these are
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
                           const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads);
@@ -37,19 +37,19 @@ struct Loading {
   bool unasked = false;                     ///< also obstacles that are not asked about
 };
 
-/// Loads obstacles of a question, each file with parts once. Others have no points.
-/// @param seconds that it took are added. @param told called for each file, once it is loaded; may be null
+/// Loads the obstacles that are asked about; the others are left empty. Each file with parts is read once.
+/// @param seconds the time that it took is added. @param told called for each file, once it is loaded; may be null
 /// @throws as io::readObstacle(), io::readMesh() and io::obstaclesOf() do; UsageError where a unit is not known
 std::vector<LoadedObstacle>
 loadObstacles(const std::vector<ObstacleChoice>& choices, const Question& question, const Loading& loading,
               double& seconds, const std::function<void(const ObstacleChoice&, const io::CloudFacts&)>& told = nullptr);
 
-/// Fails unless a file can hold the obstacle and which of its points, or of its triangles, collide. Surfaces are .ply.
+/// Fails unless a file can hold the obstacle and a flag for each of its points or triangles. Surfaces need a .ply.
 /// @throws files::FileError; std::invalid_argument for a cloud whose field `collision` is of another type
 void requireWritableFlags(const std::filesystem::path& file, const io::Obstacle& obstacle);
 
-/// Writes them, where the obstacle's own file has it, with a field `collision`. Throws as requireWritableFlags() does.
-/// @param flags one for each record of its view
+/// Writes the obstacle in its own frame, with the flags as a field `collision`. Throws as requireWritableFlags() does.
+/// @param flags one for each record of the obstacle's view
 void writeFlags(const std::filesystem::path& file, const io::Obstacle& obstacle, const std::vector<Verdict>& flags,
                 const io::CloudFacts& facts);
 

@@ -15,7 +15,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// An option of the question, by the name that it has of one obstacle.
+/// Sets an option of one obstacle, by the name that it has after ';'. @param label names the obstacle in errors
 void set(ObstacleChoice& choice, const std::string& option, const std::string& value, const std::string& label,
          std::vector<std::string>& warnings)
 {
@@ -81,7 +81,7 @@ ObstacleChoice parseObstacle(const std::string& text, std::vector<std::string>& 
   return choice;
 }
 
-/// One for each part, or the only one.
+/// Appends an obstacle for each part of the file, or one for the whole file.
 void addParts(const ObstacleChoice& choice, std::vector<ObstacleChoice>& choices, std::vector<std::string>& warnings)
 {
   if (!choice.parts) return choices.push_back(choice);
@@ -151,7 +151,7 @@ void SeveralObstacles::readObstacles(const std::filesystem::path& first, std::ve
   std::vector<std::string> all = texts_;
   if (!first.empty()) all.insert(all.begin(), first.string());
   obstacles = parseObstacles(all, warnings);
-  ignoredPairs(); // fails now
+  ignoredPairs(); // refuses wrong pairs now
   if (only.empty()) return;
   std::vector<bool> fitting;
   try {

@@ -24,24 +24,24 @@ namespace pcl_bsh::cli {
 
 /// An obstacle of a command line. Members without a value are those of the question.
 struct ObstacleChoice {
-  std::string name; ///< that lists and pages tell: the file's stem where none is given; of a part, PART or NAME/PART
+  std::string name; ///< in lists and pages: the file's stem where none is given; of a part, PART or NAME/PART
   std::filesystem::path file;
-  std::size_t part = 0;                                 ///< of `parts`
-  std::shared_ptr<const io::MeshParts> parts = nullptr; ///< of the file; null: it is one obstacle
+  std::size_t part = 0;                                 ///< its number in `parts`
+  std::shared_ptr<const io::MeshParts> parts = nullptr; ///< those of the file; null: the file is one obstacle
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   std::optional<io::LengthUnit> unit = {}; ///< of the file's lengths, in place of --obstacle-unit
   std::string pose_text = {};              ///< as typed, which may name a file
   std::optional<double> clearance = {};
   std::optional<bool> solid = {};
   std::optional<Uncertainty> uncertainty = {};
-  bool asked = true; ///< about the input; else --previous tells of it
+  bool asked = true; ///< whether it is compared with the input; else --previous tells of it
 
-  /// The obstacle where it stands.
+  /// The obstacle at its pose, with its own options.
   PlacedShape placed(Shape shape) const { return {std::move(shape), pose, clearance, solid, uncertainty}; }
 };
 
-/// The values of --obstacle. A text that is the name of a file as a whole is that file. A file in parts gives one for
-/// each of them.
+/// The values of --obstacle. A text that as a whole names an existing file stands for it. With parts=true a file gives
+/// an obstacle for each of its parts.
 /// @param warnings gets those of poses and of parts
 /// @throws UsageError for a word that is no option of an obstacle, a value that its option refuses, two obstacles of
 ///   one name; files::FileError for a file of a pose, and as readMeshParts() does
@@ -49,11 +49,11 @@ std::vector<ObstacleChoice> parseObstacles(const std::vector<std::string>& texts
 
 /// The options about several obstacles.
 struct SeveralObstacles {
-  std::vector<ObstacleChoice> obstacles; ///< that have names, or none
-  std::vector<std::string> ignored;      ///< pairs of them, as typed
+  std::vector<ObstacleChoice> obstacles; ///< none: there is a single one, without a name
+  std::vector<std::string> ignored;      ///< pairs that are not compared, as typed
   std::vector<std::string> only;         ///< patterns of names that are asked about; empty: all are
   bool between = false;                  ///< whether they are compared with each other
-  bool overlap = false;                  ///< and tell how much of one lies within another
+  bool overlap = false;                  ///< whether it is told how much of one lies within another
 
   void addTo(CLI::App& app);
   void addObstaclesTo(CLI::App& app); ///< --obstacle alone
@@ -61,11 +61,11 @@ struct SeveralObstacles {
   /// Whether --obstacle is given.
   bool areGiven() const { return !texts_.empty(); }
 
-  /// Reads the obstacles. @param first one more, which comes before them; empty: none
+  /// Reads the obstacles. @param first the file of one that comes before them; empty: none
   /// @throws as parseObstacles() and ignoredPairs() do; UsageError for a pattern that no name matches
   void readObstacles(const std::filesystem::path& first, std::vector<std::string>& warnings);
 
-  /// @param solid whether obstacles are solids that do not say themselves. @param previous whether an earlier list is
+  /// @param solid whether obstacles without the option `solid` are solids. @param previous whether an earlier list is
   ///   given
   /// @throws UsageError for options that exclude or need others
   void requireConsistent(bool solid, bool previous) const;

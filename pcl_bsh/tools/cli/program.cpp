@@ -11,7 +11,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// The output may be what the user wants: a full disk must not pass for success.
+/// Throws where standard output could not be written: a full disk must not pass for success.
 void requireOutputWritten()
 {
   std::cout.flush();

@@ -15,13 +15,13 @@
 
 namespace pcl_bsh::cli {
 
-/// --name-of-an-option.
+/// The command line's --some-name for an option `some_name`.
 std::string asOption(const std::string& name);
 
 /// Breaks a text into lines of at most `width` characters; longer words stay whole.
 std::string wrapped(const std::string& text, std::size_t width = 72);
 
-/// Adds the options with these names; what the question has is their default.
+/// Adds the options with these names; their defaults are the values in the question.
 void addQuestionOptions(CLI::App& app, Question& question, const std::vector<std::string>& names);
 
 /// Adds the options of a kind of question, except those in `without`, which a program adds in its own way.
@@ -30,7 +30,7 @@ void addQuestionOptions(CLI::App& app, Question& question, QuestionKind kind, co
 /// @throws UsageError quoting the text when it is no accuracy
 Accuracy parseAccuracy(const std::string& text);
 
-/// Advice on the core's refusal, with the names of the command line.
+/// The text of a refusal of the core, with the names that options have on the command line.
 /// @param names_of_poses the options that give poses: of the first pose, then of those that follow
 std::string advice(const InvalidInput& error, const Question& question, const std::vector<std::string>& names_of_poses);
 
@@ -47,8 +47,8 @@ decltype(auto) named(const Build& build, const Question& question = {},
   }
 }
 
-/// Refuses what ask() would refuse whatever the clouds. @throws UsageError; std::invalid_argument for poses
-/// @param refuse that does it; none: that of ask()
+/// Refuses questions that ask() would refuse for any clouds. @throws UsageError; std::invalid_argument for poses
+/// @param refuse throws InvalidInput for them; null: as ask() does
 void requireAccepted(const Question& question, const std::vector<std::string>& names_of_poses = {"--pose"},
                      const std::function<void()>& refuse = nullptr);
 

@@ -26,10 +26,11 @@ struct ReadChoice {
 
   io::ReadSettings of(const std::filesystem::path& file) const;
 
-  /// The input is read as it is, or in the system that is wanted: its unit is that of all lengths.
+  /// The settings of the input: it keeps its coordinate system, or gets to_crs. Its unit is that of all lengths.
   io::ReadSettings ofInput(const std::filesystem::path& file) const;
 
-  /// The obstacle is read in that unit, where any is given. @param input_unit as the input was read
+  /// The settings of an obstacle: where a unit is given, it is converted to the input's. @param input_unit as it was
+  /// read
   /// @param sigmas the field of its uncertainties, or empty. @throws UsageError where the unit is not known
   io::ReadSettings ofObstacle(const std::filesystem::path& file, std::optional<io::LengthUnit> input_unit,
                               const std::string& sigmas) const;
@@ -50,7 +51,7 @@ public:
   /// --input-unit and --obstacle-unit.
   void addUnitsTo(CLI::App& app);
 
-  /// --to-crs and --input-crs; --obstacle-crs where there is one. @param input as the help calls it
+  /// --to-crs and --input-crs; --obstacle-crs where there is one. @param input its name in the help
   void addSystemsTo(CLI::App& app, bool has_obstacle, const std::string& input = "INPUT");
 
   /// @param files that the program reads clouds from
@@ -60,7 +61,7 @@ public:
 
 private:
   std::vector<std::string> columns_; ///< as given
-  ReadChoice choice_;                ///< all else
+  ReadChoice choice_;                ///< all other options
 };
 
 } // namespace pcl_bsh::cli

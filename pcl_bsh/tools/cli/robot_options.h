@@ -23,7 +23,7 @@ struct RobotOptions {
   std::string joints;
   std::vector<std::string> packages;
 
-  /// --joints and --states. @param joints_doc of the first. @param line of the table's lines: "cloud"
+  /// --joints and --states. @param joints_doc help of --joints. @param line what a line of the table is for: "cloud"
   void addJointsTo(CLI::App& app, const std::string& joints_doc, const std::string& line)
   {
     auto* const option = app.add_option("--joints", joints, joints_doc)->type_name("NAME=VALUE,...");

@@ -22,7 +22,7 @@ inline void requireBodies([[maybe_unused]] const io::SceneFile& file)
 #endif
 }
 
-/// Null where the scene does not list them.
+/// The bodies of a scene; null where the scene does not list that effect.
 inline std::unique_ptr<SceneBodies> bodiesOf(const io::SceneFile& file, [[maybe_unused]] Scene& scene)
 {
   requireBodies(file);
@@ -41,7 +41,7 @@ inline std::unique_ptr<SceneBodies> bodiesOf(const io::SceneFile& file, [[maybe_
 #endif
 }
 
-/// The effects of the scene a step later.
+/// Moves the scene and its bodies on by `dt` seconds, and returns the effects. @param bodies may be null
 inline BodiesStep stepOf(Scene& scene, SceneBodies* bodies, double dt)
 {
   if (bodies) return bodies->step(dt);

@@ -14,7 +14,7 @@
 
 namespace pcl_bsh::cli {
 
-/// Reads a scene and its robots. Throws where it has one and this program reads none.
+/// Reads a scene and its robots. Throws where it has a robot and this program was built without them.
 inline io::SceneFile readScene(const std::filesystem::path& path)
 {
   io::SceneFile file = io::readSceneFile(path);

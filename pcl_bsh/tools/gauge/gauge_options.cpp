@@ -54,7 +54,7 @@ std::vector<GaugeAxis> axesOf(const std::vector<std::string>& given)
   return axes;
 }
 
-/// TRACK=NAME of an alignment, or NAME for all axes.
+/// Sets the alignment of one axis, given as TRACK=NAME, or of all axes, given as NAME.
 void setAlignment(std::vector<GaugeAxis>& axes, const std::string& given)
 {
   const std::size_t equals = given.find('=');
@@ -78,7 +78,7 @@ void requireTrack(const std::vector<GaugeAxis>& axes, const std::string& name)
                    (names.empty() ? "--axis " + name + "=FILE" : "one of " + names));
 }
 
-/// NAME=VALUE, or VALUE for all profiles.
+/// Calls use(profile, VALUE) for one profile, given as NAME=VALUE, or for all profiles, given as VALUE.
 void forProfiles(std::vector<io::EnvelopeFiles>& profiles, const std::string& option, const std::string& given,
                  const std::function<void(io::EnvelopeFiles&, const std::string&)>& use)
 {
@@ -96,7 +96,7 @@ void forProfiles(std::vector<io::EnvelopeFiles>& profiles, const std::string& op
   if (!used) throw UsageError(option + ": " + given + ": no profile is called '" + name + "': give one of " + names);
 }
 
-/// Two numbers with that character between them.
+/// The numbers on either side of the first character `between` of a text.
 std::pair<double, double> twoNumbers(const std::string& option, const std::string& text, char between,
                                      const std::string& form)
 {

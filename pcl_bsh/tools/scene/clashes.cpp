@@ -17,7 +17,7 @@ namespace {
 
 constexpr auto clashes_effect = "effects.clashes";
 
-/// Where the core refuses the question, the scene's file is named.
+/// Returns ask(). @throws std::invalid_argument naming the scene's file where the core refuses the question
 template <typename Ask>
 auto inScene(const io::SceneFile& file, const Ask& ask)
 {
@@ -75,7 +75,7 @@ const io::CloudSource& SceneClashList::sourceOf(const std::string& cloud) const
                        [&](const io::CloudSource& source) { return source.name == cloud; });
 }
 
-/// Built once: copies share it.
+/// The shape of a cloud. Its hierarchy is built once, and copies share it.
 Shape SceneClashList::shapeOf(const io::CloudSource& source)
 {
   const auto [place, is_new] = shapes_.try_emplace(source.name);
@@ -114,7 +114,7 @@ void SceneClashList::addStep()
   }
 }
 
-/// At one step nothing moves.
+/// Gives each obstacle its path; after one step alone, its pose.
 void SceneClashList::setPaths()
 {
   for (std::size_t i = 0; i < placed_.size(); ++i) {
@@ -126,7 +126,8 @@ void SceneClashList::setPaths()
   }
 }
 
-/// Pairs have the clearances of the scene's rules: those of one clearance are asked about together.
+/// Compares obstacles with each other. Pairs have the clearances of the scene's rules, and pairs of one clearance are
+/// asked about together.
 void SceneClashList::compareOthers()
 {
   const auto clearanceOf = [&](std::uint32_t i, std::uint32_t k) {

@@ -26,16 +26,15 @@ public:
   /// @throws std::invalid_argument where the scan is no cloud of points; as io::ClashListing::readEarlier() does
   SceneClashList(const io::SceneFile& file, io::SceneWorld& world, const ClashOptions& options);
 
-  /// Keeps where the objects stand.
+  /// Keeps the poses that the objects have now.
   void addStep();
 
   /// Asks about all steps together, and writes the lists. @throws std::invalid_argument naming the effect
   void finish();
 
   const std::vector<std::string>& warnings() const { return warnings_; } ///< a line each
-  std::string
-  summary() const; ///< after finish(): a line of each object, of two of them, and how many clashes there are
-  nlohmann::ordered_json json() const; ///< after finish(): the same for programs
+  std::string summary() const; ///< after finish(): lines about objects and about pairs, and the count of clashes
+  nlohmann::ordered_json json() const; ///< after finish(): the summary for programs
 
 private:
   const io::CloudSource& sourceOf(const std::string& cloud) const;
@@ -51,7 +50,7 @@ private:
   Question question_;
   std::map<std::string, Shape> shapes_; ///< by the name of their cloud
   std::vector<PlacedShape> placed_;
-  std::vector<std::pair<ObjectId, std::uint32_t>> parts_; ///< of the scene, whose shapes these are
+  std::vector<std::pair<ObjectId, std::uint32_t>> parts_; ///< the object and the part of each of placed_
   std::vector<io::ComparedObstacle> obstacles_;
   io::ClashListing listing_;
   std::size_t present_ = 0, perhaps_ = 0;

@@ -12,8 +12,7 @@
 namespace pcl_bsh::cli {
 
 /// OBJECT_000012.pcd or OBJECT_PART_000012.pcd (.ply of a surface), with only such letters as every disk allows. No two
-/// parts of a scene share a name, not even where upper and lower case are one: where theirs would, the later ones get a
-/// number.
+/// parts of a scene share a name, not even where upper and lower case are alike: later ones get a number.
 class CloudNames {
 public:
   explicit CloudNames(const io::SceneFile& file);

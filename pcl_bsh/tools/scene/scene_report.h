@@ -42,7 +42,7 @@ struct SceneTotals {
 /// Counts of a step: a row of the CSV. Columns of effects that are not listed are left out.
 class SceneTable {
 public:
-  /// @param undecided whether results may be: they have columns then
+  /// @param undecided whether results may be undecided: then there are columns for that
   /// @param bodies null where the scene has none
   SceneTable(const Effects& effects, bool undecided, const SceneBodies* bodies)
   : effects_(effects),

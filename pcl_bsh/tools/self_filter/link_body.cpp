@@ -78,7 +78,7 @@ void addSolid(LinkBody& body, const Solid& solid, const Eigen::Isometry3d& T_lin
 
 void addShape(LinkBody& body, const Shape& shape)
 {
-  constexpr double any = 1.0; // nothing of a mesh is round
+  constexpr double any = 1.0; // meshes have no round parts
   std::visit(
       [&](const auto& form) {
         if constexpr (std::is_constructible_v<Solid, decltype(form)>)

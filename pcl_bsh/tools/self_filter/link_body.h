@@ -41,7 +41,7 @@ struct PlacedSolid {
   Eigen::Isometry3d T_solid_link;
 };
 
-/// In the link's frame.
+/// The body of a link, in the link's frame.
 struct LinkBody {
   /// A file of a mesh, some of the surface's triangles.
   struct Mesh {
@@ -57,14 +57,14 @@ struct LinkBody {
   /// This object must outlive what is built on it.
   TrianglesView trianglesOf(const Mesh& mesh) const;
 
-  /// Whether a point in the link's frame is within the padding of a solid. It errs to that side, by a few roundings of
-  /// double.
+  /// Whether a point in the link's frame is within the padding of a solid. It is also true for points that are farther
+  /// by a few roundings of double.
   bool hasWithin(double padding, const Eigen::Vector3d& point) const;
 };
 
 /// Returns the body of a link. A shape's pose and scale are applied to the vertices of its mesh, rounded in double.
-/// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error naming the link for what
-///   has no size
+/// @throws files::FileError for a mesh that cannot be read or has no faces; std::runtime_error naming the link for a
+///   shape without a size
 LinkBody bodyOf(const Link& link);
 
 } // namespace pcl_bsh::self_filter

@@ -94,7 +94,7 @@ void requireLinks(const self_filter::Settings& settings, const self_filter::Robo
   }
 }
 
-/// One for each cloud.
+/// The values of joints for each cloud.
 std::vector<JointValues> statesOf(const Options& options)
 {
   std::vector<JointValues> states = options.robot.values();
@@ -167,7 +167,7 @@ Json filterCloud(const Options& options, const std::string& name, const JointVal
           {"warnings", warnings}};
 }
 
-/// The meshes that a robot names are read as its URDF is.
+/// Refuses outputs that are meshes of the robot. @throws UsageError
 void requireMeshesApart(cli::CommandFiles files, const self_filter::Robot& robot)
 {
   for (const self_filter::Link& link : robot.links)

@@ -5,7 +5,7 @@
 //   const std::vector<Verdict>& mine = filter.flags(viewOf(cloud), T_cloud_root, {{"elbow", 0.7}});
 //
 // A point is flagged where it is within the padding of a link, or inside of it. Boxes, cylinders, spheres and meshes
-// that close are solid. A mesh that does not close is its surface, and a warning.
+// that close are solid. A mesh that does not close counts as a surface alone, with a warning.
 #pragma once
 
 #include "link_body.h"
@@ -30,7 +30,7 @@ struct Settings {
   std::map<std::string, double> paddings = {}; ///< of links by their names, m, in place of `padding`
 };
 
-/// Reads all links once; a new frame builds the scan's hierarchy, and of that only what is near the robot.
+/// Reads all links once. For each frame it builds the scan's hierarchy, only where that is near the robot.
 class SelfFilter {
 public:
   /// @throws as bodyOf() does; std::runtime_error for a robot without a body; std::invalid_argument naming a link that

@@ -26,7 +26,7 @@ JointValues valuesOf(const robots::RobotWorld& world, const robots::RobotState& 
   return values;
 }
 
-/// Beyond it no point matters, m.
+/// The distance from the motion beyond which no point of the frame matters, m.
 double marginOf(const PointsView& frame, double padding, double clearance)
 {
   double radius = 0.0, own = 0.0;

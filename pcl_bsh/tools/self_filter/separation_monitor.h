@@ -25,10 +25,10 @@ namespace pcl_bsh::self_filter {
 /// The answer of a frame about a motion.
 struct SeparationCheck {
   robots::MotionCheck motion;     ///< with last_valid; a meeting's record is one of the frame
-  std::size_t near = 0, self = 0; ///< points that the motion may come near, and those of them that are the robot
+  std::size_t near = 0, self = 0; ///< numbers of points that the motion may come near; of the robot among them
 };
 
-/// The few points of a frame that matter, one after another: an answer has an entry for each point of its view.
+/// A copy of the few points of a frame that matter. Answers about it have an entry for each of these points alone.
 class NearPoints {
 public:
   /// A view of these records, valid until the next call.
@@ -42,7 +42,7 @@ private:
 /// Keeps the robot's hierarchies, and builds those of a frame from points near the motion alone.
 class SeparationMonitor {
 public:
-  /// @param filter how points that are the robot are told
+  /// @param filter how points of the robot are recognised
   /// @param options the base is the robot's root in the world
   /// @throws as SelfFilter and RobotWorld do
   SeparationMonitor(const Robot& robot, const Settings& filter, const robots::WorldOptions& options);
@@ -59,9 +59,9 @@ public:
 private:
   SelfFilter filter_;
   robots::RobotWorld world_;
-  std::vector<std::int32_t> records_; ///< near the motion
-  NearPoints near_;                   ///< these
-  std::vector<std::int32_t> others_;  ///< of these, all but the robot
+  std::vector<std::int32_t> records_; ///< of the frame, near the motion
+  NearPoints near_;                   ///< the points of records_
+  std::vector<std::int32_t> others_;  ///< numbers in near_ of points that are not the robot
   std::unique_ptr<const SphereHierarchy> obstacle_;
 };
 
